@@ -1,0 +1,3 @@
+//! From syntax to movements: modules, symbols, values, execution. Knows no robot.
+
+pub mod hir;

@@ -1,0 +1,6 @@
+//! joulepath: a compiler for ABB RAPID programs that saves energy.
+//!
+//! The layers, lowest first; `docs/architecture.md` is the map of the code.
+
+pub mod ir;
+pub mod text;
