@@ -254,6 +254,32 @@ pub enum StmtKind {
     Broken,
 }
 
+impl Routine {
+    /// The body and every handler.
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        std::iter::once(&self.body)
+            .chain(&self.backward)
+            .chain(self.error.iter().map(|(_, block)| block))
+            .chain(&self.undo)
+    }
+}
+
+impl StmtKind {
+    /// The statement lists directly inside.
+    pub fn blocks(&self) -> Vec<&Block> {
+        match self {
+            StmtKind::If { branches, otherwise } => {
+                branches.iter().map(|(_, block)| block).chain(otherwise).collect()
+            }
+            StmtKind::For { body, .. } | StmtKind::While { body, .. } => vec![body],
+            StmtKind::Test { cases, default, .. } => {
+                cases.iter().map(|(_, block)| block).chain(default).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
 /// A procedure call or instruction.
 #[derive(Clone, Debug)]
 pub struct Call {

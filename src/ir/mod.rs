@@ -1,3 +1,11 @@
 //! From syntax to movements: modules, symbols, values, execution. Knows no robot.
 
+pub mod convert;
+pub mod exec;
 pub mod hir;
+pub mod instructions;
+pub mod layout;
+pub mod movement;
+pub mod predefined;
+pub mod program;
+pub mod value;

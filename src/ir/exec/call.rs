@@ -1,0 +1,178 @@
+//! Calls of the program's own routines.
+
+use std::sync::Arc;
+
+use super::super::hir::{Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, Stmt};
+use super::super::program::{RoutineId, Symbol};
+use super::super::value::{Datum, Dependence, Origin, Value};
+use super::flow::{Flow, number_text};
+use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
+use crate::text::Span;
+
+impl Executor<'_> {
+    /// A call statement: a routine of the program, or an instruction of RAPID's.
+    pub(super) fn call_statement(&mut self, stmt: &Stmt, call: &Call) -> Flow {
+        let (key, text, span) = match &call.callee {
+            Callee::Name(name) => (name.key.clone(), name.text.clone(), name.span),
+            Callee::Late(expr) => match self.eval(expr).datum {
+                Datum::Text(name) => {
+                    // "Module:Proc" names a local procedure of a module.
+                    let proc = name.rsplit(':').next().unwrap_or(&name);
+                    (proc.to_lowercase(), proc.to_owned(), expr.span)
+                }
+                _ => {
+                    self.opaque(stmt.span, "the procedure called by %…% is not known");
+                    return Flow::Next;
+                }
+            },
+        };
+        match self.program.resolve(self.frame().module, &key) {
+            Some(Symbol::Routine(id)) => match self.call_routine(id, &call.args, span) {
+                Flow::Return(_) => Flow::Next,
+                other => other,
+            },
+            _ => self.instruction(stmt, &key, &text, &call.args),
+        }
+    }
+
+    /// Binds the arguments and runs the routine.
+    pub(super) fn call_routine(&mut self, id: RoutineId, args: &[Arg], at: Span) -> Flow {
+        if self.frames.len() >= MAX_CALL_DEPTH {
+            self.unresolved(at, "calls are nested too deeply; the call was passed over");
+            return Flow::Next;
+        }
+        let program = self.program;
+        let params = &program.routine(id).params;
+        let mut required = params.iter().filter(|p| !p.optional);
+        let mut names = Vec::new();
+        let mut present = Vec::new();
+        for arg in args {
+            let (param, expr) = match &arg.kind {
+                ArgKind::Positional(expr) => (required.next(), Some(expr)),
+                ArgKind::Named(name, expr) => {
+                    (params.iter().find(|p| p.name.key == name.key), Some(expr))
+                }
+                ArgKind::Optional(name, expr) => {
+                    (params.iter().find(|p| p.name.key == name.key), expr.as_ref())
+                }
+                ArgKind::Conditional(name, outer) => {
+                    if !self.frame().present.contains(&outer.key) {
+                        continue;
+                    }
+                    if let Some(param) = params.iter().find(|p| p.name.key == name.key) {
+                        present.push(param.name.key.clone());
+                        if let Some(cell) = self.cell_of(outer) {
+                            names.push((param.name.key.clone(), cell));
+                        }
+                    }
+                    continue;
+                }
+            };
+            let Some(param) = param else {
+                self.unresolved(arg.span, "the argument has no parameter");
+                continue;
+            };
+            present.push(param.name.key.clone());
+            if let Some(expr) = expr {
+                let cell = self.bind(param, expr);
+                names.push((param.name.key.clone(), cell));
+            }
+        }
+        self.enter(id, names, present)
+    }
+
+    /// The cell of a parameter: the argument's own for a reference, else a new one.
+    fn bind(&mut self, param: &Param, expr: &Expr) -> CellId {
+        if param.mode != ParamMode::In
+            && let ExprKind::Ref(name) = &expr.kind
+            && let Some(cell) = self.cell_of(name)
+        {
+            return cell;
+        }
+        let mut value = self.eval(expr);
+        let equals = self.equal_text(expr, &value);
+        // A signal is passed on as such.
+        if !matches!(value.datum, Datum::Signal(_)) {
+            value.type_key = param.type_name.key.as_str().into();
+        }
+        let reading = Origin::of(Dependence::Local { name: param.name.text.as_str().into(), equals });
+        self.cells.push(Cell { value, reading, read_only: false });
+        self.cells.len() - 1
+    }
+
+    /// RAPID text, valid in every module, that equals the argument in this execution.
+    fn equal_text(&mut self, expr: &Expr, value: &Value) -> Option<Arc<str>> {
+        if let ExprKind::Ref(name) = &expr.kind {
+            let local = self.frame().names.iter().any(|(key, _)| *key == name.key);
+            if local {
+                if let Some(Dependence::Local { equals, .. }) = value.origin.iter().next() {
+                    return equals.clone();
+                }
+            } else if let Some(Symbol::Data(id)) = self.program.resolve_global(&name.key)
+                && self.program.resolve(self.frame().module, &name.key) == Some(Symbol::Data(id))
+                && !self.program.is_written(id)
+            {
+                return Some(name.text.as_str().into());
+            } else if value.origin.is_constant() && super::super::predefined::lookup(&name.key).is_some()
+            {
+                return Some(name.text.as_str().into());
+            }
+        }
+        match &value.datum {
+            // A RAPID num is single precision: only what it holds exactly is comparable.
+            Datum::Num(x) if f64::from(*x as f32) == *x => Some(number_text(*x).as_str().into()),
+            Datum::Bool(true) => Some("TRUE".into()),
+            Datum::Bool(false) => Some("FALSE".into()),
+            _ => None,
+        }
+    }
+
+    /// Runs a routine whose parameters are bound.
+    pub(super) fn enter(
+        &mut self,
+        id: RoutineId,
+        names: Vec<(String, CellId)>,
+        present: Vec<String>,
+    ) -> Flow {
+        let program = self.program;
+        let routine = program.routine(id);
+        let cells = self.cells.len();
+        self.frames.push(Frame {
+            module: id.module,
+            routine: routine.name.text.as_str().into(),
+            names,
+            present,
+        });
+        for data in &routine.data {
+            self.declare_local(data);
+        }
+        let mut flow = self.block(&routine.body);
+        if let Flow::Raised(at) = flow
+            && let Some((_, handler)) = routine.error.first()
+        {
+            self.unresolved(at, "the error is taken by the handler of the routine");
+            flow = match self.block(handler) {
+                Flow::Resume => Flow::Next,
+                other => other,
+            };
+        }
+        self.frames.pop();
+        // Module data that were first used in the routine keep their cells.
+        self.cells.truncate(cells.max(self.kept_cells));
+        match flow {
+            Flow::Next | Flow::Resume => Flow::Return(None),
+            other => other,
+        }
+    }
+
+    /// Something that may move the robot or take time in a way that is not known.
+    pub(super) fn opaque(&mut self, span: Span, reason: &str) {
+        self.unresolved(span, reason);
+        self.machine.moves(Err(super::super::movement::Unresolved {
+            span,
+            reason: reason.to_owned(),
+            moves: true,
+        }));
+        self.new_region();
+    }
+}

@@ -1,0 +1,441 @@
+//! Expressions.
+
+use std::sync::Arc;
+
+use super::super::hir::{BinaryOp, Data, DataKind, Expr, ExprKind, Ident, UnaryOp};
+use super::super::predefined;
+use super::super::program::{DataId, Symbol};
+use super::super::value::{Datum, Dependence, Origin, Value};
+use super::{Cell, CellId, Executor};
+
+impl Executor<'_> {
+    /// The value of an expression.
+    pub(super) fn eval(&mut self, expr: &Expr) -> Value {
+        match &expr.kind {
+            ExprKind::Num(x) => Value::constant(Datum::Num(*x), "num"),
+            ExprKind::Str(text) => Value::constant(Datum::Text(text.as_str().into()), "string"),
+            ExprKind::Bool(b) => Value::constant(Datum::Bool(*b), "bool"),
+            ExprKind::Ref(name) => self.read(name),
+            ExprKind::Field(base, name) => {
+                let base = self.eval(base);
+                self.component(&base, name)
+            }
+            ExprKind::Index(base, indices) => {
+                let mut value = self.eval(base);
+                for index in indices {
+                    value = self.element(value, index);
+                }
+                value
+            }
+            ExprKind::Call(name, args) => self.function(expr, name, args),
+            ExprKind::Aggregate(items) => {
+                let mut origin = Origin::default();
+                let mut list = Vec::with_capacity(items.len());
+                for item in items {
+                    let value = self.eval(item);
+                    let value = self.level(value);
+                    origin.join(&value.origin);
+                    list.push(value.datum);
+                }
+                Value { datum: Datum::List(list), type_key: "".into(), origin }
+            }
+            ExprKind::Unary(op, operand) => {
+                let value = self.eval(operand);
+                let value = self.level(value);
+                let datum = match (op, value.datum) {
+                    (UnaryOp::Plus, datum @ Datum::Num(_)) => datum,
+                    (UnaryOp::Minus, Datum::Num(x)) => Datum::Num(-x),
+                    (UnaryOp::Minus, Datum::List(items)) => negated(&items, expr),
+                    (UnaryOp::Not, Datum::Bool(b)) => Datum::Bool(!b),
+                    (UnaryOp::Not, Datum::Num(x)) => Datum::Bool(x == 0.0),
+                    (_, unknown @ Datum::Unknown(_)) => unknown,
+                    _ => Datum::unknown("the operator does not fit its operand", expr.span),
+                };
+                Value { datum, type_key: value.type_key, origin: value.origin }
+            }
+            ExprKind::Binary(op, left, right) => {
+                let left = self.eval(left);
+                let right = self.eval(right);
+                let left = self.level(left);
+                let right = self.level(right);
+                let mut origin = left.origin.clone();
+                origin.join(&right.origin);
+                let datum = binary(*op, &left.datum, &right.datum, expr);
+                let type_key = match op {
+                    BinaryOp::Add | BinaryOp::Sub if &*left.type_key != "num" => left.type_key,
+                    BinaryOp::Mul if &*left.type_key == "num" => right.type_key,
+                    BinaryOp::Mul => left.type_key,
+                    BinaryOp::Add
+                    | BinaryOp::Sub
+                    | BinaryOp::Div
+                    | BinaryOp::IntDiv
+                    | BinaryOp::Mod => "num".into(),
+                    _ => "bool".into(),
+                };
+                Value { datum, type_key, origin }
+            }
+            ExprKind::AnyPosition => {
+                Value::unknown("'*' is a position that only the controller knows", expr.span)
+            }
+            ExprKind::Placeholder => Value::unknown("a placeholder stands here", expr.span),
+            ExprKind::Broken => Value::unknown("the expression has a syntax error", expr.span),
+        }
+    }
+
+    /// A signal as a number; everything else as it is.
+    pub(super) fn level(&mut self, value: Value) -> Value {
+        let Datum::Signal(name) = &value.datum else { return value };
+        let level = self.signals.get(&name.to_lowercase()).copied();
+        if level.is_none() {
+            self.assume(format!("{name} is 0 (not declared in the program: taken as an input)"));
+        }
+        Value {
+            datum: Datum::Num(level.unwrap_or(0.0)),
+            type_key: "num".into(),
+            origin: Origin::of(Dependence::Input(name.clone())),
+        }
+    }
+
+    fn read(&mut self, name: &Ident) -> Value {
+        match self.cell_of(name) {
+            Some(cell) => {
+                let cell = &self.cells[cell];
+                let mut value = cell.value.clone();
+                // What a cell holds is described by how it is reached, not by its history.
+                value.origin = cell.reading.clone();
+                value
+            }
+            None => match self.program.resolve(self.frame().module, &name.key) {
+                Some(Symbol::Routine(_)) => {
+                    Value::unknown(format!("'{}' is a routine", name.text), name.span)
+                }
+                _ => predefined::lookup(&name.key).unwrap_or_else(|| {
+                    Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
+                }),
+            },
+        }
+    }
+
+    /// The storage of a name: the routine's own names hide the module's, these the task's.
+    pub(super) fn cell_of(&mut self, name: &Ident) -> Option<CellId> {
+        let frame = self.frame();
+        if let Some((_, cell)) = frame.names.iter().rev().find(|(key, _)| *key == name.key) {
+            return Some(*cell);
+        }
+        match self.program.resolve(frame.module, &name.key)? {
+            Symbol::Data(id) => Some(self.global(id)),
+            Symbol::Routine(_) => None,
+        }
+    }
+
+    /// The cell of module data, made at its first use.
+    fn global(&mut self, id: DataId) -> CellId {
+        if let Some(cell) = self.globals.get(&id) {
+            return *cell;
+        }
+        // Reserved before its value is worked out, so that a circular value ends.
+        self.cells.push(Cell {
+            value: Value::unknown("its value refers to itself", self.program.data(id).span),
+            reading: Origin::default(),
+            read_only: true,
+        });
+        let cell = self.cells.len() - 1;
+        self.globals.insert(id, cell);
+        self.kept_cells = cell + 1;
+        let program = self.program;
+        let data = program.data(id);
+        let module = std::mem::replace(&mut self.frame_mut().module, id.module);
+        // The initial value is read in the scope of its own module.
+        let names = std::mem::take(&mut self.frame_mut().names);
+        let value = self.initial_value(data);
+        self.frame_mut().names = names;
+        self.frame_mut().module = module;
+        let name: Arc<str> = data.name.text.as_str().into();
+        let written = program.is_written(id);
+        let trusted = matches!(&*value.type_key, "tooldata" | "wobjdata" | "loaddata");
+        let reading = match data.kind {
+            DataKind::Const => value.origin.clone(),
+            DataKind::Var if !written => value.origin.clone(),
+            DataKind::Var => Origin::of(Dependence::Variable(name)),
+            DataKind::Pers if trusted && !written => {
+                Origin::of(Dependence::TrustedPersistent(name))
+            }
+            DataKind::Pers => Origin::of(Dependence::Persistent(name)),
+        };
+        self.cells[cell] = Cell { value, reading, read_only: data.kind == DataKind::Const };
+        cell
+    }
+
+    /// The declared value, or the default of the type.
+    pub(super) fn initial_value(&mut self, data: &Data) -> Value {
+        let mut value = match &data.init {
+            Some(expr) => self.eval(expr),
+            None if data.kind == DataKind::Pers => Value::unknown(
+                format!("'{}' has no value in the source", data.name.text),
+                data.name.span,
+            ),
+            None if !data.dims.is_empty() => {
+                let mut datum = self.default_datum(&data.type_name.key, 0);
+                for dim in data.dims.iter().rev() {
+                    let n = self.eval(dim).datum.num().unwrap_or(0.0);
+                    if !(0.0..=100_000.0).contains(&n) {
+                        return Value::unknown("the array is too large", dim.span);
+                    }
+                    datum = Datum::List(vec![datum; n as usize]);
+                }
+                Value::constant(datum, &data.type_name.key)
+            }
+            None => {
+                let datum = self.default_datum(&data.type_name.key, 0);
+                Value::constant(datum, &data.type_name.key)
+            }
+        };
+        value.type_key = data.type_name.key.as_str().into();
+        value
+    }
+
+    /// RAPID's default: 0, FALSE, "", and so on in each component.
+    fn default_datum(&self, type_key: &str, depth: usize) -> Datum {
+        const MAX_RECORD_DEPTH: usize = 16;
+        match type_key {
+            "bool" => Datum::Bool(false),
+            "string" => Datum::Text("".into()),
+            _ => match self.program.components(type_key) {
+                Some(parts) if depth < MAX_RECORD_DEPTH => Datum::List(
+                    parts.iter().map(|(_, ty)| self.default_datum(ty, depth + 1)).collect(),
+                ),
+                _ => Datum::Num(0.0),
+            },
+        }
+    }
+
+    fn component(&mut self, base: &Value, name: &Ident) -> Value {
+        if let Datum::Unknown(_) = base.datum {
+            return base.clone();
+        }
+        let parts = self.program.components(&base.type_key).unwrap_or_default();
+        let position = parts.iter().position(|(part, _)| *part == name.key);
+        match (&base.datum, position) {
+            (Datum::List(items), Some(i)) if i < items.len() => Value {
+                datum: items[i].clone(),
+                type_key: parts[i].1.as_str().into(),
+                origin: base.origin.clone(),
+            },
+            _ => Value {
+                origin: base.origin.clone(),
+                ..Value::unknown(format!("no component '{}'", name.text), name.span)
+            },
+        }
+    }
+
+    fn element(&mut self, base: Value, index: &Expr) -> Value {
+        let at = self.eval(index);
+        let mut origin = base.origin;
+        origin.join(&at.origin);
+        let datum = match (base.datum, at.datum) {
+            (Datum::List(items), Datum::Num(x)) => {
+                let i = x.round();
+                if i >= 1.0 && (i as usize) <= items.len() {
+                    items[i as usize - 1].clone()
+                } else {
+                    Datum::unknown(format!("index {i} is outside 1..{}", items.len()), index.span)
+                }
+            }
+            (unknown @ Datum::Unknown(_), _) | (_, unknown @ Datum::Unknown(_)) => unknown,
+            _ => Datum::unknown("the index does not fit", index.span),
+        };
+        Value { datum, type_key: base.type_key, origin }
+    }
+
+    /// `target := value`; what can't be written is left with a note.
+    pub(super) fn assign(&mut self, target: &Expr, value: Value) {
+        let value = self.level(value);
+        let mut path = Vec::new();
+        let mut base = target;
+        loop {
+            match &base.kind {
+                ExprKind::Ref(name) => {
+                    let Some(cell) = self.cell_of(name) else {
+                        self.unresolved(name.span, format!("'{}' is not declared", name.text));
+                        return;
+                    };
+                    if self.cells[cell].read_only {
+                        self.unresolved(name.span, format!("'{}' is read only", name.text));
+                        return;
+                    }
+                    path.reverse();
+                    let type_key = self.cells[cell].value.type_key.clone();
+                    let place = self.place(type_key, &path);
+                    let slot = &mut self.cells[cell].value.datum;
+                    match place {
+                        Some(indices) => store(slot, &indices, value.datum),
+                        None => {
+                            *slot = Datum::unknown(
+                                format!("it was written at a place in '{}' not known", name.text),
+                                target.span,
+                            );
+                        }
+                    }
+                    return;
+                }
+                ExprKind::Field(inner, name) => {
+                    path.push(Step::Field(name));
+                    base = inner;
+                }
+                ExprKind::Index(inner, indices) => {
+                    path.extend(indices.iter().rev().map(Step::Index));
+                    base = inner;
+                }
+                _ => {
+                    self.unresolved(target.span, "the left side is not data");
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The component numbers of a path, from the outside in.
+    fn place(&mut self, type_key: Arc<str>, path: &[Step<'_>]) -> Option<Vec<usize>> {
+        let mut key = type_key.to_string();
+        let mut indices = Vec::with_capacity(path.len());
+        for step in path {
+            match step {
+                Step::Field(name) => {
+                    let parts = self.program.components(&key)?;
+                    let i = parts.iter().position(|(part, _)| *part == name.key)?;
+                    indices.push(i);
+                    key.clone_from(&parts[i].1);
+                }
+                Step::Index(expr) => {
+                    let i = self.eval(expr).datum.num()?.round();
+                    if i < 1.0 {
+                        return None;
+                    }
+                    indices.push(i as usize - 1);
+                }
+            }
+        }
+        Some(indices)
+    }
+
+    /// The first signal that an expression names.
+    pub(super) fn first_signal(&mut self, expr: &Expr) -> Option<Arc<str>> {
+        match &expr.kind {
+            ExprKind::Ref(name) => match self.read(name).datum {
+                Datum::Signal(signal) => Some(signal),
+                _ => None,
+            },
+            ExprKind::Unary(_, operand) => self.first_signal(operand),
+            ExprKind::Binary(_, left, right) => {
+                self.first_signal(left).or_else(|| self.first_signal(right))
+            }
+            ExprKind::Call(_, args) => args.iter().find_map(|arg| match &arg.kind {
+                super::super::hir::ArgKind::Positional(expr) => self.first_signal(expr),
+                _ => None,
+            }),
+            _ => None,
+        }
+    }
+}
+
+enum Step<'e> {
+    Field(&'e Ident),
+    Index(&'e Expr),
+}
+
+fn store(slot: &mut Datum, indices: &[usize], value: Datum) {
+    match indices {
+        [] => *slot = value,
+        [first, rest @ ..] => {
+            if let Datum::List(items) = slot
+                && let Some(item) = items.get_mut(*first)
+            {
+                store(item, rest, value);
+            }
+        }
+    }
+}
+
+fn negated(items: &[Datum], expr: &Expr) -> Datum {
+    let minus = |item: &Datum| match item {
+        Datum::Num(x) => Datum::Num(-x),
+        _ => Datum::unknown("'-' needs numbers", expr.span),
+    };
+    Datum::List(items.iter().map(minus).collect())
+}
+
+fn binary(op: BinaryOp, left: &Datum, right: &Datum, expr: &Expr) -> Datum {
+    if let Some(unknown) = left.first_unknown().or_else(|| right.first_unknown()) {
+        // FALSE AND x, TRUE OR x are known whatever x is.
+        return match (op, left, right) {
+            (BinaryOp::And, Datum::Bool(false), _) | (BinaryOp::And, _, Datum::Bool(false)) => {
+                Datum::Bool(false)
+            }
+            (BinaryOp::Or, Datum::Bool(true), _) | (BinaryOp::Or, _, Datum::Bool(true)) => {
+                Datum::Bool(true)
+            }
+            _ => Datum::Unknown(unknown.clone()),
+        };
+    }
+    let wrong = || Datum::unknown("the operator does not fit its operands", expr.span);
+    match (op, left, right) {
+        (BinaryOp::Eq, a, b) => Datum::Bool(equal(a, b)),
+        (BinaryOp::Ne, a, b) => Datum::Bool(!equal(a, b)),
+        (BinaryOp::And, a, b) => logic(a, b, |a, b| a && b).unwrap_or_else(wrong),
+        (BinaryOp::Or, a, b) => logic(a, b, |a, b| a || b).unwrap_or_else(wrong),
+        (BinaryOp::Xor, a, b) => logic(a, b, |a, b| a != b).unwrap_or_else(wrong),
+        (_, Datum::Num(a), Datum::Num(b)) => arithmetic(op, *a, *b, expr),
+        (BinaryOp::Add, Datum::Text(a), Datum::Text(b)) => Datum::Text(format!("{a}{b}").into()),
+        (BinaryOp::Add | BinaryOp::Sub, Datum::List(a), Datum::List(b)) if a.len() == b.len() => {
+            Datum::List(a.iter().zip(b).map(|(a, b)| binary(op, a, b, expr)).collect())
+        }
+        (BinaryOp::Mul, Datum::Num(_), Datum::List(items)) => {
+            Datum::List(items.iter().map(|item| binary(op, left, item, expr)).collect())
+        }
+        (BinaryOp::Mul | BinaryOp::Div, Datum::List(items), Datum::Num(_)) => {
+            Datum::List(items.iter().map(|item| binary(op, item, right, expr)).collect())
+        }
+        _ => wrong(),
+    }
+}
+
+/// Equality with the precision of RAPID's `num`.
+fn equal(a: &Datum, b: &Datum) -> bool {
+    match (a, b) {
+        (Datum::Num(a), Datum::Num(b)) => (*a as f32) == (*b as f32),
+        (Datum::List(a), Datum::List(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| equal(a, b))
+        }
+        (Datum::Bool(a), Datum::Num(b)) | (Datum::Num(b), Datum::Bool(a)) => *a == (*b != 0.0),
+        _ => a == b,
+    }
+}
+
+fn logic(a: &Datum, b: &Datum, f: fn(bool, bool) -> bool) -> Option<Datum> {
+    let truth = |d: &Datum| match d {
+        Datum::Bool(b) => Some(*b),
+        Datum::Num(x) => Some(*x != 0.0),
+        _ => None,
+    };
+    Some(Datum::Bool(f(truth(a)?, truth(b)?)))
+}
+
+fn arithmetic(op: BinaryOp, a: f64, b: f64, expr: &Expr) -> Datum {
+    let zero = || Datum::unknown("division by zero", expr.span);
+    match op {
+        BinaryOp::Add => Datum::Num(a + b),
+        BinaryOp::Sub => Datum::Num(a - b),
+        BinaryOp::Mul => Datum::Num(a * b),
+        BinaryOp::Div if b == 0.0 => zero(),
+        BinaryOp::Div => Datum::Num(a / b),
+        BinaryOp::IntDiv if b == 0.0 => zero(),
+        BinaryOp::IntDiv => Datum::Num((a / b).trunc()),
+        BinaryOp::Mod if b == 0.0 => zero(),
+        BinaryOp::Mod => Datum::Num(a % b),
+        BinaryOp::Lt => Datum::Bool(a < b),
+        BinaryOp::Le => Datum::Bool(a <= b),
+        BinaryOp::Gt => Datum::Bool(a > b),
+        BinaryOp::Ge => Datum::Bool(a >= b),
+        _ => Datum::unknown("the operator does not fit numbers", expr.span),
+    }
+}

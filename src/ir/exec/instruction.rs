@@ -1,0 +1,327 @@
+//! RAPID's own instructions: waits, outputs, counters and motion settings.
+
+use std::sync::Arc;
+
+use super::super::convert;
+use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
+use super::super::instructions;
+use super::super::movement::{Output, Settings, Wait};
+use super::super::value::{Datum, Value};
+use super::Executor;
+use super::flow::{Flow, number_text};
+
+/// The arguments of an instruction, by position and by name.
+pub(super) struct Arguments<'e> {
+    pub(super) positional: Vec<&'e Expr>,
+    /// Lower-case name, as written, and value.
+    pub(super) optional: Vec<(&'e str, &'e str, Option<&'e Expr>)>,
+}
+
+impl<'e> Arguments<'e> {
+    pub(super) fn new(args: &'e [Arg]) -> Arguments<'e> {
+        let mut positional = Vec::new();
+        let mut optional = Vec::new();
+        for arg in args {
+            match &arg.kind {
+                ArgKind::Positional(expr) => positional.push(expr),
+                ArgKind::Named(name, expr) => {
+                    optional.push((name.key.as_str(), name.text.as_str(), Some(expr)));
+                }
+                ArgKind::Optional(name, expr) => {
+                    optional.push((name.key.as_str(), name.text.as_str(), expr.as_ref()));
+                }
+                ArgKind::Conditional(..) => {}
+            }
+        }
+        Arguments { positional, optional }
+    }
+
+    pub(super) fn option(&self, key: &str) -> Option<Option<&'e Expr>> {
+        self.optional.iter().find(|(k, _, _)| *k == key).map(|(_, _, expr)| *expr)
+    }
+
+    /// The value of an option that is present and has one.
+    pub(super) fn option_value(&self, key: &str) -> Option<&'e Expr> {
+        self.option(key).flatten()
+    }
+}
+
+impl Executor<'_> {
+    pub(super) fn instruction(&mut self, stmt: &Stmt, key: &str, text: &str, args: &[Arg]) -> Flow {
+        let arguments = Arguments::new(args);
+        if let Some(signature) = instructions::movement(key) {
+            self.movement(stmt, text, signature, &arguments, args);
+            return Flow::Next;
+        }
+        match key {
+            "waittime" => self.wait_time(stmt, text, &arguments),
+            "waitdi" | "waitdo" | "waitgi" | "waitgo" | "waitai" | "waitao" => {
+                self.wait_signal(stmt, text, &arguments);
+            }
+            "waituntil" => self.wait_until(stmt, text, &arguments),
+            "waitrob" => {}
+            "setdo" | "setgo" | "setao" | "set" | "reset" | "pulsedo" | "invertdo" => {
+                self.output(stmt, key, text, &arguments);
+            }
+            "incr" | "decr" | "add" | "clear" => self.count(key, &arguments),
+            "stop" | "break" | "exitcycle" => {
+                self.unresolved(stmt.span, format!("{text}: taken as passed"));
+                if key == "exitcycle" {
+                    return Flow::Exit;
+                }
+            }
+            "velset" | "accset" | "confj" | "confl" | "gripload" | "pdispset" | "pdispoff" => {
+                self.setting(key, text, &arguments);
+            }
+            "singarea" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
+            "eoffsset" | "eoffson" | "softact" | "pdispon" | "pathacclim" | "worldacclim"
+            | "speedrefresh" | "corrcon" | "speedlimaxis" | "egmreset" | "tuneservo" => {
+                self.unmodelled(key, text, &arguments);
+            }
+            "eoffsoff" => self.clear_unmodelled(&["eoffsset", "eoffson"]),
+            "softdeact" => self.clear_unmodelled(&["softact"]),
+            "corrdiscon" | "corrclear" => self.clear_unmodelled(&["corrcon"]),
+            "tunereset" => self.clear_unmodelled(&["tuneservo"]),
+            _ if instructions::is_harmless(key) => {}
+            _ if instructions::is_writing(key) => self.forget(args, text),
+            _ => {
+                self.forget(args, text);
+                self.opaque(
+                    stmt.span,
+                    &format!("'{text}' is neither in the program nor an instruction that is known"),
+                );
+            }
+        }
+        Flow::Next
+    }
+
+    /// Data that an instruction may have written are no longer known.
+    fn forget(&mut self, args: &[Arg], text: &str) {
+        for arg in args {
+            let (ArgKind::Positional(expr)
+            | ArgKind::Named(_, expr)
+            | ArgKind::Optional(_, Some(expr))) = &arg.kind
+            else {
+                continue;
+            };
+            if let ExprKind::Ref(name) = &expr.kind
+                && let Some(cell) = self.cell_of(name)
+                && !self.cells[cell].read_only
+            {
+                let reason = format!("'{}' is written by {text}", name.text);
+                self.cells[cell].value.datum = Datum::unknown(reason, arg.span);
+            }
+        }
+    }
+
+    fn wait_time(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let duration = arguments.positional.first().and_then(|expr| {
+            let value = self.eval(expr);
+            value.datum.num()
+        });
+        let duration = duration.filter(|d| d.is_finite()).map(|d| d.max(0.0));
+        // `WaitTime 0` and `WaitTime \InPos, 0` only wait for standstill.
+        self.wait(stmt, text, duration, None);
+    }
+
+    fn wait_signal(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let signal = arguments.positional.first().and_then(|expr| self.first_signal(expr));
+        if let (Some(signal), Some(value)) = (&signal, arguments.positional.get(1)) {
+            let value = self.eval(value);
+            let level = self.level(value);
+            if let Some(level) = level.datum.num() {
+                self.signals.insert(signal.to_lowercase(), level);
+            }
+        }
+        self.wait(stmt, text, None, signal);
+    }
+
+    fn wait_until(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let condition = arguments.positional.first().copied();
+        let signal = condition.and_then(|expr| self.first_signal(expr));
+        if let Some(condition) = condition {
+            let value = self.eval(condition);
+            let value = self.level(value);
+            let input = value
+                .origin
+                .iter()
+                .any(|d| matches!(d, super::super::value::Dependence::Input(_)));
+            if value.datum == Datum::Bool(true) && !input {
+                return self.wait(stmt, text, Some(0.0), None);
+            }
+            self.learn(condition);
+        }
+        self.wait(stmt, text, None, signal);
+    }
+
+    /// After the wait the equalities of its condition hold.
+    fn learn(&mut self, condition: &Expr) {
+        match &condition.kind {
+            ExprKind::Binary(BinaryOp::And, left, right) => {
+                self.learn(left);
+                self.learn(right);
+            }
+            ExprKind::Binary(BinaryOp::Eq, left, right) => {
+                for (a, b) in [(left, right), (right, left)] {
+                    if let Some(signal) = self.first_signal(a)
+                        && let Some(level) = self.eval(b).datum.num()
+                    {
+                        self.signals.insert(signal.to_lowercase(), level);
+                        return;
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn wait(&mut self, stmt: &Stmt, text: &str, duration: Option<f64>, signal: Option<Arc<str>>) {
+        if duration.is_none() {
+            self.new_region();
+        }
+        let routine = self.frame().routine.clone();
+        self.machine.waits(Wait {
+            instruction: text.into(),
+            span: stmt.span,
+            routine,
+            duration,
+            signal,
+        });
+    }
+
+    fn output(&mut self, stmt: &Stmt, key: &str, text: &str, arguments: &Arguments<'_>) {
+        let Some(signal) = arguments.positional.first().and_then(|expr| self.first_signal(expr))
+        else {
+            return;
+        };
+        let level = match key {
+            "set" | "pulsedo" => Some(1.0),
+            "reset" => Some(0.0),
+            "invertdo" => self.signals.get(&signal.to_lowercase()).map(|x| 1.0 - x),
+            _ => arguments.positional.get(1).and_then(|expr| {
+                let value = self.eval(expr);
+                self.level(value).datum.num()
+            }),
+        };
+        let after = if key == "pulsedo" { Some(0.0) } else { level };
+        match after {
+            Some(level) => self.signals.insert(signal.to_lowercase(), level),
+            None => self.signals.remove(&signal.to_lowercase()),
+        };
+        self.machine.sets(Output {
+            instruction: text.into(),
+            span: stmt.span,
+            signal,
+            value: level.map_or_else(|| "unknown".to_owned(), number_text),
+        });
+    }
+
+    fn count(&mut self, key: &str, arguments: &Arguments<'_>) {
+        let Some(target) = arguments.positional.first() else { return };
+        let old = self.eval(target);
+        let step = match arguments.positional.get(1) {
+            Some(expr) => self.eval(expr).datum.num(),
+            None => Some(1.0),
+        };
+        let datum = match (key, old.datum.num(), step) {
+            ("clear", _, _) => Datum::Num(0.0),
+            ("incr" | "add", Some(x), Some(d)) => Datum::Num(x + d),
+            ("decr", Some(x), _) => Datum::Num(x - 1.0),
+            _ => Datum::unknown("it was counted from a value that is not known", target.span),
+        };
+        self.assign(target, Value::constant(datum, "num"));
+    }
+
+    fn setting(&mut self, key: &str, text: &str, arguments: &Arguments<'_>) {
+        let mut values = Vec::new();
+        for expr in &arguments.positional {
+            let value = self.eval(expr);
+            values.push(self.level(value));
+        }
+        let num = |i: usize| values.get(i).and_then(|v| v.datum.num());
+        let on = arguments.option("on").is_some();
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        let unknown = match key {
+            "velset" => match (num(0), num(1)) {
+                (Some(percent), Some(max)) if percent > 0.0 && max > 0.0 => {
+                    settings.speed_override = percent / 100.0;
+                    settings.speed_max = max * 1e-3;
+                    false
+                }
+                _ => true,
+            },
+            "accset" => match (num(0), num(1)) {
+                // The controller raises lower values to 20 % and 10 %.
+                (Some(acc), Some(ramp)) => {
+                    settings.acceleration = acc.clamp(20.0, 100.0) / 100.0;
+                    settings.ramp = ramp.clamp(10.0, 100.0) / 100.0;
+                    false
+                }
+                _ => true,
+            },
+            "confj" => {
+                settings.conf_joint = on;
+                false
+            }
+            "confl" => {
+                settings.conf_linear = on;
+                false
+            }
+            "gripload" => match values.first().map(|v| convert::load(&v.datum)) {
+                Some(Ok(load)) => {
+                    settings.grip_load = Some(load);
+                    false
+                }
+                _ => true,
+            },
+            "pdispset" => match values.first().map(|v| convert::pose(&v.datum, "the displacement"))
+            {
+                Some(Ok(pose)) => {
+                    settings.displacement = Some(pose);
+                    false
+                }
+                _ => true,
+            },
+            _ => {
+                settings.displacement = None;
+                settings.other.retain(|name| !name.eq_ignore_ascii_case("PDispOn"));
+                false
+            }
+        };
+        if unknown {
+            settings.other.push(text.into());
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    /// A setting that changes movements in a way that is not modelled.
+    fn unmodelled(&mut self, key: &str, text: &str, arguments: &Arguments<'_>) {
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        let off = match key {
+            // The limit is lifted by FALSE, FALSE or \Off; an override of 100 is none.
+            "pathacclim" => arguments
+                .positional
+                .iter()
+                .all(|expr| self.eval(expr).datum == Datum::Bool(false)),
+            "worldacclim" => arguments.option("off").is_some(),
+            "speedrefresh" => arguments
+                .positional
+                .first()
+                .is_some_and(|expr| self.eval(expr).datum == Datum::Num(100.0)),
+            "egmreset" => true,
+            _ => false,
+        };
+        if !off {
+            settings.other.push(text.into());
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    fn clear_unmodelled(&mut self, keys: &[&str]) {
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !keys.contains(&name.to_lowercase().as_str()));
+        self.settings = Arc::new(settings);
+    }
+}

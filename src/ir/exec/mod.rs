@@ -1,0 +1,158 @@
+//! Execution of a program as far as it can be known without the cell.
+//!
+//! The executor walks the statements, keeps every value together with what it
+//! was computed from, and tells a [`Machine`] about movements, waits and
+//! outputs. Inputs are 0 until the program has waited for them; a branch on a
+//! value that is not known takes the `ELSE`; an endless loop runs once. Each
+//! such decision is recorded.
+
+mod call;
+mod eval;
+mod flow;
+mod functions;
+mod instruction;
+mod motion;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::movement::{Movement, Output, Settings, Unresolved, Wait};
+use super::program::{DataId, Program, RoutineId};
+use super::value::{Origin, Value};
+use crate::text::Span;
+
+/// What execution asks of the robot and tells it.
+pub trait Machine {
+    /// A movement, or the reason why it can't be worked out.
+    fn moves(&mut self, movement: Result<Movement, Unresolved>);
+    /// A wait.
+    fn waits(&mut self, wait: Wait);
+    /// A change of an output.
+    fn sets(&mut self, output: Output);
+    /// Axis positions in rad, if the robot stands and its position is known.
+    fn joints(&mut self) -> Option<[f64; 6]>;
+    /// True once the machine wants no more (limits of time or of length).
+    fn is_full(&self) -> bool;
+}
+
+/// Something that was not followed exactly, with the place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Note {
+    /// Where.
+    pub span: Span,
+    /// What and why.
+    pub reason: String,
+}
+
+/// What one execution left behind besides what the machine was told.
+#[derive(Debug, Default)]
+pub struct Execution {
+    /// What could not be followed: `unresolved` of the reports.
+    pub unresolved: Vec<Note>,
+    /// What was assumed: levels of inputs, values of `PERS` data.
+    pub assumed: Vec<String>,
+}
+
+/// Bounds that keep execution finite.
+const MAX_STATEMENTS: u64 = 5_000_000;
+const MAX_CALL_DEPTH: usize = 100;
+/// Passes of a loop whose condition is known and stays true.
+const MAX_PASSES: u32 = 100_000;
+
+/// Runs the routine on the machine.
+pub fn execute(program: &Program, entry: RoutineId, machine: &mut dyn Machine) -> Execution {
+    let mut executor = Executor {
+        program,
+        machine,
+        cells: Vec::new(),
+        globals: BTreeMap::new(),
+        kept_cells: 0,
+        frames: Vec::new(),
+        signals: BTreeMap::new(),
+        settings: Arc::new(Settings::default()),
+        region: 0,
+        next_region: 1,
+        statements: 0,
+        execution: Execution::default(),
+    };
+    executor.run(entry);
+    executor.execution
+}
+
+/// Index of a storage cell.
+type CellId = usize;
+
+/// Where a value is stored.
+#[derive(Debug)]
+struct Cell {
+    value: Value,
+    /// What reading it adds to the origin.
+    reading: Origin,
+    read_only: bool,
+}
+
+/// An active routine.
+struct Frame {
+    module: usize,
+    routine: Arc<str>,
+    /// Parameters, local data and loop variables, innermost last.
+    names: Vec<(String, CellId)>,
+    /// Optional parameters that were given.
+    present: Vec<String>,
+}
+
+struct Executor<'a> {
+    program: &'a Program,
+    machine: &'a mut dyn Machine,
+    cells: Vec<Cell>,
+    globals: BTreeMap<DataId, CellId>,
+    /// Cells below this one hold module data and stay.
+    kept_cells: usize,
+    frames: Vec<Frame>,
+    /// Level of each signal that the program has set or waited for.
+    signals: BTreeMap<String, f64>,
+    settings: Arc<Settings>,
+    region: u32,
+    next_region: u32,
+    statements: u64,
+    execution: Execution,
+}
+
+impl Executor<'_> {
+    fn run(&mut self, entry: RoutineId) {
+        match self.enter(entry, Vec::new(), Vec::new()) {
+            flow::Flow::Raised(at) => self.unresolved(at, "an error that no handler takes ends it"),
+            flow::Flow::Jump(label) => {
+                self.unresolved(label.span, format!("no label '{}' in reach", label.text));
+            }
+            _ => {}
+        }
+    }
+
+    fn frame(&self) -> &Frame {
+        self.frames.last().unwrap_or_else(|| unreachable!("execution is inside a routine"))
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        self.frames.last_mut().unwrap_or_else(|| unreachable!("execution is inside a routine"))
+    }
+
+    fn unresolved(&mut self, span: Span, reason: impl Into<String>) {
+        let note = Note { span, reason: reason.into() };
+        if !self.execution.unresolved.contains(&note) {
+            self.execution.unresolved.push(note);
+        }
+    }
+
+    fn assume(&mut self, text: String) {
+        if !self.execution.assumed.contains(&text) {
+            self.execution.assumed.push(text);
+        }
+    }
+
+    /// From here on movements need not run together with those before.
+    fn new_region(&mut self) {
+        self.region = self.next_region;
+        self.next_region += 1;
+    }
+}

@@ -1,0 +1,209 @@
+//! Movement instructions: from arguments to a [`Movement`].
+
+use super::super::convert;
+use super::super::hir::{Arg, ArgKind, Expr, Stmt};
+use super::super::instructions::{MoveForm, MoveSignature};
+use super::super::movement::{Movement, Target, Unresolved, Zone};
+use super::super::value::{Datum, Dependence, Origin, Value};
+use super::Executor;
+use super::instruction::Arguments;
+
+/// Options that a movement may have without changing where or how fast it goes.
+const KNOWN_OPTIONS: &[&str] =
+    &["conc", "v", "t", "z", "inpos", "wobj", "tload", "tool", "speed", "zone", "topoint", "tojointpos", "cirpoint", "noeoffs"];
+
+impl Executor<'_> {
+    pub(super) fn movement(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        signature: MoveSignature,
+        arguments: &Arguments<'_>,
+        args: &[Arg],
+    ) {
+        self.check_external(signature, stmt);
+        let movement = self.resolve(stmt, text, signature, arguments);
+        let movement = movement.map_err(|reason| {
+            self.unresolved(stmt.span, reason.clone());
+            Unresolved { span: stmt.span, reason, moves: true }
+        });
+        if !signature.plain {
+            self.forget_targets(args);
+        }
+        self.machine.moves(movement);
+    }
+
+    /// Search instructions write the point they find.
+    fn forget_targets(&mut self, args: &[Arg]) {
+        for arg in args {
+            if let ArgKind::Positional(expr) = &arg.kind
+                && let super::super::hir::ExprKind::Ref(name) = &expr.kind
+                && let Some(cell) = self.cell_of(name)
+                && !self.cells[cell].read_only
+                && &*self.cells[cell].value.type_key == "robtarget"
+            {
+                self.cells[cell].value.datum =
+                    Datum::unknown(format!("'{}' is found by a search", name.text), arg.span);
+            }
+        }
+    }
+
+    fn check_external(&mut self, signature: MoveSignature, stmt: &Stmt) {
+        if signature.form == MoveForm::ExternalJoint {
+            self.unresolved(stmt.span, "external axes are not simulated");
+        }
+    }
+
+    fn resolve(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        signature: MoveSignature,
+        arguments: &Arguments<'_>,
+    ) -> Result<Movement, String> {
+        let mut origin = Origin::default();
+        let mut positional = arguments.positional.iter().copied().skip(signature.before);
+        let mut take = |name: &str, what: &str| {
+            arguments
+                .option_value(name)
+                .or_else(|| positional.next())
+                .ok_or_else(|| format!("{text} has no {what}"))
+        };
+        let via = match signature.form {
+            MoveForm::Circular => Some(take("cirpoint", "circle point")?),
+            _ => None,
+        };
+        let target = take("topoint", "target")?;
+        let speed = take("speed", "speed")?;
+        for _ in 0..signature.between {
+            take("", "trigger")?;
+        }
+        let zone = if signature.zone { Some(take("zone", "zone")?) } else { None };
+        let tool = take("tool", "tool")?;
+
+        let via = match via {
+            Some(expr) => {
+                let value = self.argument(expr, &mut origin);
+                Some(convert::robtarget(&value.datum)?)
+            }
+            None => None,
+        };
+        let target_value = self.argument(target, &mut origin);
+        let target = match signature.form {
+            MoveForm::AbsJ => Target::Joints(convert::jointtarget(&target_value.datum)?),
+            MoveForm::ExternalJoint => return Err("external axes are not simulated".into()),
+            _ => Target::Pose(convert::robtarget(&target_value.datum)?),
+        };
+        let speed_value = self.argument(speed, &mut origin);
+        let mut speed = convert::speed(&speed_value.datum)?;
+        let zone = match zone {
+            Some(expr) => {
+                let value = self.argument(expr, &mut origin);
+                convert::zone(&value.datum)?
+            }
+            None => Zone { fine: true, tcp: 0.0, orientation: 0.0, angle: 0.0 },
+        };
+        let zone = self.zone_options(zone, arguments, &mut origin)?;
+        let tool_value = self.argument(tool, &mut origin);
+        let tool_name = match &tool.kind {
+            super::super::hir::ExprKind::Ref(name) => name.text.as_str(),
+            _ => "tool",
+        };
+        let tool = convert::tool(&tool_value.datum, tool_name)?;
+        let wobj = match arguments.option_value("wobj") {
+            Some(expr) => self.argument(expr, &mut origin),
+            None => super::super::predefined::lookup("wobj0")
+                .unwrap_or_else(|| Value::unknown("wobj0", stmt.span)),
+        };
+        let wobj = convert::work_object(&wobj.datum)?;
+        let total_load = match arguments.option_value("tload") {
+            Some(expr) => {
+                let value = self.argument(expr, &mut origin);
+                Some(convert::load(&value.datum)?)
+            }
+            None => None,
+        };
+        if let Some(expr) = arguments.option_value("v") {
+            let value = self.argument(expr, &mut origin);
+            speed.tcp = convert::num(&value.datum, "\\V")? * 1e-3;
+            if speed.tcp <= 0.0 {
+                return Err("\\V is not positive".into());
+            }
+        }
+        let time = match arguments.option_value("t") {
+            Some(expr) => {
+                let value = self.argument(expr, &mut origin);
+                let time = convert::num(&value.datum, "\\T")?;
+                if time <= 0.0 {
+                    return Err("\\T is not positive".into());
+                }
+                Some(time)
+            }
+            None => None,
+        };
+        for dependence in origin.iter() {
+            if let Dependence::TrustedPersistent(name) = dependence {
+                let text = format!("PERS {name} has its value of the source");
+                if !self.execution.assumed.contains(&text) {
+                    self.execution.assumed.push(text);
+                }
+            }
+        }
+        let other_arguments = arguments
+            .optional
+            .iter()
+            .filter(|(key, _, _)| !KNOWN_OPTIONS.contains(key))
+            .map(|(_, text, _)| (*text).into())
+            .collect();
+        Ok(Movement {
+            instruction: text.into(),
+            form: signature.form,
+            plain: signature.plain,
+            span: stmt.span,
+            routine: self.frame().routine.clone(),
+            via,
+            target,
+            speed,
+            time,
+            zone,
+            tool,
+            wobj,
+            total_load,
+            settings: self.settings.clone(),
+            concurrent: arguments.option("conc").is_some(),
+            other_arguments,
+            origin,
+            region: self.region,
+        })
+    }
+
+    fn zone_options(
+        &mut self,
+        mut zone: Zone,
+        arguments: &Arguments<'_>,
+        origin: &mut Origin,
+    ) -> Result<Zone, String> {
+        if let Some(expr) = arguments.option_value("z") {
+            let value = self.argument(expr, origin);
+            let size = convert::num(&value.datum, "\\Z")?.max(0.0) * 1e-3;
+            // The other sizes keep their proportion to the TCP zone.
+            let scale = if zone.tcp > 0.0 { size / zone.tcp } else { 1.5 };
+            zone = Zone {
+                fine: false,
+                tcp: size,
+                orientation: if zone.tcp > 0.0 { zone.orientation * scale } else { size * scale },
+                angle: zone.angle * scale,
+            };
+        }
+        if arguments.option("inpos").is_some() {
+            zone.fine = true;
+        }
+        Ok(zone)
+    }
+
+    fn argument(&mut self, expr: &Expr, origin: &mut Origin) -> Value {
+        let value = self.eval(expr);
+        origin.join(&value.origin);
+        value
+    }
+}

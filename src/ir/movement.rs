@@ -1,0 +1,207 @@
+//! Movements, waits and signals as plain data in SI units.
+
+use std::sync::Arc;
+
+use nalgebra::Isometry3;
+
+use super::instructions::MoveForm;
+use super::value::Origin;
+use crate::text::Span;
+
+/// Where a movement goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// Axis positions, rad (RAPID: degrees); the robot's six axes.
+    Joints([f64; 6]),
+    /// A pose of the tool in the work object's frame.
+    Pose(RobTarget),
+}
+
+/// A `robtarget`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobTarget {
+    /// Tool frame in the object frame, m.
+    pub pose: Isometry3<f64>,
+    /// `cf1, cf4, cf6, cfx`.
+    pub conf: [i32; 4],
+}
+
+/// A `speeddata`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// TCP speed, m/s.
+    pub tcp: f64,
+    /// Reorientation speed, rad/s.
+    pub orientation: f64,
+}
+
+/// A `zonedata`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// True for a stop point.
+    pub fine: bool,
+    /// Zone of the TCP path, m.
+    pub tcp: f64,
+    /// Zone of the reorientation, m of TCP path.
+    pub orientation: f64,
+    /// Zone of the reorientation, rad.
+    pub angle: f64,
+}
+
+/// A `loaddata`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadData {
+    /// kg.
+    pub mass: f64,
+    /// Centre of mass, m, in the frame it was given in (tool or flange).
+    pub com: [f64; 3],
+    /// Principal moments of inertia about the centre of mass, kg m².
+    pub inertia: [f64; 3],
+    /// Principal axes, quaternion w, x, y, z.
+    pub axes: [f64; 4],
+}
+
+/// A `tooldata`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tool {
+    /// As the program names it.
+    pub name: Arc<str>,
+    /// True if the robot holds the tool, false for a stationary tool.
+    pub robhold: bool,
+    /// TCP in the flange's frame (in the world's, if stationary), m.
+    pub frame: Isometry3<f64>,
+    /// Its load, in the flange's frame.
+    pub load: LoadData,
+}
+
+/// A `wobjdata`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorkObject {
+    /// True if the robot holds the work object.
+    pub robhold: bool,
+    /// Object frame in the world (user frame × object frame), m.
+    pub frame: Isometry3<f64>,
+    /// True if the user frame is fixed (`ufprog`), false if a mechanical unit moves it.
+    pub fixed: bool,
+}
+
+/// Motion settings that persist until changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// `VelSet` override, 1 = 100 %.
+    pub speed_override: f64,
+    /// `VelSet` maximum TCP speed, m/s.
+    pub speed_max: f64,
+    /// `AccSet` acceleration, 1 = 100 %.
+    pub acceleration: f64,
+    /// `AccSet` ramp, 1 = 100 %.
+    pub ramp: f64,
+    /// `ConfJ`.
+    pub conf_joint: bool,
+    /// `ConfL`.
+    pub conf_linear: bool,
+    /// `PDispSet`/`PDispOn` displacement of programmed poses, none at identity.
+    pub displacement: Option<Isometry3<f64>>,
+    /// `GripLoad`, in the tool's frame.
+    pub grip_load: Option<LoadData>,
+    /// Settings in force that this compiler does not model, by instruction name.
+    pub other: Vec<Arc<str>>,
+}
+
+impl Default for Settings {
+    /// As after the start of the program from `main`.
+    fn default() -> Settings {
+        Settings {
+            speed_override: 1.0,
+            speed_max: f64::INFINITY,
+            acceleration: 1.0,
+            ramp: 1.0,
+            conf_joint: true,
+            conf_linear: true,
+            displacement: None,
+            grip_load: None,
+            other: Vec::new(),
+        }
+    }
+}
+
+/// A movement as it is executed.
+#[derive(Clone, Debug)]
+pub struct Movement {
+    /// The instruction as written.
+    pub instruction: Arc<str>,
+    /// Interpolation.
+    pub form: MoveForm,
+    /// True for Move… that do nothing but move.
+    pub plain: bool,
+    /// The statement.
+    pub span: Span,
+    /// Name of the routine that holds it.
+    pub routine: Arc<str>,
+    /// Circle point of a circular movement.
+    pub via: Option<RobTarget>,
+    /// Where it goes.
+    pub target: Target,
+    /// Speed, `\V` applied.
+    pub speed: Speed,
+    /// `\T`, s.
+    pub time: Option<f64>,
+    /// Zone, `\Z` and `\Inpos` applied.
+    pub zone: Zone,
+    /// Tool.
+    pub tool: Tool,
+    /// Work object.
+    pub wobj: WorkObject,
+    /// `\TLoad`: replaces the tool's load and GripLoad, in the flange's frame.
+    pub total_load: Option<LoadData>,
+    /// Settings in force.
+    pub settings: Arc<Settings>,
+    /// `\Conc`: following logic runs during the movement.
+    pub concurrent: bool,
+    /// Optional arguments that change the movement in ways not modelled (`\Corr`, `\ID` …).
+    pub other_arguments: Vec<Arc<str>>,
+    /// What the arguments were computed from.
+    pub origin: Origin,
+    /// Movements with the same number always run together: no branch on an unknown
+    /// value and no wait of unknown length lies between them.
+    pub region: u32,
+}
+
+/// A movement that can't be worked out.
+#[derive(Clone, Debug)]
+pub struct Unresolved {
+    /// The statement.
+    pub span: Span,
+    /// Why, in the user's words.
+    pub reason: String,
+    /// True if the robot may stand somewhere else afterwards.
+    pub moves: bool,
+}
+
+/// A wait.
+#[derive(Clone, Debug)]
+pub struct Wait {
+    /// The instruction as written.
+    pub instruction: Arc<str>,
+    /// The statement.
+    pub span: Span,
+    /// Name of the routine that holds it.
+    pub routine: Arc<str>,
+    /// Length in s where the program states it.
+    pub duration: Option<f64>,
+    /// The input that it waits for.
+    pub signal: Option<Arc<str>>,
+}
+
+/// A change of an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// The instruction as written.
+    pub instruction: Arc<str>,
+    /// The statement.
+    pub span: Span,
+    /// The signal.
+    pub signal: Arc<str>,
+    /// Its new value as written, after evaluation.
+    pub value: String,
+}
