@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Isometry3;
 
 use super::instructions::MoveForm;
-use super::value::Origin;
+use super::value::{Datum, Origin};
 use crate::text::Span;
 
 /// Where a movement goes.
@@ -125,6 +125,19 @@ impl Default for Settings {
     }
 }
 
+/// A loop variable or parameter that a movement depends on, and its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalValue {
+    /// Its name as written.
+    pub name: Arc<str>,
+    /// Lower-case name of its type.
+    pub type_key: Arc<str>,
+    /// Its value.
+    pub datum: Datum,
+    /// Constant data, by a name valid in every module, that it was passed from.
+    pub alias: Option<Arc<str>>,
+}
+
 /// A movement as it is executed.
 #[derive(Clone, Debug)]
 pub struct Movement {
@@ -162,6 +175,8 @@ pub struct Movement {
     pub other_arguments: Vec<Arc<str>>,
     /// What the arguments were computed from.
     pub origin: Origin,
+    /// Values of the loop variables and parameters among them.
+    pub locals: Vec<LocalValue>,
     /// Movements with the same number always run together: no branch on an unknown
     /// value and no wait of unknown length lies between them.
     pub region: u32,

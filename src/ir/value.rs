@@ -57,14 +57,8 @@ impl Datum {
 /// What a value was computed from, besides constants.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// A loop variable or a parameter, with the RAPID expression that it equals
-    /// in this execution, where one can be written down.
-    Local {
-        /// Its name as written.
-        name: Arc<str>,
-        /// What it equals.
-        equals: Option<Arc<str>>,
-    },
+    /// A loop variable or a parameter of the routine; its name as written.
+    Local(Arc<str>),
     /// A variable that the program writes.
     Variable(Arc<str>),
     /// A `PERS` whose stored value may differ from the source.

@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector3, Vector6};
 
 use super::blend;
 use super::curve::{self, Curve};
-use super::joint_path::{DOF, JointPath, Joints, PathPoint, Piece, PieceKind};
+use super::joint_path::{DOF, Extent, JointPath, Joints, PathPoint, Piece, PieceKind};
 use super::leg::{Leg, LegKind, PathError, first_difference};
 use crate::kinematics::{fk, ik_near, jacobian, jacobian_dot, limits_ok};
 use crate::robot::Model;
@@ -156,7 +156,6 @@ fn zone_size(before: &Measured<'_>, after: &Measured<'_>) -> f64 {
 /// One path of legs with zones between all of them.
 fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError> {
     let mut builder = Builder { model, pieces: Vec::new(), s: 0.0, q: legs[0].leg.start };
-    builder.q = legs[0].leg.start;
     let mut trimmed = 0.0;
     // Joints at the programmed start of the leg at hand.
     let mut corner = legs[0].leg.start;
@@ -173,7 +172,14 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
         corner = leg.leg.end;
         trimmed = zone;
     }
-    Ok(JointPath::new(builder.pieces))
+    // A leg that goes nowhere is left out; its neighbours keep their indices.
+    let first = legs[0].index;
+    let last = legs[legs.len() - 1].index;
+    let extents = (first..=last).map(|index| {
+        let leg = legs.iter().rfind(|leg| leg.index <= index).unwrap_or(&legs[0]);
+        Extent { length: leg.length, angle: leg.angle, extent: leg.extent, tool: leg.leg.tool }
+    });
+    Ok(JointPath::new(builder.pieces, first, extents.collect()))
 }
 
 struct Builder<'a> {

@@ -1,5 +1,9 @@
 //! A joint path q(s) as pieces of quintic polynomials.
 
+use std::ops::Range;
+
+use nalgebra::Isometry3;
+
 /// Joints of a robot that RAPID programs move.
 pub const DOF: usize = 6;
 
@@ -89,17 +93,49 @@ impl Piece {
     }
 }
 
+/// What the TCP does on a leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Length of its path, m.
+    pub length: f64,
+    /// Angle that the tool turns by, rad.
+    pub angle: f64,
+    /// Length in the parameter s.
+    pub extent: f64,
+    /// TCP in the flange's frame, m.
+    pub tool: Isometry3<f64>,
+}
+
 /// A joint path over [0, length]: q and q′ are continuous, and q″ up to jumps that
 /// straight joint lines without a zone between them do not have.
 #[derive(Clone, Debug, Default)]
 pub struct JointPath {
     pieces: Vec<Piece>,
+    /// Index of the first leg, and the legs from there on.
+    legs: (usize, Vec<Extent>),
 }
 
 impl JointPath {
-    /// From pieces that follow each other without a gap.
-    pub fn new(pieces: Vec<Piece>) -> JointPath {
-        JointPath { pieces }
+    /// From pieces that follow each other without a gap, and the legs from the index
+    /// `first` on that they belong to.
+    pub fn new(pieces: Vec<Piece>, first: usize, legs: Vec<Extent>) -> JointPath {
+        JointPath { pieces, legs: (first, legs) }
+    }
+
+    /// What is known of a leg of the path.
+    pub fn extent(&self, leg: usize) -> Extent {
+        self.legs.1[leg - self.legs.0]
+    }
+
+    /// The indices of the legs.
+    pub fn legs(&self) -> Range<usize> {
+        self.legs.0..self.legs.0 + self.legs.1.len()
+    }
+
+    /// Where the path passes the programmed end of a leg: in the middle of the zone.
+    pub fn leg_end(&self, leg: usize) -> f64 {
+        let after = self.pieces.partition_point(|p| p.leg <= leg);
+        self.pieces.get(after).map_or(self.length(), |p| p.s)
     }
 
     /// The pieces in order.

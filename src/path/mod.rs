@@ -12,5 +12,5 @@ pub mod joint_path;
 pub mod leg;
 
 pub use build::build;
-pub use joint_path::{JointPath, Piece, PieceKind};
+pub use joint_path::{Extent, JointPath, Piece, PieceKind};
 pub use leg::{Leg, LegKind, PathError};

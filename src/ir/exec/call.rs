@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::super::hir::{Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, Stmt};
+use super::super::predefined;
 use super::super::program::{RoutineId, Symbol};
 use super::super::value::{Datum, Dependence, Origin, Value};
-use super::flow::{Flow, number_text};
+use super::flow::Flow;
 use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
 use crate::text::Span;
 
@@ -90,41 +91,31 @@ impl Executor<'_> {
             return cell;
         }
         let mut value = self.eval(expr);
-        let equals = self.equal_text(expr, &value);
+        let alias = self.alias(expr, &value);
         // A signal is passed on as such.
         if !matches!(value.datum, Datum::Signal(_)) {
             value.type_key = param.type_name.key.as_str().into();
         }
-        let reading = Origin::of(Dependence::Local { name: param.name.text.as_str().into(), equals });
-        self.cells.push(Cell { value, reading, read_only: false });
+        let reading = Origin::of(Dependence::Local(param.name.text.as_str().into()));
+        self.cells.push(Cell { value, reading, read_only: false, alias });
         self.cells.len() - 1
     }
 
-    /// RAPID text, valid in every module, that equals the argument in this execution.
-    fn equal_text(&mut self, expr: &Expr, value: &Value) -> Option<Arc<str>> {
-        if let ExprKind::Ref(name) = &expr.kind {
-            let local = self.frame().names.iter().any(|(key, _)| *key == name.key);
-            if local {
-                if let Some(Dependence::Local { equals, .. }) = value.origin.iter().next() {
-                    return equals.clone();
-                }
-            } else if let Some(Symbol::Data(id)) = self.program.resolve_global(&name.key)
-                && self.program.resolve(self.frame().module, &name.key) == Some(Symbol::Data(id))
-                && !self.program.is_written(id)
-            {
-                return Some(name.text.as_str().into());
-            } else if value.origin.is_constant() && super::super::predefined::lookup(&name.key).is_some()
-            {
-                return Some(name.text.as_str().into());
+    /// A name, valid in every module, of constant data that the argument is.
+    fn alias(&mut self, expr: &Expr, value: &Value) -> Option<Arc<str>> {
+        let ExprKind::Ref(name) = &expr.kind else { return None };
+        if self.frame().names.iter().any(|(key, _)| *key == name.key) {
+            return self.cell_of(name).and_then(|cell| self.cells[cell].alias.clone());
+        }
+        let known = match self.program.resolve(self.frame().module, &name.key) {
+            Some(Symbol::Data(id)) => {
+                self.program.resolve_global(&name.key) == Some(Symbol::Data(id))
+                    && !self.program.is_written(id)
             }
-        }
-        match &value.datum {
-            // A RAPID num is single precision: only what it holds exactly is comparable.
-            Datum::Num(x) if f64::from(*x as f32) == *x => Some(number_text(*x).as_str().into()),
-            Datum::Bool(true) => Some("TRUE".into()),
-            Datum::Bool(false) => Some("FALSE".into()),
-            _ => None,
-        }
+            Some(Symbol::Routine(_)) => false,
+            None => value.origin.is_constant() && predefined::lookup(&name.key).is_some(),
+        };
+        known.then(|| name.text.as_str().into())
     }
 
     /// Runs a routine whose parameters are bound.

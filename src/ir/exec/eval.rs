@@ -138,6 +138,7 @@ impl Executor<'_> {
             value: Value::unknown("its value refers to itself", self.program.data(id).span),
             reading: Origin::default(),
             read_only: true,
+            alias: None,
         });
         let cell = self.cells.len() - 1;
         self.globals.insert(id, cell);
@@ -162,7 +163,8 @@ impl Executor<'_> {
             }
             DataKind::Pers => Origin::of(Dependence::Persistent(name)),
         };
-        self.cells[cell] = Cell { value, reading, read_only: data.kind == DataKind::Const };
+        self.cells[cell] =
+            Cell { value, reading, read_only: data.kind == DataKind::Const, alias: None };
         cell
     }
 

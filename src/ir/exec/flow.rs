@@ -100,7 +100,7 @@ impl Executor<'_> {
             _ => Origin::of(Dependence::Variable(data.name.text.as_str().into())),
         };
         let read_only = data.kind == super::super::hir::DataKind::Const;
-        self.cells.push(Cell { value, reading, read_only });
+        self.cells.push(Cell { value, reading, read_only, alias: None });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((data.name.key.clone(), cell));
     }
@@ -180,8 +180,9 @@ impl Executor<'_> {
         }
         self.cells.push(Cell {
             value: Value::constant(Datum::Num(from), "num"),
-            reading: Origin::default(),
+            reading: Origin::of(Dependence::Local(var.text.as_str().into())),
             read_only: true,
+            alias: None,
         });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((var.key.clone(), cell));
@@ -193,10 +194,6 @@ impl Executor<'_> {
                 break;
             }
             self.cells[cell].value = Value::constant(Datum::Num(x), "num");
-            self.cells[cell].reading = Origin::of(Dependence::Local {
-                name: var.text.as_str().into(),
-                equals: Some(number_text(x).as_str().into()),
-            });
             flow = self.block(body);
             self.frame_mut().names.truncate(depth);
             if !matches!(flow, Flow::Next) {

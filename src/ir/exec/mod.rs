@@ -89,6 +89,8 @@ struct Cell {
     /// What reading it adds to the origin.
     reading: Origin,
     read_only: bool,
+    /// A name, valid in every module, of data that the value was passed from.
+    alias: Option<Arc<str>>,
 }
 
 /// An active routine.

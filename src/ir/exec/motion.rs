@@ -3,8 +3,9 @@
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, Expr, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
-use super::super::movement::{Movement, Target, Unresolved, Zone};
+use super::super::movement::{LocalValue, Movement, Target, Unresolved, Zone};
 use super::super::value::{Datum, Dependence, Origin, Value};
+use std::sync::Arc;
 use super::Executor;
 use super::instruction::Arguments;
 
@@ -149,6 +150,7 @@ impl Executor<'_> {
                 }
             }
         }
+        let locals = self.locals(&origin);
         let other_arguments = arguments
             .optional
             .iter()
@@ -173,8 +175,30 @@ impl Executor<'_> {
             concurrent: arguments.option("conc").is_some(),
             other_arguments,
             origin,
+            locals,
             region: self.region,
         })
+    }
+
+    /// What the loop variables and parameters in an origin are at this moment.
+    fn locals(&self, origin: &Origin) -> Vec<LocalValue> {
+        let names = &self.frame().names;
+        let value = |name: &Arc<str>| {
+            let key = name.to_lowercase();
+            let (_, cell) = names.iter().rev().find(|(known, _)| *known == key)?;
+            let cell = &self.cells[*cell];
+            Some(LocalValue {
+                name: name.clone(),
+                type_key: cell.value.type_key.clone(),
+                datum: cell.value.datum.clone(),
+                alias: cell.alias.clone(),
+            })
+        };
+        let local = |dependence: &Dependence| match dependence {
+            Dependence::Local(name) => value(name),
+            _ => None,
+        };
+        origin.iter().filter_map(local).collect()
     }
 
     fn zone_options(
