@@ -2,5 +2,8 @@
 //!
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
+pub mod dynamics;
 pub mod ir;
+pub mod kinematics;
+pub mod robot;
 pub mod text;

@@ -1,0 +1,88 @@
+//! Inverse dynamics by the recursive Newton-Euler algorithm.
+//!
+//! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 5, written
+//! out in vectors of three, each body in its own joint's frame.
+
+use nalgebra::Vector3;
+
+use crate::robot::{MAX_DOF, Model};
+
+use super::GRAVITY;
+use super::data::Data;
+use super::load::Load;
+
+/// Torque of each joint \[Nm\] for the motion `q` \[rad\], `qd` \[rad/s\], `qdd`
+/// \[rad/s²\] with `load` at the flange: rigid bodies and reflected rotors, no
+/// friction. The inputs have one entry for each joint (a missing one is 0).
+/// All zero where the robot has no dynamics.
+pub fn rnea(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    q: &[f64],
+    qd: &[f64],
+    qdd: &[f64],
+) -> [f64; MAX_DOF] {
+    let geometry = &model.kinematics;
+    let serial = [q, qd, qdd].map(|values| geometry.to_serial(values));
+    let tau = newton_euler(model, data, load, &serial[0], &serial[1], &serial[2]);
+    let mut tau = geometry.from_serial_torque(tau);
+    if let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) {
+        for (joint, &acceleration) in qdd.iter().enumerate().take(model.dof) {
+            tau[joint] += motors.reflected_inertia(joint) * acceleration;
+        }
+    }
+    tau
+}
+
+/// Torque of each joint \[Nm\] that holds the robot still at `q` \[rad\].
+pub fn gravity(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; MAX_DOF] {
+    rnea(model, data, load, q, &[], &[])
+}
+
+fn newton_euler(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    q: &[f64; MAX_DOF],
+    qd: &[f64; MAX_DOF],
+    qdd: &[f64; MAX_DOF],
+) -> [f64; MAX_DOF] {
+    let mut tau = [0.0; MAX_DOF];
+    let Some(loaded) = load.on(model) else { return tau };
+    let joints = &model.kinematics.joints;
+    let last = model.links.len().min(joints.len()).min(MAX_DOF) - 1;
+
+    // Motion of the parent: angular velocity and acceleration, and acceleration
+    // of its origin; gravity enters as an acceleration of the base.
+    let mut w = Vector3::zeros();
+    let mut wd = Vector3::zeros();
+    let mut a = Vector3::new(0.0, 0.0, GRAVITY);
+    for i in 0..=last {
+        let joint = &joints[i];
+        let link = if i == last { &loaded } else { &model.links[i] };
+        let r = joint.rotation_at(q[i]);
+        let p = joint.translation;
+        let axis = joint.axis.into_inner();
+        a = r.tr_mul(&(a + wd.cross(&p) + w.cross(&w.cross(&p))));
+        let carried = r.tr_mul(&w);
+        wd = r.tr_mul(&wd) + carried.cross(&axis) * qd[i] + axis * qdd[i];
+        w = carried + axis * qd[i];
+
+        let c = link.com;
+        let force = (a + wd.cross(&c) + w.cross(&w.cross(&c))) * link.mass;
+        data.rotation[i] = r;
+        data.force[i] = force;
+        data.moment[i] = link.inertia * wd + w.cross(&(link.inertia * w)) + c.cross(&force);
+    }
+    for i in (0..=last).rev() {
+        tau[i] = joints[i].axis.dot(&data.moment[i]);
+        if i > 0 {
+            let force = data.rotation[i] * data.force[i];
+            let moment = data.rotation[i] * data.moment[i] + joints[i].translation.cross(&force);
+            data.force[i - 1] += force;
+            data.moment[i - 1] += moment;
+        }
+    }
+    tau
+}

@@ -1,0 +1,80 @@
+//! Why a pose has no joint angles.
+
+use thiserror::Error;
+
+use super::conf::Conf;
+
+/// A joint angle outside its range.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error(
+    "joint {} would be at {:.3} deg, outside {:.3} to {:.3} deg",
+    .joint + 1, .value.to_degrees(), .range[0].to_degrees(), .range[1].to_degrees()
+)]
+pub struct LimitViolation {
+    /// The joint, from 0.
+    pub joint: usize,
+    /// Its angle \[rad\].
+    pub value: f64,
+    /// Its range \[rad\].
+    pub range: [f64; 2],
+}
+
+/// Why the inverse kinematics has no answer.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum IkError {
+    /// The arm is too short or too long for the pose.
+    #[error("the pose is out of reach: the wrist centre lies {:.1} mm {side} the arm's reach", .distance * 1e3)]
+    Unreachable {
+        /// Distance of the wrist centre from the reachable set \[m\].
+        distance: f64,
+        /// On which side.
+        side: Side,
+    },
+    /// The pose is not one.
+    #[error("the pose has a coordinate that is not a finite number; correct the target")]
+    NotFinite,
+    /// The pose can only be had outside a joint's range.
+    #[error(transparent)]
+    OutsideLimits(#[from] LimitViolation),
+    /// No solution has the configuration.
+    #[error("no solution has the configuration {asked}; the pose has {}", list(found))]
+    ConfigurationNotFound {
+        /// The configuration asked for.
+        asked: Conf,
+        /// Those that the pose has, inside the joints' ranges.
+        found: Vec<Conf>,
+    },
+    /// The robot's chain has no closed inverse.
+    #[error(
+        "{robot} has no OPW kinematics, so poses have no joint angles; program it with jointtargets"
+    )]
+    NoInverse {
+        /// The robot.
+        robot: String,
+    },
+}
+
+/// Side of the reachable set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Too far away.
+    Beyond,
+    /// Too near.
+    Inside,
+}
+
+impl std::fmt::Display for Side {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Side::Beyond => "beyond",
+            Side::Inside => "inside",
+        })
+    }
+}
+
+fn list(found: &[Conf]) -> String {
+    if found.is_empty() {
+        return "none inside the joints' ranges".into();
+    }
+    found.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,155 @@
+//! Closed inverse of an ortho-parallel arm with a spherical wrist: all eight
+//! branches. Letters as in [`Opw`]; θ are OPW angles.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Vector3};
+
+use crate::robot::{Coupling, Model, Opw};
+
+use super::error::{IkError, Side};
+
+/// Lengths by which a pose at the edge of the reach may miss it \[m\]: rounding
+/// of targets that are written with few digits is left to the caller.
+const REACH_SLACK: f64 = 1e-9;
+/// |sin θ5| below which axes 4 and 6 count as one.
+pub(super) const WRIST_SINGULAR: f64 = 1e-8;
+
+/// One branch of the inverse.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch {
+    /// Joint angles, each in (−π, π] \[rad\].
+    pub(super) q: [f64; 6],
+    /// Wrist centre behind axis 1.
+    pub(super) back: bool,
+    /// Signed elbow angle \[rad\].
+    pub(super) elbow: f64,
+    /// In a wrist singularity: what joints 4 and 6 must keep.
+    pub(super) locked: Option<Locked>,
+}
+
+/// In a wrist singularity, q6 follows q4: `q6 = offset − slope · q4`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Locked {
+    pub(super) offset: f64,
+    pub(super) slope: f64,
+}
+
+/// All solutions of the pose, at most eight, each angle in (−π, π]; position
+/// limits are not looked at. In a wrist singularity joint 4 is at its zero.
+///
+/// # Errors
+/// The pose is out of reach or not finite, or the robot has no OPW kinematics.
+pub fn ik_all(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<[f64; 6]>, IkError> {
+    Ok(branches(model, pose)?.iter().map(|branch| branch.q).collect())
+}
+
+/// The branches behind [`ik_all`]; never empty.
+pub(super) fn branches(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
+    let Some(opw) = &model.kinematics.opw else {
+        return Err(IkError::NoInverse { robot: model.name.clone() });
+    };
+    if !pose.to_homogeneous().iter().all(|entry| entry.is_finite()) {
+        return Err(IkError::NotFinite);
+    }
+    let rotation = pose.rotation.to_rotation_matrix().into_inner();
+    let centre = pose.translation.vector - opw.c4 * rotation.column(2);
+    let beyond_b = centre.xy().norm_squared() - opw.b * opw.b;
+    if beyond_b < -REACH_SLACK * opw.b.abs() {
+        let distance = opw.b.abs() - centre.xy().norm();
+        return Err(IkError::Unreachable { distance, side: Side::Inside });
+    }
+    let radius = beyond_b.max(0.0).sqrt();
+
+    let mut found = Vec::with_capacity(8);
+    let mut nearest: Option<(f64, Side)> = None;
+    for (reach, back) in [(radius, false), (-radius, true)] {
+        let theta1 = centre.y.atan2(centre.x) - opw.b.atan2(reach);
+        let (u, v) = (reach - opw.a1, centre.z - opw.c1);
+        match arm(opw, u, v) {
+            Ok(poses) => {
+                for [theta2, theta3, elbow] in poses {
+                    wrist(model, opw, &rotation, [theta1, theta2, theta3], |q, locked| {
+                        found.push(Branch { q, back, elbow, locked });
+                    });
+                }
+            }
+            Err(miss) if nearest.is_none_or(|best| miss.0 < best.0) => nearest = Some(miss),
+            Err(_) => {}
+        }
+    }
+    match nearest {
+        Some((distance, side)) if found.is_empty() => Err(IkError::Unreachable { distance, side }),
+        _ => Ok(found),
+    }
+}
+
+/// θ2, θ3 and the elbow angle of both elbows for a wrist centre at (u, v) from
+/// axis 2, u forward and v up; else the distance to the reachable ring.
+fn arm(opw: &Opw, u: f64, v: f64) -> Result<[[f64; 3]; 2], (f64, Side)> {
+    let k = opw.a2.hypot(opw.c3);
+    let psi3 = opw.a2.atan2(opw.c3);
+    let distance = u.hypot(v);
+    if distance > opw.c2 + k + REACH_SLACK {
+        return Err((distance - opw.c2 - k, Side::Beyond));
+    }
+    if distance < (opw.c2 - k).abs() - REACH_SLACK {
+        return Err(((opw.c2 - k).abs() - distance, Side::Inside));
+    }
+    let cos = (u * u + v * v - opw.c2 * opw.c2 - k * k) / (2.0 * opw.c2 * k);
+    let bend = cos.clamp(-1.0, 1.0).acos();
+    Ok([bend, -bend].map(|phi| {
+        let theta2 = u.atan2(v) - (k * phi.sin()).atan2(opw.c2 + k * phi.cos());
+        [theta2, phi - psi3, phi]
+    }))
+}
+
+/// Both wrists for the first three angles.
+fn wrist(
+    model: &Model,
+    opw: &Opw,
+    rotation: &Matrix3<f64>,
+    [theta1, theta2, theta3]: [f64; 3],
+    mut push: impl FnMut([f64; 6], Option<Locked>),
+) {
+    let forearm = Rotation3::from_axis_angle(&Vector3::z_axis(), theta1)
+        * Rotation3::from_axis_angle(&Vector3::y_axis(), theta2 + theta3);
+    let r = forearm.matrix().transpose() * rotation;
+    let sin = r.m13.hypot(r.m23);
+    let theta5 = sin.atan2(r.m33);
+    if sin < WRIST_SINGULAR {
+        // θ6 = sum ∓ θ4, upper sign for θ5 = 0, lower for θ5 = π.
+        let sum = r.m21.atan2(r.m22);
+        let sense = if r.m33 > 0.0 { -1.0 } else { 1.0 };
+        for (theta5, theta4) in [(theta5, 0.0), (-theta5, PI)] {
+            let theta6 = sum + sense * theta4;
+            let q = to_joints(model, opw, [theta1, theta2, theta3, theta4, theta5, theta6]);
+            let slope = -sense * opw.signs[3] * opw.signs[5];
+            push(q, Some(Locked { offset: q[5] + slope * q[3], slope }));
+        }
+        return;
+    }
+    let theta4 = r.m23.atan2(r.m13);
+    let theta6 = r.m32.atan2(-r.m31);
+    for (theta5, half) in [(theta5, 0.0), (-theta5, PI)] {
+        let theta = [theta1, theta2, theta3, theta4 + half, theta5, theta6 + half];
+        push(to_joints(model, opw, theta), None);
+    }
+}
+
+fn to_joints(model: &Model, opw: &Opw, theta: [f64; 6]) -> [f64; 6] {
+    let mut q = theta;
+    for (i, angle) in q.iter_mut().enumerate() {
+        *angle = opw.signs[i] * (*angle + opw.offsets[i]);
+    }
+    if model.kinematics.coupling == Coupling::Parallelogram {
+        q[2] += q[1];
+    }
+    q.map(wrap)
+}
+
+/// The angle in (−π, π] \[rad\].
+pub(super) fn wrap(angle: f64) -> f64 {
+    let turned = angle - 2.0 * PI * (angle / (2.0 * PI)).round();
+    if turned <= -PI { turned + 2.0 * PI } else { turned }
+}

@@ -1,0 +1,23 @@
+//! Where the robot is: forward and inverse kinematics, configurations,
+//! Jacobians, singularities, position limits. Knows no RAPID.
+//!
+//! Poses are those of tool0 in the robot's base frame: base z up along axis 1,
+//! x forward; tool0 z out of the flange, x down when all joints are at zero.
+
+mod conf;
+mod error;
+mod fk;
+mod inverse;
+mod jacobian;
+mod limits;
+mod select;
+mod singularity;
+
+pub use conf::{Conf, conf_of};
+pub use error::{IkError, LimitViolation};
+pub use fk::fk;
+pub use inverse::ik_all;
+pub use jacobian::{jacobian, jacobian_dot};
+pub use limits::limits_ok;
+pub use select::{ik_conf, ik_near};
+pub use singularity::{Singularity, singularity};

@@ -1,0 +1,127 @@
+//! One solution out of the branches: by configuration, or the nearest.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+use nalgebra::Isometry3;
+
+use crate::robot::{Coupling, Model};
+
+use super::conf::{Conf, conf_of};
+use super::error::IkError;
+use super::inverse::{Branch, branches};
+use super::limits::limits_ok;
+
+/// By how much an angle may lie outside the quarter turn that the
+/// configuration names \[rad\]: targets and configurations are rounded apart, and
+/// angles at zero are reported on either side.
+const EDGE: f64 = 1e-3;
+const TURN: f64 = 2.0 * PI;
+
+/// The solution of the pose that has the configuration, inside the position
+/// limits. An angle at the edge of a quarter turn belongs to both neighbours.
+///
+/// # Errors
+/// The pose is out of reach; its solution with this configuration breaks a
+/// position limit; no solution has the configuration.
+pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64; 6], IkError> {
+    let branches = branches(model, pose)?;
+    let mut best: Option<(f64, [f64; 6])> = None;
+    let mut outside = None;
+    for branch in &branches {
+        let Some((excess, q)) = with_conf(model, branch, conf) else { continue };
+        match limits_ok(model, &q) {
+            Ok(()) if best.is_none_or(|(least, _)| excess < least) => best = Some((excess, q)),
+            Ok(()) => {}
+            Err(violation) => outside = outside.or(Some(violation)),
+        }
+    }
+    match (best, outside) {
+        (Some((_, q)), _) => Ok(q),
+        (None, Some(violation)) => Err(IkError::OutsideLimits(violation)),
+        (None, None) => {
+            let found = branches
+                .iter()
+                .map(|branch| into_limits(model, branch.q))
+                .filter(|q| limits_ok(model, q).is_ok())
+                .map(|q| conf_of(model, &q))
+                .collect();
+            Err(IkError::ConfigurationNotFound { asked: conf, found })
+        }
+    }
+}
+
+/// The solution nearest to `q_ref` (least sum of squared differences), whole
+/// turns included; in a wrist singularity joint 4 stays where it is. It follows a
+/// path without jumps when `q_ref` is the solution a small step before.
+///
+/// # Errors
+/// The pose is out of reach; the nearest solution breaks a position limit.
+pub fn ik_near(
+    model: &Model,
+    pose: &Isometry3<f64>,
+    q_ref: &[f64; 6],
+) -> Result<[f64; 6], IkError> {
+    let mut best = (f64::INFINITY, *q_ref);
+    for branch in branches(model, pose)? {
+        let mut q = branch.q;
+        if let Some(locked) = branch.locked {
+            q[3] = q_ref[3];
+            q[5] = locked.offset - locked.slope * q[3];
+        }
+        let mut distance = 0.0;
+        for (angle, reference) in q.iter_mut().zip(q_ref) {
+            *angle += TURN * ((reference - *angle) / TURN).round();
+            distance += (*angle - reference).powi(2);
+        }
+        if distance < best.0 {
+            best = (distance, q);
+        }
+    }
+    limits_ok(model, &best.1)?;
+    Ok(best.1)
+}
+
+/// The branch turned into the configuration, and by how much it misses it.
+fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6])> {
+    let mut excess = 0.0;
+    if model.kinematics.coupling == Coupling::None {
+        excess += misses(conf.cfx & 4 != 0, branch.back, f64::INFINITY)?;
+        excess += misses(conf.cfx & 2 != 0, branch.elbow.sin() < 0.0, branch.elbow.sin().abs())?;
+        excess += misses(conf.cfx & 1 != 0, branch.q[4] < 0.0, branch.q[4].abs())?;
+    }
+    let mut q = into_limits(model, branch.q);
+    if let Some(locked) = branch.locked {
+        // Any q4 solves the pose: the one of least size in its quarter turn.
+        let low = f64::from(conf.cf4) * FRAC_PI_2;
+        q[3] = 0.0_f64.clamp(low, low + FRAC_PI_2);
+        q[5] = locked.offset - locked.slope * q[3];
+    }
+    for (joint, quarter) in [(0, conf.cf1), (3, conf.cf4), (5, conf.cf6)] {
+        let centre = f64::from(quarter) * FRAC_PI_2 + FRAC_PI_4;
+        q[joint] += TURN * ((centre - q[joint]) / TURN).round();
+        let miss = ((q[joint] - centre).abs() - FRAC_PI_4).max(0.0);
+        if miss > EDGE {
+            return None;
+        }
+        excess += miss;
+    }
+    Some((excess, q))
+}
+
+/// 0 where both bits agree, the distance to the border of the two where that is
+/// small, else nothing.
+fn misses(asked: bool, found: bool, to_border: f64) -> Option<f64> {
+    if asked == found { Some(0.0) } else { (to_border <= EDGE).then_some(to_border) }
+}
+
+/// Each joint turned by whole turns into its range, where one turn does it.
+fn into_limits(model: &Model, mut q: [f64; 6]) -> [f64; 6] {
+    for joint in 0..q.len() {
+        let [low, high] = model.limits.position_at(&q, joint);
+        let angle = q[joint];
+        let inside =
+            [angle, angle - TURN, angle + TURN].into_iter().find(|a| (low..=high).contains(a));
+        q[joint] = inside.unwrap_or(angle);
+    }
+    q
+}

@@ -1,0 +1,32 @@
+//! How near the arm is to losing a direction of motion.
+
+use crate::robot::Model;
+
+use super::conf::elbow_angle;
+use super::fk::Frames;
+
+/// Distances from the three singularities of an arm with a spherical wrist;
+/// each is 0 in its singularity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Singularity {
+    /// |sin q5|: axes 4 and 6 in line.
+    pub wrist: f64,
+    /// |sin| of the elbow angle: upper arm, elbow and wrist centre in line.
+    pub elbow: f64,
+    /// Distance of the wrist centre from the plane through axis 1 that is
+    /// parallel to axis 2 \[m\].
+    pub shoulder: f64,
+}
+
+/// The measures at the joint angles `q` \[rad\]; `None` without OPW kinematics.
+#[must_use]
+pub fn singularity(model: &Model, q: &[f64; 6]) -> Option<Singularity> {
+    let opw = model.kinematics.opw.as_ref()?;
+    let (sin, cos) = (opw.signs[0] * q[0] - opw.offsets[0]).sin_cos();
+    let wrist_centre = Frames::at(model, q).origin[3];
+    Some(Singularity {
+        wrist: (opw.signs[4] * q[4] - opw.offsets[4]).sin().abs(),
+        elbow: elbow_angle(model, opw, q).sin().abs(),
+        shoulder: (wrist_centre.x * cos + wrist_centre.y * sin).abs(),
+    })
+}

@@ -1,0 +1,118 @@
+//! Why a robot could not be had.
+
+use thiserror::Error;
+
+/// Wrong input on the way to a [`Model`](super::Model).
+#[derive(Debug, Error)]
+pub enum RobotError {
+    /// The catalogue has no such robot.
+    #[error(
+        "unknown robot \"{name}\"{}; known robots: {}; or give a robot TOML file",
+        .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?")),
+        .known.join(", ")
+    )]
+    Unknown {
+        /// As asked for.
+        name: String,
+        /// The nearest name of the catalogue, if one is near.
+        suggestion: Option<String>,
+        /// Every name of the catalogue.
+        known: Vec<String>,
+    },
+    /// The name fits several robots.
+    #[error("\"{name}\" fits several robots: {}; name one of them in full", .candidates.join(", "))]
+    Ambiguous {
+        /// As asked for.
+        name: String,
+        /// The robots it fits.
+        candidates: Vec<String>,
+    },
+    /// A file could not be read.
+    #[error("cannot read the robot file {path}: {source}")]
+    Io {
+        /// Path as given.
+        path: String,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// The file's kind is not supported.
+    #[error("{path} is not a robot TOML file; give a file that ends in .toml")]
+    Format {
+        /// Path as given.
+        path: String,
+    },
+    /// Not TOML.
+    #[error("{place}: not valid TOML: {message}")]
+    Syntax {
+        /// `file:line`.
+        place: String,
+        /// The parser's message.
+        message: String,
+    },
+    /// A key that no robot has.
+    #[error("{place}: unknown key \"{key}\" in {table}; known keys: {}", .known.join(", "))]
+    UnknownKey {
+        /// `file:line`.
+        place: String,
+        /// The key.
+        key: String,
+        /// Its table.
+        table: String,
+        /// What may stand there.
+        known: Vec<String>,
+    },
+    /// A key that must be there is not.
+    #[error("{place}: {table} lacks \"{key}\"; add it")]
+    Missing {
+        /// `file:line` of the table.
+        place: String,
+        /// The table.
+        table: String,
+        /// The missing key.
+        key: String,
+    },
+    /// A value of another type than the key's.
+    #[error("{place}: {key} is {found}; give {expected}")]
+    Type {
+        /// `file:line`.
+        place: String,
+        /// The key with its table.
+        key: String,
+        /// What stands there.
+        found: String,
+        /// What is expected.
+        expected: String,
+    },
+    /// A list of the wrong length.
+    #[error("{place}: {key} has {found} entries; give {expected}")]
+    Length {
+        /// `file:line`.
+        place: String,
+        /// The key with its table.
+        key: String,
+        /// Entries found.
+        found: usize,
+        /// Entries expected, with the reason.
+        expected: String,
+    },
+    /// A value that no robot can have.
+    #[error("{place}: {key} = {value}, but it must be {must}")]
+    Value {
+        /// `file:line`.
+        place: String,
+        /// The key with its table.
+        key: String,
+        /// What stands there.
+        value: String,
+        /// What it must be.
+        must: String,
+    },
+    /// `extends` leads too deep, probably in a circle.
+    #[error("{place}: \"extends\" is nested more than {limit} deep; remove the circle")]
+    Extends {
+        /// `file:line`.
+        place: String,
+        /// The limit.
+        limit: usize,
+    },
+}

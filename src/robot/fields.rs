@@ -1,0 +1,325 @@
+//! Typed reading of one table of a robot file. What is asked for is known,
+//! what is left at the end is an error.
+
+use std::collections::BTreeMap;
+
+use super::error::RobotError;
+use super::provenance::Origin;
+use super::tree::{Node, Place, Value};
+
+/// The numbers a key accepts.
+#[derive(Clone, Copy)]
+pub(super) enum Accepts {
+    Finite,
+    NonNegative,
+    Positive,
+    /// 0 to 1.
+    Share,
+}
+
+impl Accepts {
+    fn holds(self, x: f64) -> bool {
+        x.is_finite()
+            && match self {
+                Accepts::Finite => true,
+                Accepts::NonNegative => x >= 0.0,
+                Accepts::Positive => x > 0.0,
+                Accepts::Share => (0.0..=1.0).contains(&x),
+            }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Accepts::Finite => "a finite number",
+            Accepts::NonNegative => "0 or more",
+            Accepts::Positive => "more than 0",
+            Accepts::Share => "between 0 and 1",
+        }
+    }
+}
+
+/// One table, read key by key.
+pub(super) struct Fields {
+    name: String,
+    place: Place,
+    entries: BTreeMap<String, Node>,
+    known: Vec<String>,
+    origins: Vec<Origin>,
+}
+
+impl Fields {
+    /// The table in `node`; `name` stands for it in messages and origins, and
+    /// is empty for the document.
+    pub(super) fn new(name: &str, node: Node) -> Result<Fields, RobotError> {
+        match node.value {
+            Value::Table(entries) => Ok(Fields {
+                name: name.to_owned(),
+                place: node.place,
+                entries,
+                known: Vec::new(),
+                origins: Vec::new(),
+            }),
+            other => Err(RobotError::Type {
+                place: node.place.to_string(),
+                key: name.to_owned(),
+                found: other.kind(),
+                expected: "a table".into(),
+            }),
+        }
+    }
+
+    /// Where the table begins.
+    pub(super) fn place(&self) -> String {
+        self.place.to_string()
+    }
+
+    /// The origins of what was read; an error where a key is left over.
+    pub(super) fn finish(self) -> Result<Vec<Origin>, RobotError> {
+        if let Some((key, node)) = self.entries.first_key_value() {
+            return Err(RobotError::UnknownKey {
+                place: node.place.to_string(),
+                key: key.clone(),
+                table: self.table_words(),
+                known: self.known,
+            });
+        }
+        Ok(self.origins)
+    }
+
+    /// The key's node, if it is there.
+    pub(super) fn take(&mut self, key: &str) -> Option<Node> {
+        self.known.push(key.to_owned());
+        self.entries.remove(key)
+    }
+
+    /// An error unless `value` is there.
+    pub(super) fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, RobotError> {
+        value.ok_or_else(|| RobotError::Missing {
+            place: self.place(),
+            table: self.table_words(),
+            key: key.to_owned(),
+        })
+    }
+
+    /// A text.
+    pub(super) fn text(&mut self, key: &str) -> Result<Option<String>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        match node.value {
+            Value::Text(text) => Ok(Some(text)),
+            other => Err(self.wrong_type(key, &node.place, &other, "a text")),
+        }
+    }
+
+    /// One of several words.
+    pub(super) fn choice<T: Copy>(
+        &mut self,
+        key: &str,
+        words: &[(&str, T)],
+    ) -> Result<Option<T>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let list = words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>();
+        let expected = list.join(" or ");
+        let Value::Text(text) = &node.value else {
+            return Err(self.wrong_type(key, &node.place, &node.value, &expected));
+        };
+        let Some((_, value)) = words.iter().find(|(word, _)| word == text) else {
+            return Err(RobotError::Value {
+                place: node.place.to_string(),
+                key: self.path(key),
+                value: format!("\"{text}\""),
+                must: expected,
+            });
+        };
+        self.note(key, &node);
+        Ok(Some(*value))
+    }
+
+    /// A number.
+    pub(super) fn number(
+        &mut self,
+        key: &str,
+        accepts: Accepts,
+    ) -> Result<Option<f64>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let value = self.as_number(key, &node, accepts)?;
+        self.note(key, &node);
+        Ok(Some(value))
+    }
+
+    /// A joint number, counted from 1 in the file and from 0 in the result.
+    pub(super) fn joint(&mut self, key: &str, dof: usize) -> Result<usize, RobotError> {
+        let node = self.take(key);
+        let node = self.required(key, node)?;
+        let value = self.as_number(key, &node, Accepts::Positive)?;
+        if value.fract() != 0.0 || value > dof as f64 {
+            return Err(RobotError::Value {
+                place: node.place.to_string(),
+                key: self.path(key),
+                value: value.to_string(),
+                must: format!("a joint number from 1 to {dof}"),
+            });
+        }
+        Ok(value as usize - 1)
+    }
+
+    /// A list of one number for each of `dof` joints.
+    pub(super) fn per_joint(
+        &mut self,
+        key: &str,
+        dof: usize,
+        accepts: Accepts,
+    ) -> Result<Option<Vec<f64>>, RobotError> {
+        self.numbers(key, dof, &per_joint_words(dof), accepts)
+    }
+
+    /// A list of exactly `N` numbers.
+    pub(super) fn array<const N: usize>(
+        &mut self,
+        key: &str,
+    ) -> Result<Option<[f64; N]>, RobotError> {
+        let list = self.numbers(key, N, &format!("{N} numbers"), Accepts::Finite)?;
+        Ok(list.and_then(|list| <[f64; N]>::try_from(list).ok()))
+    }
+
+    /// An interval `[low, high]`.
+    pub(super) fn interval(&mut self, key: &str) -> Result<Option<[f64; 2]>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let interval = self.as_interval(key, &node)?;
+        self.note(key, &node);
+        Ok(Some(interval))
+    }
+
+    /// An interval for each of `dof` joints.
+    pub(super) fn intervals(
+        &mut self,
+        key: &str,
+        dof: usize,
+    ) -> Result<Option<Vec<[f64; 2]>>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let items = self.as_list(key, &node, dof, &per_joint_words(dof))?;
+        let intervals =
+            items.iter().map(|item| self.as_interval(key, item)).collect::<Result<_, _>>()?;
+        self.note(key, &node);
+        Ok(Some(intervals))
+    }
+
+    /// A table below this one.
+    pub(super) fn table(&mut self, key: &str) -> Result<Option<Fields>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        Fields::new(&self.path(key), node).map(Some)
+    }
+
+    /// A list of tables below this one, named `KEY 1`, `KEY 2`, ….
+    pub(super) fn tables(&mut self, key: &str) -> Result<Vec<Fields>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(Vec::new()) };
+        let Value::List(items) = node.value else {
+            return Err(self.wrong_type(key, &node.place, &node.value, "a list of tables"));
+        };
+        let name = self.path(key);
+        items
+            .into_iter()
+            .enumerate()
+            .map(|(i, item)| Fields::new(&format!("{name} {}", i + 1), item))
+            .collect()
+    }
+
+    fn numbers(
+        &mut self,
+        key: &str,
+        len: usize,
+        expected: &str,
+        accepts: Accepts,
+    ) -> Result<Option<Vec<f64>>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let items = self.as_list(key, &node, len, expected)?;
+        let list = items
+            .iter()
+            .map(|item| self.as_number(key, item, accepts))
+            .collect::<Result<_, _>>()?;
+        self.note(key, &node);
+        Ok(Some(list))
+    }
+
+    fn as_list<'n>(
+        &self,
+        key: &str,
+        node: &'n Node,
+        len: usize,
+        expected: &str,
+    ) -> Result<&'n [Node], RobotError> {
+        let Value::List(items) = &node.value else {
+            return Err(self.wrong_type(key, &node.place, &node.value, expected));
+        };
+        if items.len() == len {
+            return Ok(items);
+        }
+        Err(RobotError::Length {
+            place: node.place.to_string(),
+            key: self.path(key),
+            found: items.len(),
+            expected: expected.to_owned(),
+        })
+    }
+
+    fn as_number(&self, key: &str, node: &Node, accepts: Accepts) -> Result<f64, RobotError> {
+        let Value::Number(value) = node.value else {
+            return Err(self.wrong_type(key, &node.place, &node.value, "a number"));
+        };
+        if accepts.holds(value) {
+            return Ok(value);
+        }
+        Err(RobotError::Value {
+            place: node.place.to_string(),
+            key: self.path(key),
+            value: value.to_string(),
+            must: accepts.words().into(),
+        })
+    }
+
+    fn as_interval(&self, key: &str, node: &Node) -> Result<[f64; 2], RobotError> {
+        let items = self.as_list(key, node, 2, "2 numbers, [low, high]")?;
+        let [low, high] = [
+            self.as_number(key, &items[0], Accepts::Finite)?,
+            self.as_number(key, &items[1], Accepts::Finite)?,
+        ];
+        if low < high {
+            return Ok([low, high]);
+        }
+        Err(RobotError::Value {
+            place: node.place.to_string(),
+            key: self.path(key),
+            value: format!("[{low}, {high}]"),
+            must: "[low, high] with low < high".into(),
+        })
+    }
+
+    fn note(&mut self, key: &str, node: &Node) {
+        self.origins.push(Origin {
+            table: self.name.clone(),
+            key: key.to_owned(),
+            provenance: node.stated.provenance,
+            source: node.stated.source.clone(),
+        });
+    }
+
+    fn path(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    fn table_words(&self) -> String {
+        if self.name.is_empty() { "the robot".into() } else { format!("[{}]", self.name) }
+    }
+
+    fn wrong_type(&self, key: &str, place: &Place, found: &Value, expected: &str) -> RobotError {
+        RobotError::Type {
+            place: place.to_string(),
+            key: self.path(key),
+            found: found.kind(),
+            expected: expected.to_owned(),
+        }
+    }
+}
+
+fn per_joint_words(dof: usize) -> String {
+    format!("{dof}, one for each joint")
+}

@@ -1,0 +1,101 @@
+//! What the robot may not exceed.
+
+use super::error::RobotError;
+use super::fields::{Accepts, Fields};
+use super::provenance::Origin;
+
+/// Limits of the joints and of the tool centre point. A limit that no source
+/// gives is `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Range of each joint \[rad\].
+    pub position: Vec<[f64; 2]>,
+    /// Wider ranges under a condition.
+    pub position_if: Vec<PositionIf>,
+    /// Largest speed of each joint \[rad/s\].
+    pub velocity: Option<Vec<f64>>,
+    /// Largest acceleration of each joint \[rad/s²\].
+    pub acceleration: Option<Vec<f64>>,
+    /// Largest jerk of each joint \[rad/s³\].
+    pub jerk: Option<Vec<f64>>,
+    /// Largest torque of each joint, at the joint \[Nm\].
+    pub torque: Option<Vec<f64>>,
+    /// Largest speed of the tool centre point \[m/s\].
+    pub tcp_speed: Option<f64>,
+    /// Largest acceleration of the tool centre point \[m/s²\].
+    pub tcp_acceleration: Option<f64>,
+}
+
+/// A wider range of one joint while another one is within an interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionIf {
+    /// The joint whose range widens, from 0.
+    pub joint: usize,
+    /// Its range under the condition \[rad\].
+    pub position: [f64; 2],
+    /// The joint that the condition is about, from 0.
+    pub if_joint: usize,
+    /// Where that joint must be \[rad\].
+    pub if_within: [f64; 2],
+}
+
+impl Limits {
+    /// The range of joint `joint` (from 0) at the joint angles `q` \[rad\]:
+    /// its own one, widened by each condition that holds. An unbounded range
+    /// for a joint that the robot does not have.
+    #[must_use]
+    pub fn position_at(&self, q: &[f64], joint: usize) -> [f64; 2] {
+        let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
+        let [mut low, mut high] = self.position.get(joint).copied().unwrap_or(unbounded);
+        for wider in self.position_if.iter().filter(|wider| wider.joint == joint) {
+            let [from, to] = wider.if_within;
+            if q.get(wider.if_joint).is_some_and(|angle| (from..=to).contains(angle)) {
+                low = low.min(wider.position[0]);
+                high = high.max(wider.position[1]);
+            }
+        }
+        [low, high]
+    }
+
+    pub(super) fn read(
+        mut fields: Fields,
+        dof: usize,
+        origins: &mut Vec<Origin>,
+    ) -> Result<Limits, RobotError> {
+        let position = fields.intervals("position", dof)?;
+        let position = fields.required("position", position)?;
+        let mut position_if = Vec::new();
+        for table in fields.tables("position_if")? {
+            position_if.push(PositionIf::read(table, dof, origins)?);
+        }
+        let limits = Limits {
+            position,
+            position_if,
+            velocity: fields.per_joint("velocity", dof, Accepts::Positive)?,
+            acceleration: fields.per_joint("acceleration", dof, Accepts::Positive)?,
+            jerk: fields.per_joint("jerk", dof, Accepts::Positive)?,
+            torque: fields.per_joint("torque", dof, Accepts::Positive)?,
+            tcp_speed: fields.number("tcp_speed", Accepts::Positive)?,
+            tcp_acceleration: fields.number("tcp_acceleration", Accepts::Positive)?,
+        };
+        origins.extend(fields.finish()?);
+        Ok(limits)
+    }
+}
+
+impl PositionIf {
+    fn read(
+        mut fields: Fields,
+        dof: usize,
+        origins: &mut Vec<Origin>,
+    ) -> Result<PositionIf, RobotError> {
+        let joint = fields.joint("joint", dof)?;
+        let position = fields.interval("position")?;
+        let position = fields.required("position", position)?;
+        let if_joint = fields.joint("if_joint", dof)?;
+        let if_within = fields.interval("if_within")?;
+        let if_within = fields.required("if_within", if_within)?;
+        origins.extend(fields.finish()?);
+        Ok(PositionIf { joint, position, if_joint, if_within })
+    }
+}

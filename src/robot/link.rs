@@ -1,0 +1,71 @@
+//! Mass, centre of mass and inertia of a link.
+
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+use super::error::RobotError;
+use super::fields::{Accepts, Fields};
+use super::provenance::Origin;
+
+/// Share of the largest principal moment by which one may miss being
+/// consistent: rounding of numbers printed with few digits.
+const ROUNDING: f64 = 1e-9;
+
+/// The rigid body behind one joint, in that joint's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Centre of mass \[m\].
+    pub com: Vector3<f64>,
+    /// Inertia about the centre of mass, axes of the joint's frame \[kg m²\].
+    pub inertia: Matrix3<f64>,
+}
+
+impl Link {
+    /// Whether some distribution of positive mass has this inertia: the
+    /// principal moments are not negative and none exceeds the sum of the
+    /// other two.
+    #[must_use]
+    pub fn is_consistent(&self) -> bool {
+        let moments = principal_moments(&self.inertia);
+        let slack = ROUNDING * moments[2];
+        self.mass >= 0.0 && moments[0] >= -slack && moments[2] <= moments[0] + moments[1] + slack
+    }
+
+    pub(super) fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Link, RobotError> {
+        let mass = fields.number("mass", Accepts::NonNegative)?;
+        let mass = fields.required("mass", mass)?;
+        let com = fields.array::<3>("com")?;
+        let com = fields.required("com", com)?;
+        let inertia = fields.array::<6>("inertia")?;
+        let moments = fields.required("inertia", inertia)?;
+        let inertia = symmetric(moments);
+        let principal = principal_moments(&inertia);
+        if principal[0] < -ROUNDING * principal[2].abs() {
+            return Err(RobotError::Value {
+                place: fields.place(),
+                key: "link.inertia".into(),
+                value: format!("{moments:?}"),
+                must: format!(
+                    "positive semidefinite (a principal moment is {:.3e} kg m2); \
+                     the order is xx, yy, zz, xy, xz, yz",
+                    principal[0]
+                ),
+            });
+        }
+        origins.extend(fields.finish()?);
+        Ok(Link { mass, com: Vector3::from(com), inertia })
+    }
+}
+
+/// The matrix of `[xx, yy, zz, xy, xz, yz]`; the last three are its entries, not
+/// their negatives.
+fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}
+
+fn principal_moments(inertia: &Matrix3<f64>) -> [f64; 3] {
+    let mut moments: [f64; 3] = SymmetricEigen::new(*inertia).eigenvalues.into();
+    moments.sort_by(f64::total_cmp);
+    moments
+}

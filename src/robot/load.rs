@@ -1,0 +1,75 @@
+//! A model from a file or from the catalogue.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::catalogue;
+use super::error::RobotError;
+use super::model::Model;
+use super::tree::{self, Node, Value};
+
+/// How many robots may extend each other.
+const MAX_EXTENDS: usize = 8;
+
+/// The robot in the Robot TOML file `name_or_path`, or else the robot of the
+/// catalogue with that name.
+///
+/// A path is what ends in `.toml` or names an existing file.
+///
+/// # Errors
+/// The file cannot be read or is wrong; the catalogue has no such robot.
+pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
+    let path = Path::new(name_or_path);
+    let is_toml = path.extension().is_some_and(|ext| ext.eq_ignore_ascii_case("toml"));
+    if is_toml {
+        return Model::read(resolve(read_file(path)?, path.parent(), 0)?);
+    }
+    if path.is_file() {
+        return Err(RobotError::Format { path: name_or_path.to_owned() });
+    }
+    catalogue::find(name_or_path)
+}
+
+/// The robot of a Robot TOML text; `file` names it in messages, and `extends` can
+/// name robots of the catalogue only.
+///
+/// # Errors
+/// The text is wrong.
+pub fn from_toml(file: &str, text: &str) -> Result<Model, RobotError> {
+    Model::read(resolve(tree::parse(file, text)?, None, 0)?)
+}
+
+/// Lays the document over the robot that it `extends`, and that one over its own.
+///
+/// `folder` is where the document lies; `None` for the catalogue.
+pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result<Node, RobotError> {
+    let Value::Table(entries) = &node.value else { return Ok(node) };
+    let Some(extends) = entries.get("extends") else { return Ok(node) };
+    let place = extends.place.to_string();
+    let Value::Text(name) = &extends.value else {
+        return Err(RobotError::Type {
+            place,
+            key: "extends".into(),
+            found: extends.value.kind(),
+            expected: "a text".into(),
+        });
+    };
+    if depth == MAX_EXTENDS {
+        return Err(RobotError::Extends { place, limit: MAX_EXTENDS });
+    }
+    let beside: Option<PathBuf> = folder.map(|folder| folder.join(name));
+    let base = match beside {
+        Some(path) if Path::new(name).extension().is_some_and(|ext| ext == "toml") => {
+            resolve(read_file(&path)?, path.parent(), depth + 1)?
+        }
+        _ => resolve(catalogue::document(name)?, None, depth + 1)?,
+    };
+    Ok(tree::overlay(base, node))
+}
+
+fn read_file(path: &Path) -> Result<Node, RobotError> {
+    let shown = path.display().to_string();
+    let text = fs::read_to_string(path)
+        .map_err(|source| RobotError::Io { path: shown.clone(), source })?;
+    tree::parse(&shown, &text)
+}

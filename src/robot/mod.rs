@@ -1,0 +1,38 @@
+//! What a robot is: an immutable [`Model`] of geometry, limits, inertia,
+//! friction, motors, drives and brakes, with the origin of every number.
+//!
+//! A model is loaded from a Robot TOML file ([`load`]) or found in the embedded
+//! catalogue by a name as people write it ([`find`]). SI units and radians
+//! throughout; joint numbers count from 1 in files and messages, from 0 in code.
+
+mod catalogue;
+mod controller;
+mod drive;
+mod error;
+mod fields;
+mod friction;
+mod geometry;
+mod limits;
+mod link;
+mod load;
+mod model;
+mod motors;
+mod names;
+mod provenance;
+mod tree;
+
+pub use catalogue::{find, names};
+pub use controller::Controller;
+pub use drive::{Brakes, Drive, Sharing, Standstill};
+pub use error::RobotError;
+pub use friction::Friction;
+pub use geometry::{Coupling, Geometry, Joint, Opw};
+pub use limits::{Limits, PositionIf};
+pub use link::Link;
+pub use load::{from_toml, load};
+pub use model::Model;
+pub use motors::Motors;
+pub use provenance::{Origin, Provenance};
+
+/// The largest number of joints a model may have.
+pub const MAX_DOF: usize = 7;

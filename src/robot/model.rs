@@ -1,0 +1,133 @@
+//! The immutable model of one robot.
+
+use super::MAX_DOF;
+use super::controller::Controller;
+use super::drive::{Brakes, Drive, Standstill};
+use super::error::RobotError;
+use super::fields::Fields;
+use super::friction::Friction;
+use super::geometry::Geometry;
+use super::limits::Limits;
+use super::link::Link;
+use super::motors::Motors;
+use super::provenance::{self, Origin};
+use super::tree::Node;
+
+/// A robot. Every list has one entry for each joint, from the base on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Name, such as `IRB1600-10/1.45`.
+    pub name: String,
+    /// Number of joints, 1 to [`MAX_DOF`].
+    pub dof: usize,
+    /// The chain from base to flange.
+    pub kinematics: Geometry,
+    /// What the robot may not exceed.
+    pub limits: Limits,
+    /// The rigid bodies; empty where the robot has no dynamics.
+    pub links: Vec<Link>,
+    /// Friction; zero where no source gives it.
+    pub friction: Friction,
+    /// Motors and gears.
+    pub motors: Option<Motors>,
+    /// The drive unit; zero power where no source gives it.
+    pub drive: Drive,
+    /// Holding brakes.
+    pub brakes: Option<Brakes>,
+    /// Constant power at standstill.
+    pub standstill: Standstill,
+    /// The motion planner.
+    pub controller: Controller,
+    /// The origin of every number, in the order of the fields above.
+    pub origins: Vec<Origin>,
+}
+
+impl Model {
+    /// Whether torques and energies can be computed.
+    #[must_use]
+    pub fn has_dynamics(&self) -> bool {
+        !self.links.is_empty()
+    }
+
+    /// The assumed numbers, each with its source, as a report lists them.
+    #[must_use]
+    pub fn assumed(&self) -> Vec<String> {
+        provenance::assumed(&self.origins)
+    }
+
+    /// The model of a document whose `extends` has been resolved.
+    pub(super) fn read(node: Node) -> Result<Model, RobotError> {
+        let mut robot = Fields::new("", node)?;
+        let mut origins = Vec::new();
+        let name = robot.text("name")?;
+        let name = robot.required("name", name)?;
+        robot.text("extends")?;
+
+        let joints = robot.tables("joint")?;
+        if joints.len() > MAX_DOF {
+            return Err(RobotError::Length {
+                place: robot.place(),
+                key: "joint".into(),
+                found: joints.len(),
+                expected: format!("at most {MAX_DOF}"),
+            });
+        }
+        let kinematics = Geometry::read(robot.table("kinematics")?, joints, &mut origins)?;
+        let kinematics = robot.required("kinematics", kinematics)?;
+        let dof = kinematics.joints.len();
+
+        let limits = robot.table("limits")?;
+        let limits = Limits::read(robot.required("limits", limits)?, dof, &mut origins)?;
+        let mut links = Vec::new();
+        for table in robot.tables("link")? {
+            links.push(Link::read(table, &mut origins)?);
+        }
+        if !links.is_empty() && links.len() != dof {
+            return Err(RobotError::Length {
+                place: robot.place(),
+                key: "link".into(),
+                found: links.len(),
+                expected: format!("{dof}, one for each joint, or none"),
+            });
+        }
+        let friction = match robot.table("friction")? {
+            Some(table) => Friction::read(table, dof, &mut origins)?,
+            None => Friction::none(dof),
+        };
+        let motors = match robot.table("motors")? {
+            Some(table) => Some(Motors::read(table, dof, &mut origins)?),
+            None => None,
+        };
+        let drive = match robot.table("drive")? {
+            Some(table) => Drive::read(table, &mut origins)?,
+            None => Drive::lossless(),
+        };
+        let brakes = match robot.table("brakes")? {
+            Some(table) => Some(Brakes::read(table, &mut origins)?),
+            None => None,
+        };
+        let standstill = match robot.table("standstill")? {
+            Some(table) => Standstill::read(table, dof, &mut origins)?,
+            None => Standstill::none(dof),
+        };
+        let controller = match robot.table("controller")? {
+            Some(table) => Controller::read(table, &mut origins)?,
+            None => Controller::default(),
+        };
+        origins.extend(robot.finish()?);
+        Ok(Model {
+            name,
+            dof,
+            kinematics,
+            limits,
+            links,
+            friction,
+            motors,
+            drive,
+            brakes,
+            standstill,
+            controller,
+            origins,
+        })
+    }
+}

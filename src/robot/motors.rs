@@ -1,0 +1,73 @@
+//! Motors and gears.
+
+use super::error::RobotError;
+use super::fields::{Accepts, Fields};
+use super::provenance::Origin;
+
+/// Phases of a motor, each carrying the rms current.
+const PHASES: f64 = 3.0;
+
+/// One motor with its gear for each joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motors {
+    /// Gear ratio: motor turns per turn of the joint.
+    pub ratio: Vec<f64>,
+    /// Torque constant, motor side \[Nm per A rms\].
+    pub torque_constant: Option<Vec<f64>>,
+    /// Inertia of the rotor, motor side \[kg m²\].
+    pub rotor_inertia: Vec<f64>,
+    /// Copper loss per squared torque at the joint \[W/(Nm)²\].
+    pub loss_constant: Vec<f64>,
+    /// Largest current \[A rms\].
+    pub peak_current: Option<Vec<f64>>,
+    /// Current that may flow for ever \[A rms\].
+    pub rated_current: Option<Vec<f64>>,
+}
+
+impl Motors {
+    /// Inertia of the rotor of joint `joint` (from 0) seen at the joint \[kg m²\].
+    #[must_use]
+    pub fn reflected_inertia(&self, joint: usize) -> f64 {
+        self.ratio[joint] * self.ratio[joint] * self.rotor_inertia[joint]
+    }
+
+    pub(super) fn read(
+        mut fields: Fields,
+        dof: usize,
+        origins: &mut Vec<Origin>,
+    ) -> Result<Motors, RobotError> {
+        let ratio = fields.per_joint("ratio", dof, Accepts::Positive)?;
+        let ratio = fields.required("ratio", ratio)?;
+        let torque_constant = fields.per_joint("torque_constant", dof, Accepts::Positive)?;
+        let rotor_inertia = fields.per_joint("rotor_inertia", dof, Accepts::NonNegative)?;
+        let loss = fields.per_joint("loss_constant", dof, Accepts::NonNegative)?;
+        let resistance = fields.per_joint("resistance", dof, Accepts::NonNegative)?;
+        let loss_constant = match (loss, resistance) {
+            (Some(_), Some(_)) => {
+                return Err(RobotError::Value {
+                    place: fields.place(),
+                    key: "motors.resistance".into(),
+                    value: "[…]".into(),
+                    must: "absent where loss_constant is given".into(),
+                });
+            }
+            (Some(loss), None) => loss,
+            (None, Some(resistance)) => {
+                let constant = fields.required("torque_constant", torque_constant.as_ref())?.iter();
+                let per_ampere = constant.zip(&ratio).map(|(k, n)| k * n);
+                resistance.iter().zip(per_ampere).map(|(r, k)| PHASES * r / (k * k)).collect()
+            }
+            (None, None) => vec![0.0; dof],
+        };
+        let motors = Motors {
+            rotor_inertia: rotor_inertia.unwrap_or_else(|| vec![0.0; dof]),
+            torque_constant,
+            loss_constant,
+            peak_current: fields.per_joint("peak_current", dof, Accepts::Positive)?,
+            rated_current: fields.per_joint("rated_current", dof, Accepts::Positive)?,
+            ratio,
+        };
+        origins.extend(fields.finish()?);
+        Ok(motors)
+    }
+}

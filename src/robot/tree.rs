@@ -1,0 +1,211 @@
+//! A TOML document as a tree whose values know their line and their origin,
+//! and the overlay of one such tree on another.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::RobotError;
+use super::provenance::Provenance;
+
+/// Depth of nesting that a robot file may have; the format itself needs four.
+const MAX_DEPTH: usize = 16;
+
+/// A line of a file.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    file: Arc<str>,
+    line: usize,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.line)
+    }
+}
+
+/// What the keys `source` and `provenance` around a value say of it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stated {
+    pub(super) provenance: Option<Provenance>,
+    pub(super) source: Option<String>,
+}
+
+/// A value with its place and origin.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub(super) place: Place,
+    pub(super) stated: Stated,
+    pub(super) value: Value,
+}
+
+/// A TOML value.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Number(f64),
+    Text(String),
+    List(Vec<Node>),
+    Table(BTreeMap<String, Node>),
+    /// A type that no key of a robot has (booleans, dates), by its name.
+    Other(String),
+}
+
+impl Value {
+    /// The kind of value in words.
+    pub(super) fn kind(&self) -> String {
+        match self {
+            Value::Number(_) => "a number".into(),
+            Value::Text(_) => "a text".into(),
+            Value::List(_) => "a list".into(),
+            Value::Table(_) => "a table".into(),
+            Value::Other(kind) => format!("a {kind}"),
+        }
+    }
+}
+
+/// Reads a document; `file` names it in messages.
+pub(super) fn parse(file: &str, text: &str) -> Result<Node, RobotError> {
+    let builder = Builder { file: file.into(), text };
+    let table = DeTable::parse(text).map_err(|error| RobotError::Syntax {
+        place: builder.place(error.span().map_or(0, |span| span.start)).to_string(),
+        message: error.message().to_owned(),
+    })?;
+    builder.table(builder.place(0), table.get_ref(), &Stated::default(), 0)
+}
+
+/// `over` laid on `base`: tables are merged key by key, everything else is
+/// replaced together with its origin.
+pub(super) fn overlay(base: Node, over: Node) -> Node {
+    match (base.value, over.value) {
+        (Value::Table(mut below), Value::Table(above)) => {
+            for (key, node) in above {
+                let merged = match below.remove(&key) {
+                    Some(old) => overlay(old, node),
+                    None => node,
+                };
+                below.insert(key, merged);
+            }
+            Node { place: over.place, stated: over.stated, value: Value::Table(below) }
+        }
+        (_, value) => Node { place: over.place, stated: over.stated, value },
+    }
+}
+
+struct Builder<'a> {
+    file: Arc<str>,
+    text: &'a str,
+}
+
+impl Builder<'_> {
+    fn place(&self, offset: usize) -> Place {
+        let before = self.text.get(..offset).unwrap_or_default();
+        let line = 1 + before.matches('\n').count();
+        Place { file: Arc::clone(&self.file), line }
+    }
+
+    fn table(
+        &self,
+        place: Place,
+        table: &DeTable<'_>,
+        outer: &Stated,
+        depth: usize,
+    ) -> Result<Node, RobotError> {
+        let text_of = |key: &str| table.get(key).and_then(|v| v.get_ref().as_str());
+        let stated = self.stated(table, "source", "provenance", outer)?;
+        let mut entries = BTreeMap::new();
+        for (key, value) in table {
+            let name: &str = key.get_ref();
+            if name == "source" || name == "provenance" {
+                continue;
+            }
+            let base = name.strip_suffix("_source").or_else(|| name.strip_suffix("_provenance"));
+            if base.is_some_and(|base| table.contains_key(base)) && text_of(name).is_some() {
+                continue;
+            }
+            let own = self.stated(
+                table,
+                &format!("{name}_source"),
+                &format!("{name}_provenance"),
+                &stated,
+            )?;
+            let node = self.node(key.span().start, value, &own, depth + 1)?;
+            entries.insert(name.to_owned(), node);
+        }
+        Ok(Node { place, stated, value: Value::Table(entries) })
+    }
+
+    fn stated(
+        &self,
+        table: &DeTable<'_>,
+        source_key: &str,
+        provenance_key: &str,
+        outer: &Stated,
+    ) -> Result<Stated, RobotError> {
+        let mut stated = outer.clone();
+        if let Some(value) = table.get(source_key) {
+            stated.source = Some(self.text(source_key, value)?.to_owned());
+        }
+        if let Some(value) = table.get(provenance_key) {
+            let word = self.text(provenance_key, value)?;
+            let known = Provenance::WORDS.iter().find(|(name, _)| *name == word);
+            let Some((_, provenance)) = known else {
+                return Err(RobotError::Value {
+                    place: self.place(value.span().start).to_string(),
+                    key: provenance_key.to_owned(),
+                    value: format!("\"{word}\""),
+                    must: "datasheet, identified, paper or assumed".into(),
+                });
+            };
+            stated.provenance = Some(*provenance);
+        }
+        Ok(stated)
+    }
+
+    fn text<'v>(&self, key: &str, value: &'v Spanned<DeValue<'_>>) -> Result<&'v str, RobotError> {
+        value.get_ref().as_str().ok_or_else(|| RobotError::Type {
+            place: self.place(value.span().start).to_string(),
+            key: key.to_owned(),
+            found: format!("a {}", value.get_ref().type_str()),
+            expected: "a text".into(),
+        })
+    }
+
+    fn node(
+        &self,
+        offset: usize,
+        value: &Spanned<DeValue<'_>>,
+        stated: &Stated,
+        depth: usize,
+    ) -> Result<Node, RobotError> {
+        let place = self.place(offset);
+        if depth > MAX_DEPTH {
+            return Err(RobotError::Syntax {
+                place: place.to_string(),
+                message: format!("nested more than {MAX_DEPTH} deep"),
+            });
+        }
+        let value = match value.get_ref() {
+            DeValue::Table(table) => return self.table(place, table, stated, depth),
+            DeValue::Array(array) => Value::List(
+                array
+                    .iter()
+                    .map(|item| self.node(item.span().start, item, stated, depth + 1))
+                    .collect::<Result<_, _>>()?,
+            ),
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(number) => {
+                let digits = number.as_str().replace('_', "");
+                let value = i64::from_str_radix(&digits, number.radix()).unwrap_or(i64::MAX);
+                Value::Number(value as f64)
+            }
+            DeValue::Float(number) => {
+                Value::Number(number.as_str().replace('_', "").parse().unwrap_or(f64::NAN))
+            }
+            other => Value::Other(other.type_str().to_owned()),
+        };
+        Ok(Node { place, stated: stated.clone(), value })
+    }
+}

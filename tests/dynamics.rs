@@ -1,0 +1,193 @@
+//! Inverse dynamics against energies and against the Lagrangian's derivatives.
+//! The energies are summed in the base frame, so that neither side proves itself.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use joulepath::dynamics::{Data, Load, friction, gravity, kinetic_energy, potential_energy, rnea};
+use joulepath::robot::{MAX_DOF, Model, find, from_toml};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+
+/// Relative error of the central differences used here.
+const DIFFERENCES: f64 = 1e-6;
+/// Relative error of two exact algorithms.
+const EXACT: f64 = 1e-11;
+/// Step of the central differences \[rad, rad/s, s\].
+const H: f64 = 1e-5;
+
+/// Three joints in general position, a tool frame in general position.
+const SKEW: &str = r#"
+name = "skew"
+[kinematics]
+flange = { origin = [0.1, -0.05, 0.2], rpy = [0.4, -0.3, 1.1] }
+[[joint]]
+origin = [0.1, 0.2, 0.3]
+rpy = [0.1, -0.4, 0.7]
+axis = [0.3, 0.2, 0.9]
+[[joint]]
+origin = [0.5, -0.1, 0.2]
+rpy = [-1.2, 0.5, 0.3]
+axis = [0.0, -1.0, 0.0]
+[[joint]]
+origin = [-0.2, 0.4, 0.1]
+axis = [1.0, 1.0, -0.5]
+[limits]
+position = [[-3.0, 3.0], [-2.0, 2.0], [-1.0, 1.0]]
+[[link]]
+mass = 4.0
+com = [0.1, 0.0, 0.2]
+inertia = [0.3, 0.4, 0.2, 0.01, -0.02, 0.03]
+[[link]]
+mass = 3.0
+com = [-0.1, 0.3, 0.2]
+inertia = [0.2, 0.1, 0.25, 0.0, 0.02, -0.03]
+[[link]]
+mass = 2.0
+com = [0.0, 0.1, 0.0]
+inertia = [0.1, 0.12, 0.08, 0.01, 0.0, 0.0]
+[motors]
+ratio = [50.0, 40.0, 30.0]
+rotor_inertia = [1e-4, 2e-4, 3e-4]
+"#;
+
+fn robots() -> Vec<Model> {
+    let parallelogram = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
+                         [kinematics]\ncoupling = \"parallelogram\"\n";
+    vec![
+        find("IRB1600-10/1.45").unwrap(),
+        from_toml("skew.toml", SKEW).unwrap(),
+        from_toml("rods.toml", parallelogram).unwrap(),
+    ]
+}
+
+fn load() -> Load {
+    Load {
+        mass: 8.0,
+        com: Vector3::new(0.05, -0.02, 0.15),
+        inertia: Matrix3::new(0.1, 0.01, 0.02, 0.01, 0.12, -0.01, 0.02, -0.01, 0.09),
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn states() -> impl Strategy<Value = [[f64; MAX_DOF]; 3]> {
+    let values = |size: f64| prop::array::uniform7(-size..size);
+    (values(3.0), values(4.0), values(20.0)).prop_map(|(q, qd, qdd)| [q, qd, qdd])
+}
+
+proptest! {
+    #[test]
+    fn power_is_the_change_of_energy(state in states(), which in 0usize..3) {
+        let model = &robots()[which];
+        let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
+        let tau = rnea(model, &mut Data::new(), &load(), &q, &qd, &qdd);
+        let energy = |t: f64| {
+            let at: Vec<f64> =
+                (0..model.dof).map(|i| q[i] + t * qd[i] + 0.5 * t * t * qdd[i]).collect();
+            let rate: Vec<f64> = (0..model.dof).map(|i| qd[i] + t * qdd[i]).collect();
+            kinetic_energy(model, &load(), &at, &rate) + potential_energy(model, &load(), &at)
+        };
+        let change = (energy(H) - energy(-H)) / (2.0 * H);
+        let power = dot(&tau, &qd);
+        let scale = dot(&tau.map(f64::abs), &state[1].map(f64::abs)).max(1.0);
+        prop_assert!((change - power).abs() < DIFFERENCES * scale, "{change} {power}");
+    }
+
+    #[test]
+    fn torque_is_that_of_the_lagrangian(state in states(), which in 0usize..3) {
+        let model = &robots()[which];
+        let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
+        let tau = rnea(model, &mut Data::new(), &load(), &q, &qd, &qdd);
+        let lagrangian = |q: &[f64], qd: &[f64]| {
+            kinetic_energy(model, &load(), q, qd) - potential_energy(model, &load(), q)
+        };
+        // Large steps: the kinetic energy is quadratic in the velocities.
+        let momentum = |t: f64, joint: usize| {
+            let at: Vec<f64> =
+                (0..model.dof).map(|i| q[i] + t * qd[i] + 0.5 * t * t * qdd[i]).collect();
+            let mut rate: Vec<f64> = (0..model.dof).map(|i| qd[i] + t * qdd[i]).collect();
+            rate[joint] += 1.0;
+            let ahead = lagrangian(&at, &rate);
+            rate[joint] -= 2.0;
+            (ahead - lagrangian(&at, &rate)) / 2.0
+        };
+        let largest = tau.iter().fold(1.0, |m: f64, t| m.max(t.abs()));
+        for joint in 0..model.dof {
+            let momentum_rate = (momentum(H, joint) - momentum(-H, joint)) / (2.0 * H);
+            let mut moved = q.clone();
+            moved[joint] += H;
+            let ahead = lagrangian(&moved, &qd);
+            moved[joint] -= 2.0 * H;
+            let slope = (ahead - lagrangian(&moved, &qd)) / (2.0 * H);
+            let expected = momentum_rate - slope;
+            prop_assert!(
+                (tau[joint] - expected).abs() < DIFFERENCES * largest,
+                "joint {joint}: {} {expected}", tau[joint]
+            );
+        }
+    }
+
+    #[test]
+    fn columns_of_the_mass_matrix_make_the_torque(state in states(), which in 0usize..3) {
+        let model = &robots()[which];
+        let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
+        let mut data = Data::new();
+        let held = gravity(model, &mut data, &load(), &q);
+        let columns: Vec<[f64; MAX_DOF]> = (0..model.dof)
+            .map(|joint| {
+                let mut unit = vec![0.0; model.dof];
+                unit[joint] = 1.0;
+                let tau = rnea(model, &mut data, &load(), &q, &[], &unit);
+                std::array::from_fn(|i| tau[i] - held[i])
+            })
+            .collect();
+        let bias = rnea(model, &mut data, &load(), &q, &qd, &[]);
+        let tau = rnea(model, &mut data, &load(), &q, &qd, &qdd);
+        let largest = tau.iter().chain(&bias).fold(1.0, |m: f64, t| m.max(t.abs()));
+        let mut twice_kinetic = 0.0;
+        for i in 0..model.dof {
+            let row: Vec<f64> = columns.iter().map(|column| column[i]).collect();
+            prop_assert!((dot(&row, &qdd) + bias[i] - tau[i]).abs() < EXACT * largest);
+            prop_assert!((0..model.dof).all(|j| (row[j] - columns[i][j]).abs() < EXACT * 100.0));
+            twice_kinetic += qd[i] * dot(&row, &qd);
+        }
+        let kinetic = kinetic_energy(model, &load(), &q, &qd);
+        prop_assert!((0.5 * twice_kinetic - kinetic).abs() < EXACT * kinetic.max(1.0));
+    }
+}
+
+#[test]
+fn load_acts_as_a_heavier_last_link() {
+    let model = find("IRB1600-10/1.45").unwrap();
+    let q = [0.2, 0.4, -0.3, 0.5, 0.7, 0.1];
+    let held = |load: &Load| gravity(&model, &mut Data::new(), load, &q);
+    let point = Load { mass: 10.0, com: Vector3::new(0.0, 0.0, 0.1), inertia: Matrix3::zeros() };
+    // 10 kg, 0.1 m out of the flange: its lever arm about axis 2 by hand.
+    let tcp =
+        joulepath::kinematics::fk(&model, &q) * nalgebra::Isometry3::translation(0.0, 0.0, 0.1);
+    let radius = tcp.translation.x * 0.2_f64.cos() + tcp.translation.y * 0.2_f64.sin();
+    let added = held(&point)[1] - held(&Load::none())[1];
+    let expected = -10.0 * joulepath::dynamics::GRAVITY * (radius - 0.15);
+    assert!((added - expected).abs() < 1e-9, "{added} {expected}");
+
+    let halves = Load { mass: 5.0, ..point.clone() };
+    let merged = halves.with(&halves);
+    assert!((merged.mass - 10.0).abs() < 1e-12 && (merged.com - point.com).norm() < 1e-12);
+}
+
+#[test]
+fn friction_has_exact_signs() {
+    let model = find("IRB1600-10/1.45").unwrap();
+    let tau = friction(&model, &[1e-12, -1.0, 0.0, -0.0, 2.0, 0.0]);
+    assert_eq!(tau, [25.0 + 48.0 * 1e-12, -87.0, 0.0, 0.0, 6.6 + 7.0, 0.0, 0.0]);
+}
+
+#[test]
+fn robot_without_dynamics_has_none() {
+    let model = find("IRB6640-180/2.55").unwrap();
+    assert!(!model.has_dynamics());
+    let tau = rnea(&model, &mut Data::new(), &load(), &[0.3; 6], &[1.0; 6], &[1.0; 6]);
+    assert_eq!(tau, [0.0; MAX_DOF]);
+}
