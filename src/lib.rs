@@ -4,4 +4,5 @@
 
 pub mod ir;
 pub mod motion;
+pub mod optimize;
 pub mod text;
