@@ -3,7 +3,11 @@
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
 pub mod dynamics;
+pub mod energy;
 pub mod ir;
 pub mod kinematics;
+pub mod motion;
+pub mod optimize;
+pub mod path;
 pub mod robot;
 pub mod text;

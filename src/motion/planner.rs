@@ -7,10 +7,10 @@
 use std::sync::Arc;
 
 use super::controller::Planning;
-use super::grid::PathGrid;
-use super::limits::PathLimits;
-use super::profile::Profile;
-use super::reachability::time_optimal;
+use super::timing::grid::PathGrid;
+use super::timing::limits::PathLimits;
+use super::timing::profile::Profile;
+use super::timing::reachability::time_optimal;
 use super::sampling::{self, Loaded, SpeedCap};
 use super::smooth::{Cubic, moving_average};
 use super::timed::TimedMotion;

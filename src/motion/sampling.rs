@@ -1,6 +1,6 @@
 //! From a joint path to the grid that the timing solvers see.
 
-use super::grid::{GridError, PathGrid, PathPoint};
+use super::timing::grid::{GridError, PathGrid, PathPoint};
 use crate::dynamics::{Data, Load, rnea};
 use crate::kinematics::jacobian;
 use crate::path::joint_path::{DOF, Extent, JointPath, Joints, Piece, PieceKind};

@@ -1,0 +1,80 @@
+//! The energy of a simulation, by movement and by wait.
+
+use super::parts::EnergyParts;
+use super::power::{holding_w, motion_energy};
+use crate::dynamics::Load;
+use crate::motion::timeline::{Run, Simulation, What};
+use crate::path::joint_path::Joints;
+use crate::robot::Model;
+
+/// Joules of a simulation.
+#[derive(Clone, Debug)]
+pub struct Account {
+    /// All together.
+    pub total: EnergyParts,
+    /// For each event of the simulation, and in it for each movement of a run (one entry for
+    /// other events).
+    pub events: Vec<Vec<EnergyParts>>,
+}
+
+/// The energy of every event.
+pub fn account(model: &Model, simulation: &Simulation) -> Account {
+    let mut total = EnergyParts::default();
+    let mut load = Load::none();
+    let mut events = Vec::with_capacity(simulation.events.len());
+    for event in &simulation.events {
+        let parts = match &event.what {
+            What::Run(run) => {
+                load = run.load.clone();
+                run_energy(model, run)
+            }
+            What::Wait(wait) => vec![at_rest(model, &load, &wait.q, event.duration)],
+            What::Output(..) | What::Left(_) => vec![EnergyParts::default()],
+        };
+        for part in &parts {
+            total += *part;
+        }
+        events.push(parts);
+    }
+    Account { total, events }
+}
+
+/// The energy of a run by movement.
+pub fn run_energy(model: &Model, run: &Run) -> Vec<EnergyParts> {
+    let mut parts = Vec::with_capacity(run.moves.len());
+    let last = run.moves.len().saturating_sub(1);
+    for (i, record) in run.moves.iter().enumerate() {
+        let rest = if i == last { run.settling } else { 0.0 };
+        let from = record.t_start;
+        let to = record.t_start + record.duration - rest;
+        let mut part = base(model, to - from);
+        for (begin, motion) in &run.motions {
+            let (a, b) = ((from - begin).max(0.0), (to - begin).min(motion.duration()));
+            if b > a {
+                part += motion_energy(model, &run.load, motion, a, b);
+            }
+        }
+        if rest > 0.0 {
+            part += at_rest(model, &run.load, &run.end, rest);
+        }
+        parts.push(part);
+    }
+    parts
+}
+
+/// Standing still with open brakes.
+pub fn at_rest(model: &Model, load: &Load, q: &Joints, duration: f64) -> EnergyParts {
+    let holding: f64 = holding_w(model, load, q).iter().sum();
+    let mut parts = base(model, duration);
+    parts.idle_j += holding * duration;
+    parts
+}
+
+/// Base power and open brakes.
+fn base(model: &Model, duration: f64) -> EnergyParts {
+    EnergyParts {
+        idle_j: model.drive.base_w * duration,
+        brake_j: model.brakes.as_ref().map_or(0.0, |b| b.power_released_w) * duration,
+        ..EnergyParts::default()
+    }
+}

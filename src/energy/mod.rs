@@ -1,0 +1,13 @@
+//! Where the joules go: by motion, by movement, by wait.
+//!
+//! Electrical energy is the sum of six parts (docs/energy.md): rigid-body work,
+//! friction, copper loss, drive loss, idle, brakes. The first four are the
+//! motion energy.
+
+pub mod account;
+pub mod parts;
+pub mod power;
+pub mod trajectory;
+
+pub use account::{Account, account};
+pub use parts::EnergyParts;

@@ -1,0 +1,113 @@
+//! Power at one state of the robot, and its integral over a motion.
+
+use super::parts::EnergyParts;
+use crate::dynamics::{Data, Load, friction, rnea};
+use crate::motion::timed::{JointState, TimedMotion};
+use crate::path::joint_path::{DOF, Joints};
+use crate::robot::{Model, Sharing};
+
+/// Torques and powers at one state.
+#[derive(Clone, Copy, Debug)]
+pub struct Power {
+    /// Joint torques with friction, Nm.
+    pub tau: Joints,
+    /// Σ τ_rigid q̇, W.
+    pub rigid_w: f64,
+    /// Σ τ_friction q̇, W.
+    pub friction_w: f64,
+    /// Copper loss, W.
+    pub copper_w: f64,
+    /// Drive loss, W.
+    pub drive_w: f64,
+}
+
+impl Power {
+    /// Σ τ q̇ with friction, W.
+    pub fn mechanical_w(&self) -> f64 {
+        self.rigid_w + self.friction_w
+    }
+
+    /// What the drive takes from the grid besides base power, W.
+    pub fn electrical_w(&self) -> f64 {
+        self.mechanical_w() + self.copper_w + self.drive_w
+    }
+}
+
+/// Torques and powers of a loaded robot in a state.
+pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) -> Power {
+    let rigid = rnea(model, data, load, &state.q, &state.qd, &state.qdd);
+    let rub = friction(model, &state.qd);
+    let mut tau = [0.0; DOF];
+    let (mut rigid_w, mut friction_w, mut copper_w) = (0.0, 0.0, 0.0);
+    let mut lost_by_joint = 0.0;
+    for j in 0..DOF {
+        tau[j] = rigid[j] + rub[j];
+        rigid_w += rigid[j] * state.qd[j];
+        friction_w += rub[j] * state.qd[j];
+        let copper = model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * tau[j] * tau[j];
+        copper_w += copper;
+        lost_by_joint += (-(tau[j] * state.qd[j] + copper)).max(0.0);
+    }
+    let lost = match model.drive.sharing {
+        Sharing::None => lost_by_joint,
+        Sharing::Bus => (-(rigid_w + friction_w + copper_w)).max(0.0),
+    };
+    let drive_w = lost * (1.0 - model.drive.regeneration);
+    Power { tau, rigid_w, friction_w, copper_w, drive_w }
+}
+
+/// Power with which a loaded robot holds still, by joint: copper loss of the gravity torque and
+/// the constant of the robot's file, W.
+pub fn holding_w(model: &Model, load: &Load, q: &Joints) -> Joints {
+    let mut data = Data::new();
+    let tau = rnea(model, &mut data, load, q, &[], &[]);
+    std::array::from_fn(|j| {
+        let loss = model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]);
+        loss * tau[j] * tau[j] + model.standstill.holding_w.get(j).copied().unwrap_or(0.0)
+    })
+}
+
+/// Longest interval of the quadrature, s.
+const MAX_STEP: f64 = 0.01;
+/// Gauss-Legendre with three points on [−1, 1]: exact up to degree 5.
+const GAUSS: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 5.0 / 9.0),
+    (0.0, 8.0 / 9.0),
+    (0.774_596_669_241_483_4, 5.0 / 9.0),
+];
+
+/// The motion energy (without idle and brake parts) between two times of a motion.
+pub fn motion_energy(
+    model: &Model,
+    load: &Load,
+    motion: &TimedMotion,
+    from: f64,
+    to: f64,
+) -> EnergyParts {
+    let mut data = Data::new();
+    let mut knots: Vec<f64> = motion.knots();
+    knots.retain(|t| *t > from && *t < to);
+    knots.insert(0, from);
+    knots.push(to);
+    let mut sum = EnergyParts::default();
+    for pair in knots.windows(2) {
+        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
+        let h = (pair[1] - pair[0]) / steps;
+        for i in 0..steps as usize {
+            let begin = pair[0] + h * i as f64;
+            for (x, w) in GAUSS {
+                let state = motion.at(begin + 0.5 * h * (1.0 + x));
+                let p = power(model, &mut data, load, &state);
+                let w = 0.5 * h * w;
+                sum += EnergyParts {
+                    mechanical_j: w * p.rigid_w,
+                    friction_j: w * p.friction_w,
+                    copper_j: w * p.copper_w,
+                    drive_j: w * p.drive_w,
+                    ..EnergyParts::default()
+                };
+            }
+        }
+    }
+    sum
+}

@@ -1,0 +1,135 @@
+//! The planned motion of a whole cycle as rows of samples.
+
+use super::power::{Power, holding_w, power};
+use crate::dynamics::{Data, Load};
+use crate::kinematics::{fk, jacobian};
+use crate::motion::timed::JointState;
+use crate::motion::timeline::{Simulation, What};
+use crate::path::joint_path::Joints;
+use crate::robot::Model;
+use crate::text::Span;
+
+/// Longest step between two samples, s.
+const STEP: f64 = 0.002;
+
+/// One sample.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// s from the start of the cycle.
+    pub t: f64,
+    /// Joints.
+    pub state: JointState,
+    /// Torques and powers; `None` where the robot has no dynamics.
+    pub power: Option<Power>,
+    /// Electrical power with base, holding and brake power, W.
+    pub electrical_w: Option<f64>,
+    /// TCP in the base frame, m.
+    pub tcp: [f64; 3],
+    /// m/s.
+    pub tcp_speed: f64,
+    /// The statement that is executed.
+    pub span: Option<Span>,
+}
+
+/// Samples of the cycle, at most 2 ms apart and at every event.
+pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
+    let mut sampler = Sampler { model, data: Data::new(), rows: Vec::new() };
+    let mut load = Load::none();
+    let mut tool = nalgebra::Isometry3::identity();
+    let mut rest: Option<Joints> = None;
+    for event in &simulation.events {
+        match &event.what {
+            What::Run(run) => {
+                load = run.load.clone();
+                for (i, record) in run.moves.iter().enumerate() {
+                    tool = run.legs[i].tool;
+                    let settling = if i + 1 == run.moves.len() { run.settling } else { 0.0 };
+                    let end = record.t_start + record.duration;
+                    let mut marks = vec![record.t_start, end - settling, end];
+                    for (begin, motion) in &run.motions {
+                        marks.extend(motion.knots().iter().map(|t| t + begin));
+                    }
+                    marks.retain(|t| *t >= record.t_start && *t <= end);
+                    marks.sort_by(f64::total_cmp);
+                    marks.dedup();
+                    for t in dense(&marks) {
+                        let state =
+                            if t >= end - settling && i + 1 == run.moves.len() && settling > 0.0 {
+                                JointState::rest(run.end)
+                            } else {
+                                run.at(t)
+                            };
+                        let at = event.t_start + t;
+                        sampler.push(at, state, &load, &tool, Some(record.movement.span));
+                    }
+                }
+                rest = Some(run.end);
+            }
+            What::Wait(wait) => {
+                for t in dense(&[0.0, event.duration]) {
+                    let state = JointState::rest(wait.q);
+                    let span = Some(wait.wait.span);
+                    sampler.push(event.t_start + t, state, &load, &tool, span);
+                }
+                rest = Some(wait.q);
+            }
+            What::Output(..) | What::Left(_) => {}
+        }
+    }
+    if sampler.rows.is_empty() {
+        let q = rest.unwrap_or([0.0; 6]);
+        sampler.push(0.0, JointState::rest(q), &load, &tool, None);
+    }
+    sampler.rows
+}
+
+/// The marks and points between them at most a step apart.
+fn dense(marks: &[f64]) -> Vec<f64> {
+    let mut times = Vec::new();
+    for pair in marks.windows(2) {
+        let steps = ((pair[1] - pair[0]) / STEP).ceil().max(1.0);
+        let h = (pair[1] - pair[0]) / steps;
+        times.extend((0..steps as usize).map(|i| pair[0] + h * i as f64));
+    }
+    times.extend(marks.last());
+    times
+}
+
+struct Sampler<'a> {
+    model: &'a Model,
+    data: Data,
+    rows: Vec<Sample>,
+}
+
+impl Sampler<'_> {
+    fn push(
+        &mut self,
+        t: f64,
+        state: JointState,
+        load: &Load,
+        tool: &nalgebra::Isometry3<f64>,
+        span: Option<Span>,
+    ) {
+        let model = self.model;
+        let moving = state.qd.iter().any(|x| *x != 0.0) || state.qdd.iter().any(|x| *x != 0.0);
+        let power = model.has_dynamics().then(|| power(model, &mut self.data, load, &state));
+        let electrical_w = power.map(|p| {
+            let base = model.drive.base_w
+                + model.brakes.as_ref().map_or(0.0, |brakes| brakes.power_released_w);
+            if moving {
+                base + p.electrical_w()
+            } else {
+                base + holding_w(model, load, &state.q).iter().sum::<f64>()
+            }
+        });
+        let tcp = (fk(model, &state.q) * tool).translation.vector;
+        let rate = jacobian(model, &state.q, tool) * nalgebra::Vector6::from(state.qd);
+        let tcp_speed = rate.fixed_rows::<3>(0).norm();
+        let row = Sample { t, state, power, electrical_w, tcp: tcp.into(), tcp_speed, span };
+        match self.rows.last_mut() {
+            // One row a time: where one statement ends, the next begins.
+            Some(last) if last.t == t => *last = row,
+            _ => self.rows.push(row),
+        }
+    }
+}

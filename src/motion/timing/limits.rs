@@ -1,0 +1,107 @@
+//! Limits along a path as rows |α u + β b + γ √b + κ| ≤ 1 in u = s̈ and b = ṡ².
+//!
+//! Rows hold at **both** ends of each interval of a grid: collocation at one end leaves torque
+//! over its limit between the nodes.
+
+use super::grid::{PathGrid, PathPoint};
+use crate::motion::stream::{DOF, Joints};
+
+/// Largest |q̈| and |τ| of each joint. Infinite where there is no limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathLimits {
+    acceleration: Joints,
+    torque: Joints,
+}
+
+/// A limit that is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the {quantity} limit of joint {joint} is {value}; give a positive number")]
+pub struct LimitError {
+    /// `acceleration` or `torque`.
+    pub quantity: &'static str,
+    /// Joint from 1.
+    pub joint: usize,
+    /// The refused value.
+    pub value: f64,
+}
+
+impl PathLimits {
+    /// Limits on |q̈| (rad/s²) and |τ| (Nm) of each joint; infinity means none.
+    ///
+    /// # Errors
+    /// A limit that is not positive.
+    pub fn new(acceleration: Joints, torque: Joints) -> Result<PathLimits, LimitError> {
+        for (quantity, values) in [("acceleration", &acceleration), ("torque", &torque)] {
+            if let Some(j) = values.iter().position(|x| x.is_nan() || *x <= 0.0) {
+                return Err(LimitError { quantity, joint: j + 1, value: values[j] });
+            }
+        }
+        Ok(PathLimits { acceleration, torque })
+    }
+
+    /// Largest |q̈| of each joint, rad/s².
+    pub fn acceleration(&self) -> &Joints {
+        &self.acceleration
+    }
+
+    /// Largest |τ| of each joint, Nm.
+    pub fn torque(&self) -> &Joints {
+        &self.torque
+    }
+}
+
+/// |u · `u` + b · `b` + √b · `root` + `constant`| ≤ 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) u: f64,
+    pub(crate) b: f64,
+    pub(crate) root: f64,
+    pub(crate) constant: f64,
+}
+
+impl Row {
+    /// The left side without the absolute value.
+    pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
+        self.u * u + self.b * b + self.root * b.sqrt() + self.constant
+    }
+}
+
+/// The rows of one place; limits that are infinite and rows that are zero are left out.
+pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item = Row> {
+    let point = *point;
+    let limits = *limits;
+    let acceleration = move |j: usize| {
+        let w = 1.0 / limits.acceleration[j];
+        Row { u: w * point.q1[j], b: w * point.q2[j], ..Row::default() }
+    };
+    let torque = move |j: usize| {
+        let w = 1.0 / limits.torque[j];
+        Row {
+            u: w * point.m[j],
+            b: w * point.c[j],
+            root: w * point.viscous[j],
+            constant: w * (point.g[j] + point.coulomb[j]),
+        }
+    };
+    (0..DOF).flat_map(move |j| [acceleration(j), torque(j)]).filter(|row| *row != Row::default())
+}
+
+/// The largest share of a limit that the profile b (one per node) uses at the ends of the
+/// intervals: of joint acceleration and torque, and b of its bound. Infinite if b has another
+/// number of nodes.
+pub fn worst_ratio(grid: &PathGrid, limits: &PathLimits, b: &[f64]) -> f64 {
+    if b.len() != grid.s().len() {
+        return f64::INFINITY;
+    }
+    let speed = (0..=grid.intervals()).map(|node| b[node] / grid.b_max(node));
+    let mut worst = speed.fold(0.0, f64::max);
+    for (k, pair) in grid.ends().iter().enumerate() {
+        let u = (b[k + 1] - b[k]) / (2.0 * grid.delta(k));
+        for (point, b) in pair.iter().zip(&b[k..k + 2]) {
+            for row in rows(point, limits) {
+                worst = worst.max(row.value(u, *b).abs());
+            }
+        }
+    }
+    worst
+}

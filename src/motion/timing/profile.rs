@@ -1,0 +1,97 @@
+//! A speed profile on a path: b = ṡ² at the nodes, linear in s between them.
+//!
+//! Between two nodes the path acceleration u = (b₁ − b₀)/(2 Δs) is constant, so the time of an
+//! interval is 2 Δs/(√b₀ + √b₁).
+
+/// A profile with the times at which it passes the nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    s: Vec<f64>,
+    b: Vec<f64>,
+    t: Vec<f64>,
+}
+
+/// One interval of a profile, which has constant path acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfilePiece {
+    /// ṡ at the begin.
+    pub speed: f64,
+    /// s̈.
+    pub acceleration: f64,
+    /// Length of time, s.
+    pub duration: f64,
+}
+
+impl Profile {
+    /// The profile with `b` = ṡ² at the nodes `s`. None if lengths differ, there are fewer than
+    /// two nodes, a value is negative or not finite, or the motion stands still on an interval.
+    pub fn new(s: Vec<f64>, b: Vec<f64>) -> Option<Profile> {
+        let positive = b.iter().all(|x| x.is_finite() && *x >= 0.0);
+        if s.len() != b.len() || s.len() < 2 || !positive {
+            return None;
+        }
+        let mut t = vec![0.0];
+        let mut now = 0.0;
+        for k in 1..s.len() {
+            now += 2.0 * (s[k] - s[k - 1]) / (b[k - 1].sqrt() + b[k].sqrt());
+            t.push(now);
+        }
+        now.is_finite().then_some(Profile { s, b, t })
+    }
+
+    /// The nodes.
+    pub fn s(&self) -> &[f64] {
+        &self.s
+    }
+
+    /// ṡ² at the nodes.
+    pub fn b(&self) -> &[f64] {
+        &self.b
+    }
+
+    /// Times at the nodes from 0, s.
+    pub fn times(&self) -> &[f64] {
+        &self.t
+    }
+
+    /// The time of the whole path, s.
+    pub fn duration(&self) -> f64 {
+        self.t[self.t.len() - 1]
+    }
+
+    fn piece(&self, k: usize) -> ProfilePiece {
+        ProfilePiece {
+            speed: self.b[k].sqrt(),
+            acceleration: (self.b[k + 1] - self.b[k]) / (2.0 * (self.s[k + 1] - self.s[k])),
+            duration: self.t[k + 1] - self.t[k],
+        }
+    }
+
+    /// The motion on each interval.
+    pub fn pieces(&self) -> impl ExactSizeIterator<Item = ProfilePiece> + '_ {
+        (0..self.s.len() - 1).map(|k| self.piece(k))
+    }
+
+    /// (s, ṡ, s̈) at the time `t` (s); at rest before the begin and after the end. At a node the
+    /// acceleration is that of the later interval.
+    pub fn at(&self, t: f64) -> (f64, f64, f64) {
+        let last = self.s.len() - 1;
+        if t >= self.duration() {
+            return (self.s[last], self.b[last].sqrt(), 0.0);
+        }
+        if t.is_nan() || t < 0.0 {
+            return (self.s[0], self.b[0].sqrt(), 0.0);
+        }
+        let k = self.t.partition_point(|node| *node <= t) - 1;
+        let (piece, tau) = (self.piece(k), t - self.t[k]);
+        let speed = piece.speed + piece.acceleration * tau;
+        let s = self.s[k] + tau * 0.5 * (piece.speed + speed);
+        (s.min(self.s[k + 1]), speed.max(0.0), piece.acceleration)
+    }
+
+    /// The same path in `duration` seconds, uniformly slower or faster.
+    pub fn scaled_to(&self, duration: f64) -> Option<Profile> {
+        let ratio = self.duration() / duration;
+        Profile::new(self.s.clone(), self.b.iter().map(|b| b * ratio * ratio).collect())
+    }
+}

@@ -1,0 +1,308 @@
+//! The fastest speed profile on a fixed path, by reachability in two passes.
+//!
+//! After Pham and Pham, "A new approach to time-optimal path parameterization based on
+//! reachability analysis" (2018): backward, the set of b = ṡ² from which the end can be reached
+//! is an interval K; forward, the fastest b inside it is taken. Here a stage works in the plane
+//! of b at both nodes, where all its limits are half planes and the set is a convex polygon: it
+//! is clipped, no linear program is needed, and places without inertia need no special case.
+//!
+//! Viscous friction adds √b to the torque rows. It is replaced by its tangent at the profile of
+//! the pass before, which is on the safe side wherever friction adds to the load; the passes
+//! are repeated until the profile stays.
+
+use super::grid::PathGrid;
+use super::limits::{PathLimits, Row, rows, worst_ratio};
+use super::profile::Profile;
+
+/// How the search for the fastest profile ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reachability {
+    /// The fastest profile of the grid, with all limits verified.
+    Optimal(Profile),
+    /// No profile keeps the limits; the interval at which the way back from the end broke off.
+    Infeasible {
+        /// Index of the interval.
+        interval: usize,
+    },
+}
+
+impl Reachability {
+    /// The profile, if there is one.
+    pub fn into_profile(self) -> Option<Profile> {
+        match self {
+            Reachability::Optimal(profile) => Some(profile),
+            Reachability::Infeasible { .. } => None,
+        }
+    }
+}
+
+/// Accepted share of a limit beyond 1: rounding, and what a converged tangent leaves.
+const RATIO_TOLERANCE: f64 = 1e-6;
+/// Room in a row on the way forward: where a row has no inertia, its slope is rounding, and a b
+/// that lies on it would be tied to that.
+const STAGE_SLACK: f64 = 1e-8;
+/// Relative change of the duration at which the passes stop.
+const TIME_TOLERANCE: f64 = 1e-6;
+/// Passes before the help of friction in braking is given up.
+const MAX_PASSES: usize = 25;
+/// Factor on the tangent points while they leave no profile at all.
+const TANGENT_RETREAT: f64 = 0.25;
+/// Retreats before the limits count as infeasible.
+const MAX_RETREATS: usize = 12;
+
+/// What stands for √b in the rows.
+#[derive(Clone, Copy)]
+enum Root<'a> {
+    /// Nothing: no viscous friction.
+    Absent,
+    /// The tangent at these b.
+    Tangent(&'a [f64]),
+    /// The tangent at these b where √b adds to the load, zero where it relieves.
+    Pessimistic(&'a [f64]),
+}
+
+/// One strip lo ≤ x·`x` + y·`y` ≤ hi in the plane of x = `b_k` and y = `b_{k+1}`.
+#[derive(Clone, Copy, Debug)]
+struct Strip {
+    x: f64,
+    y: f64,
+    lo: f64,
+    hi: f64,
+}
+
+/// The fastest profile that starts and ends at rest and keeps the limits at both ends of each
+/// interval. Without torque limits, use infinite ones.
+pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
+    let stages = Stages::new(grid, limits);
+    let frictionless = stages.solve(Root::Absent);
+    let Ok(mut b) = frictionless else {
+        // Friction can only relieve where the rest of the load is too high to begin with.
+        return finish(grid, limits, frictionless);
+    };
+    if !stages.viscous {
+        return finish(grid, limits, Ok(b));
+    }
+    let mut duration = f64::INFINITY;
+    let mut retreats = 0;
+    for _ in 0..MAX_PASSES {
+        match stages.solve(Root::Tangent(&b)) {
+            Ok(next) => {
+                b = next;
+                let now = duration_of(grid, &b);
+                let settled = (now - duration).abs() <= TIME_TOLERANCE * now;
+                if settled && worst_ratio(grid, limits, &b) <= 1.0 + RATIO_TOLERANCE {
+                    return finish(grid, limits, Ok(b));
+                }
+                duration = now;
+            }
+            Err(_) if retreats < MAX_RETREATS => {
+                retreats += 1;
+                retreat(&mut b);
+            }
+            Err(_) => break,
+        }
+    }
+    let mut pessimistic = stages.solve(Root::Pessimistic(&b));
+    while pessimistic.is_err() && retreats < 2 * MAX_RETREATS {
+        retreats += 1;
+        retreat(&mut b);
+        pessimistic = stages.solve(Root::Pessimistic(&b));
+    }
+    finish(grid, limits, pessimistic)
+}
+
+/// Moves the tangent points toward rest, where a tangent adds the least load.
+fn retreat(b: &mut [f64]) {
+    for b in b {
+        *b *= TANGENT_RETREAT;
+    }
+}
+
+/// The verified outcome of the passes.
+fn finish(grid: &PathGrid, limits: &PathLimits, b: Result<Vec<f64>, usize>) -> Reachability {
+    let b = match b {
+        Ok(b) => b,
+        Err(interval) => return Reachability::Infeasible { interval },
+    };
+    let kept = worst_ratio(grid, limits, &b) <= 1.0 + RATIO_TOLERANCE;
+    let slowest = b[1..b.len() - 1].iter().enumerate().min_by(|x, y| x.1.total_cmp(y.1));
+    let interval = slowest.map_or(0, |(node, _)| node);
+    match Profile::new(grid.s().to_vec(), b) {
+        Some(profile) if kept => Reachability::Optimal(profile),
+        _ => Reachability::Infeasible { interval },
+    }
+}
+
+/// The time of the profile b, s; infinite if it stands still.
+fn duration_of(grid: &PathGrid, b: &[f64]) -> f64 {
+    (0..grid.intervals()).map(|k| 2.0 * grid.delta(k) / (b[k].sqrt() + b[k + 1].sqrt())).sum()
+}
+
+/// The rows of all intervals, with u in terms of b at both nodes.
+struct Stages {
+    /// First row of each interval, and the number of rows at the end.
+    first: Vec<usize>,
+    rows: Vec<StageRow>,
+    b_max: Vec<f64>,
+    viscous: bool,
+}
+
+/// |x·`x` + y·`y` + √(b of the node at `end`)·`root` + `constant`| ≤ 1.
+struct StageRow {
+    end: usize,
+    x: f64,
+    y: f64,
+    root: f64,
+    constant: f64,
+}
+
+impl Stages {
+    fn new(grid: &PathGrid, limits: &PathLimits) -> Stages {
+        let n = grid.intervals();
+        let mut stages = Stages {
+            first: Vec::with_capacity(n + 1),
+            rows: Vec::with_capacity(24 * n),
+            b_max: (0..=n).map(|node| grid.b_max(node)).collect(),
+            viscous: false,
+        };
+        stages.first.push(0);
+        for (k, pair) in grid.ends().iter().enumerate() {
+            let per_u = 0.5 / grid.delta(k);
+            for (end, point) in pair.iter().enumerate() {
+                for Row { u, b, root, constant } in rows(point, limits) {
+                    let (mut x, mut y) = (-per_u * u, per_u * u);
+                    *(if end == 0 { &mut x } else { &mut y }) += b;
+                    stages.viscous |= root != 0.0;
+                    stages.rows.push(StageRow { end, x, y, root, constant });
+                }
+            }
+            stages.first.push(stages.rows.len());
+        }
+        stages
+    }
+
+    /// Hands each strip of interval k to `take`.
+    fn strips(&self, k: usize, root: Root<'_>, mut take: impl FnMut(Strip)) {
+        for row in &self.rows[self.first[k]..self.first[k + 1]] {
+            let (lo, hi) = (-1.0 - row.constant, 1.0 - row.constant);
+            let plain = Strip { x: row.x, y: row.y, lo, hi };
+            let b = match root {
+                Root::Absent => 0.0,
+                Root::Tangent(at) | Root::Pessimistic(at) => at[k + row.end],
+            };
+            if row.root == 0.0 || b <= 0.0 {
+                take(plain);
+                continue;
+            }
+            let speed = b.sqrt();
+            let (slope, base) = (0.5 * row.root / speed, 0.5 * row.root * speed);
+            let mut tangent = Strip { lo: lo - base, hi: hi - base, ..plain };
+            *(if row.end == 0 { &mut tangent.x } else { &mut tangent.y }) += slope;
+            if matches!(root, Root::Tangent(_)) {
+                take(tangent);
+            } else if row.root > 0.0 {
+                take(Strip { lo: f64::NEG_INFINITY, ..tangent });
+                take(Strip { hi: f64::INFINITY, ..plain });
+            } else {
+                take(Strip { hi: f64::INFINITY, ..tangent });
+                take(Strip { lo: f64::NEG_INFINITY, ..plain });
+            }
+        }
+    }
+
+    /// The fastest b at the nodes under the given stand-in for √b, or the interval at which the
+    /// way back from the end broke off.
+    fn solve(&self, root: Root<'_>) -> Result<Vec<f64>, usize> {
+        let n = self.b_max.len() - 1;
+        let mut reachable = vec![(0.0, 0.0); n + 1];
+        let mut polygon = Polygon::default();
+        for k in (0..n).rev() {
+            let x_max = if k == 0 { 0.0 } else { self.b_max[k] };
+            polygon.reset(x_max, reachable[k + 1]);
+            self.strips(k, root, |strip| polygon.clip(strip));
+            reachable[k] = polygon.x_range().ok_or(k)?;
+        }
+        let mut b = vec![0.0; n + 1];
+        for k in 0..n {
+            let (mut lo, mut hi) = reachable[k + 1];
+            self.strips(k, root, |strip| {
+                let rest = strip.x * b[k];
+                let a = (strip.lo - STAGE_SLACK - rest) / strip.y;
+                let c = (strip.hi + STAGE_SLACK - rest) / strip.y;
+                if strip.y > 0.0 {
+                    (lo, hi) = (lo.max(a), hi.min(c));
+                } else if strip.y < 0.0 {
+                    (lo, hi) = (lo.max(c), hi.min(a));
+                }
+            });
+            b[k + 1] = hi.max(lo).min(reachable[k + 1].1);
+        }
+        Ok(b)
+    }
+}
+
+/// A convex polygon in the plane of x = b and y = b at the next node.
+#[derive(Default)]
+struct Polygon {
+    vertices: Vec<(f64, f64)>,
+    values: Vec<f64>,
+    spare: Vec<(f64, f64)>,
+}
+
+impl Polygon {
+    /// Starts from the rectangle 0 ≤ x ≤ `x_max`, lo ≤ y ≤ hi.
+    fn reset(&mut self, x_max: f64, (lo, hi): (f64, f64)) {
+        self.vertices.clear();
+        self.vertices.extend([(0.0, lo), (x_max, lo), (x_max, hi), (0.0, hi)]);
+    }
+
+    /// Keeps the part inside the strip.
+    fn clip(&mut self, strip: Strip) {
+        self.values.clear();
+        let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+        for (x, y) in &self.vertices {
+            let value = strip.x * x + strip.y * y;
+            range = (range.0.min(value), range.1.max(value));
+            self.values.push(value);
+        }
+        if range.1 > strip.hi {
+            self.cut(|value| strip.hi - value);
+            if range.0 < strip.lo {
+                let values = self.vertices.iter().map(|(x, y)| strip.x * x + strip.y * y);
+                self.values.clear();
+                self.values.extend(values);
+            }
+        }
+        if range.0 < strip.lo {
+            self.cut(|value| value - strip.lo);
+        }
+    }
+
+    /// Keeps the part where `margin` of the value is not negative (Sutherland–Hodgman).
+    fn cut(&mut self, margin: impl Fn(f64) -> f64) {
+        self.spare.clear();
+        let count = self.vertices.len();
+        for i in 0..count {
+            let next = if i + 1 == count { 0 } else { i + 1 };
+            let (a, b) = (margin(self.values[i]), margin(self.values[next]));
+            let (from, to) = (self.vertices[i], self.vertices[next]);
+            if a >= 0.0 {
+                self.spare.push(from);
+            }
+            if (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0) {
+                let x = a / (a - b);
+                self.spare.push((from.0 + x * (to.0 - from.0), from.1 + x * (to.1 - from.1)));
+            }
+        }
+        std::mem::swap(&mut self.vertices, &mut self.spare);
+    }
+
+    /// Smallest and largest x; none if the polygon is empty.
+    fn x_range(&self) -> Option<(f64, f64)> {
+        let ends = self
+            .vertices
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v.0), r.1.max(v.0)));
+        (ends.0 <= ends.1).then_some(ends)
+    }
+}

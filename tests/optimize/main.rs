@@ -1,0 +1,7 @@
+//! The numerical core of the optimiser against analytic cases and a synthetic arm.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+mod analytic;
+mod arm;
+mod reachability;
