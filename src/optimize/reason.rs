@@ -1,0 +1,111 @@
+//! Why a piece of a program stays as it is. `docs/reasons.md` explains each.
+
+/// A documented reason.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reason {
+    /// The first movement after the start of the program.
+    FirstMovement,
+    /// The robot's position before it is not known.
+    UnknownStart(String),
+    /// A target or other argument that may be another one at the next run.
+    NotConstant(String),
+    /// The path can't be followed as programmed.
+    Path(String),
+    /// An instruction that does more than move.
+    Instruction(String),
+    /// A movement that has its time already.
+    Timed,
+    /// An argument that changes the movement in a way that is not modelled.
+    Argument(String),
+    /// A motion setting in force that would change a stream.
+    Setting(String),
+    /// Other statements between fly-by movements.
+    LogicBetween,
+    /// Fly-by movements that go on in another routine or branch.
+    Scattered,
+    /// Runs that begin or end at different statements at different times.
+    Overlapping,
+    /// A point passed without a stop and without room for a zone.
+    SharpCorner,
+    /// It goes nowhere.
+    NoMotion,
+    /// Nothing is saved in the time that there is.
+    NoSaving,
+    /// No stream within the limits was found.
+    NoStream(String),
+    /// More variants than a program should carry.
+    TooManyVariants(usize),
+    /// The emitted text did not hold what was promised.
+    Verification(String),
+    /// A dwell: the break-even of the brake is not reached.
+    ShortDwell(f64),
+    /// A dwell of unknown length.
+    UnknownDwell,
+    /// A dwell that pays, but needs a setting of the controller.
+    NeedsSetting(f64),
+}
+
+impl Reason {
+    /// The name under which `docs/reasons.md` explains it.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Reason::FirstMovement => "first-movement",
+            Reason::UnknownStart(_) => "unknown-start",
+            Reason::NotConstant(_) => "not-constant",
+            Reason::Path(_) => "path",
+            Reason::Instruction(_) => "instruction",
+            Reason::Timed => "timed",
+            Reason::Argument(_) => "argument",
+            Reason::Setting(_) => "setting",
+            Reason::LogicBetween => "logic-between",
+            Reason::Scattered => "scattered",
+            Reason::Overlapping => "overlapping",
+            Reason::SharpCorner => "sharp-corner",
+            Reason::NoMotion => "no-motion",
+            Reason::NoSaving => "no-saving",
+            Reason::NoStream(_) => "no-stream",
+            Reason::TooManyVariants(_) => "too-many-variants",
+            Reason::Verification(_) => "verification",
+            Reason::ShortDwell(_) => "short-dwell",
+            Reason::UnknownDwell => "unknown-dwell",
+            Reason::NeedsSetting(_) => "needs-setting",
+        }
+    }
+}
+
+impl std::fmt::Display for Reason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: ", self.code())?;
+        match self {
+            Reason::FirstMovement => f.write_str("the first movement brings the robot to a known place"),
+            Reason::UnknownStart(why) => write!(f, "where it starts is not known ({why})"),
+            Reason::NotConstant(what) => f.write_str(what),
+            Reason::Path(why) | Reason::NoStream(why) | Reason::Verification(why) => f.write_str(why),
+            Reason::Instruction(name) => write!(f, "{name} does more than move"),
+            Reason::Timed => f.write_str("it has its time already (\\T)"),
+            Reason::Argument(name) => write!(f, "the argument \\{name} is not modelled"),
+            Reason::Setting(name) => write!(f, "{name} is in force"),
+            Reason::LogicBetween => f.write_str("other statements stand between fly-by movements"),
+            Reason::Scattered => {
+                f.write_str("its fly-by movements go on in another routine or branch")
+            }
+            Reason::Overlapping => {
+                f.write_str("it begins or ends at another statement in another execution")
+            }
+            Reason::SharpCorner => {
+                f.write_str("it passes a point without a stop and without room for a zone")
+            }
+            Reason::NoMotion => f.write_str("the robot is there already"),
+            Reason::NoSaving => f.write_str("no energy is saved in the time that there is"),
+            Reason::TooManyVariants(n) => write!(f, "it runs in {n} different ways"),
+            Reason::ShortDwell(break_even) => {
+                write!(f, "the brake pays from {break_even:.1} s on")
+            }
+            Reason::UnknownDwell => f.write_str("how long it waits is not known (--input states it)"),
+            Reason::NeedsSetting(break_even) => write!(
+                f,
+                "the brake pays from {break_even:.1} s on, by a setting of the controller"
+            ),
+        }
+    }
+}

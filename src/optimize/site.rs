@@ -1,0 +1,246 @@
+//! Sites: the places of a program where a stream can stand for movements.
+//!
+//! A site is a sequence of neighbouring statements of one statement list that
+//! ran, at least once, from one stop point to the next. Each different way in
+//! which it ran (another start, other values of loop variables or parameters)
+//! is a variant.
+
+use std::collections::BTreeMap;
+
+use super::reason::Reason;
+use crate::ir::hir::Block;
+use crate::ir::instructions::MoveForm;
+use crate::ir::movement::{LocalValue, Movement, Settings};
+use crate::ir::program::Program;
+use crate::ir::value::Dependence;
+use crate::motion::Simulation;
+use crate::motion::timed::TimedMotion;
+use crate::motion::timeline::{Run, What};
+use crate::path::joint_path::{DOF, Joints};
+use crate::text::Span;
+
+/// A place with the ways in which it ran.
+#[derive(Debug)]
+pub struct Site {
+    /// From the first statement to the last.
+    pub span: Span,
+    /// The distinct ways.
+    pub variants: Vec<Variant>,
+    /// Why the whole site stays, if it does.
+    pub reason: Option<Reason>,
+}
+
+/// One way in which a site ran.
+#[derive(Debug)]
+pub struct Variant {
+    /// Indices of the simulation's events in which it ran so.
+    pub events: Vec<usize>,
+    /// The values that tell it from others.
+    pub locals: Vec<LocalValue>,
+    /// Why it stays, if it does.
+    pub reason: Option<Reason>,
+}
+
+/// Ways of one site beyond which none is rewritten.
+const MAX_VARIANTS: usize = 64;
+/// Joints closer than this are the same start, rad.
+const SAME_START: f64 = 1e-6;
+
+/// The sites of a simulated program, in the order of the source.
+pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
+    let places = Places::new(program);
+    let mut sites: BTreeMap<(Span, Span), Site> = BTreeMap::new();
+    let mut first = true;
+    for (index, event) in simulation.events.iter().enumerate() {
+        let What::Run(run) = &event.what else { continue };
+        let (Some(head), Some(tail)) = (run.moves.first(), run.moves.last()) else { continue };
+        let (head, tail) = (head.movement.span, tail.movement.span);
+        let reason = eligibility(run, std::mem::take(&mut first))
+            .err()
+            .or_else(|| places.neighbours(run).err());
+        let same_file = head.file == tail.file;
+        let span = if same_file { head.to(tail) } else { head };
+        let site = sites.entry((head, tail)).or_insert_with(|| Site {
+            span,
+            variants: Vec::new(),
+            reason: None,
+        });
+        let locals = locals(run);
+        let known = site.variants.iter_mut().find(|variant| {
+            let other = variant.events.first().map(|i| &simulation.events[*i].what);
+            matches!(other, Some(What::Run(other)) if same(run, other))
+                && variant.locals == locals
+        });
+        match known {
+            Some(variant) => {
+                variant.events.push(index);
+                if variant.reason.is_none() {
+                    variant.reason = reason;
+                }
+            }
+            None => site.variants.push(Variant { events: vec![index], locals, reason }),
+        }
+    }
+    let mut sites: Vec<Site> = sites.into_values().collect();
+    mark_overlaps(&mut sites);
+    for site in &mut sites {
+        let n = site.variants.len();
+        if n > MAX_VARIANTS && site.reason.is_none() {
+            site.reason = Some(Reason::TooManyVariants(n));
+        }
+    }
+    sites
+}
+
+/// Sites that share a statement can't both be replaced.
+fn mark_overlaps(sites: &mut [Site]) {
+    let spans: Vec<Span> = sites.iter().map(|site| site.span).collect();
+    for (i, site) in sites.iter_mut().enumerate() {
+        let overlaps = spans.iter().enumerate().any(|(k, other)| {
+            k != i
+                && other.file == site.span.file
+                && other.start < site.span.end
+                && site.span.start < other.end
+        });
+        if overlaps && site.reason.is_none() {
+            site.reason = Some(Reason::Overlapping);
+        }
+    }
+}
+
+fn same(a: &Run, b: &Run) -> bool {
+    let close = |a: &Joints, b: &Joints| (0..DOF).all(|j| (a[j] - b[j]).abs() < SAME_START);
+    close(&a.start, &b.start)
+        && a.load == b.load
+        && a.legs.len() == b.legs.len()
+        && a.legs.iter().zip(&b.legs).all(|(a, b)| {
+            close(&a.end, &b.end) && a.speed == b.speed && a.zone == b.zone
+        })
+}
+
+fn locals(run: &Run) -> Vec<LocalValue> {
+    let mut locals: Vec<LocalValue> = Vec::new();
+    for record in &run.moves {
+        for local in &record.movement.locals {
+            if !locals.contains(local) {
+                locals.push(local.clone());
+            }
+        }
+    }
+    locals
+}
+
+/// Whether a run may be replaced at all.
+fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
+    if first {
+        return Err(Reason::FirstMovement);
+    }
+    for record in &run.moves {
+        movement_is_eligible(&record.movement)?;
+    }
+    if !run.start_known {
+        return Err(Reason::UnknownStart("a movement before it could not be worked out".into()));
+    }
+    if let Some(problem) = &run.problem {
+        return Err(Reason::Path(problem.clone()));
+    }
+    match run.motions.as_slice() {
+        [] => Err(Reason::NoMotion),
+        [(_, TimedMotion::Path(..))] => Ok(()),
+        [(_, TimedMotion::Stream(_))] => Err(Reason::Timed),
+        _ => Err(Reason::SharpCorner),
+    }
+}
+
+fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
+    if !movement.plain || movement.form == MoveForm::ExternalJoint {
+        return Err(Reason::Instruction(movement.instruction.to_string()));
+    }
+    for dependence in movement.origin.iter() {
+        let what = match dependence {
+            Dependence::Local(_) | Dependence::TrustedPersistent(_) => continue,
+            Dependence::Variable(name) => {
+                format!("it is computed from the variable {name}, which the program changes")
+            }
+            Dependence::Persistent(name) => {
+                format!("it uses PERS {name}, whose stored value can differ from the source")
+            }
+            Dependence::Input(name) => format!("it is computed from the signal {name}"),
+            Dependence::RobotState => "it is computed from where the robot stands".to_owned(),
+        };
+        return Err(Reason::NotConstant(what));
+    }
+    if movement.time.is_some() {
+        return Err(Reason::Timed);
+    }
+    if movement.concurrent {
+        return Err(Reason::Argument("Conc".into()));
+    }
+    if let Some(name) = movement.other_arguments.first() {
+        return Err(Reason::Argument(name.to_string()));
+    }
+    settings_allow(&movement.settings)
+}
+
+fn settings_allow(settings: &Settings) -> Result<(), Reason> {
+    let setting = |name: &str| Err(Reason::Setting(name.to_owned()));
+    if settings.speed_override != 1.0 {
+        return setting("VelSet");
+    }
+    if settings.acceleration != 1.0 || settings.ramp != 1.0 {
+        return setting("AccSet");
+    }
+    if settings.displacement.is_some() {
+        return setting("PDispSet");
+    }
+    match settings.other.first() {
+        Some(name) => setting(name),
+        None => Ok(()),
+    }
+}
+
+/// Where each statement stands: its list and its place in it.
+struct Places {
+    by_span: BTreeMap<Span, (usize, usize)>,
+}
+
+impl Places {
+    fn new(program: &Program) -> Places {
+        let mut places = Places { by_span: BTreeMap::new() };
+        let mut lists = 0;
+        for module in &program.modules {
+            for routine in &module.routines {
+                for block in routine.blocks() {
+                    places.block(block, &mut lists);
+                }
+            }
+        }
+        places
+    }
+
+    fn block(&mut self, block: &Block, lists: &mut usize) {
+        let list = *lists;
+        *lists += 1;
+        for (index, stmt) in block.iter().enumerate() {
+            self.by_span.insert(stmt.span, (list, index));
+            for inner in stmt.kind.blocks() {
+                self.block(inner, lists);
+            }
+        }
+    }
+
+    /// Whether the statements of a run follow each other in one list.
+    fn neighbours(&self, run: &Run) -> Result<(), Reason> {
+        for pair in run.moves.windows(2) {
+            let place = |i: usize| self.by_span.get(&pair[i].movement.span);
+            match (place(0), place(1)) {
+                (Some((a, i)), Some((b, k))) if a == b && *k == i + 1 => {}
+                (Some((a, i)), Some((b, k))) if a == b && *k > *i => {
+                    return Err(Reason::LogicBetween);
+                }
+                _ => return Err(Reason::Scattered),
+            }
+        }
+        Ok(())
+    }
+}
