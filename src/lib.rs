@@ -3,4 +3,5 @@
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
 pub mod ir;
+pub mod syntax;
 pub mod text;

@@ -1,3 +1,6 @@
 //! From syntax to movements: modules, symbols, values, execution. Knows no robot.
 
 pub mod hir;
+mod lower;
+
+pub use lower::lower;
