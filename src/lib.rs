@@ -10,4 +10,5 @@ pub mod motion;
 pub mod optimize;
 pub mod path;
 pub mod robot;
+pub mod syntax;
 pub mod text;

@@ -5,7 +5,10 @@ pub mod exec;
 pub mod hir;
 pub mod instructions;
 pub mod layout;
+mod lower;
 pub mod movement;
 pub mod predefined;
 pub mod program;
 pub mod value;
+
+pub use lower::lower;

@@ -1,3 +1,5 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
 pub mod path_energy;
+pub mod reason;
+pub mod site;

@@ -1,6 +1,6 @@
 //! Curves of the TCP pose: lines, arcs, and rounded corners between lines.
 
-use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::blend;
 
@@ -183,14 +183,8 @@ pub fn circle(
 
 /// The rotation vector (base frame) that takes one orientation to another the short way.
 pub fn rotation_between(from: &UnitQuaternion<f64>, to: &UnitQuaternion<f64>) -> Vector3<f64> {
-    let relative = to * from.inverse();
-    // The shorter of the two quaternions of the rotation.
-    let relative = if relative.w < 0.0 {
-        UnitQuaternion::new_unchecked(-relative.into_inner())
-    } else {
-        relative
-    };
-    Rotation3::from(relative).scaled_axis()
+    // The logarithm takes the shorter of the two quaternions of the rotation.
+    (to * from.inverse()).scaled_axis()
 }
 
 #[cfg(test)]

@@ -1,0 +1,320 @@
+//! Files and modules: `grammar/modules.ebnf`.
+
+use super::Parser;
+use super::recovery::{closes_routine, ends_block, starts_data, starts_statement};
+use crate::syntax::node::NodeKind;
+use crate::syntax::token::TokenKind;
+use crate::syntax::tolerance::Tolerance;
+
+/// Module attributes in their fixed order.
+const ATTRIBUTES: [&str; 5] = ["SYSMODULE", "NOVIEW", "NOSTEPIN", "VIEWONLY", "READONLY"];
+
+/// What a module has had so far; the grammar wants this order.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Part {
+    Types,
+    Data,
+    Routines,
+}
+
+/// How far the declarations of a module have been read.
+struct Progress {
+    part: Part,
+    /// Whether statements without a routine were reported whose `ENDPROC` may
+    /// still come.
+    orphaned: bool,
+}
+
+impl Progress {
+    fn new() -> Progress {
+        Progress { part: Part::Types, orphaned: false }
+    }
+}
+
+impl Parser<'_> {
+    pub(super) fn file(&mut self) {
+        let mark = self.builder.mark(0);
+        let mut has_rapid = false;
+        while !self.at(TokenKind::EndOfFile) {
+            let before = self.position;
+            self.quiet = false;
+            match self.current() {
+                TokenKind::Encoded => self.leaf(NodeKind::EncodedModule),
+                TokenKind::HeaderMark => self.header(),
+                TokenKind::Module => {
+                    self.module();
+                    has_rapid = true;
+                }
+                TokenKind::EndModule => {
+                    self.error_at(before, "ENDMODULE without MODULE before it".to_owned());
+                    self.leaf(NodeKind::Error);
+                    has_rapid = true;
+                }
+                _ if self.at_declaration() => {
+                    self.bare_declarations();
+                    has_rapid = true;
+                }
+                _ => self.outside_text(has_rapid),
+            }
+            debug_assert!(self.position > before, "every round reads something");
+            if self.position == before {
+                self.leaf(NodeKind::Error);
+            }
+        }
+        self.builder.finish(mark, NodeKind::File, self.tokens.len());
+    }
+
+    /// `%%% VERSION:1 LANGUAGE:ENGLISH %%%`
+    fn header(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        while !matches!(
+            self.current(),
+            TokenKind::HeaderMark | TokenKind::Module | TokenKind::EndOfFile
+        ) && !self.at_declaration()
+        {
+            self.bump();
+        }
+        self.expect(TokenKind::HeaderMark);
+        self.finish(mark, NodeKind::Header);
+    }
+
+    /// Whether a module starts here: the keyword and a name, first on a line.
+    fn at_module(&mut self) -> bool {
+        self.at(TokenKind::Module)
+            && self.first_on_line(self.position)
+            && Self::is_name(self.next())
+    }
+
+    /// Whether a declaration starts here, told from prose by what follows.
+    fn at_declaration(&mut self) -> bool {
+        let next = match self.current() {
+            TokenKind::Var | TokenKind::Pers | TokenKind::Const => {
+                let after = self.after(self.position);
+                let name = self.after(after);
+                return Self::is_name(self.tokens.kind(after))
+                    && Self::is_name(self.tokens.kind(name));
+            }
+            TokenKind::Local | TokenKind::Task => {
+                return starts_data(self.next())
+                    || matches!(
+                        self.next(),
+                        TokenKind::Proc
+                            | TokenKind::Func
+                            | TokenKind::Trap
+                            | TokenKind::Record
+                            | TokenKind::Alias
+                    );
+            }
+            TokenKind::Proc
+            | TokenKind::Func
+            | TokenKind::Trap
+            | TokenKind::Record
+            | TokenKind::Alias => self.next(),
+            _ => return false,
+        };
+        self.first_on_line(self.position) && Self::is_name(next)
+    }
+
+    /// Declarations of a file that has no module around them.
+    fn bare_declarations(&mut self) {
+        self.tolerate(Tolerance::DeclarationOutsideModule, self.position);
+        let mut progress = Progress::new();
+        while self.at_declaration() {
+            let before = self.position;
+            self.quiet = false;
+            self.item(&mut progress);
+            if self.position == before {
+                break;
+            }
+        }
+    }
+
+    /// Text around modules. In a file that has some it is tolerated.
+    fn outside_text(&mut self, has_rapid: bool) {
+        let mark = self.mark();
+        let start = self.position;
+        loop {
+            self.bump();
+            match self.current() {
+                TokenKind::EndOfFile | TokenKind::HeaderMark | TokenKind::EndModule => break,
+                _ if self.at_module() || self.at_declaration() => break,
+                _ => {}
+            }
+        }
+        let alone = !has_rapid && self.at(TokenKind::EndOfFile);
+        self.finish(mark, NodeKind::OutsideText);
+        if alone {
+            let message = "expected MODULE; nothing in this file is RAPID".to_owned();
+            self.error_at(start, message);
+        } else {
+            self.tolerate(Tolerance::TextOutsideModule, start);
+        }
+    }
+
+    /// `MODULE name (attributes) … ENDMODULE`
+    fn module(&mut self) {
+        let mark = self.mark();
+        self.open(TokenKind::EndModule, self.position);
+        self.bump();
+        self.name();
+        if self.at(TokenKind::LeftParen) {
+            self.module_attributes();
+        }
+        if self.quiet {
+            self.recover_line();
+        }
+        let mut progress = Progress::new();
+        loop {
+            let before = self.position;
+            self.quiet = false;
+            match self.current() {
+                TokenKind::EndModule | TokenKind::EndOfFile => break,
+                TokenKind::Module if self.at_module() => break,
+                _ => self.item(&mut progress),
+            }
+            debug_assert!(self.position > before, "every round reads something");
+            if self.position == before {
+                self.leaf(NodeKind::Error);
+            }
+        }
+        self.close();
+        self.finish(mark, NodeKind::Module);
+    }
+
+    /// `(SYSMODULE, NOSTEPIN)`
+    fn module_attributes(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        let mut last = None;
+        loop {
+            let word = self.text(self.position).to_ascii_uppercase();
+            let order = ATTRIBUTES.iter().position(|known| known.as_bytes() == word);
+            if order.is_none() {
+                self.error_expected("SYSMODULE, NOVIEW, NOSTEPIN, VIEWONLY or READONLY");
+                break;
+            }
+            if order < last {
+                self.tolerate(Tolerance::AttributeOrder, self.position);
+            }
+            last = order.max(last);
+            self.bump();
+            if !self.eat(TokenKind::Comma) {
+                break;
+            }
+        }
+        if !self.eat(TokenKind::RightParen) {
+            self.error_expected("',' or ')'");
+            while !self.first_on_line(self.position) && !self.at(TokenKind::EndOfFile) {
+                let closed = self.at(TokenKind::RightParen);
+                self.bump();
+                if closed {
+                    break;
+                }
+            }
+        }
+        self.finish(mark, NodeKind::ModuleAttributes);
+    }
+
+    /// A declaration of a module, or what stands in its place.
+    fn item(&mut self, progress: &mut Progress) {
+        let start = self.position;
+        self.depth_reported = false;
+        let scoped = matches!(self.current(), TokenKind::Local | TokenKind::Task);
+        let kind = if scoped { self.next() } else { self.current() };
+        match kind {
+            TokenKind::Proc | TokenKind::Func | TokenKind::Trap => {
+                progress.orphaned = false;
+                self.in_order(progress, Part::Routines, start);
+                self.routine(kind);
+            }
+            TokenKind::Record => {
+                self.in_order(progress, Part::Types, start);
+                self.record();
+            }
+            TokenKind::Alias => {
+                self.in_order(progress, Part::Types, start);
+                self.alias();
+            }
+            TokenKind::Semicolon => {
+                self.tolerate(Tolerance::EmptyStatement, start);
+                self.leaf(NodeKind::EmptyStatement);
+            }
+            TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+            _ if scoped || starts_data(kind) => {
+                self.in_order(progress, Part::Data, start);
+                self.data_declaration();
+            }
+            _ => self.orphans(progress),
+        }
+    }
+
+    fn in_order(&mut self, progress: &mut Progress, part: Part, token: usize) {
+        if part < progress.part {
+            self.tolerate(Tolerance::DeclarationOrder, token);
+        }
+        progress.part = progress.part.max(part);
+    }
+
+    /// Statements and leftovers at module level: one error for all of them.
+    fn orphans(&mut self, progress: &mut Progress) {
+        let mark = self.mark();
+        let kind = self.current();
+        if progress.orphaned && (starts_statement(kind) || ends_block(kind)) {
+            // Said already: this is the rest of a routine without its header.
+            self.quiet = true;
+        }
+        if ends_block(kind) {
+            let message = format!("{} without its beginning", kind.describe());
+            self.error_at(self.position, message);
+            self.bump();
+            self.finish(mark, NodeKind::Error);
+            progress.orphaned &= !closes_routine(kind);
+            return;
+        }
+        self.error_expected("a data declaration, PROC, FUNC, TRAP or ENDMODULE");
+        if progress.orphaned {
+            self.orphan_block();
+        } else {
+            // A misspelt declaration ends with `;` on its line, a misspelt
+            // routine header does not.
+            let ended = self.recover_line() == Some(TokenKind::Semicolon);
+            progress.orphaned = !ended;
+            if starts_statement(self.current()) && !starts_data(self.current()) {
+                self.orphan_block();
+            }
+        }
+        if closes_routine(self.current()) {
+            self.bump();
+            progress.orphaned = false;
+        }
+        self.finish(mark, NodeKind::Error);
+    }
+
+    fn orphan_block(&mut self) {
+        if starts_statement(self.current()) {
+            self.block();
+        } else {
+            self.recover();
+        }
+    }
+
+    /// Skips to the end of the line and gives the last token skipped.
+    fn recover_line(&mut self) -> Option<TokenKind> {
+        let mark = self.mark();
+        let mut last = None;
+        while !self.at(TokenKind::EndOfFile)
+            && (last.is_none() || !self.first_on_line(self.position))
+        {
+            if last.is_some() && ends_block(self.current()) {
+                break;
+            }
+            last = Some(self.current());
+            self.bump();
+        }
+        if last.is_some() {
+            self.finish(mark, NodeKind::Error);
+        }
+        last
+    }
+}

@@ -1,0 +1,179 @@
+//! Routines: `grammar/routines.ebnf`.
+
+use super::Parser;
+use super::recovery::ends_block;
+use crate::syntax::node::NodeKind;
+use crate::syntax::token::TokenKind;
+use crate::syntax::tolerance::Tolerance;
+
+impl Parser<'_> {
+    /// `PROC`, `FUNC` or `TRAP` with its handlers; `keyword` says which.
+    pub(super) fn routine(&mut self, keyword: TokenKind) {
+        let mark = self.mark();
+        self.depth_reported = false;
+        self.eat_scope();
+        let (closer, kind) = match keyword {
+            TokenKind::Func => (TokenKind::EndFunc, NodeKind::FuncDeclaration),
+            TokenKind::Trap => (TokenKind::EndTrap, NodeKind::TrapDeclaration),
+            _ => (TokenKind::EndProc, NodeKind::ProcDeclaration),
+        };
+        self.open(closer, self.position);
+        self.bump();
+        if keyword == TokenKind::Func {
+            self.type_name();
+        }
+        self.name();
+        if keyword != TokenKind::Trap {
+            if self.at(TokenKind::LeftParen) {
+                self.parameters();
+            } else {
+                self.error_expected("'('");
+            }
+        }
+        if self.quiet {
+            self.rest_of_header();
+        }
+        self.block();
+        self.handlers();
+        self.close();
+        self.finish(mark, kind);
+    }
+
+    /// Skips what is left of the line of a routine's header.
+    fn rest_of_header(&mut self) {
+        let mark = self.mark();
+        let start = self.position;
+        while !self.first_on_line(self.position) && !ends_block(self.current()) {
+            self.bump();
+        }
+        if self.position > start {
+            self.finish(mark, NodeKind::Error);
+        }
+    }
+
+    /// `(num a, \num b | num c, VAR num d{*})`
+    fn parameters(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        let mut first = true;
+        loop {
+            match self.current() {
+                TokenKind::RightParen => break,
+                TokenKind::Backslash => self.optional_parameters(),
+                TokenKind::Comma if !first => {
+                    self.bump();
+                    if self.at(TokenKind::Backslash) {
+                        self.tolerate(Tolerance::CommaBeforeOptional, self.position);
+                        self.optional_parameters();
+                    } else {
+                        self.parameter();
+                    }
+                }
+                _ if first => self.parameter(),
+                _ => break,
+            }
+            first = false;
+            if self.quiet {
+                break;
+            }
+        }
+        self.close_bracket(TokenKind::RightParen, "',' or ')'");
+        self.finish(mark, NodeKind::Parameters);
+    }
+
+    /// `\num a | num b`
+    fn optional_parameters(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        self.parameter();
+        while self.eat(TokenKind::Bar) {
+            if self.at(TokenKind::Backslash) {
+                self.tolerate(Tolerance::BackslashInAlternative, self.position);
+                self.bump();
+            }
+            self.parameter();
+        }
+        self.finish(mark, NodeKind::OptionalParameters);
+    }
+
+    /// `[VAR|PERS|INOUT] type name {*}`
+    fn parameter(&mut self) {
+        if self.at(TokenKind::Placeholder) && !Self::is_name(self.next()) {
+            self.leaf(NodeKind::Placeholder);
+            return;
+        }
+        let mark = self.mark();
+        if matches!(self.current(), TokenKind::Var | TokenKind::Pers | TokenKind::InOut) {
+            self.bump();
+        }
+        self.type_name();
+        self.name();
+        if self.at(TokenKind::LeftBrace) {
+            self.open_dimensions();
+        }
+        self.finish(mark, NodeKind::Parameter);
+    }
+
+    /// `{*, *}`
+    fn open_dimensions(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        loop {
+            if self.at(TokenKind::Placeholder) {
+                self.leaf(NodeKind::Placeholder);
+            } else {
+                self.expect(TokenKind::Star);
+            }
+            if !self.eat(TokenKind::Comma) {
+                break;
+            }
+        }
+        self.close_bracket(TokenKind::RightBrace, "',' or '}'");
+        self.finish(mark, NodeKind::OpenDimensions);
+    }
+
+    /// `BACKWARD …`, `ERROR …`, `UNDO …`
+    fn handlers(&mut self) {
+        let mut last = TokenKind::Whitespace;
+        let order = |kind| match kind {
+            TokenKind::Backward => 1,
+            TokenKind::Error => 2,
+            TokenKind::Undo => 3,
+            _ => 0,
+        };
+        while order(self.current()) > 0 {
+            let kind = self.current();
+            if order(kind) < order(last) {
+                self.tolerate(Tolerance::HandlerOrder, self.position);
+            }
+            last = kind;
+            let mark = self.mark();
+            self.quiet = false;
+            self.bump();
+            if kind == TokenKind::Error && self.at(TokenKind::LeftParen) {
+                self.error_numbers();
+                if self.quiet {
+                    self.rest_of_header();
+                }
+            }
+            self.block();
+            self.finish(
+                mark,
+                match kind {
+                    TokenKind::Backward => NodeKind::BackwardHandler,
+                    TokenKind::Undo => NodeKind::UndoHandler,
+                    _ => NodeKind::ErrorHandler,
+                },
+            );
+        }
+    }
+
+    /// `(ERR_A, ERR_B)`
+    fn error_numbers(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        self.expressions();
+        self.close_bracket(TokenKind::RightParen, "',' or ')'");
+        self.finish(mark, NodeKind::ErrorNumbers);
+    }
+}

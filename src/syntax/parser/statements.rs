@@ -1,0 +1,481 @@
+//! Statements: `grammar/statements.ebnf`.
+
+use super::Parser;
+use super::recovery::{ends_block, starts_data, starts_statement};
+use crate::syntax::node::NodeKind;
+use crate::syntax::token::TokenKind;
+use crate::syntax::tolerance::Tolerance;
+
+impl Parser<'_> {
+    /// Statements up to a keyword that ends them.
+    pub(super) fn block(&mut self) {
+        let mark = self.mark();
+        let mut data_only = true;
+        loop {
+            self.quiet = false;
+            if self.at(TokenKind::EndOfFile) {
+                break;
+            }
+            if self.at_routine() {
+                break;
+            }
+            let before = self.position;
+            let kind = self.current();
+            if ends_block(kind) || matches!(kind, TokenKind::Then | TokenKind::Do) {
+                if !self.is_stray() {
+                    break;
+                }
+                self.stray();
+            } else {
+                let data = starts_data(kind);
+                if data && !data_only {
+                    self.tolerate(Tolerance::DataBetweenStatements, self.position);
+                }
+                data_only &= data;
+                self.statement();
+            }
+            debug_assert!(self.position > before, "every round reads something");
+            if self.position == before {
+                self.leaf(NodeKind::Error);
+            }
+        }
+        self.quiet = false;
+        self.finish(mark, NodeKind::Block);
+    }
+
+    /// Whether a routine starts with `LOCAL` here.
+    fn at_routine(&mut self) -> bool {
+        self.at(TokenKind::Local)
+            && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
+    }
+
+    /// A keyword that ends a block that nothing began. A left-over `ELSE` takes
+    /// its statements and its `ENDIF` with it: they are the same mistake.
+    fn stray(&mut self) {
+        let mark = self.mark();
+        let kind = self.current();
+        let position = self.position;
+        let message = match kind {
+            TokenKind::Else | TokenKind::ElseIf => {
+                format!("{} without an IF … THEN before it", kind.describe())
+            }
+            TokenKind::EndIf => "ENDIF without an IF … THEN before it".to_owned(),
+            TokenKind::Case | TokenKind::Default => {
+                format!("{} outside TEST … ENDTEST", kind.describe())
+            }
+            _ => format!("{} without its beginning", kind.describe()),
+        };
+        self.error_at(position, message);
+        let branches = match kind {
+            TokenKind::Else | TokenKind::ElseIf => self.deeper(|parser| {
+                parser.open(TokenKind::EndIf, position);
+                parser.else_branches();
+                parser.close_stray(TokenKind::EndIf);
+            }),
+            TokenKind::Case | TokenKind::Default => self.deeper(|parser| {
+                parser.open(TokenKind::EndTest, position);
+                parser.cases();
+                parser.close_stray(TokenKind::EndTest);
+            }),
+            _ => None,
+        };
+        if branches.is_none() {
+            self.bump();
+        }
+        self.finish(mark, NodeKind::Error);
+    }
+
+    /// Closes what a left-over branch began, silently.
+    fn close_stray(&mut self, closer: TokenKind) {
+        self.open.pop();
+        self.eat(closer);
+    }
+
+    /// One statement or data declaration; reads at least one token.
+    pub(super) fn statement(&mut self) {
+        self.quiet = false;
+        if self.deeper(Self::statement_inside).is_none() {
+            self.skip_nested();
+        }
+    }
+
+    fn statement_inside(&mut self) {
+        match self.current() {
+            TokenKind::If => self.if_statement(),
+            TokenKind::For => self.for_statement(),
+            TokenKind::While => self.while_statement(),
+            TokenKind::Test => self.test_statement(),
+            TokenKind::Goto => self.goto_statement(),
+            TokenKind::Return => self.value_statement(NodeKind::ReturnStatement),
+            TokenKind::Raise => self.value_statement(NodeKind::RaiseStatement),
+            TokenKind::Exit => self.word_statement(NodeKind::ExitStatement),
+            TokenKind::Retry => self.word_statement(NodeKind::RetryStatement),
+            TokenKind::TryNext => self.word_statement(NodeKind::TryNextStatement),
+            TokenKind::Connect => self.connect_statement(),
+            TokenKind::Percent => self.call_statement(),
+            TokenKind::Placeholder => self.placeholder_statement(),
+            TokenKind::Semicolon => {
+                self.tolerate(Tolerance::EmptyStatement, self.position);
+                self.leaf(NodeKind::EmptyStatement);
+            }
+            TokenKind::Task if !starts_data(self.next()) => self.name_statement(),
+            TokenKind::Local | TokenKind::Task => {
+                self.tolerate(Tolerance::ScopeInRoutine, self.position);
+                self.data_declaration();
+            }
+            kind if starts_data(kind) => self.data_declaration(),
+            kind if Self::is_name(kind) => self.name_statement(),
+            _ => {
+                let mark = self.mark();
+                self.error_expected("a statement");
+                self.bump();
+                self.recover();
+                self.finish(mark, NodeKind::Error);
+            }
+        }
+    }
+
+    /// Skips a statement that is nested too deeply, with the statements in it.
+    fn skip_nested(&mut self) {
+        let mark = self.mark();
+        let mut open = 0_u32;
+        // Whether the last condition was that of an IF, whose THEN opens.
+        let mut after_if = false;
+        loop {
+            let kind = self.current();
+            match kind {
+                TokenKind::EndOfFile
+                | TokenKind::Proc
+                | TokenKind::Func
+                | TokenKind::Trap
+                | TokenKind::Module
+                | TokenKind::EndModule
+                | TokenKind::EndProc
+                | TokenKind::EndFunc
+                | TokenKind::EndTrap => break,
+                TokenKind::For | TokenKind::While | TokenKind::Test => open += 1,
+                TokenKind::If => after_if = true,
+                TokenKind::ElseIf => after_if = false,
+                TokenKind::Then if after_if => {
+                    after_if = false;
+                    open += 1;
+                }
+                TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest => {
+                    if open == 0 {
+                        break;
+                    }
+                    open -= 1;
+                    if open == 0 {
+                        self.bump();
+                        break;
+                    }
+                }
+                TokenKind::Semicolon if open == 0 => {
+                    self.bump();
+                    break;
+                }
+                _ => {}
+            }
+            self.bump();
+        }
+        self.finish(mark, NodeKind::Error);
+    }
+
+    /// A statement that starts with a name: label, assignment or call.
+    fn name_statement(&mut self) {
+        match self.next() {
+            TokenKind::Colon => {
+                let mark = self.mark();
+                self.name();
+                self.bump();
+                self.finish(mark, NodeKind::LabelStatement);
+            }
+            TokenKind::Assign | TokenKind::Equal | TokenKind::Dot | TokenKind::LeftBrace => {
+                self.assignment();
+            }
+            _ => self.call_statement(),
+        }
+    }
+
+    /// `a{1}.b := value;`
+    fn assignment(&mut self) {
+        let mark = self.mark();
+        self.variable();
+        if self.eat(TokenKind::Assign) {
+            self.expression();
+        } else if !self.quiet && self.at(TokenKind::Equal) {
+            self.wrong_token(TokenKind::Assign);
+            self.expression();
+        } else {
+            self.error_expected("':='");
+        }
+        self.end_statement("an operator or ';'");
+        self.finish(mark, NodeKind::Assignment);
+    }
+
+    /// `MoveJ p, v, z, t;`, `%name% a;`
+    fn call_statement(&mut self) {
+        let mark = self.mark();
+        if self.at(TokenKind::Percent) {
+            self.late_binding();
+        } else {
+            self.name();
+        }
+        if self.at(TokenKind::LeftParen) && self.parentheses_hold_arguments() {
+            self.tolerate(Tolerance::ParenthesizedArguments, self.position);
+            self.bump();
+            if !self.at(TokenKind::RightParen) {
+                self.arguments();
+            }
+            self.close_bracket(TokenKind::RightParen, "',' or ')'");
+        } else if !matches!(self.current(), TokenKind::Semicolon | TokenKind::EndOfFile)
+            && !self.ends_call_early()
+        {
+            self.arguments();
+        }
+        self.end_statement("',' or ';'");
+        self.finish(mark, NodeKind::CallStatement);
+    }
+
+    /// A callee at the end of its line, with the next statement after it.
+    fn ends_call_early(&mut self) -> bool {
+        self.first_on_line(self.position) && {
+            let kind = self.current();
+            ends_block(kind)
+                || starts_statement(kind) && kind.is_keyword()
+                || kind == TokenKind::Identifier
+                    && matches!(
+                        self.next(),
+                        TokenKind::Identifier | TokenKind::Assign | TokenKind::Colon
+                    )
+        }
+    }
+
+    /// `%expr%`
+    fn late_binding(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        self.expression();
+        self.expect(TokenKind::Percent);
+        self.finish(mark, NodeKind::LateBinding);
+    }
+
+    /// `<SMT>`, or a placeholder for the variable of an assignment.
+    fn placeholder_statement(&mut self) {
+        match self.next() {
+            TokenKind::Assign | TokenKind::Dot | TokenKind::LeftBrace => self.assignment(),
+            _ if self.text(self.position) == b"<ID>" => self.call_statement(),
+            _ => self.leaf(NodeKind::Placeholder),
+        }
+    }
+
+    /// `IF … THEN … ENDIF`, `IF … statement`
+    fn if_statement(&mut self) {
+        let mark = self.mark();
+        let opener = self.position;
+        self.bump();
+        self.expression();
+        let broken = self.quiet || self.then_follows();
+        if !broken && starts_statement(self.current()) {
+            self.statement();
+            self.finish(mark, NodeKind::CompactIf);
+            return;
+        }
+        if !self.at(TokenKind::Then) {
+            self.error_expected(if broken { "an operator or THEN" } else { "THEN or a statement" });
+        }
+        if self.end_header(TokenKind::Then) {
+            self.open(TokenKind::EndIf, opener);
+            self.block();
+            self.else_branches();
+            self.close();
+            self.finish(mark, NodeKind::IfStatement);
+        } else {
+            self.finish(mark, NodeKind::CompactIf);
+        }
+    }
+
+    /// Behind the condition of an IF, not at THEN: whether a THEN follows on
+    /// its line, so that the condition goes on in a way that is wrong.
+    fn then_follows(&mut self) -> bool {
+        let mut index = self.position;
+        if self.tokens.kind(index) == TokenKind::Then {
+            return false;
+        }
+        loop {
+            match self.tokens.kind(index) {
+                TokenKind::Then => return true,
+                TokenKind::Semicolon | TokenKind::If | TokenKind::EndOfFile => return false,
+                _ => {}
+            }
+            index = self.after(index);
+            if self.first_on_line(index) {
+                return false;
+            }
+        }
+    }
+
+    /// `ELSEIF … THEN …`, `ELSE …`
+    fn else_branches(&mut self) {
+        loop {
+            let mark = self.mark();
+            match self.current() {
+                TokenKind::ElseIf => {
+                    self.quiet = false;
+                    self.bump();
+                    self.expression();
+                    self.end_header(TokenKind::Then);
+                    self.block();
+                    self.finish(mark, NodeKind::ElseIfBranch);
+                }
+                TokenKind::Else => {
+                    self.bump();
+                    self.block();
+                    self.finish(mark, NodeKind::ElseBranch);
+                }
+                TokenKind::Placeholder if self.text(self.position) == b"<EIT>" => {
+                    self.leaf(NodeKind::Placeholder);
+                }
+                _ => break,
+            }
+        }
+    }
+
+    fn for_statement(&mut self) {
+        let mark = self.mark();
+        self.open(TokenKind::EndFor, self.position);
+        self.bump();
+        self.name();
+        for keyword in [TokenKind::From, TokenKind::To] {
+            if self.eat(keyword) {
+                self.expression();
+            } else {
+                self.error_expected(keyword.describe());
+            }
+        }
+        if self.at(TokenKind::Step) {
+            let step = self.mark();
+            self.bump();
+            self.expression();
+            self.finish(step, NodeKind::ForStep);
+        }
+        self.end_header(TokenKind::Do);
+        self.block();
+        self.close();
+        self.finish(mark, NodeKind::ForStatement);
+    }
+
+    fn while_statement(&mut self) {
+        let mark = self.mark();
+        self.open(TokenKind::EndWhile, self.position);
+        self.bump();
+        self.expression();
+        self.end_header(TokenKind::Do);
+        self.block();
+        self.close();
+        self.finish(mark, NodeKind::WhileStatement);
+    }
+
+    fn test_statement(&mut self) {
+        let mark = self.mark();
+        self.open(TokenKind::EndTest, self.position);
+        self.bump();
+        self.expression();
+        let branch = |kind| {
+            matches!(
+                kind,
+                TokenKind::Case | TokenKind::Default | TokenKind::Placeholder | TokenKind::EndTest
+            )
+        };
+        if !branch(self.current()) {
+            self.error_expected("CASE");
+            let rest = self.mark();
+            let start = self.position;
+            while !self.first_on_line(self.position) && !ends_block(self.current()) {
+                self.bump();
+            }
+            if starts_statement(self.current()) && !ends_block(self.current()) {
+                self.block();
+            }
+            if self.position > start {
+                self.finish(rest, NodeKind::Error);
+            }
+        }
+        self.cases();
+        self.close();
+        self.finish(mark, NodeKind::TestStatement);
+    }
+
+    /// `CASE …:`, `DEFAULT:`
+    fn cases(&mut self) {
+        let mut after_default = false;
+        loop {
+            let mark = self.mark();
+            self.quiet = false;
+            match self.current() {
+                TokenKind::Case => {
+                    if after_default {
+                        self.tolerate(Tolerance::DefaultNotLast, self.position);
+                        after_default = false;
+                    }
+                    self.bump();
+                    self.expressions();
+                    self.end_header(TokenKind::Colon);
+                    self.block();
+                    self.finish(mark, NodeKind::CaseBranch);
+                }
+                TokenKind::Default => {
+                    after_default = true;
+                    self.bump();
+                    self.end_header(TokenKind::Colon);
+                    self.block();
+                    self.finish(mark, NodeKind::DefaultBranch);
+                }
+                TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+                _ => break,
+            }
+        }
+    }
+
+    fn goto_statement(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        self.name();
+        self.end_statement("';'");
+        self.finish(mark, NodeKind::GotoStatement);
+    }
+
+    /// `RETURN value;`, `RAISE number;`
+    fn value_statement(&mut self, kind: NodeKind) {
+        let mark = self.mark();
+        self.bump();
+        let bare = self.at(TokenKind::Semicolon)
+            || ends_block(self.current())
+            || self.first_on_line(self.position) && self.looks_like_start();
+        if !bare {
+            self.expression();
+        }
+        self.end_statement("an operator or ';'");
+        self.finish(mark, kind);
+    }
+
+    /// `EXIT;` and its like.
+    fn word_statement(&mut self, kind: NodeKind) {
+        let mark = self.mark();
+        self.bump();
+        self.end_statement("';'");
+        self.finish(mark, kind);
+    }
+
+    /// `CONNECT variable WITH trap;`
+    fn connect_statement(&mut self) {
+        let mark = self.mark();
+        self.bump();
+        self.variable();
+        if self.expect(TokenKind::With) {
+            self.name();
+        }
+        self.end_statement("';'");
+        self.finish(mark, NodeKind::ConnectStatement);
+    }
+}

@@ -1,0 +1,309 @@
+//! Kinds of tokens, and the tokens of a file.
+
+use std::ops::Range;
+
+/// Declares the kinds with what each is called in messages.
+macro_rules! token_kinds {
+    ($($(#[$doc:meta])* $kind:ident = $text:literal,)*) => {
+        /// Kind of a token. The first two are trivia.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[repr(u8)]
+        pub enum TokenKind {
+            $($(#[$doc])* #[doc = concat!("In messages: ", $text)] $kind,)*
+        }
+
+        impl TokenKind {
+            /// All kinds.
+            pub const ALL: &[TokenKind] = &[$(TokenKind::$kind,)*];
+
+            /// What messages call it.
+            #[must_use]
+            pub fn describe(self) -> &'static str {
+                match self { $(TokenKind::$kind => $text,)* }
+            }
+        }
+    };
+}
+
+token_kinds! {
+    /// Spaces, line ends, control characters, wide spaces.
+    Whitespace = "white space",
+    /// `! …` to the end of the line, without the line end.
+    Comment = "a comment",
+    /// Identifier that is no keyword.
+    Identifier = "a name",
+    /// `1`, `.5`, `1E-3`, `0xFF` …
+    Number = "a number",
+    /// `"…"`
+    String = "a string",
+    /// `"…` up to the end of the line.
+    UnclosedString = "a string without its closing quotation mark",
+    /// `<SMT>`, `<EXP>` …
+    Placeholder = "a placeholder",
+    /// `%%%`
+    HeaderMark = "'%%%'",
+    /// A whole module in ABB's binary encoding.
+    Encoded = "an encoded module",
+    /// Bytes that start no token of RAPID.
+    Unknown = "a character that RAPID does not have here",
+    Semicolon = "';'",
+    Comma = "','",
+    Colon = "':'",
+    Assign = "':='",
+    Dot = "'.'",
+    LeftParen = "'('",
+    RightParen = "')'",
+    LeftBracket = "'['",
+    RightBracket = "']'",
+    LeftBrace = "'{'",
+    RightBrace = "'}'",
+    Backslash = "'\\'",
+    Question = "'?'",
+    Bar = "'|'",
+    Percent = "'%'",
+    Plus = "'+'",
+    Minus = "'-'",
+    Star = "'*'",
+    Slash = "'/'",
+    Equal = "'='",
+    NotEqual = "'<>'",
+    Less = "'<'",
+    LessEqual = "'<='",
+    Greater = "'>'",
+    GreaterEqual = "'>='",
+    Alias = "ALIAS",
+    And = "AND",
+    Backward = "BACKWARD",
+    Case = "CASE",
+    Connect = "CONNECT",
+    Const = "CONST",
+    Default = "DEFAULT",
+    Div = "DIV",
+    Do = "DO",
+    Else = "ELSE",
+    ElseIf = "ELSEIF",
+    EndFor = "ENDFOR",
+    EndFunc = "ENDFUNC",
+    EndIf = "ENDIF",
+    EndModule = "ENDMODULE",
+    EndProc = "ENDPROC",
+    EndRecord = "ENDRECORD",
+    EndTest = "ENDTEST",
+    EndTrap = "ENDTRAP",
+    EndWhile = "ENDWHILE",
+    Error = "ERROR",
+    Exit = "EXIT",
+    False = "FALSE",
+    For = "FOR",
+    From = "FROM",
+    Func = "FUNC",
+    Goto = "GOTO",
+    If = "IF",
+    InOut = "INOUT",
+    Local = "LOCAL",
+    Mod = "MOD",
+    Module = "MODULE",
+    Not = "NOT",
+    Or = "OR",
+    Pers = "PERS",
+    Proc = "PROC",
+    Raise = "RAISE",
+    Record = "RECORD",
+    Retry = "RETRY",
+    Return = "RETURN",
+    Step = "STEP",
+    Task = "TASK",
+    Test = "TEST",
+    Then = "THEN",
+    To = "TO",
+    Trap = "TRAP",
+    True = "TRUE",
+    TryNext = "TRYNEXT",
+    Undo = "UNDO",
+    Var = "VAR",
+    While = "WHILE",
+    With = "WITH",
+    Xor = "XOR",
+    /// What the parser sees behind the last token; no token has it.
+    EndOfFile = "the end of the file",
+}
+
+/// Declares the keywords: a table, and a look-up by the packed word.
+macro_rules! keywords {
+    ($($kind:ident = $word:literal,)*) => {
+        /// RAPID's keywords in upper case.
+        pub const KEYWORDS: &[(&str, TokenKind)] = &[$(($word, TokenKind::$kind),)*];
+
+        #[expect(non_upper_case_globals, reason = "named as the kinds they stand for")]
+        mod packed {
+            $(pub(super) const $kind: u128 = super::pack($word.as_bytes());)*
+        }
+
+        fn by_packed(word: u128) -> Option<TokenKind> {
+            match word {
+                $(packed::$kind => Some(TokenKind::$kind),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+keywords! {
+    Alias = "ALIAS",
+    And = "AND",
+    Backward = "BACKWARD",
+    Case = "CASE",
+    Connect = "CONNECT",
+    Const = "CONST",
+    Default = "DEFAULT",
+    Div = "DIV",
+    Do = "DO",
+    Else = "ELSE",
+    ElseIf = "ELSEIF",
+    EndFor = "ENDFOR",
+    EndFunc = "ENDFUNC",
+    EndIf = "ENDIF",
+    EndModule = "ENDMODULE",
+    EndProc = "ENDPROC",
+    EndRecord = "ENDRECORD",
+    EndTest = "ENDTEST",
+    EndTrap = "ENDTRAP",
+    EndWhile = "ENDWHILE",
+    Error = "ERROR",
+    Exit = "EXIT",
+    False = "FALSE",
+    For = "FOR",
+    From = "FROM",
+    Func = "FUNC",
+    Goto = "GOTO",
+    If = "IF",
+    InOut = "INOUT",
+    Local = "LOCAL",
+    Mod = "MOD",
+    Module = "MODULE",
+    Not = "NOT",
+    Or = "OR",
+    Pers = "PERS",
+    Proc = "PROC",
+    Raise = "RAISE",
+    Record = "RECORD",
+    Retry = "RETRY",
+    Return = "RETURN",
+    Step = "STEP",
+    Task = "TASK",
+    Test = "TEST",
+    Then = "THEN",
+    To = "TO",
+    Trap = "TRAP",
+    True = "TRUE",
+    TryNext = "TRYNEXT",
+    Undo = "UNDO",
+    Var = "VAR",
+    While = "WHILE",
+    With = "WITH",
+    Xor = "XOR",
+}
+
+/// Letters of the longest keywords (`ENDMODULE`, `ENDRECORD`).
+const LONGEST_KEYWORD: usize = 9;
+
+/// A word of up to 16 ASCII letters as one number, case removed.
+const fn pack(word: &[u8]) -> u128 {
+    let mut packed = 0;
+    let mut i = 0;
+    while i < word.len() {
+        packed = packed << 8 | (word[i] & 0xDF) as u128;
+        i += 1;
+    }
+    packed
+}
+
+impl TokenKind {
+    /// The keyword that an identifier is, in whatever case it is written.
+    #[must_use]
+    pub fn keyword(word: &[u8]) -> Option<TokenKind> {
+        // The letters only: `_` and digits would collide with letters once
+        // their case bit is gone.
+        if !(2..=LONGEST_KEYWORD).contains(&word.len()) || !word.iter().all(u8::is_ascii_alphabetic)
+        {
+            return None;
+        }
+        by_packed(pack(word))
+    }
+
+    /// White space or comment.
+    #[must_use]
+    pub fn is_trivia(self) -> bool {
+        self <= TokenKind::Comment
+    }
+
+    /// A reserved word.
+    #[must_use]
+    pub fn is_keyword(self) -> bool {
+        (TokenKind::Alias..=TokenKind::Xor).contains(&self)
+    }
+}
+
+/// The tokens of a file; they tile its bytes.
+#[derive(Clone, Debug, Default)]
+pub struct Tokens {
+    kinds: Vec<TokenKind>,
+    /// First byte of each token, and the end of the last.
+    starts: Vec<u32>,
+}
+
+impl Tokens {
+    pub(super) fn with_capacity(tokens: usize) -> Tokens {
+        let mut starts = Vec::with_capacity(tokens + 1);
+        starts.push(0);
+        Tokens { kinds: Vec::with_capacity(tokens), starts }
+    }
+
+    pub(super) fn push(&mut self, kind: TokenKind, end: u32) {
+        self.kinds.push(kind);
+        self.starts.push(end);
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Whether there is none, as in an empty file.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// Kind of a token; past the last, `EndOfFile`.
+    #[must_use]
+    pub fn kind(&self, index: usize) -> TokenKind {
+        self.kinds.get(index).copied().unwrap_or(TokenKind::EndOfFile)
+    }
+
+    /// Bytes of a token; past the last, the empty range at the end.
+    #[must_use]
+    pub fn range(&self, index: usize) -> Range<u32> {
+        let end = self.starts.last().copied().unwrap_or(0);
+        let start = self.starts.get(index).copied().unwrap_or(end);
+        start..self.starts.get(index + 1).copied().unwrap_or(end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keywords_are_found_in_any_case() {
+        for (word, kind) in KEYWORDS {
+            assert_eq!(TokenKind::keyword(word.as_bytes()), Some(*kind));
+            assert_eq!(TokenKind::keyword(word.to_lowercase().as_bytes()), Some(*kind));
+            assert_eq!(kind.describe(), *word);
+        }
+        for word in ["IFF", "I", "EN_IF", "ENDMODULES", "reg1"] {
+            assert_eq!(TokenKind::keyword(word.as_bytes()), None);
+        }
+    }
+}

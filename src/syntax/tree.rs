@@ -1,0 +1,260 @@
+//! The lossless tree.
+//!
+//! Two flat arrays: the tokens, which tile the file, and the nodes in preorder,
+//! each with its range of tokens and the end of its subtree. A node costs 16
+//! bytes and no allocation, a walk over the tree is a walk over memory, and
+//! losslessness needs no care: no token is moved, a node only names a range.
+//! White space and comments belong to the smallest node around them.
+
+use std::ops::Range;
+
+use super::node::NodeKind;
+use super::token::{TokenKind, Tokens};
+
+/// A parsed file.
+#[derive(Clone, Debug, Default)]
+pub struct Tree {
+    tokens: Tokens,
+    nodes: Vec<Entry>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    kind: NodeKind,
+    /// Index of its first token.
+    first: u32,
+    /// One past its last token.
+    last: u32,
+    /// One past the last node of its subtree.
+    end: u32,
+}
+
+/// A node of a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<'t> {
+    tree: &'t Tree,
+    index: usize,
+}
+
+/// A token of a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Token<'t> {
+    tree: &'t Tree,
+    index: usize,
+}
+
+/// A child of a node.
+#[derive(Clone, Copy, Debug)]
+pub enum Element<'t> {
+    /// A node.
+    Node(Node<'t>),
+    /// A token of the node itself.
+    Token(Token<'t>),
+}
+
+impl Tree {
+    /// The node of the whole file.
+    #[must_use]
+    pub fn root(&self) -> Node<'_> {
+        Node { tree: self, index: 0 }
+    }
+
+    /// Its tokens.
+    #[must_use]
+    pub fn tokens(&self) -> &Tokens {
+        &self.tokens
+    }
+
+    /// All nodes in preorder.
+    pub fn nodes(&self) -> impl Iterator<Item = Node<'_>> {
+        (0..self.nodes.len()).map(|index| Node { tree: self, index })
+    }
+}
+
+impl<'t> Node<'t> {
+    fn entry(self) -> Entry {
+        // A tree has at least its root and a `Node` is made from its entries.
+        self.tree.nodes[self.index]
+    }
+
+    /// Its kind.
+    #[must_use]
+    pub fn kind(self) -> NodeKind {
+        self.entry().kind
+    }
+
+    /// Its bytes, without the trivia around it.
+    #[must_use]
+    pub fn range(self) -> Range<u32> {
+        let Entry { first, last, .. } = self.entry();
+        let start = self.tree.tokens.range(first as usize).start;
+        if first == last {
+            return start..start;
+        }
+        start..self.tree.tokens.range(last as usize - 1).end
+    }
+
+    /// Its bytes in the file.
+    #[must_use]
+    pub fn text(self, bytes: &[u8]) -> &[u8] {
+        let range = self.range();
+        bytes.get(range.start as usize..range.end as usize).unwrap_or_default()
+    }
+
+    /// Its child nodes in order.
+    pub fn children(self) -> impl Iterator<Item = Node<'t>> + use<'t> {
+        let end = self.entry().end as usize;
+        let tree = self.tree;
+        let mut next = self.index + 1;
+        std::iter::from_fn(move || {
+            if next >= end {
+                return None;
+            }
+            let node = Node { tree, index: next };
+            next = node.entry().end as usize;
+            Some(node)
+        })
+    }
+
+    /// Its first child of a kind.
+    #[must_use]
+    pub fn child(self, kind: NodeKind) -> Option<Node<'t>> {
+        self.children().find(|child| child.kind() == kind)
+    }
+
+    /// It and the nodes below it, in preorder.
+    pub fn subtree(self) -> impl Iterator<Item = Node<'t>> + use<'t> {
+        let tree = self.tree;
+        (self.index..self.entry().end as usize).map(move |index| Node { tree, index })
+    }
+
+    /// Its children, nodes and its own tokens (trivia too), in order.
+    pub fn elements(self) -> impl Iterator<Item = Element<'t>> + use<'t> {
+        let tree = self.tree;
+        let last = self.entry().last as usize;
+        let mut token = self.entry().first as usize;
+        let mut children = self.children().peekable();
+        std::iter::from_fn(move || {
+            if let Some(child) = children.peek().copied()
+                && child.entry().first as usize <= token
+            {
+                children.next();
+                token = token.max(child.entry().last as usize);
+                return Some(Element::Node(child));
+            }
+            (token < last).then(|| {
+                token += 1;
+                Element::Token(Token { tree, index: token - 1 })
+            })
+        })
+    }
+
+    /// Its own tokens that are no trivia.
+    pub fn own_tokens(self) -> impl Iterator<Item = Token<'t>> + use<'t> {
+        self.elements().filter_map(|element| match element {
+            Element::Token(token) if !token.kind().is_trivia() => Some(token),
+            _ => None,
+        })
+    }
+
+    /// Its first own token of a kind.
+    #[must_use]
+    pub fn own_token(self, kind: TokenKind) -> Option<Token<'t>> {
+        self.own_tokens().find(|token| token.kind() == kind)
+    }
+}
+
+impl Token<'_> {
+    /// Its kind.
+    #[must_use]
+    pub fn kind(self) -> TokenKind {
+        self.tree.tokens.kind(self.index)
+    }
+
+    /// Its bytes.
+    #[must_use]
+    pub fn range(self) -> Range<u32> {
+        self.tree.tokens.range(self.index)
+    }
+
+    /// Its bytes in the file.
+    #[must_use]
+    pub fn text(self, bytes: &[u8]) -> &[u8] {
+        let range = self.range();
+        bytes.get(range.start as usize..range.end as usize).unwrap_or_default()
+    }
+}
+
+/// Where a node begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark {
+    token: u32,
+    node: u32,
+}
+
+/// Collects nodes in postorder: a node is added after its children, which lets
+/// an operator take the operand before it as its child.
+#[derive(Debug, Default)]
+pub(super) struct Builder {
+    nodes: Vec<Finished>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Finished {
+    kind: NodeKind,
+    first: u32,
+    last: u32,
+    /// First node of its subtree, in postorder.
+    from: u32,
+}
+
+impl Builder {
+    pub(super) fn with_capacity(nodes: usize) -> Builder {
+        Builder { nodes: Vec::with_capacity(nodes) }
+    }
+
+    /// Begins a node whose first token will be `token`.
+    pub(super) fn mark(&self, token: usize) -> Mark {
+        Mark { token: token as u32, node: self.nodes.len() as u32 }
+    }
+
+    /// Adds the node that began at `mark` and ends before token `end`; all
+    /// nodes added since are its children. Without tokens it is empty and
+    /// stands at `end`.
+    pub(super) fn finish(&mut self, mark: Mark, kind: NodeKind, end: usize) {
+        let last = end as u32;
+        let mut first = mark.token.min(last);
+        if let Some(leaf) = self.nodes.get(mark.node as usize) {
+            // The leaf that is first may be an empty node, which stands before
+            // the token that `mark` names.
+            first = first.min(leaf.first);
+        }
+        self.nodes.push(Finished { kind, first, last, from: mark.node });
+    }
+
+    /// The tree, turned into preorder.
+    ///
+    /// A node's place in preorder is its place in postorder, less the nodes
+    /// below it, plus the nodes above it.
+    pub(super) fn finish_tree(self, tokens: Tokens) -> Tree {
+        let count = self.nodes.len();
+        let blank = Entry { kind: NodeKind::Error, first: 0, last: 0, end: 0 };
+        let mut nodes = vec![blank; count];
+        let mut above: Vec<u32> = Vec::new();
+        for (place, node) in self.nodes.iter().enumerate().rev() {
+            while above.last().is_some_and(|&from| (place as u32) < from) {
+                above.pop();
+            }
+            let below = place - node.from as usize;
+            let index = place - below + above.len();
+            nodes[index] = Entry {
+                kind: node.kind,
+                first: node.first,
+                last: node.last,
+                end: (index + below + 1) as u32,
+            };
+            above.push(node.from);
+        }
+        Tree { tokens, nodes }
+    }
+}

@@ -1,0 +1,174 @@
+//! What a file's bytes mean: detection of its encoding, and decoding.
+//!
+//! Controllers write ISO 8859-1 or UTF-8, people whatever their editor was set
+//! to. UTF-8 is certain when the bytes are valid UTF-8; the legacy encodings
+//! are told apart by the statistics of `chardetng`, which cannot be certain.
+//! Where its guess cannot decode the file or is not of a kind seen in RAPID,
+//! windows-1252 is taken: it gives every byte a character and loses none.
+
+use std::borrow::Cow;
+
+use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
+use encoding_rs::{BIG5, EUC_KR, Encoding, GB18030, GBK, SHIFT_JIS, UTF_8, WINDOWS_1252};
+
+/// The byte order mark of UTF-8.
+const BOM: &[u8] = b"\xEF\xBB\xBF";
+
+/// A file's encoding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Charset {
+    encoding: &'static Encoding,
+    /// Whether the file starts with the byte order mark of UTF-8.
+    pub bom: bool,
+}
+
+/// The text of some bytes, without a byte order mark.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Decoded {
+    /// The text.
+    pub text: String,
+    /// Name of the encoding as in the WHATWG list (`UTF-8`, `windows-1252`,
+    /// `GBK` …).
+    pub encoding: &'static str,
+}
+
+/// Whether the bytes are a module in ABB's binary encoding, of which nothing
+/// can be read.
+#[must_use]
+pub fn is_encoded_module(bytes: &[u8]) -> bool {
+    matches!(bytes.first(), Some(0xFC..=0xFE))
+}
+
+/// Detects the encoding of a whole file.
+#[must_use]
+pub fn charset(bytes: &[u8]) -> Charset {
+    let bom = bytes.starts_with(BOM);
+    if bom || is_encoded_module(bytes) || std::str::from_utf8(bytes).is_ok() {
+        let encoding = if is_encoded_module(bytes) { WINDOWS_1252 } else { UTF_8 };
+        return Charset { encoding, bom };
+    }
+    let mut detector = EncodingDetector::new(Iso2022JpDetection::Deny);
+    detector.feed(bytes, true);
+    let guess = detector.guess(None, Utf8Detection::Deny);
+    let plausible = guess.is_single_byte() || [GBK, BIG5, SHIFT_JIS, EUC_KR].contains(&guess);
+    let decodes = guess.decode_without_bom_handling_and_without_replacement(bytes).is_some();
+    Charset { encoding: if plausible && decodes { guess } else { WINDOWS_1252 }, bom: false }
+}
+
+/// Decodes a whole file in the encoding that it seems to have.
+#[must_use]
+pub fn decode(bytes: &[u8]) -> Decoded {
+    let charset = charset(bytes);
+    let body = if charset.bom { &bytes[BOM.len()..] } else { bytes };
+    Decoded { text: charset.decode(body).into_owned(), encoding: charset.name() }
+}
+
+impl Charset {
+    /// Its name in the WHATWG list.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.encoding.name()
+    }
+
+    /// Decodes a part of a file; what is not valid becomes U+FFFD.
+    #[must_use]
+    pub fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
+        self.encoding.decode_without_bom_handling(bytes).0
+    }
+
+    /// Encodes text for this file; `None` if it has a character that the
+    /// encoding lacks.
+    #[must_use]
+    pub fn encode(self, text: &str) -> Option<Vec<u8>> {
+        // WHATWG's encoder for GBK is that of GB18030 restricted; the others
+        // are their own output encoding.
+        let (bytes, _, lossy) = self.encoding.encode(text);
+        (!lossy).then(|| bytes.into_owned())
+    }
+
+    /// Bytes of the character that starts `bytes`, 1 where nothing valid does
+    /// (not a character then; it counts as one). At least 1 for a non-empty
+    /// slice.
+    pub(super) fn width(self, bytes: &[u8]) -> usize {
+        let [first, rest @ ..] = bytes else { return 0 };
+        if *first < 0x80 || self.encoding.is_single_byte() {
+            return 1;
+        }
+        let wanted = if self.encoding == UTF_8 {
+            match first {
+                0xC2..=0xDF => 2,
+                0xE0..=0xEF => 3,
+                0xF0..=0xF4 => 4,
+                _ => 1,
+            }
+        } else if self.encoding == SHIFT_JIS && matches!(first, 0xA1..=0xDF) {
+            1
+        } else if [GBK, GB18030].contains(&self.encoding)
+            && rest.first().is_some_and(u8::is_ascii_digit)
+        {
+            4
+        } else {
+            2
+        };
+        match bytes.get(..wanted) {
+            Some(head)
+                if self
+                    .encoding
+                    .decode_without_bom_handling_and_without_replacement(head)
+                    .is_some() =>
+            {
+                wanted
+            }
+            _ => 1,
+        }
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a missing value fails the test")]
+mod tests {
+    use super::*;
+
+    fn name(text: &str, encoding: &'static Encoding) -> &'static str {
+        let (bytes, _, lossy) = encoding.encode(text);
+        assert!(!lossy);
+        let decoded = decode(&bytes);
+        assert_eq!(decoded.text, text);
+        decoded.encoding
+    }
+
+    #[test]
+    fn each_encoding_is_recognised() {
+        assert_eq!(name("MODULE a\n! plain\nENDMODULE", UTF_8), "UTF-8");
+        assert_eq!(name("! Größe der Palette °", UTF_8), "UTF-8");
+        assert_eq!(
+            name("! Größe der Palette, Öffnung für Prüfung 5°", WINDOWS_1252),
+            "windows-1252"
+        );
+        assert_eq!(name("! posición de recogida del tercer año", WINDOWS_1252), "windows-1252");
+        assert_eq!(name("! 机器人回到原点位置，等待信号", GBK), "GBK");
+    }
+
+    #[test]
+    fn the_byte_order_mark_is_not_text() {
+        let bytes = b"\xEF\xBB\xBFMODULE a";
+        assert_eq!(decode(bytes), Decoded { text: "MODULE a".into(), encoding: "UTF-8" });
+        assert!(charset(bytes).bom);
+    }
+
+    #[test]
+    fn every_byte_has_a_character_in_the_fallback() {
+        let all: Vec<u8> = (0..=255).collect();
+        let charset = charset(&all);
+        let text = charset.decode(&all).into_owned();
+        assert_eq!(charset.encode(&text).unwrap(), all);
+    }
+
+    #[test]
+    fn binary_modules_are_recognised() {
+        assert!(is_encoded_module(b"\xFC\x01\x02"));
+        assert!(is_encoded_module(b"\xFE"));
+        assert!(!is_encoded_module(b"\xFFMODULE"));
+        assert!(!is_encoded_module(b""));
+    }
+}
