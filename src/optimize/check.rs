@@ -1,0 +1,120 @@
+//! What a stream really does, against every limit.
+
+use super::corridor::Corridor;
+use crate::dynamics::{Data, Load};
+use crate::energy::power::power;
+use crate::kinematics::{fk, jacobian, limits_ok};
+use crate::motion::stream::Stream;
+use crate::motion::timed::JointState;
+use crate::path::joint_path::{DOF, Joints};
+use crate::robot::Model;
+
+/// Longest step between two samples, s.
+const STEP: f64 = 0.002;
+
+/// Shares of the limits that a stream uses, and how far it strays.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Check {
+    /// Of the joint speeds.
+    pub velocity: f64,
+    /// Of the joint accelerations.
+    pub acceleration: f64,
+    /// Of the joint jerks.
+    pub jerk: f64,
+    /// Of the joint torques.
+    pub torque: f64,
+    /// Of the TCP speed, programmed and the robot's.
+    pub tcp_speed: f64,
+    /// Largest distance from the programmed path, m, the turn of the tool at 0.1 m/rad included.
+    pub deviation_m: f64,
+    /// The same in units of what is allowed at each place.
+    pub deviation: f64,
+    /// Distance of the end from the programmed one, rad.
+    pub endpoint_error_rad: f64,
+    /// True if every joint stays in its range.
+    pub in_range: bool,
+}
+
+/// Rounding of figures that touch a limit.
+const ROUNDING: f64 = 1e-6;
+
+impl Check {
+    /// The largest share of a limit.
+    pub fn worst(&self) -> f64 {
+        [self.velocity, self.acceleration, self.jerk, self.torque, self.tcp_speed]
+            .into_iter()
+            .fold(self.deviation, f64::max)
+    }
+
+    /// True if nothing is exceeded.
+    pub fn holds(&self) -> bool {
+        self.worst() <= 1.0 + ROUNDING && self.in_range
+    }
+
+    /// The larger of each figure.
+    pub fn max(&self, other: &Check) -> Check {
+        Check {
+            velocity: self.velocity.max(other.velocity),
+            acceleration: self.acceleration.max(other.acceleration),
+            jerk: self.jerk.max(other.jerk),
+            torque: self.torque.max(other.torque),
+            tcp_speed: self.tcp_speed.max(other.tcp_speed),
+            deviation_m: self.deviation_m.max(other.deviation_m),
+            deviation: self.deviation.max(other.deviation),
+            endpoint_error_rad: self.endpoint_error_rad.max(other.endpoint_error_rad),
+            in_range: self.in_range && other.in_range,
+        }
+    }
+
+    /// Nothing checked yet.
+    pub fn none() -> Check {
+        Check { in_range: true, ..Check::default() }
+    }
+}
+
+/// Checks the realised motion of a stream, in the corridor and towards the end of a run.
+pub fn check(
+    model: &Model,
+    load: &Load,
+    tool: &nalgebra::Isometry3<f64>,
+    stream: &Stream,
+    corridor: &Corridor,
+    end: &Joints,
+) -> Check {
+    let limits = &model.limits;
+    let share = |values: &Joints, limit: &Option<Vec<f64>>| {
+        limit.as_ref().map_or(0.0, |limit| {
+            values.iter().zip(limit).map(|(x, l)| x.abs() / l).fold(0.0, f64::max)
+        })
+    };
+    let mut result = Check {
+        velocity: share(&stream.max_velocity(), &limits.velocity),
+        acceleration: share(&stream.max_acceleration(), &limits.acceleration),
+        jerk: share(&stream.max_jerk(), &limits.jerk),
+        endpoint_error_rad: (0..DOF)
+            .map(|j| (stream.end()[j] - end[j]).abs())
+            .fold(0.0, f64::max),
+        ..Check::none()
+    };
+    let mut data = Data::new();
+    let mut at = 0;
+    for piece in stream.pieces() {
+        let steps = (piece.length / STEP).ceil().max(1.0) as usize;
+        for i in 0..=steps {
+            let (q, qd, qdd) = piece.at(piece.length * i as f64 / steps as f64);
+            result.in_range &= limits_ok(model, &q).is_ok();
+            let state = JointState { q, qd, qdd };
+            if model.has_dynamics() {
+                let tau = power(model, &mut data, load, &state).tau;
+                result.torque = result.torque.max(share(&tau, &limits.torque));
+            }
+            let offset = corridor.offset(&(fk(model, &q) * tool), &mut at);
+            result.deviation_m = result.deviation_m.max(offset.distance);
+            result.deviation = result.deviation.max(offset.distance / offset.tolerance);
+            let rate = jacobian(model, &q, tool) * nalgebra::Vector6::from(qd);
+            let speed = rate.fixed_rows::<3>(0).norm();
+            result.tcp_speed = result.tcp_speed.max(speed / offset.ceiling);
+        }
+    }
+    result
+}

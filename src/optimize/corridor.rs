@@ -1,0 +1,160 @@
+//! Where a realised motion may be and how fast: the programmed path with its tolerances.
+
+use nalgebra::{Isometry3, Vector3};
+
+use crate::ir::movement::Movement;
+use crate::kinematics::fk;
+use crate::motion::timeline::Run;
+use crate::motion::timed::TimedMotion;
+use crate::path::PieceKind;
+use crate::robot::Model;
+
+/// Distance of the samples of the path, m.
+const SPACING: f64 = 0.002;
+/// A turn of the tool counts as this much distance, m/rad.
+const METRES_PER_RADIAN: f64 = 0.1;
+/// Allowed distance from a line or arc, m.
+pub const LINE_TOLERANCE: f64 = 0.001;
+/// Allowed distance from a joint movement, m.
+pub const JOINT_TOLERANCE: f64 = 0.005;
+/// Allowed distance in a corner zone, in units of its size.
+pub const ZONE_TOLERANCE: f64 = 0.1;
+/// How many samples ahead and behind the last place are searched for the nearest.
+const WINDOW: (usize, usize) = (8, 24);
+
+/// One sample of the programmed path.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    pose: Isometry3<f64>,
+    /// Largest TCP speed here, m/s.
+    ceiling: f64,
+    /// Largest distance from here, m.
+    tolerance: f64,
+}
+
+/// The programmed path of a run.
+#[derive(Clone, Debug)]
+pub struct Corridor {
+    places: Vec<Place>,
+}
+
+/// How a pose lies to the corridor.
+#[derive(Clone, Copy, Debug)]
+pub struct Offset {
+    /// Distance of the TCP, m, the turn of the tool included.
+    pub distance: f64,
+    /// Allowed distance, m.
+    pub tolerance: f64,
+    /// Largest TCP speed, m/s.
+    pub ceiling: f64,
+}
+
+impl Corridor {
+    /// The corridor of a run along one path; `None` for streams. `faster_tcp` lifts the
+    /// programmed speeds of lines and arcs.
+    pub fn new(model: &Model, run: &Run, ceilings: Ceilings) -> Option<Corridor> {
+        let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return None };
+        let mut places = Vec::new();
+        let robot = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
+        for piece in path.pieces() {
+            let movement = &run.moves[piece.leg].movement;
+            let next = run.moves.get(piece.leg + 1).map(|record| &record.movement);
+            let zone = &run.legs[piece.leg].zone;
+            let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
+            let (ceiling, tolerance) = match piece.kind {
+                PieceKind::Joint => (robot, JOINT_TOLERANCE),
+                PieceKind::Cartesian => (ceilings.of(movement).min(robot), LINE_TOLERANCE),
+                PieceKind::CartesianZone | PieceKind::JointZone => {
+                    // A piece of a zone belongs to the leg before or after its corner.
+                    let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
+                    let size = if after { before.map_or(0.0, |z| z.tcp) } else { zone.tcp };
+                    let neighbour = if after {
+                        piece.leg.checked_sub(1).map(|leg| &run.moves[leg].movement)
+                    } else {
+                        next
+                    };
+                    let ceiling = neighbour
+                        .map_or(0.0, |movement| ceilings.of(movement))
+                        .max(ceilings.of(movement));
+                    (ceiling.min(robot), LINE_TOLERANCE.max(ZONE_TOLERANCE * size))
+                }
+            };
+            let extent = path.extent(piece.leg);
+            let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
+            let n = (piece.length * share / SPACING).ceil().max(1.0) as usize;
+            for i in 0..=n {
+                let s = piece.s + piece.length * i as f64 / n as f64;
+                let pose = fk(model, &piece.eval(s).q) * extent.tool;
+                places.push(Place { pose, ceiling, tolerance });
+            }
+        }
+        Some(Corridor { places })
+    }
+
+    /// The offset of a pose, searched near the place `from`, which is moved on.
+    pub fn offset(&self, pose: &Isometry3<f64>, from: &mut usize) -> Offset {
+        let begin = from.saturating_sub(WINDOW.0);
+        let end = (*from + WINDOW.1).min(self.places.len() - 1);
+        let mut best = (f64::INFINITY, *from);
+        for i in begin..=end {
+            let distance = self.distance(pose, i);
+            if distance < best.0 {
+                best = (distance, i);
+            }
+        }
+        *from = best.1;
+        let place = &self.places[best.1];
+        // Between two stretches the more generous figure holds: they meet there.
+        let near = |f: fn(&Place) -> f64| {
+            let lo = best.1.saturating_sub(1);
+            let hi = (best.1 + 1).min(self.places.len() - 1);
+            f(place).max(f(&self.places[lo])).max(f(&self.places[hi]))
+        };
+        Offset {
+            distance: best.0,
+            tolerance: near(|p| p.tolerance),
+            ceiling: near(|p| p.ceiling),
+        }
+    }
+
+    /// Distance of a pose from the stretch before and after a place.
+    fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
+        let place = &self.places[i].pose;
+        let from = pose.translation.vector - place.translation.vector;
+        let turn = METRES_PER_RADIAN * pose.rotation.angle_to(&place.rotation);
+        let aside = |k: usize| {
+            let along = self.places[k].pose.translation.vector - place.translation.vector;
+            let square = along.norm_squared();
+            let share = if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+            (from - along * share).norm()
+        };
+        let mut straight = from.norm();
+        if i > 0 {
+            straight = straight.min(aside(i - 1));
+        }
+        if i + 1 < self.places.len() {
+            straight = straight.min(aside(i + 1));
+        }
+        Vector3::new(straight, turn, 0.0).norm()
+    }
+}
+
+/// Which programmed speeds are ceilings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ceilings {
+    /// Those of lines and arcs; joint movements are free within the robot's limits.
+    Programmed,
+    /// None but the robot's own.
+    Robot,
+}
+
+impl Ceilings {
+    /// The largest TCP speed of a movement, m/s.
+    pub fn of(self, movement: &Movement) -> f64 {
+        use crate::ir::instructions::MoveForm::{Circular, Linear};
+        match (self, movement.form) {
+            (Ceilings::Programmed, Linear | Circular) => movement.speed.tcp,
+            _ => f64::INFINITY,
+        }
+    }
+}
