@@ -234,9 +234,10 @@ fn poses_without_a_solution_say_why() {
     };
     let conf = Conf { cf1: 0, cf4: 0, cf6: 0, cfx: 0 };
     let why = |pose: Isometry3<f64>, conf| ik_conf(&model, &pose, conf).unwrap_err().to_string();
+    let low = deg([100.0, 130.0, -120.0, 10.0, 20.0, 30.0]);
     let messages = [
         why(pose(1.6, 0.3, 0.5), conf),
-        why(pose(1.0, 0.3, 0.5), Conf { cf4: -1, cf6: 4, ..conf }),
+        why(fk(&model, &low), conf_of(&model, &low)),
         why(pose(1.0, 0.3, 0.5), Conf { cf6: 3, ..conf }),
         why(pose(-0.3, 0.1, 0.2), Conf { cf1: 1, cfx: 2, ..conf }),
         why(pose(f64::NAN, 0.3, 0.5), conf),
