@@ -78,6 +78,8 @@ fn states() -> impl Strategy<Value = [[f64; MAX_DOF]; 3]> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
     #[test]
     fn power_is_the_change_of_energy(state in states(), which in 0usize..3) {
         let model = &robots()[which];

@@ -3,10 +3,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+use insta::assert_snapshot;
 use joulepath::kinematics::{
-    conf_of, fk, ik_all, ik_conf, ik_near, jacobian, jacobian_dot, limits_ok,
+    Conf, IkError, conf_of, fk, ik_all, ik_conf, ik_near, jacobian, jacobian_dot, limits_ok,
+    singularity,
 };
-use joulepath::robot::{Model, find};
+use joulepath::robot::{Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -15,8 +17,15 @@ const SAME_ANGLE: f64 = 1e-8;
 /// Largest difference of poses that count as one \[m\] and \[rad\].
 const SAME_POSE: f64 = 1e-10;
 
-fn robots() -> Vec<Model> {
-    joulepath::robot::names().map(|name| find(name).unwrap()).collect()
+/// A serial arm with and one without an elbow offset, and one with rods.
+fn robots() -> [Model; 3] {
+    let rods = "extends = \"irb6640\"\nname = \"rods\"\n\
+                [kinematics]\ncoupling = \"parallelogram\"\n";
+    [irb1600(), find("IRB6640-180/2.55").unwrap(), from_toml("rods.toml", rods).unwrap()]
+}
+
+fn irb1600() -> Model {
+    find("IRB1600-10/1.45").unwrap()
 }
 
 fn tool() -> Isometry3<f64> {
@@ -48,8 +57,10 @@ fn shares() -> impl Strategy<Value = [f64; 6]> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
     #[test]
-    fn inverse_contains_the_angles(shares in shares(), which in 0usize..2) {
+    fn inverse_contains_the_angles(shares in shares(), which in 0usize..3) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let pose = fk(model, &q);
@@ -72,8 +83,19 @@ proptest! {
     }
 
     #[test]
+    fn branches_have_different_cfx(shares in shares(), which in 0usize..2) {
+        let model = &robots()[which];
+        let all = ik_all(model, &fk(model, &inside(model, shares))).unwrap();
+        let mut cfx: Vec<i32> = all.iter().map(|q| conf_of(model, q).cfx).collect();
+        cfx.sort_unstable();
+        cfx.dedup();
+        prop_assert_eq!(cfx.len(), all.len());
+        prop_assert!(cfx.iter().all(|cfx| (0..8).contains(cfx)));
+    }
+
+    #[test]
     fn nearest_solution_stays_on_its_branch(shares in shares(), step in prop::array::uniform6(-1e-3..1e-3)) {
-        let model = find("IRB1600-10/1.45").unwrap();
+        let model = irb1600();
         let q = inside(&model, shares).map(|angle| 0.99 * angle);
         let near: [f64; 6] = std::array::from_fn(|i| q[i] + step[i]);
         prop_assume!(q[4].sin().abs() > 0.05 && limits_ok(&model, &q).is_ok());
@@ -84,7 +106,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_is_the_change_of_pose(shares in shares(), which in 0usize..2) {
+    fn jacobian_is_the_change_of_pose(shares in shares(), which in 0usize..3) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let tool = tool();
@@ -110,7 +132,7 @@ proptest! {
     fn jacobian_dot_is_the_change_of_the_jacobian(
         shares in shares(),
         qd in prop::array::uniform6(-3.0..3.0),
-        which in 0usize..2,
+        which in 0usize..3,
     ) {
         let model = &robots()[which];
         let q = inside(model, shares);
@@ -124,11 +146,145 @@ proptest! {
 
 #[test]
 fn home_pose_of_the_irb1600() {
-    let model = find("IRB1600-10/1.45").unwrap();
+    let model = irb1600();
     let q = [0.0, 0.0, 0.0, 0.0, 30f64.to_radians(), 0.0];
     let pose = fk(&model, &q);
     // ABB's own home target: [806.29, 0, 1154], [0.5, 0, 0.866025, 0].
     let expected = Vector3::new(0.80629, 0.0, 1.154);
     assert!((pose.translation.vector - expected).norm() < 1e-5, "{pose}");
     assert!((pose.rotation.w - 0.5).abs() < 1e-6 && (pose.rotation.j - 0.866_025).abs() < 1e-6);
+}
+
+fn deg(degrees: [f64; 6]) -> [f64; 6] {
+    degrees.map(f64::to_radians)
+}
+
+/// Forearm upright above the IRB1600's axis 1 \[deg\].
+fn shoulder_singular() -> [f64; 6] {
+    let q2 = -(0.15_f64 / 0.7).asin().to_degrees();
+    [10.0, q2, -90.0 - q2, 10.0, 20.0, 30.0]
+}
+
+/// Poses at which solutions meet: each solution still gives the pose.
+#[test]
+fn singular_poses_have_finite_solutions() {
+    let shoulder = shoulder_singular();
+    for degrees in [
+        [0.0; 6],
+        [10.0, 20.0, 30.0, 40.0, 0.0, 50.0],
+        [10.0, 30.0, -90.0, 40.0, 30.0, 50.0],
+        [10.0, 30.0, -90.0, 40.0, 0.0, 50.0],
+        shoulder,
+    ] {
+        for model in robots() {
+            let pose = fk(&model, &deg(degrees));
+            for q in ik_all(&model, &pose).unwrap() {
+                assert!(distance(&fk(&model, &q), &pose) < 1e-7, "{}: {q:?}", model.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn wrist_singularity_keeps_joint_4() {
+    let model = irb1600();
+    let q = deg([10.0, 20.0, 30.0, 70.0, 0.0, 50.0]);
+    let found = ik_near(&model, &fk(&model, &q), &q).unwrap();
+    assert!(found.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME_ANGLE), "{found:?}");
+    // The configuration asks for joint 4 in its second quarter turn.
+    let conf = Conf { cf1: 0, cf4: 1, cf6: 0, cfx: 0 };
+    let found = ik_conf(&model, &fk(&model, &q), conf).unwrap();
+    assert!((found[3].to_degrees() - 90.0).abs() < 1e-6, "{found:?}");
+    assert!(distance(&fk(&model, &found), &fk(&model, &q)) < 1e-8);
+}
+
+#[test]
+fn configurations_count_whole_turns() {
+    let model = irb1600();
+    for degrees in [
+        [-134.0, 48.0, -36.0, 190.0, 75.0, -333.0],
+        [134.0, -48.0, -200.0, -195.0, -75.0, 395.0],
+        [0.5, 10.0, 20.0, 91.0, 30.0, 179.0],
+    ] {
+        let q = deg(degrees);
+        let found = ik_conf(&model, &fk(&model, &q), conf_of(&model, &q)).unwrap();
+        assert!(found.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME_ANGLE), "{found:?}");
+    }
+}
+
+#[test]
+fn angles_at_an_edge_belong_to_both_quarter_turns() {
+    let model = irb1600();
+    let q = deg([0.0, 10.0, 20.0, 0.0, 30.0, 90.0]);
+    let pose = fk(&model, &q);
+    for (cf1, cf4, cf6) in [(0, 0, 1), (-1, 0, 1), (0, -1, 1), (0, 0, 0), (-1, -1, 0)] {
+        let found = ik_conf(&model, &pose, Conf { cf1, cf4, cf6, cfx: 0 }).unwrap();
+        assert!(found.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME_ANGLE), "{found:?}");
+    }
+}
+
+#[test]
+fn poses_without_a_solution_say_why() {
+    let model = irb1600();
+    let pose = |x: f64, y: f64, z: f64| {
+        Isometry3::from_parts(
+            Translation3::new(x, y, z),
+            UnitQuaternion::from_euler_angles(0.0, std::f64::consts::PI, 0.0),
+        )
+    };
+    let conf = Conf { cf1: 0, cf4: 0, cf6: 0, cfx: 0 };
+    let why = |pose: Isometry3<f64>, conf| ik_conf(&model, &pose, conf).unwrap_err().to_string();
+    let low = deg([100.0, 130.0, -120.0, 10.0, 20.0, 30.0]);
+    let messages = [
+        why(pose(1.6, 0.3, 0.5), conf),
+        why(fk(&model, &low), conf_of(&model, &low)),
+        why(pose(1.0, 0.3, 0.5), Conf { cf6: 3, ..conf }),
+        why(pose(-0.3, 0.1, 0.2), Conf { cf1: 1, cfx: 2, ..conf }),
+        why(pose(f64::NAN, 0.3, 0.5), conf),
+    ];
+    assert_snapshot!(messages.join(
+        "
+"
+    ));
+
+    let chain = "name = \"chain\"\n[[joint]]\norigin = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                 [limits]\nposition = [[-1, 1]]\n";
+    let chain = from_toml("chain.toml", chain).unwrap();
+    assert_eq!(
+        ik_all(&chain, &Isometry3::identity()),
+        Err(IkError::NoInverse { robot: "chain".into() })
+    );
+}
+
+#[test]
+fn nearest_solution_follows_a_line_through_half_a_turn() {
+    let model = irb1600();
+    let start = deg([0.0, 20.0, 10.0, 170.0, 60.0, 350.0]);
+    let pose = fk(&model, &start);
+    let mut q = start;
+    for step in 1..=200 {
+        // 0.4 m to the side while the tool turns by a quarter.
+        let share = f64::from(step) / 200.0;
+        let shift = Translation3::new(0.0, 0.4 * share, 0.0);
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -1.5 * share);
+        let goal = Isometry3::from_parts(
+            Translation3::from(shift.vector + pose.translation.vector),
+            pose.rotation * turn,
+        );
+        let next = ik_near(&model, &goal, &q).unwrap();
+        assert!(distance(&fk(&model, &next), &goal) < SAME_POSE);
+        assert!(next.iter().zip(&q).all(|(a, b)| (a - b).abs() < 0.05), "{next:?} {q:?}");
+        q = next;
+    }
+}
+
+#[test]
+fn singularity_measures_vanish_in_their_singularity() {
+    let model = irb1600();
+    let at = |degrees| singularity(&model, &deg(degrees)).unwrap();
+    assert!(at([10.0, 20.0, 30.0, 40.0, 0.0, 50.0]).wrist < 1e-12);
+    assert!(at([10.0, 20.0, -90.0, 40.0, 10.0, 50.0]).elbow < 1e-12);
+    assert!(at(shoulder_singular()).shoulder < 1e-12);
+    let general = at([10.0, 20.0, 30.0, 40.0, 30.0, 50.0]);
+    assert!((general.wrist - 0.5).abs() < 1e-12 && general.elbow > 0.5 && general.shoulder > 0.5);
 }

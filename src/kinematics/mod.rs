@@ -14,7 +14,7 @@ mod select;
 mod singularity;
 
 pub use conf::{Conf, conf_of};
-pub use error::{IkError, LimitViolation};
+pub use error::{IkError, LimitViolation, Side};
 pub use fk::fk;
 pub use inverse::ik_all;
 pub use jacobian::{jacobian, jacobian_dot};

@@ -62,7 +62,10 @@ pub enum RobotError {
         known: Vec<String>,
     },
     /// A key that must be there is not.
-    #[error("{place}: {table} lacks \"{key}\"; add it")]
+    #[error(
+        "{place}: {table} lacks \"{key}\"; {}",
+        .instead.as_ref().map_or("add it".into(), |i| format!("rename \"{i}\""))
+    )]
     Missing {
         /// `file:line` of the table.
         place: String,
@@ -70,6 +73,8 @@ pub enum RobotError {
         table: String,
         /// The missing key.
         key: String,
+        /// A key there that is written much like it.
+        instead: Option<String>,
     },
     /// A value of another type than the key's.
     #[error("{place}: {key} is {found}; give {expected}")]

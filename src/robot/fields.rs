@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::error::RobotError;
+use super::names::nearest;
 use super::provenance::Origin;
 use super::tree::{Node, Place, Value};
 
@@ -98,6 +99,7 @@ impl Fields {
             place: self.place(),
             table: self.table_words(),
             key: key.to_owned(),
+            instead: nearest(key, self.entries.keys().map(String::as_str)).map(str::to_owned),
         })
     }
 
@@ -302,7 +304,8 @@ impl Fields {
         });
     }
 
-    fn path(&self, key: &str) -> String {
+    /// The key with its table, as messages name it.
+    pub(super) fn path(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 

@@ -221,7 +221,7 @@ impl Opw {
         if signs.iter().any(|sign| sign.abs() != 1.0) {
             return Err(RobotError::Value {
                 place: fields.place(),
-                key: "kinematics.opw.signs".into(),
+                key: fields.path("signs"),
                 value: format!("{signs:?}"),
                 must: "1 or -1 for each joint".into(),
             });
@@ -244,8 +244,8 @@ fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotEr
     let Some(axis) = Unit::try_new(Vector3::from(axis), f64::MIN_POSITIVE) else {
         return Err(RobotError::Value {
             place: fields.place(),
-            key: "joint.axis".into(),
-            value: format!("{axis:?}"),
+            key: fields.path("axis"),
+            value: "[0, 0, 0]".into(),
             must: "a direction".into(),
         });
     };

@@ -44,10 +44,10 @@ impl Link {
         if principal[0] < -ROUNDING * principal[2].abs() {
             return Err(RobotError::Value {
                 place: fields.place(),
-                key: "link.inertia".into(),
+                key: fields.path("inertia"),
                 value: format!("{moments:?}"),
                 must: format!(
-                    "positive semidefinite (a principal moment is {:.3e} kg m2); \
+                    "positive semidefinite (a principal moment is {:.3} kg m2); \
                      the order is xx, yy, zz, xy, xz, yz",
                     principal[0]
                 ),

@@ -73,7 +73,7 @@ impl Model {
             });
         }
         let kinematics = Geometry::read(robot.table("kinematics")?, joints, &mut origins)?;
-        let kinematics = robot.required("kinematics", kinematics)?;
+        let kinematics = robot.required("kinematics.opw or [[joint]]", kinematics)?;
         let dof = kinematics.joints.len();
 
         let limits = robot.table("limits")?;

@@ -49,8 +49,8 @@ pub(super) enum Value {
     Text(String),
     List(Vec<Node>),
     Table(BTreeMap<String, Node>),
-    /// A type that no key of a robot has (booleans, dates), by its name.
-    Other(String),
+    /// A type that no key of a robot has, in words.
+    Other(&'static str),
 }
 
 impl Value {
@@ -61,7 +61,7 @@ impl Value {
             Value::Text(_) => "a text".into(),
             Value::List(_) => "a list".into(),
             Value::Table(_) => "a table".into(),
-            Value::Other(kind) => format!("a {kind}"),
+            Value::Other(kind) => (*kind).into(),
         }
     }
 }
@@ -168,7 +168,7 @@ impl Builder<'_> {
         value.get_ref().as_str().ok_or_else(|| RobotError::Type {
             place: self.place(value.span().start).to_string(),
             key: key.to_owned(),
-            found: format!("a {}", value.get_ref().type_str()),
+            found: kind(value.get_ref()).to_owned(),
             expected: "a text".into(),
         })
     }
@@ -204,8 +204,19 @@ impl Builder<'_> {
             DeValue::Float(number) => {
                 Value::Number(number.as_str().replace('_', "").parse().unwrap_or(f64::NAN))
             }
-            other => Value::Other(other.type_str().to_owned()),
+            other => Value::Other(kind(other)),
         };
         Ok(Node { place, stated: stated.clone(), value })
+    }
+}
+
+fn kind(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
     }
 }

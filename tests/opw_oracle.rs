@@ -1,0 +1,86 @@
+//! Against rs-opw-kinematics, an independent solver of the same arms.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use joulepath::kinematics::{fk, ik_all};
+use joulepath::robot::{Model, find, from_toml, names};
+use proptest::prelude::*;
+use rs_opw_kinematics::kinematic_traits::Kinematics;
+use rs_opw_kinematics::kinematics_impl::OPWKinematics;
+use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
+
+/// Largest difference of positions \[m\] and quaternion entries.
+const POSE: f64 = 1e-12;
+/// Largest difference of angles \[rad\].
+const ANGLE: f64 = 1e-7;
+
+fn robots() -> Vec<Model> {
+    let position = "[limits]\nposition = [[-3,3],[-3,3],[-3,3],[-3,3],[-3,3],[-3,3]]\n";
+    // A lateral offset, reversed senses, odd zeros: nothing that an ABB arm has.
+    let odd = "name = \"odd\"\n[kinematics.opw]\na1 = 0.2\na2 = -0.05\nb = 0.08\nc1 = 0.5\n\
+               c2 = 0.6\nc3 = 0.65\nc4 = 0.1\noffsets = [0.1, -0.2, -1.4, 0.3, 0.2, -0.5]\n\
+               signs = [-1, 1, -1, -1, 1, -1]\n";
+    let plain = "name = \"plain\"\n[kinematics.opw]\na1 = 0.15\na2 = 0.1\nb = 0.0\nc1 = 0.4\n\
+                 c2 = 0.3\nc3 = 0.7\nc4 = 0.0\noffsets = [0, 0, 0, 0, 0, 0]\n\
+                 signs = [1, 1, 1, 1, 1, 1]\n";
+    let mut robots: Vec<Model> = names().map(|name| find(name).unwrap()).collect();
+    for text in [odd, plain] {
+        robots.push(from_toml("test.toml", &format!("{text}{position}")).unwrap());
+    }
+    robots
+}
+
+fn oracle(model: &Model) -> OPWKinematics {
+    let opw = model.kinematics.opw.as_ref().unwrap();
+    OPWKinematics::new(Parameters {
+        a1: opw.a1,
+        a2: opw.a2,
+        b: opw.b,
+        c1: opw.c1,
+        c2: opw.c2,
+        c3: opw.c3,
+        c4: opw.c4,
+        offsets: opw.offsets,
+        sign_corrections: opw.signs.map(|sign| sign as i8),
+        dof: 6,
+    })
+}
+
+fn same(a: &[f64; 6], b: &[f64; 6]) -> bool {
+    a.iter().zip(b).all(|(a, b)| {
+        let d = (a - b).rem_euclid(std::f64::consts::TAU);
+        d.min(std::f64::consts::TAU - d) < ANGLE
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 2_000, failure_persistence: None, ..Default::default()
+    })]
+
+    #[test]
+    fn agrees_with_the_other_solver(q in prop::array::uniform6(-3.0..3.0)) {
+        for model in &robots() {
+            let other = oracle(model);
+            let (ours, theirs) = (fk(model, &q), other.forward(&q));
+            let t = ours.translation.vector;
+            prop_assert!((t.x - theirs.translation.x).abs() < POSE);
+            prop_assert!((t.y - theirs.translation.y).abs() < POSE);
+            prop_assert!((t.z - theirs.translation.z).abs() < POSE);
+            let r = theirs.rotation;
+            let dot = ours.rotation.i * r.x + ours.rotation.j * r.y
+                + ours.rotation.k * r.z + ours.rotation.w * r.w;
+            prop_assert!((dot.abs() - 1.0).abs() < POSE, "{} {dot}", model.name);
+
+            prop_assume!(q[4].sin().abs() > 1e-3);
+            let found = ik_all(model, &ours).unwrap();
+            prop_assert!(found.iter().any(|solution| same(solution, &q)), "{}", model.name);
+            for solution in other.inverse(&theirs) {
+                prop_assert!(
+                    found.iter().any(|ours| same(ours, &solution)),
+                    "{}: {solution:?} not in {found:?}", model.name
+                );
+            }
+        }
+    }
+}

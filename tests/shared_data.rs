@@ -1,0 +1,122 @@
+//! Against targets and joints of real controllers. The measurements are not part
+//! of the crate; where they are absent these tests say so, in a CI run they fail.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+#![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
+
+use std::fs;
+use std::path::Path;
+
+use joulepath::kinematics::{Conf, conf_of, fk, ik_conf};
+use joulepath::robot::find;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+
+/// Median distance of the forward kinematics from the target \[m\]: the nominal
+/// geometry on the virtual controller, a calibrated arm in reality.
+const VIRTUAL_MEDIAN: f64 = 0.05e-3;
+const REAL_MEDIAN: f64 = 0.15e-3;
+/// Largest difference of a logged joint from the inverse kinematics \[rad\].
+const JOINT: f64 = 1e-3;
+
+/// The file in the folder of measurements beside the crate, if it is there.
+fn shared(path: &str) -> Option<String> {
+    let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
+    if let Ok(text) = fs::read_to_string(&full) {
+        return Some(text);
+    }
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", full.display());
+    eprintln!("skipped: {} is missing", full.display());
+    None
+}
+
+fn pose(trans_mm: [f64; 3], wxyz: [f64; 4]) -> Isometry3<f64> {
+    let [w, x, y, z] = wxyz;
+    Isometry3::from_parts(
+        Translation3::from(Vector3::from(trans_mm) * 1e-3),
+        UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)),
+    )
+}
+
+struct Row {
+    real: bool,
+    target: Isometry3<f64>,
+    conf: Conf,
+    joints: [f64; 6],
+}
+
+fn rows(text: &str) -> Vec<Row> {
+    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let number = |i: usize| cells[i].parse::<f64>().unwrap();
+            let cf = |i: usize| number(i) as i32;
+            Row {
+                real: cells[0] == "real",
+                target: pose(
+                    [number(5), number(6), number(7)],
+                    [number(8), number(9), number(10), number(11)],
+                ),
+                conf: Conf { cf1: cf(12), cf4: cf(13), cf6: cf(14), cfx: cf(15) },
+                joints: std::array::from_fn(|i| number(16 + i).to_radians()),
+            }
+        })
+        .collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+#[test]
+fn logged_joints_of_an_irb6640() {
+    let Some(text) = shared("pairs/irb6640_180_255_controller_fine.csv") else { return };
+    let model = find("IRB6640-180/2.55").unwrap();
+    // The tool of every logged program.
+    let tool = pose([75.0, 0.0, 493.301_270_19], [0.965_925_8, 0.0, 0.258_819_0, 0.0]);
+    let rows = rows(&text);
+    assert!(rows.len() > 100);
+
+    let miss = |row: &Row| {
+        (fk(&model, &row.joints) * tool).translation.vector - row.target.translation.vector
+    };
+    let of = |real: bool| rows.iter().filter(|r| r.real == real).map(|r| miss(r).norm()).collect();
+    let (virtual_median, real_median) = (median(of(false)), median(of(true)));
+    eprintln!("median: virtual {virtual_median:.2e} m, real {real_median:.2e} m");
+    assert!(virtual_median <= VIRTUAL_MEDIAN && real_median <= REAL_MEDIAN);
+
+    let mut largest = 0.0_f64;
+    for row in &rows {
+        let found = ik_conf(&model, &(row.target * tool.inverse()), row.conf).unwrap();
+        let off = found.iter().zip(&row.joints).map(|(a, b)| (a - b).abs());
+        largest = off.fold(largest, f64::max);
+    }
+    eprintln!("largest joint difference: {largest:.2e} rad on {} rows", rows.len());
+    assert!(largest <= JOINT);
+}
+
+#[test]
+fn robotstudio_targets_of_an_irb1600() {
+    let Some(text) = shared("pairs/irb1600_145_robotstudio_targets.json") else { return };
+    let model = find("IRB1600-10/1.45").unwrap();
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let numbers = |value: &serde_json::Value| -> Vec<f64> {
+        value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    for target in document["targets"].as_array().unwrap() {
+        let goal = pose(
+            numbers(&target["trans_mm"]).try_into().unwrap(),
+            numbers(&target["rot_wxyz"]).try_into().unwrap(),
+        );
+        let cf: Vec<i32> = numbers(&target["conf"]).iter().map(|&x| x as i32).collect();
+        let conf = Conf { cf1: cf[0], cf4: cf[1], cf6: cf[2], cfx: cf[3] };
+        let q = ik_conf(&model, &goal, conf).unwrap();
+        let miss = fk(&model, &q).translation.vector - goal.translation.vector;
+        assert!(miss.norm() < 1e-6, "{}: {miss}", target["name"]);
+        if target["name"] != "Home" {
+            // Home has joints at exactly 0, where either neighbour is right.
+            assert_eq!(conf_of(&model, &q), conf, "{}", target["name"]);
+        }
+    }
+}
