@@ -3,6 +3,7 @@
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
 pub mod dynamics;
+pub mod emit;
 pub mod energy;
 pub mod ir;
 pub mod kinematics;
