@@ -2,6 +2,9 @@
 //!
 //! The problems are plain arrays: constraints know no solver, solvers know no robot.
 
+mod cone;
+mod energy_cones;
+pub mod energy_program;
 pub mod grid;
 pub mod limits;
 pub mod path_energy;
