@@ -4,4 +4,5 @@
 
 mod analytic;
 mod arm;
+mod energy;
 mod reachability;

@@ -166,6 +166,15 @@ impl PathGrid {
         PathGrid::new(s, nodes.windows(2).map(|w| [w[0], w[1]]).collect())
     }
 
+    /// The same path with the path speed capped at `v_max`, which must be positive.
+    pub(crate) fn capped(&self, v_max: f64) -> PathGrid {
+        let mut capped = self.clone();
+        for point in capped.ends.as_flattened_mut() {
+            point.v_max = point.v_max.min(v_max);
+        }
+        capped
+    }
+
     /// The nodes s₀ … `s_N`.
     pub fn s(&self) -> &[f64] {
         &self.s
