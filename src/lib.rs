@@ -2,6 +2,8 @@
 //!
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
+pub mod cli;
+pub mod diagnostics;
 pub mod ir;
 pub mod syntax;
 pub mod text;

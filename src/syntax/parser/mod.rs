@@ -22,7 +22,7 @@ use super::{MAX_DEPTH, Parse, lexer};
 
 /// Tokens per node in ordinary programs, for the first allocation.
 const TOKENS_PER_NODE: usize = 2;
-/// Longest excerpt of the source in a message, in bytes.
+/// Longest excerpt of the source in a message, in characters.
 const EXCERPT: usize = 24;
 
 pub(super) fn parse(bytes: &[u8]) -> Parse {
@@ -268,10 +268,7 @@ impl<'a> Parser<'a> {
                 kind.describe().to_owned()
             }
             _ if kind.is_keyword() => kind.describe().to_owned(),
-            _ if text.len() > EXCERPT => {
-                format!("'{}…'", String::from_utf8_lossy(&text[..EXCERPT]))
-            }
-            _ => format!("'{}'", String::from_utf8_lossy(text)),
+            _ => format!("'{}'", excerpt(text)),
         }
     }
 
@@ -295,4 +292,16 @@ impl<'a> Parser<'a> {
         self.depth -= 1;
         Some(result)
     }
+}
+
+/// The start of some bytes as text; bytes that are not UTF-8 are read as ISO
+/// 8859-1, which is right for most of RAPID's legacy files.
+fn excerpt(bytes: &[u8]) -> String {
+    let latin = || bytes.iter().map(|&byte| char::from(byte)).collect();
+    let text: String = std::str::from_utf8(bytes).map_or_else(|_| latin(), str::to_owned);
+    let mut excerpt: String = text.chars().take(EXCERPT).collect();
+    if excerpt.len() < text.len() {
+        excerpt.push('…');
+    }
+    excerpt
 }
