@@ -38,6 +38,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parse {
         quiet: false,
         depth: 0,
         depth_reported: false,
+        cut_off_reported: false,
         open: Vec::new(),
         steps: 0,
     };
@@ -72,6 +73,8 @@ struct Parser<'a> {
     depth: u32,
     /// Whether this routine was already said to be nested too deeply.
     depth_reported: bool,
+    /// Whether the end of the file was already reported as too early.
+    cut_off_reported: bool,
     /// Block statements and routines that are not closed yet, outermost first.
     open: Vec<Open>,
     steps: u64,
@@ -220,7 +223,10 @@ impl<'a> Parser<'a> {
     }
 
     fn push_error(&mut self, start: u32, end: u32, message: String, related: Option<Related>) {
-        if !self.quiet {
+        // A file that is cut off is one mistake, whatever it leaves open.
+        let cut_off = self.at(TokenKind::EndOfFile);
+        if !self.quiet && !(cut_off && self.cut_off_reported) {
+            self.cut_off_reported |= cut_off;
             self.errors.push(SyntaxError { start, end, message, related });
         }
         self.quiet = true;
@@ -241,6 +247,14 @@ impl<'a> Parser<'a> {
         if self.at(TokenKind::EndOfFile) || self.first_on_line(self.position) {
             self.error_before(message);
         } else {
+            self.error_at(self.position, message);
+        }
+    }
+
+    /// Reports that something else was expected than the current token.
+    fn error_unexpected(&mut self, expected: &str) {
+        if !self.quiet {
+            let message = format!("expected {expected}, found {}", self.found());
             self.error_at(self.position, message);
         }
     }
