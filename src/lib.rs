@@ -2,6 +2,8 @@
 //!
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
+pub mod cli;
+pub mod diagnostics;
 pub mod dynamics;
 pub mod emit;
 pub mod energy;

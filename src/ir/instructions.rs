@@ -55,9 +55,18 @@ pub fn movement(key: &str) -> Option<MoveSignature> {
         // Signal, SearchPoint, ToPoint, Speed, Tool
         "searchl" => (Linear, 2, 0, false, false),
         "searchc" => (Circular, 2, 0, false, false),
+        // Signal, SearchJointPos, ToJointPos, Speed
+        "searchextj" => (ExternalJoint, 2, 0, false, false),
+        "movepnp" => (Linear, 0, 0, true, false),
         _ => return None,
     };
     Some(MoveSignature { form, before, between, zone, plain })
+}
+
+/// Whether the procedure of this name (in any case) is an instruction of the Move, Trigg or
+/// Search family.
+pub fn is_movement(name: &str) -> bool {
+    movement(&name.to_ascii_lowercase()).is_some()
 }
 
 /// Instructions that write to some argument (or to all that the arguments reach).
@@ -108,4 +117,20 @@ pub fn is_writing(key: &str) -> bool {
 /// True if a call of this name, not declared in the program, may write to its arguments.
 pub fn may_write(key: &str) -> bool {
     movement(key).is_none() && !is_harmless(key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn movements_are_told_from_their_neighbours() {
+        for name in ["MoveJ", "MOVEABSJ", "triggL", "SearchExtJ", "MoveLDO"] {
+            assert!(is_movement(name), "{name}");
+        }
+        // Conditions, interrupts and procedures that only sound alike.
+        for name in ["TriggIO", "TriggEquip", "TriggCheckIO", "MoveHome", "StartMove", "Search"] {
+            assert!(!is_movement(name), "{name}");
+        }
+    }
 }

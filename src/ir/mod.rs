@@ -11,4 +11,5 @@ pub mod predefined;
 pub mod program;
 pub mod value;
 
+pub use instructions::is_movement;
 pub use lower::lower;

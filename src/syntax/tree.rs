@@ -149,6 +149,13 @@ impl<'t> Node<'t> {
         })
     }
 
+    /// All tokens in its range, trivia too.
+    pub fn all_tokens(self) -> impl Iterator<Item = Token<'t>> + use<'t> {
+        let tree = self.tree;
+        let Entry { first, last, .. } = self.entry();
+        (first as usize..last as usize).map(move |index| Token { tree, index })
+    }
+
     /// Its own tokens that are no trivia.
     pub fn own_tokens(self) -> impl Iterator<Item = Token<'t>> + use<'t> {
         self.elements().filter_map(|element| match element {

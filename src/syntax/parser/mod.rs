@@ -22,7 +22,7 @@ use super::{MAX_DEPTH, Parse, lexer};
 
 /// Tokens per node in ordinary programs, for the first allocation.
 const TOKENS_PER_NODE: usize = 2;
-/// Longest excerpt of the source in a message, in bytes.
+/// Longest excerpt of the source in a message, in characters.
 const EXCERPT: usize = 24;
 
 pub(super) fn parse(bytes: &[u8]) -> Parse {
@@ -38,6 +38,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parse {
         quiet: false,
         depth: 0,
         depth_reported: false,
+        cut_off_reported: false,
         open: Vec::new(),
         steps: 0,
     };
@@ -72,6 +73,8 @@ struct Parser<'a> {
     depth: u32,
     /// Whether this routine was already said to be nested too deeply.
     depth_reported: bool,
+    /// Whether the end of the file was already reported as too early.
+    cut_off_reported: bool,
     /// Block statements and routines that are not closed yet, outermost first.
     open: Vec<Open>,
     steps: u64,
@@ -220,7 +223,10 @@ impl<'a> Parser<'a> {
     }
 
     fn push_error(&mut self, start: u32, end: u32, message: String, related: Option<Related>) {
-        if !self.quiet {
+        // A file that is cut off is one mistake, whatever it leaves open.
+        let cut_off = self.at(TokenKind::EndOfFile);
+        if !self.quiet && !(cut_off && self.cut_off_reported) {
+            self.cut_off_reported |= cut_off;
             self.errors.push(SyntaxError { start, end, message, related });
         }
         self.quiet = true;
@@ -241,6 +247,14 @@ impl<'a> Parser<'a> {
         if self.at(TokenKind::EndOfFile) || self.first_on_line(self.position) {
             self.error_before(message);
         } else {
+            self.error_at(self.position, message);
+        }
+    }
+
+    /// Reports that something else was expected than the current token.
+    fn error_unexpected(&mut self, expected: &str) {
+        if !self.quiet {
+            let message = format!("expected {expected}, found {}", self.found());
             self.error_at(self.position, message);
         }
     }
@@ -268,10 +282,7 @@ impl<'a> Parser<'a> {
                 kind.describe().to_owned()
             }
             _ if kind.is_keyword() => kind.describe().to_owned(),
-            _ if text.len() > EXCERPT => {
-                format!("'{}…'", String::from_utf8_lossy(&text[..EXCERPT]))
-            }
-            _ => format!("'{}'", String::from_utf8_lossy(text)),
+            _ => format!("'{}'", excerpt(text)),
         }
     }
 
@@ -295,4 +306,16 @@ impl<'a> Parser<'a> {
         self.depth -= 1;
         Some(result)
     }
+}
+
+/// The start of some bytes as text; bytes that are not UTF-8 are read as ISO
+/// 8859-1, which is right for most of RAPID's legacy files.
+fn excerpt(bytes: &[u8]) -> String {
+    let latin = || bytes.iter().map(|&byte| char::from(byte)).collect();
+    let text: String = std::str::from_utf8(bytes).map_or_else(|_| latin(), str::to_owned);
+    let mut excerpt: String = text.chars().take(EXCERPT).collect();
+    if excerpt.len() < text.len() {
+        excerpt.push('…');
+    }
+    excerpt
 }

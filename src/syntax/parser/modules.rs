@@ -162,7 +162,7 @@ impl Parser<'_> {
             self.module_attributes();
         }
         if self.quiet {
-            self.recover_line();
+            self.rest_of_header();
         }
         let mut progress = Progress::new();
         loop {
@@ -272,7 +272,7 @@ impl Parser<'_> {
             progress.orphaned &= !closes_routine(kind);
             return;
         }
-        self.error_expected("a data declaration, PROC, FUNC, TRAP or ENDMODULE");
+        self.error_unexpected("a data declaration, PROC, FUNC, TRAP or ENDMODULE");
         if progress.orphaned {
             self.orphan_block();
         } else {

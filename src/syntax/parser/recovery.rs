@@ -21,7 +21,7 @@ impl Parser<'_> {
     }
 
     /// Column of a token that is first on its line.
-    fn indentation(&self, token: usize) -> Option<usize> {
+    pub(super) fn indentation(&self, token: usize) -> Option<usize> {
         if !self.first_on_line(token) {
             return None;
         }
@@ -105,7 +105,8 @@ impl Parser<'_> {
     /// Reads the keyword that ends the header of a block statement. Without it
     /// the rest of the header is skipped; gives whether its end was found.
     pub(super) fn end_header(&mut self, wanted: TokenKind) -> bool {
-        if self.eat(wanted) {
+        // The keyword is inside the string then.
+        if self.eat(wanted) || self.quiet && self.ended_by_unclosed_string() {
             return true;
         }
         self.error_expected(wanted.describe());
@@ -151,7 +152,17 @@ impl Parser<'_> {
             return;
         }
         let wrong = self.current();
-        if closes_block(wrong) && self.is_mistyped(closer, opener) {
+        let misspelt = self.misspelling(closer);
+        if misspelt > 0 {
+            let message = format!("expected {}, found {}", closer.describe(), self.found());
+            self.close_error(message, opener, false);
+            let mark = self.mark();
+            for _ in 0..misspelt {
+                self.bump();
+            }
+            self.eat(TokenKind::Semicolon);
+            self.finish(mark, NodeKind::Error);
+        } else if closes_block(wrong) && self.is_mistyped(closer, opener) {
             let message = format!("expected {}, found {}", closer.describe(), wrong.describe());
             self.close_error(message, opener, false);
             self.leaf(NodeKind::Error);
@@ -167,6 +178,35 @@ impl Parser<'_> {
         let range = self.tokens.range(self.position);
         let end = if before { range.start } else { range.end };
         self.push_error(range.start, end, message, Some(related));
+    }
+
+    /// Whether a misspelling of the keyword that closes the innermost block
+    /// stands alone on this line: the number of its tokens, or 0.
+    pub(super) fn misspelt_closer(&mut self) -> usize {
+        match self.open.last() {
+            Some(open) if self.at(TokenKind::Identifier) => self.misspelling(open.closer),
+            _ => 0,
+        }
+    }
+
+    /// `ENIDF` or `END IF` for `ENDIF`, alone on its line: the number of its
+    /// tokens, or 0.
+    fn misspelling(&mut self, closer: TokenKind) -> usize {
+        let word = self.text(self.position);
+        if !self.at(TokenKind::Identifier)
+            || !word.first().is_some_and(|letter| letter.eq_ignore_ascii_case(&b'E'))
+            || !self.first_on_line(self.position)
+        {
+            return 0;
+        }
+        let second = self.after(self.position);
+        let wanted = closer.describe().as_bytes();
+        if word.eq_ignore_ascii_case(b"END") {
+            let rest = wanted.get(word.len()..).unwrap_or_default();
+            return if self.text(second).eq_ignore_ascii_case(rest) { 2 } else { 0 };
+        }
+        let alone = self.tokens.kind(second) == TokenKind::EndOfFile || self.first_on_line(second);
+        usize::from(alone && is_near(word, wanted))
     }
 
     /// Whether the closing keyword at hand is the wrong one for the innermost
@@ -290,4 +330,23 @@ fn continues(kind: TokenKind) -> bool {
             | TokenKind::And
             | TokenKind::Or
     )
+}
+
+/// Whether a word differs from a keyword by one letter that is wrong, missing
+/// or too much, or by two neighbours exchanged.
+fn is_near(word: &[u8], keyword: &[u8]) -> bool {
+    let word = word.to_ascii_uppercase();
+    let same = word.iter().zip(keyword).take_while(|(a, b)| a == b).count();
+    let (a, b) = (&word[same..], &keyword[same..]);
+    match (a, b) {
+        ([first, second, a @ ..], [third, fourth, b @ ..])
+            if (first, second) == (fourth, third) && a == b =>
+        {
+            true
+        }
+        ([_, a @ ..], [_, b @ ..]) if a == b => true,
+        ([_, rest @ ..], _) if rest == b => true,
+        (_, [_, rest @ ..]) => rest == a,
+        _ => false,
+    }
 }

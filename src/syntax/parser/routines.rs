@@ -23,12 +23,13 @@ impl Parser<'_> {
             self.type_name();
         }
         self.name();
-        if keyword != TokenKind::Trap {
-            if self.at(TokenKind::LeftParen) {
-                self.parameters();
-            } else {
-                self.error_expected("'('");
+        match (keyword, self.at(TokenKind::LeftParen)) {
+            (TokenKind::Trap, true) => {
+                self.error_at(self.position, "a TRAP has no parameters".to_owned());
             }
+            (TokenKind::Trap, false) => {}
+            (_, true) => self.parameters(),
+            (_, false) => self.error_expected("'('"),
         }
         if self.quiet {
             self.rest_of_header();
@@ -39,8 +40,8 @@ impl Parser<'_> {
         self.finish(mark, kind);
     }
 
-    /// Skips what is left of the line of a routine's header.
-    fn rest_of_header(&mut self) {
+    /// Skips what is left of the line of the header of a routine or module.
+    pub(super) fn rest_of_header(&mut self) {
         let mark = self.mark();
         let start = self.position;
         while !self.first_on_line(self.position) && !ends_block(self.current()) {

@@ -16,7 +16,7 @@ impl Parser<'_> {
             if self.at(TokenKind::EndOfFile) {
                 break;
             }
-            if self.at_routine() {
+            if self.at_routine() || self.misspelt_closer() > 0 {
                 break;
             }
             let before = self.position;
@@ -127,7 +127,7 @@ impl Parser<'_> {
             kind if Self::is_name(kind) => self.name_statement(),
             _ => {
                 let mark = self.mark();
-                self.error_expected("a statement");
+                self.error_unexpected("a statement");
                 self.bump();
                 self.recover();
                 self.finish(mark, NodeKind::Error);
@@ -216,6 +216,7 @@ impl Parser<'_> {
     /// `MoveJ p, v, z, t;`, `%name% a;`
     fn call_statement(&mut self) {
         let mark = self.mark();
+        let callee = self.position;
         if self.at(TokenKind::Percent) {
             self.late_binding();
         } else {
@@ -229,7 +230,7 @@ impl Parser<'_> {
             }
             self.close_bracket(TokenKind::RightParen, "',' or ')'");
         } else if !matches!(self.current(), TokenKind::Semicolon | TokenKind::EndOfFile)
-            && !self.ends_call_early()
+            && !self.ends_call_early(callee)
         {
             self.arguments();
         }
@@ -238,16 +239,21 @@ impl Parser<'_> {
     }
 
     /// A callee at the end of its line, with the next statement after it.
-    fn ends_call_early(&mut self) -> bool {
+    fn ends_call_early(&mut self, callee: usize) -> bool {
         self.first_on_line(self.position) && {
             let kind = self.current();
             ends_block(kind)
                 || starts_statement(kind) && kind.is_keyword()
                 || kind == TokenKind::Identifier
-                    && matches!(
-                        self.next(),
-                        TokenKind::Identifier | TokenKind::Assign | TokenKind::Colon
-                    )
+                    && match self.next() {
+                        TokenKind::Identifier | TokenKind::Assign | TokenKind::Colon => true,
+                        // An argument would stand further to the right.
+                        TokenKind::Semicolon => {
+                            let column = self.indentation(self.position);
+                            column.is_some() && column == self.indentation(callee)
+                        }
+                        _ => false,
+                    }
         }
     }
 

@@ -1,0 +1,362 @@
+//! Finding and reading the RAPID files that the command line names.
+//!
+//! A file that is named is read whatever it is called; a folder is walked for
+//! RAPID files; a `.pgf` stands for the modules it lists. Of a controller
+//! backup every file is read, and each knows its task.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::text::{FileId, SourceFile};
+
+/// Extensions of files with RAPID text, in lower case.
+const MODULES: [&str; 5] = ["mod", "sys", "prg", "modx", "sysx"];
+/// Extension of a program file, which lists modules.
+const PROGRAM: &str = "pgf";
+/// What a folder was searched for, for messages.
+const SOUGHT: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
+/// Deepest folder that is searched.
+const MAX_FOLDERS: usize = 32;
+/// The task that moves the first robot, in the folders of a backup.
+const FIRST_TASK: &str = "TASK1";
+
+/// A file that was read.
+#[derive(Clone, Debug)]
+pub struct InputFile {
+    /// Its bytes; its path is the one given, joined with `/`.
+    pub source: SourceFile,
+    /// Its path below the input, with `/`: where it goes below `--out`.
+    pub relative: String,
+    /// Its task (`TASK1` …) if it belongs to a controller backup.
+    pub task: Option<String>,
+}
+
+/// A file or folder that could not be read.
+#[derive(Clone, Debug)]
+pub struct Unreadable {
+    /// Its path.
+    pub path: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// What the command line names, sorted by path within each of its arguments.
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// The files; their ids count from 0 in this order.
+    pub files: Vec<InputFile>,
+    /// What could not be read beside them.
+    pub unreadable: Vec<Unreadable>,
+}
+
+/// Why nothing was read.
+#[derive(Debug, Error)]
+pub enum InputError {
+    /// No path was given.
+    #[error("no file or folder given; name a RAPID file, a folder or a .pgf program")]
+    Nothing,
+    /// A folder without RAPID.
+    #[error(
+        "no RAPID in '{path}': looked in it and its folders for {SOUGHT}; name a file to read it \
+         whatever its extension"
+    )]
+    NoRapid {
+        /// The folder.
+        path: String,
+    },
+    /// A `.pgf` whose modules are not there.
+    #[error("'{path}' lists no module that can be read; name the module files themselves")]
+    EmptyProgram {
+        /// The program file.
+        path: String,
+    },
+    /// Something that cannot be read.
+    #[error("cannot read '{path}': {reason}; check the path and its permissions")]
+    Unreadable {
+        /// The path.
+        path: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl Input {
+    /// The files that make up the program of the robot: all of them, or of a
+    /// controller backup those of its first motion task.
+    pub fn program(&self) -> impl Iterator<Item = &InputFile> {
+        let first = self.files.iter().any(|file| file.task.as_deref() == Some(FIRST_TASK));
+        self.files.iter().filter(move |file| !first || file.task.as_deref() == Some(FIRST_TASK))
+    }
+}
+
+/// Reads what `paths` name. A file named twice is read once.
+///
+/// # Errors
+/// When nothing can be read; the error is about the first path then. Otherwise
+/// what cannot be read is listed in [`Input::unreadable`].
+pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
+    let mut first_error = None;
+    let mut input = Input::default();
+    let mut found: Vec<Found> = Vec::new();
+    for path in paths {
+        match find(path, &mut input.unreadable) {
+            Ok(files) => found.extend(files),
+            Err(error) => {
+                input.unreadable.push(Unreadable { path: shown(path), reason: error.to_string() });
+                first_error.get_or_insert(error);
+            }
+        }
+    }
+    let mut seen = BTreeSet::new();
+    for file in found {
+        if !seen.insert(shown(&file.path)) {
+            continue;
+        }
+        match bytes_of(&file.path) {
+            Ok(bytes) => {
+                let id = FileId(input.files.len() as u32);
+                let source = SourceFile::new(id, shown(&file.path), bytes);
+                let task = task_of(&source.path);
+                input.files.push(InputFile { source, relative: file.relative, task });
+            }
+            Err(reason) => {
+                let path = shown(&file.path);
+                first_error.get_or_insert_with(|| InputError::Unreadable {
+                    path: path.clone(),
+                    reason: reason.clone(),
+                });
+                input.unreadable.push(Unreadable { path, reason });
+            }
+        }
+    }
+    match first_error {
+        _ if !input.files.is_empty() => Ok(input),
+        Some(error) => Err(error),
+        None => Err(InputError::Nothing),
+    }
+}
+
+/// A file to be read.
+struct Found {
+    path: PathBuf,
+    relative: String,
+}
+
+fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
+    let metadata = fs::metadata(path)
+        .map_err(|error| InputError::Unreadable { path: shown(path), reason: error.to_string() })?;
+    if metadata.is_dir() {
+        let mut files = Vec::new();
+        walk(path, 0, &mut files, unreadable);
+        let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =
+            files.into_iter().partition(|file| has_extension(file, &[PROGRAM]));
+        for program in &programs {
+            modules.extend(listed(program).unwrap_or_default().into_iter().filter(|m| m.is_file()));
+        }
+        modules.sort_by_key(|file| shown(file));
+        modules.dedup_by_key(|file| shown(file));
+        if modules.is_empty() {
+            return Err(InputError::NoRapid { path: shown(path) });
+        }
+        return Ok(modules.into_iter().map(|file| found_below(path, file)).collect());
+    }
+    if has_extension(path, &[PROGRAM]) {
+        return program(path, unreadable);
+    }
+    Ok(vec![found_below(path.parent().unwrap_or(Path::new("")), path.to_path_buf())])
+}
+
+fn found_below(root: &Path, path: PathBuf) -> Found {
+    let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
+    Found { path, relative }
+}
+
+/// A path without anything that would lead out of a folder.
+fn below(path: &Path) -> String {
+    let parts = path.components().filter_map(|part| match part {
+        Component::Normal(name) => Some(name.to_string_lossy()),
+        _ => None,
+    });
+    parts.collect::<Vec<_>>().join("/")
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// The modules that a program file lists.
+fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
+    let modules =
+        listed(path).map_err(|reason| InputError::Unreadable { path: shown(path), reason })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = Vec::new();
+    for module in modules {
+        if module.is_file() {
+            files.push(found_below(folder, module));
+        } else {
+            let reason = format!("listed in '{}' but not there", shown(path));
+            unreadable.push(Unreadable { path: shown(&module), reason });
+        }
+    }
+    if files.is_empty() {
+        return Err(InputError::EmptyProgram { path: shown(path) });
+    }
+    Ok(files)
+}
+
+/// The paths between `<Module>` and `</Module>`, relative to the program file.
+fn listed(path: &Path) -> Result<Vec<PathBuf>, String> {
+    let bytes = bytes_of(path)?;
+    let text = crate::text::decode(&bytes).text;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut modules = Vec::new();
+    for part in text.split("<Module>").skip(1) {
+        let name = part.split("</Module>").next().unwrap_or_default().trim();
+        if !name.is_empty() {
+            // Controllers write the separators of their own file system.
+            modules.push(folder.join(name.replace('\\', "/")));
+        }
+    }
+    Ok(modules)
+}
+
+/// Collects the files with RAPID below a folder. Links to folders are not
+/// followed: they could lead in a circle.
+fn walk(folder: &Path, depth: usize, files: &mut Vec<PathBuf>, unreadable: &mut Vec<Unreadable>) {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) => {
+            unreadable.push(Unreadable { path: shown(folder), reason: error.to_string() });
+            return;
+        }
+    };
+    for entry in entries.filter_map(Result::ok) {
+        let path = entry.path();
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_folder && depth < MAX_FOLDERS {
+            walk(&path, depth + 1, files, unreadable);
+        } else if (has_extension(&path, &MODULES) || has_extension(&path, &[PROGRAM]))
+            && path.is_file()
+        {
+            files.push(path);
+        }
+    }
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension()
+        .and_then(|extension| extension.to_str())
+        .is_some_and(|extension| extensions.contains(&extension.to_ascii_lowercase().as_str()))
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
+    let bytes = fs::read(path).map_err(|error| error.to_string())?;
+    if u32::try_from(bytes.len()).is_err() {
+        return Err("larger than 4 GiB".to_owned());
+    }
+    Ok(bytes)
+}
+
+/// `TASK1` of `…/RAPID/TASK1/PROGMOD/a.mod` and of `…/SYSMOD/…`.
+fn task_of(path: &str) -> Option<String> {
+    let parts: Vec<&str> = path.split('/').collect();
+    parts.windows(3).find_map(|window| {
+        let task = window[1].to_ascii_uppercase();
+        let number = task.strip_prefix("TASK")?;
+        let folder = window[2].to_ascii_uppercase();
+        let of_backup = window[0].eq_ignore_ascii_case("RAPID")
+            && !number.is_empty()
+            && number.bytes().all(|digit| digit.is_ascii_digit())
+            && (folder == "PROGMOD" || folder == "SYSMOD");
+        of_backup.then_some(task)
+    })
+}
+
+/// A path as it is shown, with `/`.
+fn shown(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    if std::path::MAIN_SEPARATOR == '/' { text.into_owned() } else { text.replace('\\', "/") }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a file that cannot be made fails the test")]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for (path, text) in files {
+            let path = folder.path().join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        folder
+    }
+
+    fn relatives<'a>(files: impl Iterator<Item = &'a InputFile>) -> Vec<&'a str> {
+        files.map(|file| file.relative.as_str()).collect()
+    }
+
+    #[test]
+    fn folders_are_walked_in_order() {
+        let folder = folder(&[("b.MOD", ""), ("a/z.sys", ""), ("a/note.txt", ""), ("c.modx", "")]);
+        let input = read(&[folder.path().to_path_buf()]).unwrap();
+        assert_eq!(relatives(input.files.iter()), ["a/z.sys", "b.MOD", "c.modx"]);
+        let prefix = shown(folder.path());
+        assert_eq!(input.files[0].source.path, format!("{prefix}/a/z.sys"));
+        assert_eq!(input.files[2].source.id, FileId(2));
+    }
+
+    #[test]
+    fn a_named_file_is_read_whatever_its_extension_and_once() {
+        let folder = folder(&[("program.txt", "MODULE a ENDMODULE")]);
+        let path = folder.path().join("program.txt");
+        let input = read(&[path.clone(), path]).unwrap();
+        assert_eq!(relatives(input.files.iter()), ["program.txt"]);
+        assert_eq!(input.files[0].source.bytes, b"MODULE a ENDMODULE");
+    }
+
+    #[test]
+    fn a_program_stands_for_its_modules() {
+        let list = "<?xml version=\"1.0\"?>\r\n<Program>\r\n  <Module>Main.mod</Module>\r\n  \
+                    <Module>sub\\Lib.mod</Module>\r\n  <Module>gone.mod</Module>\r\n</Program>\r\n";
+        let folder =
+            folder(&[("cell.pgf", list), ("Main.mod", ""), ("sub/Lib.mod", ""), ("other.mod", "")]);
+        let input = read(&[folder.path().join("cell.pgf")]).unwrap();
+        assert_eq!(relatives(input.files.iter()), ["Main.mod", "sub/Lib.mod"]);
+        assert_eq!(input.unreadable.len(), 1);
+    }
+
+    #[test]
+    fn the_program_of_a_backup_is_its_first_task() {
+        let folder = folder(&[
+            ("BACKINFO/backinfo.txt", ""),
+            ("HOME/copy.mod", ""),
+            ("RAPID/TASK1/PROGMOD/Main.mod", ""),
+            ("RAPID/TASK1/SYSMOD/user.sys", ""),
+            ("RAPID/TASK2/PROGMOD/Watch.mod", ""),
+        ]);
+        let input = read(&[folder.path().to_path_buf()]).unwrap();
+        assert_eq!(input.files.len(), 4);
+        assert_eq!(
+            relatives(input.program()),
+            ["RAPID/TASK1/PROGMOD/Main.mod", "RAPID/TASK1/SYSMOD/user.sys"]
+        );
+    }
+
+    #[test]
+    fn nothing_to_read_names_the_way_out() {
+        let folder = folder(&[("note.txt", "")]);
+        let error = read(&[folder.path().to_path_buf()]).unwrap_err().to_string();
+        assert!(error.contains(".mod") && error.contains(".pgf"), "{error}");
+        let gone = folder.path().join("gone.mod");
+        let error = read(std::slice::from_ref(&gone)).unwrap_err().to_string();
+        assert!(error.contains("gone.mod"), "{error}");
+        // Beside something that can be read it is only listed.
+        let input = read(&[gone, folder.path().join("note.txt")]).unwrap();
+        assert_eq!((input.files.len(), input.unreadable.len()), (1, 1));
+    }
+}

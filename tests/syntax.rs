@@ -1,0 +1,146 @@
+//! The fixtures of the parser: each input beside what it is read as.
+
+use std::path::{Path, PathBuf};
+
+use joulepath::diagnostics::{Diagnostic, Label, Paint, full};
+use joulepath::syntax::{self, Element, Node, NodeKind, Parse, ast};
+use joulepath::text::{FileId, SourceFile, Span};
+
+const ID: FileId = FileId(0);
+
+/// A fixture and what was read from it.
+struct Fixture {
+    name: String,
+    source: SourceFile,
+    parse: Parse,
+}
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/syntax").join(name)
+}
+
+fn fixtures(name: &str) -> Vec<Fixture> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder(name))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension != "snap"))
+        .collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        let bytes = std::fs::read(&path).unwrap();
+        let parse = syntax::parse(&bytes);
+        let file = path.file_name().unwrap().to_str().unwrap().to_owned();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        Fixture { name, source: SourceFile::new(ID, file, bytes), parse }
+    };
+    paths.into_iter().map(read).collect()
+}
+
+fn snapshot(folder_name: &str, fixture: &Fixture, text: &str) {
+    insta::with_settings!({
+        snapshot_path => folder(folder_name),
+        prepend_module_to_snapshot => false,
+        omit_expression => true,
+    }, {
+        insta::assert_snapshot!(fixture.name.as_str(), text);
+    });
+}
+
+fn rendered(fixture: &Fixture) -> String {
+    let error = |error: &syntax::SyntaxError| {
+        let span = |start, end| Span { file: ID, start, end };
+        let mut shown = Diagnostic::error(span(error.start, error.end), error.message.clone());
+        shown.labels.extend(error.related.iter().map(|related| Label {
+            span: span(related.start, related.end),
+            message: related.message.clone(),
+        }));
+        full(&shown, &fixture.source, Paint::Plain) + "\n"
+    };
+    fixture.parse.errors.iter().map(error).collect()
+}
+
+#[test]
+fn what_controllers_accept_is_read_without_errors() {
+    for fixture in fixtures("ok") {
+        assert_eq!(rendered(&fixture), "", "{} has errors", fixture.name);
+        let tree = syntax::dump(&fixture.parse.tree, &fixture.source.bytes);
+        let tolerances = fixture.parse.tolerances.iter().map(|used| {
+            let position = fixture.source.position(used.start);
+            format!("tolerated {}:{} {:?}\n", position.line, position.column, used.tolerance)
+        });
+        snapshot("ok", &fixture, &format!("{tree}{}", tolerances.collect::<String>()));
+    }
+}
+
+#[test]
+fn each_mistake_is_one_error() {
+    let mut cascades = Vec::new();
+    for fixture in fixtures("err") {
+        let errors = rendered(&fixture);
+        if fixture.parse.errors.len() != 1 {
+            cascades.push(format!("{}:\n{errors}", fixture.name));
+            continue;
+        }
+        snapshot("err", &fixture, &errors);
+    }
+    assert!(cascades.is_empty(), "not one error each:\n{}", cascades.join("\n"));
+}
+
+/// In the fixtures the statements that have nothing to do with the mistake call
+/// procedures whose names start with `Keep`.
+#[test]
+fn recovery_keeps_the_statements_around_a_mistake() {
+    let mut lost = Vec::new();
+    for fixture in fixtures("err") {
+        let bytes = &fixture.source.bytes;
+        let text = String::from_utf8_lossy(bytes);
+        let wanted = text.lines().filter(|line| line.trim_start().starts_with("Keep")).count();
+        let whole = |node: &Node<'_>| {
+            let name = ast::Call::cast(*node).and_then(ast::Call::name);
+            name.is_some_and(|name| name.text(bytes).starts_with(b"Keep"))
+                && node.subtree().all(|inner| inner.kind() != NodeKind::Error)
+        };
+        let kept = fixture.parse.tree.nodes().filter(whole).count();
+        if kept != wanted {
+            let tree = syntax::dump(&fixture.parse.tree, bytes);
+            lost.push(format!("{}: kept {kept} of {wanted}\n{tree}", fixture.name));
+        }
+    }
+    assert!(lost.is_empty(), "{}", lost.join("\n"));
+}
+
+#[test]
+fn every_fixture_is_lossless() {
+    for fixture in fixtures("ok").iter().chain(&fixtures("err")) {
+        check_tree(&fixture.parse, &fixture.source.bytes);
+    }
+}
+
+/// Joined tokens are the source, children lie in their parents in order, and
+/// the walk over elements meets each token once.
+fn check_tree(parse: &Parse, bytes: &[u8]) {
+    let root = parse.tree.root();
+    let joined: Vec<u8> = root.all_tokens().flat_map(|token| token.text(bytes).to_vec()).collect();
+    assert!(joined == bytes, "tokens are not the source");
+    let mut walked = 0;
+    let mut stack = vec![root];
+    while let Some(node) = stack.pop() {
+        let outer = node.range();
+        let mut before = outer.start;
+        for element in node.elements() {
+            match element {
+                Element::Token(_) => walked += 1,
+                Element::Node(child) => {
+                    let inner = child.range();
+                    assert!(before <= inner.start && inner.end <= outer.end, "{:?}", child.kind());
+                    before = inner.end;
+                    stack.push(child);
+                }
+            }
+        }
+    }
+    assert_eq!(walked, parse.tree.tokens().len(), "tokens in the walk");
+    for error in &parse.errors {
+        assert!(error.start <= error.end && error.end as usize <= bytes.len());
+    }
+}
