@@ -12,6 +12,7 @@ pub mod kinematics;
 pub mod motion;
 pub mod optimize;
 pub mod path;
+pub mod retrofit;
 pub mod robot;
 pub mod syntax;
 pub mod text;

@@ -3,9 +3,12 @@
 //! New modules are rendered whole; the original gets insertions only, so that
 //! every byte of it stays.
 
+mod brake_note;
 pub mod names;
-pub mod number;
 pub mod stream_module;
 
+pub use brake_note::{BrakeDwell, brake_note};
 pub use names::Names;
-pub use stream_module::{Emitted, EmitError, EmittedStream, Site, emit};
+pub use stream_module::{
+    EmitError, Emitted, EmittedStream, Site, can_guard, emit, end_of_line,
+};

@@ -4,7 +4,7 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use super::names::Names;
-use super::number::{TIME_DECIMALS, joints, number};
+use crate::ir::number::{TIME_DECIMALS, joints, number};
 use crate::ir::movement::LocalValue;
 use crate::ir::value::Datum;
 use crate::text::{Edit, SourceFile, Span};

@@ -71,7 +71,7 @@ pub fn at_rest(model: &Model, load: &Load, q: &Joints, duration: f64) -> EnergyP
 }
 
 /// Base power and open brakes.
-fn base(model: &Model, duration: f64) -> EnergyParts {
+pub fn base(model: &Model, duration: f64) -> EnergyParts {
     EnergyParts {
         idle_j: model.drive.base_w * duration,
         brake_j: model.brakes.as_ref().map_or(0.0, |b| b.power_released_w) * duration,

@@ -7,6 +7,7 @@ pub mod instructions;
 pub mod layout;
 mod lower;
 pub mod movement;
+pub mod number;
 pub mod predefined;
 pub mod program;
 pub mod value;

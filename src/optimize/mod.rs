@@ -1,10 +1,16 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
 pub mod check;
+mod banded;
 mod cone;
 pub mod corridor;
 mod energy_cones;
 pub mod energy_program;
+pub mod idle;
 pub mod path_energy;
 pub mod reason;
+pub mod retime;
 pub mod site;
+pub mod stream_fit;
+pub mod stream_reference;
+pub mod stream_spacing;

@@ -1,0 +1,102 @@
+//! Dwells: what standing still costs, and from when on the brake pays.
+//!
+//! Break-even as in Paes et al. 2014, figure 7: the energy of one release over
+//! the holding power, plus the time that engaging and releasing take.
+
+use super::reason::Reason;
+use crate::dynamics::Load;
+use crate::energy::power::holding_w;
+use crate::motion::Simulation;
+use crate::motion::timeline::{WaitBasis, What};
+use crate::path::joint_path::Joints;
+use crate::robot::Model;
+use crate::text::Span;
+
+/// Uninterrupted waits at one place.
+#[derive(Clone, Debug)]
+pub struct Dwell {
+    /// Indices of the events.
+    pub events: Vec<usize>,
+    /// The longest of its waits.
+    pub span: Span,
+    /// Known length, s.
+    pub duration: f64,
+    /// Where the robot stands, rad.
+    pub q: Joints,
+    /// Holding power by joint, W.
+    pub holding_w: Joints,
+    /// s; `None` where nothing is to be held or no brake is known.
+    pub break_even_s: Option<f64>,
+    /// What the brake would save, J; 0 where it does not pay.
+    pub potential_j: f64,
+    /// Why the program is not changed.
+    pub reason: Reason,
+}
+
+/// The dwells of a cycle, in order.
+pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
+    let mut dwells: Vec<Dwell> = Vec::new();
+    let mut load = Load::none();
+    let mut open = false;
+    for (index, event) in simulation.events.iter().enumerate() {
+        match &event.what {
+            What::Run(run) => {
+                load = run.load.clone();
+                open = false;
+            }
+            What::Left(_) => open = false,
+            What::Output(..) => {}
+            What::Wait(wait) => {
+                if !open {
+                    dwells.push(Dwell {
+                        events: Vec::new(),
+                        span: wait.wait.span,
+                        duration: 0.0,
+                        q: wait.q,
+                        holding_w: holding_w(model, &load, &wait.q),
+                        break_even_s: None,
+                        potential_j: 0.0,
+                        reason: Reason::UnknownDwell,
+                    });
+                    open = true;
+                }
+                if let Some(dwell) = dwells.last_mut() {
+                    let longest = dwell
+                        .events
+                        .iter()
+                        .map(|i| simulation.events[*i].duration)
+                        .fold(-1.0, f64::max);
+                    if event.duration > longest {
+                        dwell.span = wait.wait.span;
+                    }
+                    dwell.events.push(index);
+                    dwell.duration += event.duration;
+                    if wait.basis != WaitBasis::Unknown {
+                        dwell.reason = Reason::ShortDwell(f64::INFINITY);
+                    }
+                }
+            }
+        }
+    }
+    for dwell in &mut dwells {
+        judge(model, dwell);
+    }
+    dwells
+}
+
+fn judge(model: &Model, dwell: &mut Dwell) {
+    let holding: f64 = dwell.holding_w.iter().sum();
+    let Some(brakes) = &model.brakes else { return };
+    if holding <= 0.0 || matches!(dwell.reason, Reason::UnknownDwell) {
+        return;
+    }
+    let delay = brakes.engage_s + brakes.release_s;
+    let break_even = brakes.energy_per_release_j / holding + delay;
+    dwell.break_even_s = Some(break_even);
+    dwell.reason = if dwell.duration > break_even {
+        dwell.potential_j = holding * (dwell.duration - delay) - brakes.energy_per_release_j;
+        Reason::NeedsSetting(break_even)
+    } else {
+        Reason::ShortDwell(break_even)
+    };
+}

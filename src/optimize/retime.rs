@@ -1,0 +1,418 @@
+//! A run of movements as a stream of least energy in a given time.
+//!
+//! The convex program on the path gives an intended motion; a stream is fitted
+//! to it and checked as the controller will realise it. What breaks a limit
+//! tightens the margins and is tried again.
+
+use super::check::{Check, check};
+use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::energy_program::minimize_energy;
+use super::path_energy::{EnergyModel, Sharing};
+use super::reason::Reason;
+use super::stream_fit::{StreamFit, StreamLimits, fit_stream};
+use super::stream_reference::Reference;
+use super::stream_spacing::{Spacing, adaptive_intervals};
+use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
+use crate::energy::power::motion_energy;
+use crate::energy::{EnergyParts, account};
+use crate::motion::sampling::{self, Loaded, SpeedCap};
+use crate::motion::stream::Stream;
+use crate::motion::timed::TimedMotion;
+use crate::motion::timeline::Run;
+use crate::motion::timing::grid::PathGrid;
+use crate::motion::timing::limits::PathLimits;
+use crate::motion::timing::profile::Profile;
+use crate::motion::timing::reachability::time_optimal;
+use crate::motion::virtual_controller::motion_limits;
+use crate::path::joint_path::{DOF, JointPath, Joints};
+use crate::robot::{self, Model};
+
+/// A run to be timed anew.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// The robot.
+    pub model: &'a Model,
+    /// The run as the controller executes it.
+    pub run: &'a Run,
+    /// Its energy.
+    pub energy_before: EnergyParts,
+    /// Least time between two points, s.
+    pub spacing_s: f64,
+    /// Which programmed speeds are ceilings.
+    pub ceilings: Ceilings,
+}
+
+/// The time of a run, settling included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Least energy in at most this time, s; only if it saves energy.
+    Within(f64),
+    /// Least energy in this time, s.
+    Exactly(f64),
+    /// Least time.
+    Fastest,
+}
+
+/// A stream that stands for a run.
+#[derive(Clone, Debug)]
+pub struct Retiming {
+    /// As emitted: its figures are rounded like the text.
+    pub stream: Stream,
+    /// What it does to the limits.
+    pub check: Check,
+    /// Energy of the run with it, settling included.
+    pub energy: EnergyParts,
+    /// Energy of the run as it was, J.
+    pub energy_before_j: f64,
+    /// Duration of the run with it, s.
+    pub duration_s: f64,
+    /// No timing of the path takes less in this time, J, all six parts.
+    pub lower_bound_j: f64,
+}
+
+/// Intervals of the grid besides those of zones.
+const INTERVALS: usize = 44;
+/// Attempts with tighter margins.
+const ATTEMPTS: usize = 6;
+/// Margin to acceleration and torque limits at first: what a stream between nodes needs.
+const FIRST_MARGIN: f64 = 0.98;
+/// Margin to speed ceilings at first.
+const FIRST_SPEED_MARGIN: f64 = 0.995;
+/// Smallest saving that is worth a stream, share of the motion energy.
+const WORTHWHILE: f64 = 1e-3;
+/// Steps in which the time of the fastest stream is searched, share of the ramp time.
+const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
+
+/// Margins and tolerances of one attempt.
+#[derive(Clone, Copy)]
+struct Margins {
+    load: f64,
+    speed: f64,
+    /// Tolerance of the points' placing, m.
+    spacing: f64,
+}
+
+/// The stream of a run.
+///
+/// # Errors
+/// The reason why the run stays as it is.
+pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
+    let work = Work::new(task)?;
+    match goal {
+        Goal::Within(time) => {
+            let retiming = work.least_energy(time)?;
+            let saved = task.energy_before.energy_j() - retiming.energy.energy_j();
+            if saved > WORTHWHILE * task.energy_before.motion_energy_j().abs() {
+                Ok(retiming)
+            } else {
+                Err(Reason::NoSaving)
+            }
+        }
+        Goal::Exactly(time) => work.least_energy(time),
+        Goal::Fastest => work.least_time(),
+    }
+}
+
+/// The least time of a run as a stream, s; `None` where there is no stream.
+pub fn fastest(task: &Task<'_>) -> Option<f64> {
+    Work::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
+}
+
+struct Work<'a> {
+    task: &'a Task<'a>,
+    path: &'a JointPath,
+    corridor: Corridor,
+    limits: StreamLimits,
+    model: EnergyModel,
+    lever: Joints,
+}
+
+impl<'a> Work<'a> {
+    fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
+        let [(_, TimedMotion::Path(path, _))] = task.run.motions.as_slice() else {
+            return Err(Reason::SharpCorner);
+        };
+        let corridor =
+            Corridor::new(task.model, task.run, task.ceilings).ok_or(Reason::SharpCorner)?;
+        let robot = task.model;
+        let list = |values: &Option<Vec<f64>>| -> Joints {
+            std::array::from_fn(|j| {
+                values.as_ref().and_then(|v| v.get(j)).copied().unwrap_or(f64::INFINITY)
+            })
+        };
+        let motors = robot.motors.as_ref();
+        let model = EnergyModel {
+            loss: std::array::from_fn(|j| motors.map_or(0.0, |m| m.loss_constant[j])),
+            base_w: 0.0,
+            sharing: match robot.drive.sharing {
+                robot::Sharing::None => Sharing::PerJoint,
+                robot::Sharing::Bus => Sharing::Bus,
+            },
+            regeneration: robot.drive.regeneration,
+        };
+        let limits = StreamLimits {
+            velocity: list(&robot.limits.velocity),
+            acceleration: list(&robot.limits.acceleration),
+            jerk: list(&robot.limits.jerk),
+        };
+        Ok(Work { task, path, corridor, limits, model, lever: levers(robot, task.run) })
+    }
+
+    /// Least energy in a time, settling included.
+    fn least_energy(&self, time: f64) -> Result<Retiming, Reason> {
+        let budget = round_down(time - self.task.run.settling);
+        let mut margins = self.first_margins();
+        let mut problem = None;
+        for _ in 0..ATTEMPTS {
+            let (grid, limits) = self.grid(margins)?;
+            let fast = fastest_profile(&grid, &limits)?;
+            let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget)
+                .into_optimum()
+                .ok_or(Reason::NoSaving)?;
+            match self.realise(&optimum.profile, budget, margins) {
+                Ok((stream, check)) if check.holds() => {
+                    return Ok(self.retiming(stream, check, Some(optimum.lower_bound)));
+                }
+                Ok((_, check)) => {
+                    margins = margins.tightened(&check);
+                    problem = Some(describe(&check));
+                }
+                Err(Reason::NoStream(why)) => {
+                    margins.load *= FIRST_MARGIN;
+                    problem = Some(why);
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Err(Reason::NoStream(problem.unwrap_or_default()))
+    }
+
+    /// Least time: the fastest profile, given as much longer as the jerk limit needs.
+    fn least_time(&self) -> Result<Retiming, Reason> {
+        let mut margins = self.first_margins();
+        let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
+        let mut problem = Reason::NoSaving;
+        for _ in 0..ATTEMPTS {
+            let (grid, limits) = self.grid(margins)?;
+            let fast = fastest_profile(&grid, &limits)?;
+            let mut best: Option<Check> = None;
+            for share in RAMP_SHARES {
+                let budget = round_up(fast.duration() + share * ramp);
+                match self.realise(&fast, budget, margins) {
+                    Ok((stream, check)) if check.holds() => {
+                        return Ok(self.retiming(stream, check, None));
+                    }
+                    Ok((_, check)) => {
+                        problem = Reason::NoStream(describe(&check));
+                        best = Some(check);
+                    }
+                    Err(reason) => problem = reason,
+                }
+            }
+            match best {
+                Some(check) => margins = margins.tightened(&check),
+                None => margins.load *= FIRST_MARGIN,
+            }
+        }
+        Err(problem)
+    }
+
+    fn first_margins(&self) -> Margins {
+        let line = self.task.run.legs.iter().any(|leg| {
+            !matches!(leg.kind, crate::path::LegKind::Joint)
+        });
+        let tolerance = if line { LINE_TOLERANCE } else { JOINT_TOLERANCE };
+        Margins { load: FIRST_MARGIN, speed: FIRST_SPEED_MARGIN, spacing: 0.5 * tolerance }
+    }
+
+    fn grid(&self, margins: Margins) -> Result<(PathGrid, PathLimits), Reason> {
+        let caps: Vec<SpeedCap> = self
+            .task
+            .run
+            .moves
+            .iter()
+            .map(|record| SpeedCap {
+                tcp: margins.speed * self.task.ceilings.of(&record.movement),
+                orientation: f64::INFINITY,
+            })
+            .collect();
+        let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
+        let nodes = sampling::nodes(self.path, INTERVALS);
+        let no_grid = |why: String| Reason::NoStream(why);
+        let grid = sampling::grid(loaded, self.path, &nodes, &caps)
+            .map_err(|error| no_grid(error.to_string()))?;
+        let full = motion_limits(self.task.model, margins.load);
+        let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
+            .map_err(|error| no_grid(error.to_string()))?;
+        Ok((grid, limits))
+    }
+
+    /// A stream of this duration for a profile, rounded as it will be emitted.
+    fn realise(
+        &self,
+        profile: &Profile,
+        duration: f64,
+        margins: Margins,
+    ) -> Result<(Stream, Check), Reason> {
+        let failed = |why: &str| Reason::NoStream(why.to_owned());
+        let reference = self.reference(profile)?;
+        let spacing = Spacing {
+            shortest: self.task.spacing_s,
+            tolerance: margins.spacing,
+            lever: self.lever,
+        };
+        let intervals = rounded(adaptive_intervals(&reference, duration, &spacing), duration);
+        let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
+            .map_err(|error| failed(&error.to_string()))?;
+        let stream = match fit {
+            StreamFit::Fitted(fitted) => self.rounded(&fitted.stream)?,
+            StreamFit::TooFast { .. } => {
+                return Err(failed("speed, acceleration and jerk leave no stream in this time"));
+            }
+            StreamFit::Failed => return Err(failed("the solver found no stream")),
+        };
+        let tool = self.task.run.legs[0].tool;
+        let check = check(
+            self.task.model,
+            &self.task.run.load,
+            &tool,
+            &stream,
+            &self.corridor,
+            &self.task.run.end,
+        );
+        Ok((stream, check))
+    }
+
+    fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
+        let n = (profile.duration() / REFERENCE_STEP).ceil().max(8.0) as usize;
+        let times: Vec<f64> =
+            (0..=n).map(|i| profile.duration() * i as f64 / n as f64).collect();
+        let mut q = Vec::with_capacity(n + 1);
+        let mut qd = Vec::with_capacity(n + 1);
+        for (i, t) in times.iter().enumerate() {
+            let (s, v, _) = if i == n { (self.path.length(), 0.0, 0.0) } else { profile.at(*t) };
+            let point = self.path.eval(s);
+            q.push(point.q);
+            qd.push(point.q1.map(|x| x * v));
+        }
+        Reference::new(times, q, qd).map_err(|error| Reason::NoStream(error.to_string()))
+    }
+
+    /// The stream with points as the emitted text will say them.
+    fn rounded(&self, stream: &Stream) -> Result<Stream, Reason> {
+        let points = stream.points().iter().map(|q| q.map(joint_as_emitted)).collect();
+        Stream::new(*stream.start(), points, stream.intervals().to_vec())
+            .map_err(|error| Reason::NoStream(error.to_string()))
+    }
+
+    fn retiming(&self, stream: Stream, check: Check, bound: Option<f64>) -> Retiming {
+        let task = self.task;
+        let duration = stream.duration();
+        let motion = TimedMotion::Stream(stream.clone());
+        let moving = motion_energy(task.model, &task.run.load, &motion, 0.0, duration);
+        let energy = moving
+            + account::base(task.model, duration)
+            + account::at_rest(task.model, &task.run.load, &task.run.end, task.run.settling);
+        let idle = energy.energy_j() - energy.motion_energy_j();
+        let bound = bound.unwrap_or(f64::NEG_INFINITY).min(moving.motion_energy_j());
+        Retiming {
+            stream,
+            check,
+            energy,
+            energy_before_j: task.energy_before.energy_j(),
+            duration_s: duration + task.run.settling,
+            lower_bound_j: bound + idle,
+        }
+    }
+}
+
+/// Step of the samples of an intended motion, s.
+const REFERENCE_STEP: f64 = 0.005;
+
+impl Margins {
+    /// Tighter where a check failed.
+    fn tightened(mut self, check: &Check) -> Margins {
+        let load = check.torque.max(check.acceleration);
+        if load > 1.0 {
+            self.load *= FIRST_MARGIN / load;
+        }
+        if check.tcp_speed > 1.0 || check.velocity > 1.0 {
+            self.speed *= FIRST_SPEED_MARGIN / check.tcp_speed.max(check.velocity);
+        }
+        if check.deviation > 1.0 {
+            self.spacing *= 0.5;
+        }
+        self
+    }
+}
+
+fn describe(check: &Check) -> String {
+    let figures = [
+        ("joint speed", check.velocity),
+        ("joint acceleration", check.acceleration),
+        ("jerk", check.jerk),
+        ("torque", check.torque),
+        ("TCP speed", check.tcp_speed),
+        ("distance from the path", check.deviation),
+    ];
+    let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+    if check.worst() <= 1.0 {
+        return "a joint would leave its range".to_owned();
+    }
+    format!("{} would be {:.1} % of what is allowed", worst.0, 100.0 * worst.1)
+}
+
+fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
+    time_optimal(grid, limits)
+        .into_profile()
+        .ok_or_else(|| Reason::NoStream("the torque limits leave no timing on the path".into()))
+}
+
+/// Distance of the TCP from each joint's axis at most along the run, m: weighs joint errors.
+fn levers(model: &Model, run: &Run) -> Joints {
+    let mut lever = [MIN_LEVER; DOF];
+    for leg in &run.legs {
+        for q in [&leg.start, &leg.end] {
+            let j = crate::kinematics::jacobian(model, q, &leg.tool);
+            for (i, lever) in lever.iter_mut().enumerate() {
+                *lever = lever.max(j.fixed_view::<3, 1>(0, i).norm());
+            }
+        }
+    }
+    lever
+}
+
+/// A joint whose axis passes the TCP still turns the tool, m/rad.
+const MIN_LEVER: f64 = 0.1;
+
+fn quantum() -> f64 {
+    10_f64.powi(-(TIME_DECIMALS as i32))
+}
+
+fn round_down(t: f64) -> f64 {
+    // A hair of room for the rounding of the time itself.
+    ((t + 1e-9) / quantum()).floor() * quantum()
+}
+
+fn round_up(t: f64) -> f64 {
+    (t / quantum()).ceil() * quantum()
+}
+
+/// Intervals as they will be emitted, with the same sum.
+fn rounded(intervals: Vec<f64>, duration: f64) -> Vec<f64> {
+    let total = (duration / quantum()).round() as i64;
+    let mut ticks: Vec<i64> = Vec::with_capacity(intervals.len());
+    let mut exact = 0.0;
+    let mut used = 0;
+    for interval in &intervals {
+        exact += interval / quantum();
+        let tick = exact.round() as i64 - used;
+        ticks.push(tick);
+        used += tick;
+    }
+    if let Some(last) = ticks.last_mut() {
+        *last += total - used;
+    }
+    let scale = 1.0 / quantum();
+    ticks.into_iter().map(|t| t as f64 / scale).collect()
+}

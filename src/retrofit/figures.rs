@@ -1,0 +1,141 @@
+//! The result of a retrofit as plain data.
+
+use crate::energy::Account;
+use crate::motion::Simulation;
+use crate::optimize::check::Check;
+use crate::optimize::reason::Reason;
+use crate::text::Span;
+
+/// Time and energy of one cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// s.
+    pub cycle_s: f64,
+    /// All six parts, J.
+    pub energy_j: f64,
+    /// The four parts of the motion, J.
+    pub motion_energy_j: f64,
+}
+
+/// What a segment is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SegmentKind {
+    /// Movements, to be timed anew on their path.
+    Timing,
+    /// A dwell.
+    Idle,
+}
+
+/// A piece of the program with its costs in one cycle.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// The statements.
+    pub span: Span,
+    /// What it is.
+    pub kind: SegmentKind,
+    /// True if the RAPID that runs has changed.
+    pub rewritten: bool,
+    /// Why not, or why not in all of its executions.
+    pub reason: Option<Reason>,
+    /// Executions in the cycle.
+    pub executions: usize,
+    /// Executions that are rewritten.
+    pub rewritten_executions: usize,
+    /// s, all executions.
+    pub time_before_s: f64,
+    /// s, all executions.
+    pub time_after_s: f64,
+    /// J, all executions.
+    pub energy_before_j: f64,
+    /// J, all executions.
+    pub energy_after_j: f64,
+    /// No timing on the same path and in the same time takes less, J; `None` where it is not
+    /// rewritten.
+    pub lower_bound_j: Option<f64>,
+    /// Emitted points.
+    pub points: usize,
+    /// What the brake would save there by a setting of the controller, J.
+    pub potential_j: f64,
+    /// Events of the simulations in which it runs, for plots.
+    pub events: Vec<usize>,
+}
+
+/// What the verifier saw.
+#[derive(Clone, Debug)]
+pub struct Verification {
+    /// True if nothing is exceeded and the program runs as before.
+    pub passed: bool,
+    /// Worst figures of all streams.
+    pub worst: Check,
+    /// What was compared, in words, and whether it held.
+    pub checks: Vec<(String, bool)>,
+}
+
+/// What an output file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputKind {
+    /// A file of the input, as it was.
+    Unchanged,
+    /// A file of the input with insertions.
+    Changed,
+    /// A new file.
+    New,
+}
+
+/// A file of the complete program.
+#[derive(Clone, Debug)]
+pub struct OutputFile {
+    /// Path below the output folder, with `/`.
+    pub path: String,
+    /// What it is.
+    pub kind: OutputKind,
+    /// Its content.
+    pub bytes: Vec<u8>,
+    /// For a changed file, which of the input's it is.
+    pub input: Option<usize>,
+}
+
+/// A retrofit.
+#[derive(Debug)]
+pub struct Retrofit {
+    /// Before.
+    pub original: Figures,
+    /// After.
+    pub optimized: Figures,
+    /// What settings of the controller could save besides, J.
+    pub potential_j: f64,
+    /// In the order of the source.
+    pub segments: Vec<Segment>,
+    /// What the verifier saw.
+    pub verification: Verification,
+    /// The complete program.
+    pub outputs: Vec<OutputFile>,
+    /// The original cycle.
+    pub before: (Simulation, Account),
+    /// The cycle of the emitted program.
+    pub after: (Simulation, Account),
+}
+
+impl Retrofit {
+    /// Saved share of the energy, %.
+    pub fn saving_percent(&self) -> f64 {
+        percent(self.original.energy_j, self.optimized.energy_j)
+    }
+
+    /// Saved share of the motion energy, %.
+    pub fn motion_saving_percent(&self) -> f64 {
+        percent(self.original.motion_energy_j, self.optimized.motion_energy_j)
+    }
+
+    /// True if some piece that could have been rewritten was refused.
+    pub fn refused(&self) -> bool {
+        self.segments.iter().any(|segment| {
+            segment.kind == SegmentKind::Timing
+                && segment.reason.as_ref().is_some_and(|reason| *reason != Reason::FirstMovement)
+        })
+    }
+}
+
+fn percent(before: f64, after: f64) -> f64 {
+    if before > 0.0 { 100.0 * (before - after) / before } else { 0.0 }
+}

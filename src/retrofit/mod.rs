@@ -1,0 +1,15 @@
+//! The main job: a program in, a verified program that takes less energy out.
+//!
+//! Parse, simulate, optimise, emit; then read the emitted text again, simulate
+//! that, and compare. What does not hold keeps its original moves.
+
+pub mod figures;
+mod outputs;
+mod segments;
+mod verify;
+mod work;
+
+pub use figures::{
+    Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification,
+};
+pub use work::{Budget, Objective, RetrofitError, Settings, Source, read_program, retrofit};

@@ -1,0 +1,160 @@
+//! The complete program as files.
+
+use super::figures::{OutputFile, OutputKind};
+use super::work::{RetrofitError, Source, Way, run_of};
+use crate::emit::{self, EmittedStream, Names};
+use crate::ir::number::number;
+use crate::ir::program::{Program, RoutineId};
+use crate::motion::Simulation;
+use crate::optimize::idle::Dwell;
+use crate::optimize::site::Site;
+use crate::robot::Model;
+use crate::text;
+
+/// Emits the ways that have streams; every other file stays as it was.
+pub(super) fn emit(
+    files: &[Source],
+    program: &Program,
+    entry: RoutineId,
+    simulation: &Simulation,
+    sites: &[Site],
+    ways: &[Way],
+    names: &Names,
+) -> Result<Vec<OutputFile>, RetrofitError> {
+    let originals: Vec<text::SourceFile> = files.iter().map(|s| s.file.clone()).collect();
+    let mut emitted_sites = Vec::new();
+    for (index, site) in sites.iter().enumerate() {
+        let streams: Vec<EmittedStream> = ways
+            .iter()
+            .filter(|way| way.site == index)
+            .filter_map(|way| stream(files, simulation, sites, way))
+            .collect();
+        if !streams.is_empty() {
+            emitted_sites.push(emit::Site { span: site.span, streams });
+        }
+    }
+    let mut outputs = Vec::new();
+    let module_file = program.modules[entry.module].span.file.0 as usize;
+    if emitted_sites.is_empty() {
+        for (i, source) in files.iter().enumerate() {
+            outputs.push(unchanged(i, source));
+        }
+        return Ok(outputs);
+    }
+    let emitted = emit::emit(&originals, names, &emitted_sites)?;
+    for (i, source) in files.iter().enumerate() {
+        let edits: Vec<text::Edit> =
+            emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
+        if edits.is_empty() {
+            outputs.push(unchanged(i, source));
+            continue;
+        }
+        // Insertions at distinct places of the file can't overlap.
+        let bytes = text::apply(&source.file.bytes, &edits)
+            .unwrap_or_else(|_| source.file.bytes.clone());
+        outputs.push(OutputFile {
+            path: source.relative.clone(),
+            kind: OutputKind::Changed,
+            bytes,
+            input: Some(i),
+        });
+    }
+    let entry_file = &files[module_file];
+    let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let name = format!("{}.mod", names.module);
+    let path = if folder.is_empty() { name } else { format!("{folder}/{name}") };
+    let end_of_line = emit::end_of_line(&entry_file.file.bytes);
+    let module = emitted.module.replace('\n', end_of_line);
+    outputs.push(OutputFile {
+        path,
+        kind: OutputKind::New,
+        bytes: module.into_bytes(),
+        input: None,
+    });
+    Ok(outputs)
+}
+
+fn unchanged(index: usize, source: &Source) -> OutputFile {
+    OutputFile {
+        path: source.relative.clone(),
+        kind: OutputKind::Unchanged,
+        bytes: source.file.bytes.clone(),
+        input: Some(index),
+    }
+}
+
+fn stream(
+    files: &[Source],
+    simulation: &Simulation,
+    sites: &[Site],
+    way: &Way,
+) -> Option<EmittedStream> {
+    let retiming = way.outcome.as_ref().ok()?;
+    let run = run_of(simulation, sites, way)?;
+    let site = &sites[way.site];
+    let file = &files[site.span.file.0 as usize];
+    let first = file.file.position(site.span.start).line;
+    let last = file.file.position(site.span.end).line;
+    let lines = if first == last { format!("{first}") } else { format!("{first}-{last}") };
+    let variants = site.variants.len();
+    let way_text = if variants > 1 {
+        format!(", way {} of {variants}", way.variant + 1)
+    } else {
+        String::new()
+    };
+    let before: f64 = retiming.energy_before_j;
+    Some(EmittedStream {
+        start: run.start,
+        points: retiming.stream.points().to_vec(),
+        intervals: retiming.stream.intervals().to_vec(),
+        locals: site.variants[way.variant].locals.clone(),
+        tool: run.moves.first()?.movement.tool.name.to_string(),
+        origin: format!("{} {lines}{way_text}", ascii(&file.relative)),
+        before: format!("{} s {} J", number(run.duration(), 3), number(before, 1)),
+        after: format!(
+            "{} s {} J",
+            number(retiming.duration_s, 3),
+            number(retiming.energy.energy_j(), 1)
+        ),
+    })
+}
+
+/// Comments are plain ASCII, whatever the file's encoding.
+fn ascii(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
+}
+
+/// A note for dwells that pay, with the setting that they need.
+pub(super) fn add_brake_note(
+    outputs: &mut Vec<OutputFile>,
+    files: &[Source],
+    model: &Model,
+    dwells: &[Dwell],
+) {
+    let paying: Vec<&Dwell> = dwells.iter().filter(|dwell| dwell.potential_j > 0.0).collect();
+    if paying.is_empty() {
+        return;
+    }
+    let list: Vec<emit::BrakeDwell> = paying
+        .iter()
+        .map(|dwell| {
+            let file = &files[dwell.span.file.0 as usize];
+            emit::BrakeDwell {
+                place: format!("{} {}", file.relative, file.file.position(dwell.span.start).line),
+                duration: number(dwell.duration, 2),
+                holding: number(dwell.holding_w.iter().sum(), 1),
+                break_even: number(dwell.break_even_s.unwrap_or(0.0), 2),
+                potential: number(dwell.potential_j, 1),
+            }
+        })
+        .collect();
+    let shortest =
+        paying.iter().filter_map(|dwell| dwell.break_even_s).fold(f64::INFINITY, f64::min);
+    let Ok(text) = emit::brake_note(&model.name, &list, &number(shortest, 1)) else { return };
+    outputs.push(OutputFile {
+        path: "joulepath_brakes.txt".to_owned(),
+        kind: OutputKind::New,
+        bytes: text.into_bytes(),
+        input: None,
+    });
+}

@@ -1,0 +1,123 @@
+//! The costs of each piece before and after.
+
+use std::collections::BTreeMap;
+
+use super::figures::{Segment, SegmentKind};
+use super::work::Way;
+use crate::energy::{Account, EnergyParts};
+use crate::motion::Simulation;
+use crate::optimize::idle::Dwell;
+use crate::optimize::reason::Reason;
+use crate::optimize::site::Site;
+
+/// Dwells shorter than this are not listed, s: gripper times.
+const SHORTEST_DWELL: f64 = 0.1;
+
+/// The segments in the order of the source.
+pub(super) fn segments(
+    (before, before_account): (&Simulation, &Account),
+    (after, after_account): (&Simulation, &Account),
+    sites: &[Site],
+    ways: &[Way],
+    dwells: &[Dwell],
+) -> Vec<Segment> {
+    let cost = |simulation: &Simulation, account: &Account, events: &[usize]| {
+        let time: f64 = events.iter().map(|i| simulation.events[*i].duration).sum();
+        let energy = events
+            .iter()
+            .flat_map(|i| &account.events[*i])
+            .fold(EnergyParts::default(), |sum, part| sum + *part);
+        (time, energy.energy_j())
+    };
+    let mut segments = Vec::new();
+    for (index, site) in sites.iter().enumerate() {
+        let mut segment = Segment {
+            span: site.span,
+            kind: SegmentKind::Timing,
+            rewritten: false,
+            reason: None,
+            executions: 0,
+            rewritten_executions: 0,
+            time_before_s: 0.0,
+            time_after_s: 0.0,
+            energy_before_j: 0.0,
+            energy_after_j: 0.0,
+            lower_bound_j: None,
+            points: 0,
+            potential_j: 0.0,
+            events: Vec::new(),
+        };
+        let mut bound = 0.0;
+        for way in ways.iter().filter(|way| way.site == index) {
+            let events = &site.variants[way.variant].events;
+            segment.executions += events.len();
+            let (time, energy) = cost(before, before_account, events);
+            segment.time_before_s += time;
+            segment.energy_before_j += energy;
+            let (time, energy) = cost(after, after_account, events);
+            segment.time_after_s += time;
+            segment.energy_after_j += energy;
+            match &way.outcome {
+                Ok(retiming) => {
+                    segment.rewritten = true;
+                    segment.rewritten_executions += events.len();
+                    segment.points += retiming.stream.points().len();
+                    bound += retiming.lower_bound_j * events.len() as f64;
+                }
+                Err(reason) => {
+                    bound += energy;
+                    segment.reason.get_or_insert(reason.clone());
+                }
+            }
+            segment.events.extend(events);
+        }
+        segment.lower_bound_j = segment.rewritten.then_some(bound).filter(|b| b.is_finite());
+        segments.push(segment);
+    }
+    segments.extend(idle(before, before_account, after_account, dwells));
+    segments.sort_by_key(|segment| segment.span);
+    segments
+}
+
+/// Dwells by place.
+fn idle(
+    simulation: &Simulation,
+    before: &Account,
+    after: &Account,
+    dwells: &[Dwell],
+) -> Vec<Segment> {
+    let mut by_place: BTreeMap<_, Segment> = BTreeMap::new();
+    for dwell in dwells {
+        if dwell.duration < SHORTEST_DWELL && !matches!(dwell.reason, Reason::UnknownDwell) {
+            continue;
+        }
+        let energy = |account: &Account| -> f64 {
+            dwell.events.iter().flat_map(|i| &account.events[*i]).map(EnergyParts::energy_j).sum()
+        };
+        let time: f64 = dwell.events.iter().map(|i| simulation.events[*i].duration).sum();
+        let segment = by_place.entry(dwell.span).or_insert_with(|| Segment {
+            span: dwell.span,
+            kind: SegmentKind::Idle,
+            rewritten: false,
+            reason: Some(dwell.reason.clone()),
+            executions: 0,
+            rewritten_executions: 0,
+            time_before_s: 0.0,
+            time_after_s: 0.0,
+            energy_before_j: 0.0,
+            energy_after_j: 0.0,
+            lower_bound_j: None,
+            points: 0,
+            potential_j: 0.0,
+            events: Vec::new(),
+        });
+        segment.executions += 1;
+        segment.time_before_s += time;
+        segment.time_after_s += time;
+        segment.energy_before_j += energy(before);
+        segment.energy_after_j += energy(after);
+        segment.potential_j += dwell.potential_j;
+        segment.events.extend(&dwell.events);
+    }
+    by_place.into_values().collect()
+}

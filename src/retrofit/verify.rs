@@ -1,0 +1,187 @@
+//! The verifier: reads the emitted text, simulates it, and compares.
+
+use super::figures::{OutputFile, OutputKind, Verification};
+use super::work::{Settings, Source, Way, nothing_to_verify, read_program};
+use crate::motion::timed::TimedMotion;
+use crate::motion::timeline::{Event, Run, What};
+use crate::motion::{Simulation, simulate};
+use crate::optimize::check::{Check, check};
+use crate::optimize::corridor::Corridor;
+use crate::optimize::reason::Reason;
+use crate::optimize::site::Site;
+use crate::path::joint_path::DOF;
+use crate::robot::Model;
+use crate::syntax;
+use crate::text::{FileId, SourceFile};
+
+/// Largest distance of an end point from the original one, rad.
+const ENDPOINT_TOLERANCE: f64 = 1e-4;
+/// Rounding of a sum of times, s.
+const TIME_TOLERANCE: f64 = 1e-6;
+
+/// One attempt.
+pub(super) struct Attempt {
+    /// The cycle of the emitted program.
+    pub(super) simulation: Simulation,
+    /// What was seen.
+    pub(super) verification: Verification,
+    /// Ways that did not hold, with the reason.
+    pub(super) failed: Vec<(usize, Reason)>,
+}
+
+/// Verifies an emitted program. Every way that fails is named; where the fault can't be given
+/// to one way, all of them are.
+pub(super) fn verify(
+    files: &[Source],
+    outputs: &[OutputFile],
+    model: &Model,
+    settings: &Settings,
+    original: &Simulation,
+    sites: &[Site],
+    ways: &[Way],
+) -> Attempt {
+    let rewritten: Vec<usize> =
+        (0..ways.len()).filter(|i| ways[*i].outcome.is_ok()).collect();
+    let emitted: Vec<Source> = outputs
+        .iter()
+        .enumerate()
+        .map(|(i, output)| Source {
+            file: SourceFile::new(FileId(i as u32), output.path.clone(), output.bytes.clone()),
+            relative: output.path.clone(),
+        })
+        .collect();
+    let mut verification = nothing_to_verify();
+    let mut note = |what: &str, held: bool| verification.checks.push((what.to_owned(), held));
+    let everything = |why: &str| {
+        rewritten.iter().map(|i| (*i, Reason::Verification(why.to_owned()))).collect::<Vec<_>>()
+    };
+
+    let clean = outputs.iter().all(|output| match output.kind {
+        OutputKind::New => {
+            let parse = syntax::parse(&output.bytes);
+            parse.errors.is_empty() && parse.tolerances.is_empty()
+        }
+        OutputKind::Changed => {
+            let errors = |bytes: &[u8]| syntax::parse(bytes).errors.len();
+            let before = output.input.map_or(0, |i| errors(&files[i].file.bytes));
+            errors(&output.bytes) <= before
+        }
+        OutputKind::Unchanged => true,
+    });
+    note("the emitted text parses", clean);
+    let bytes_kept = outputs.iter().all(|output| match (output.kind, output.input) {
+        (OutputKind::Changed, Some(i)) => is_subsequence(&files[i].file.bytes, &output.bytes),
+        (OutputKind::Unchanged, Some(i)) => files[i].file.bytes == output.bytes,
+        _ => true,
+    });
+    note("every byte of the original is kept", bytes_kept);
+    let program = read_program(&emitted, &settings.entry);
+    let Ok((program, entry)) = program else {
+        note("the emitted program has its entry", false);
+        verification.passed = false;
+        let failed = everything("the emitted text could not be read again");
+        return Attempt { simulation: empty(), verification, failed };
+    };
+    let simulation = simulate(&program, entry, model, &settings.options);
+    let mut failed = if clean && bytes_kept {
+        Vec::new()
+    } else {
+        everything("the emitted text could not be read again")
+    };
+
+    let same_events = same_order(original, &simulation);
+    note("movements, waits and outputs come in the same order", same_events);
+    if !same_events && failed.is_empty() {
+        failed = everything("the emitted program runs in another order");
+    }
+    let cycle_kept = match settings.budget {
+        super::Budget::AsBefore => simulation.cycle_s <= original.cycle_s + TIME_TOLERANCE,
+        super::Budget::Takt(takt) => simulation.cycle_s <= takt.max(original.cycle_s) + TIME_TOLERANCE,
+        super::Budget::Factor(_) => true,
+    };
+    note("the cycle takes no longer than allowed", cycle_kept);
+    if failed.is_empty() && same_events {
+        let mut worst = Check::none();
+        for i in rewritten {
+            let way = &ways[i];
+            for event in &sites[way.site].variants[way.variant].events {
+                let (before, after) = (&original.events[*event], &simulation.events[*event]);
+                match compare(model, settings, before, after) {
+                    Ok(check) => worst = worst.max(&check),
+                    Err(why) => {
+                        failed.push((i, Reason::Verification(why)));
+                        break;
+                    }
+                }
+            }
+        }
+        verification.worst = worst;
+        verification.checks.push(("every stream keeps limits, path and ends".into(), failed.is_empty()));
+    }
+    verification.passed = failed.is_empty() && verification.checks.iter().all(|(_, held)| *held);
+    Attempt { simulation, verification, failed }
+}
+
+fn empty() -> Simulation {
+    Simulation { events: Vec::new(), cycle_s: 0.0, unresolved: Vec::new(), assumed: Vec::new() }
+}
+
+/// Whether all bytes of `part` stand in `whole`, in order.
+fn is_subsequence(part: &[u8], whole: &[u8]) -> bool {
+    let mut rest = whole.iter();
+    part.iter().all(|byte| rest.any(|other| other == byte))
+}
+
+/// The same kinds of events with the same outputs, waits and ends.
+fn same_order(a: &Simulation, b: &Simulation) -> bool {
+    a.events.len() == b.events.len()
+        && a.events.iter().zip(&b.events).all(|(a, b)| match (&a.what, &b.what) {
+            (What::Run(a), What::Run(b)) => same_ends(a, b),
+            (What::Wait(a), What::Wait(b)) => {
+                a.wait.instruction == b.wait.instruction && a.wait.signal == b.wait.signal
+            }
+            (What::Output(a, _), What::Output(b, _)) => a.signal == b.signal && a.value == b.value,
+            (What::Left(a), What::Left(b)) => a.reason == b.reason,
+            _ => false,
+        })
+}
+
+fn same_ends(a: &Run, b: &Run) -> bool {
+    (0..DOF).all(|j| {
+        (a.start[j] - b.start[j]).abs() <= ENDPOINT_TOLERANCE
+            && (a.end[j] - b.end[j]).abs() <= ENDPOINT_TOLERANCE
+    })
+}
+
+/// The stream that runs now against the run that was.
+fn compare(
+    model: &Model,
+    settings: &Settings,
+    before: &Event,
+    after: &Event,
+) -> Result<Check, String> {
+    let (What::Run(run), What::Run(new)) = (&before.what, &after.what) else {
+        return Err("another event stands in its place".into());
+    };
+    let [(_, TimedMotion::Stream(stream))] = new.motions.as_slice() else {
+        return Err("the emitted points do not run as a stream".into());
+    };
+    let corridor =
+        Corridor::new(model, run, settings.ceilings).ok_or("the original path is not one piece")?;
+    if settings.budget == super::Budget::AsBefore
+        && after.duration > before.duration + TIME_TOLERANCE
+    {
+        return Err("it takes longer than before".into());
+    }
+    if new.load != run.load {
+        return Err("it runs with another tool or load".into());
+    }
+    let check = check(model, &run.load, &run.legs[0].tool, stream, &corridor, &run.end);
+    if !check.holds() {
+        return Err("a limit is exceeded by the emitted points".into());
+    }
+    if check.endpoint_error_rad > ENDPOINT_TOLERANCE {
+        return Err("it ends elsewhere".into());
+    }
+    Ok(check)
+}

@@ -1,0 +1,409 @@
+//! The pipeline.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::figures::{Figures, Retrofit, Verification};
+use super::{outputs, segments, verify};
+use crate::emit::{self, Names};
+use crate::energy::{Account, EnergyParts, account};
+use crate::ir::lower;
+use crate::ir::program::{Program, RoutineId};
+use crate::motion::timeline::{Run, What};
+use crate::motion::{Options, Simulation, simulate};
+use crate::optimize::corridor::Ceilings;
+use crate::optimize::idle::dwells;
+use crate::optimize::reason::Reason;
+use crate::optimize::retime::{Goal, Retiming, Task, fastest, retime};
+use crate::optimize::site::{Site, sites};
+use crate::robot::Model;
+use crate::syntax::{self, SyntaxError};
+use crate::text::SourceFile;
+
+/// A file of the program.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Its bytes and path as given.
+    pub file: SourceFile,
+    /// Its path below the input.
+    pub relative: String,
+}
+
+/// What is to be minimised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Objective {
+    /// Energy in the time that there is.
+    Energy,
+    /// Time.
+    Time,
+}
+
+/// The time that there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Budget {
+    /// No run takes longer than before.
+    AsBefore,
+    /// The cycle takes this long, s.
+    Takt(f64),
+    /// Each run takes this many times as long as before.
+    Factor(f64),
+}
+
+/// How a program is retrofitted.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The routine that starts the program.
+    pub entry: String,
+    /// For the simulations.
+    pub options: Options,
+    /// What is to be minimised.
+    pub objective: Objective,
+    /// The time that there is.
+    pub budget: Budget,
+    /// Least time between two points of a stream, s.
+    pub spacing_s: f64,
+    /// Which programmed speeds are ceilings.
+    pub ceilings: Ceilings,
+}
+
+/// Why a program can't be retrofitted at all.
+#[derive(Debug, thiserror::Error)]
+pub enum RetrofitError {
+    /// No routine of that name.
+    #[error(
+        "no global procedure '{entry}' in the files given; name the routine that starts the \
+         program with --entry"
+    )]
+    NoEntry {
+        /// The name.
+        entry: String,
+    },
+    /// The module with the entry has syntax errors.
+    #[error(
+        "{path}:{line}:{column}: {message}; the module holds the entry routine '{entry}', so it \
+         has to be mended first (joulepath parse shows all errors)"
+    )]
+    BrokenEntry {
+        /// File.
+        path: String,
+        /// From 1.
+        line: u32,
+        /// From 1.
+        column: u32,
+        /// Of the first error.
+        message: String,
+        /// The entry routine.
+        entry: String,
+    },
+    /// The robot lacks what optimisation needs.
+    #[error(
+        "{robot} has no {what}: optimize needs it; give a robot file that adds it \
+         (--robot FILE.toml with extends = \"{robot}\")"
+    )]
+    Robot {
+        /// The robot.
+        robot: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A takt below the possible.
+    #[error(
+        "a takt of {takt:.3} s is below the possible: the cycle takes at least {least:.3} s with \
+         this robot, of which {fixed:.3} s are waits and movements that stay; give --takt {least:.3} \
+         or more"
+    )]
+    Takt {
+        /// Asked for, s.
+        takt: f64,
+        /// Possible, s.
+        least: f64,
+        /// Not to be changed, s.
+        fixed: f64,
+    },
+    /// The emission failed.
+    #[error("{0}")]
+    Emit(#[from] emit::EmitError),
+}
+
+/// Parses the files and finds the entry.
+///
+/// # Errors
+/// No entry, or one in a broken module.
+pub fn read_program(
+    files: &[Source],
+    entry: &str,
+) -> Result<(Program, RoutineId), RetrofitError> {
+    let parsed: Vec<_> = files
+        .par_iter()
+        .map(|source| {
+            let parse = syntax::parse(&source.file.bytes);
+            let modules = lower(source.file.id, &parse, &source.file.bytes);
+            (parse.errors, modules)
+        })
+        .collect();
+    let mut errors: Vec<Vec<SyntaxError>> = Vec::new();
+    let mut modules = Vec::new();
+    for (file_errors, file_modules) in parsed {
+        errors.push(file_errors);
+        modules.extend(file_modules);
+    }
+    let program = Program::new(modules);
+    // A broken module may hide its entry: then its error is the way out.
+    let Some(id) = program.entry(entry) else {
+        let broken = errors.iter().position(|list| !list.is_empty());
+        return Err(match broken {
+            Some(i) => broken_entry(&files[i], &errors[i][0], entry),
+            None => RetrofitError::NoEntry { entry: entry.to_owned() },
+        });
+    };
+    let file = program.modules[id.module].span.file.0 as usize;
+    match errors[file].first() {
+        Some(error) if !is_elsewhere(&program, id, error) => {
+            Err(broken_entry(&files[file], error, entry))
+        }
+        _ => Ok((program, id)),
+    }
+}
+
+/// An error inside another routine of the module leaves the entry usable.
+fn is_elsewhere(program: &Program, entry: RoutineId, error: &SyntaxError) -> bool {
+    program.modules[entry.module].routines.iter().enumerate().any(|(index, routine)| {
+        index != entry.index && routine.span.start <= error.start && error.end <= routine.span.end
+    })
+}
+
+fn broken_entry(source: &Source, error: &SyntaxError, entry: &str) -> RetrofitError {
+    let position = source.file.position(error.start);
+    RetrofitError::BrokenEntry {
+        path: source.file.path.clone(),
+        line: position.line,
+        column: position.column,
+        message: error.message.clone(),
+        entry: entry.to_owned(),
+    }
+}
+
+/// A way in which a site runs, with what became of it.
+pub(super) struct Way {
+    /// Index of the site.
+    pub(super) site: usize,
+    /// Index of the variant.
+    pub(super) variant: usize,
+    /// Its stream, or why there is none.
+    pub(super) outcome: Result<Retiming, Reason>,
+}
+
+/// Retrofits a program. `progress` is told how many of how many pieces are done.
+///
+/// # Errors
+/// What makes the whole job impossible; a piece that can't be improved stays as it is.
+pub fn retrofit(
+    files: &[Source],
+    model: &Model,
+    settings: &Settings,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Retrofit, RetrofitError> {
+    check_robot(model)?;
+    let (program, entry) = read_program(files, &settings.entry)?;
+    let simulation = simulate(&program, entry, model, &settings.options);
+    let before = account(model, &simulation);
+    let sites = sites(&program, &simulation);
+    let mut ways = retime_all(model, settings, &simulation, &before, &sites, progress)?;
+    let names = Names::free(&program);
+    let dwells = dwells(model, &simulation);
+
+    // Each round leaves out what did not hold in the emitted text.
+    let mut checked = loop {
+        let emitted = outputs::emit(files, &program, entry, &simulation, &sites, &ways, &names)?;
+        let attempt = verify::verify(files, &emitted, model, settings, &simulation, &sites, &ways);
+        if attempt.failed.is_empty() {
+            break (emitted, attempt);
+        }
+        for (way, reason) in attempt.failed {
+            ways[way].outcome = Err(reason);
+        }
+    };
+    let verify::Attempt { simulation: after_simulation, verification, .. } = checked.1;
+    let after = account(model, &after_simulation);
+    let segments = segments::segments(
+        (&simulation, &before),
+        (&after_simulation, &after),
+        &sites,
+        &ways,
+        &dwells,
+    );
+    outputs::add_brake_note(&mut checked.0, files, model, &dwells);
+    let potential_j = dwells.iter().map(|dwell| dwell.potential_j).sum();
+    Ok(Retrofit {
+        original: figures(&simulation, &before),
+        optimized: figures(&after_simulation, &after),
+        potential_j,
+        segments,
+        verification,
+        outputs: checked.0,
+        before: (simulation, before),
+        after: (after_simulation, after),
+    })
+}
+
+fn figures(simulation: &Simulation, account: &Account) -> Figures {
+    Figures {
+        cycle_s: simulation.cycle_s,
+        energy_j: account.total.energy_j(),
+        motion_energy_j: account.total.motion_energy_j(),
+    }
+}
+
+fn check_robot(model: &Model) -> Result<(), RetrofitError> {
+    let missing = |what| Err(RetrofitError::Robot { robot: model.name.clone(), what });
+    if !model.has_dynamics() {
+        return missing("dynamics (masses, inertias)");
+    }
+    if model.limits.velocity.is_none() {
+        return missing("joint speed limits");
+    }
+    if model.limits.acceleration.is_none() {
+        return missing("joint acceleration limits");
+    }
+    if model.limits.torque.is_none() {
+        return missing("joint torque limits");
+    }
+    if model.motors.is_none() {
+        return missing("motor data");
+    }
+    Ok(())
+}
+
+/// The run of a variant.
+pub(super) fn run_of<'a>(simulation: &'a Simulation, sites: &[Site], way: &Way) -> Option<&'a Run> {
+    let event = *sites[way.site].variants[way.variant].events.first()?;
+    match &simulation.events[event].what {
+        What::Run(run) => Some(run),
+        _ => None,
+    }
+}
+
+fn retime_all(
+    model: &Model,
+    settings: &Settings,
+    simulation: &Simulation,
+    before: &Account,
+    sites: &[Site],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Vec<Way>, RetrofitError> {
+    let mut ways = Vec::new();
+    for (s, site) in sites.iter().enumerate() {
+        for (v, variant) in site.variants.iter().enumerate() {
+            let reason = site.reason.clone().or_else(|| variant.reason.clone());
+            let unguarded = variant.locals.iter().find(|local| !emit::can_guard(local));
+            let reason = reason.or_else(|| {
+                unguarded.map(|local| {
+                    Reason::NotConstant(format!(
+                        "it depends on {}, for which no condition can be written",
+                        local.name
+                    ))
+                })
+            });
+            ways.push(Way { site: s, variant: v, outcome: Err(reason.unwrap_or(Reason::NoSaving)) });
+        }
+    }
+    let open: Vec<usize> = (0..ways.len())
+        .filter(|i| matches!(ways[*i].outcome, Err(Reason::NoSaving)))
+        .collect();
+    let tasks: Vec<(usize, Task<'_>)> = open
+        .iter()
+        .filter_map(|i| {
+            let way = &ways[*i];
+            let event = *sites[way.site].variants[way.variant].events.first()?;
+            let run = run_of(simulation, sites, way)?;
+            let energy = before.events[event].iter().fold(EnergyParts::default(), |a, b| a + *b);
+            let task = Task {
+                model,
+                run,
+                energy_before: energy,
+                spacing_s: settings.spacing_s,
+                ceilings: settings.ceilings,
+            };
+            Some((*i, task))
+        })
+        .collect();
+    let goals = goals(settings, simulation, sites, &ways, &tasks)?;
+    let done = Arc::new(std::sync::atomic::AtomicUsize::new(0));
+    let outcomes: Vec<(usize, Result<Retiming, Reason>)> = tasks
+        .par_iter()
+        .zip(&goals)
+        .map(|((i, task), goal)| {
+            let outcome = retime(task, *goal);
+            let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+            progress(count, tasks.len());
+            (*i, outcome)
+        })
+        .collect();
+    for (i, outcome) in outcomes {
+        ways[i].outcome = outcome;
+    }
+    Ok(ways)
+}
+
+/// The goal of each task: its share of the time.
+fn goals(
+    settings: &Settings,
+    simulation: &Simulation,
+    sites: &[Site],
+    ways: &[Way],
+    tasks: &[(usize, Task<'_>)],
+) -> Result<Vec<Goal>, RetrofitError> {
+    if settings.objective == Objective::Time {
+        return Ok(vec![Goal::Fastest; tasks.len()]);
+    }
+    let before = |task: &Task<'_>| task.run.duration();
+    Ok(match settings.budget {
+        Budget::AsBefore => tasks.iter().map(|(_, t)| Goal::Within(before(t))).collect(),
+        Budget::Factor(x) => tasks.iter().map(|(_, t)| Goal::Exactly(x * before(t))).collect(),
+        Budget::Takt(takt) => {
+            let executions = |i: usize| {
+                sites[ways[i].site].variants[ways[i].variant].events.len() as f64
+            };
+            let least: Vec<f64> =
+                tasks.par_iter().map(|(_, task)| fastest(task).unwrap_or(before(task))).collect();
+            let movable: f64 = tasks.iter().map(|(i, t)| executions(*i) * before(t)).sum();
+            let shortest: f64 =
+                tasks.iter().zip(&least).map(|((i, _), t)| executions(*i) * t).sum();
+            let fixed = simulation.cycle_s - movable;
+            if takt < fixed + shortest {
+                return Err(RetrofitError::Takt { takt, least: fixed + shortest, fixed });
+            }
+            // One factor for all, but nobody below the least: found by bisection.
+            let total = |factor: f64| -> f64 {
+                tasks
+                    .iter()
+                    .zip(&least)
+                    .map(|((i, t), least)| executions(*i) * (factor * before(t)).max(*least))
+                    .sum()
+            };
+            let (mut low, mut high) = (0.0, 1.0);
+            while total(high) < takt - fixed && movable > 0.0 {
+                high *= 2.0;
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if total(middle) < takt - fixed { low = middle } else { high = middle }
+            }
+            tasks
+                .iter()
+                .zip(&least)
+                .map(|((_, t), least)| Goal::Exactly((low * before(t)).max(*least)))
+                .collect()
+        }
+    })
+}
+
+/// No verification was made: nothing was changed.
+pub(super) fn nothing_to_verify() -> Verification {
+    Verification {
+        passed: true,
+        worst: crate::optimize::check::Check::none(),
+        checks: Vec::new(),
+    }
+}
