@@ -44,13 +44,13 @@ pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) ->
         tau[j] = rigid[j] + rub[j];
         rigid_w += rigid[j] * state.qd[j];
         friction_w += rub[j] * state.qd[j];
-        let copper = model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * tau[j] * tau[j];
-        copper_w += copper;
-        lost_by_joint += (-(tau[j] * state.qd[j] + copper)).max(0.0);
+        copper_w += model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * tau[j] * tau[j];
+        lost_by_joint += (-tau[j] * state.qd[j]).max(0.0);
     }
+    // Negative mechanical power: of each joint, or of their sum on a common bus.
     let lost = match model.drive.sharing {
         Sharing::None => lost_by_joint,
-        Sharing::Bus => (-(rigid_w + friction_w + copper_w)).max(0.0),
+        Sharing::Bus => (-(rigid_w + friction_w)).max(0.0),
     };
     let drive_w = lost * (1.0 - model.drive.regeneration);
     Power { tau, rigid_w, friction_w, copper_w, drive_w }

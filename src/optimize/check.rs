@@ -72,7 +72,19 @@ impl Check {
     }
 }
 
+/// A place where the TCP is too fast or the torque too high.
+#[derive(Clone, Copy, Debug)]
+pub struct HotSpot {
+    /// Place on the path.
+    pub s: f64,
+    /// Share of the TCP speed.
+    pub speed: f64,
+    /// Share of the torque.
+    pub torque: f64,
+}
+
 /// Checks the realised motion of a stream, in the corridor and towards the end of a run.
+/// The places where it exceeds a limit are added to `hot`.
 pub fn check(
     model: &Model,
     load: &Load,
@@ -80,6 +92,7 @@ pub fn check(
     stream: &Stream,
     corridor: &Corridor,
     end: &Joints,
+    hot: &mut Vec<HotSpot>,
 ) -> Check {
     let limits = &model.limits;
     let share = |values: &Joints, limit: &Option<Vec<f64>>| {
@@ -104,16 +117,21 @@ pub fn check(
             let (q, qd, qdd) = piece.at(piece.length * i as f64 / steps as f64);
             result.in_range &= limits_ok(model, &q).is_ok();
             let state = JointState { q, qd, qdd };
-            if model.has_dynamics() {
-                let tau = power(model, &mut data, load, &state).tau;
-                result.torque = result.torque.max(share(&tau, &limits.torque));
-            }
+            let torque = if model.has_dynamics() {
+                share(&power(model, &mut data, load, &state).tau, &limits.torque)
+            } else {
+                0.0
+            };
+            result.torque = result.torque.max(torque);
             let offset = corridor.offset(&(fk(model, &q) * tool), &mut at);
             result.deviation_m = result.deviation_m.max(offset.distance);
             result.deviation = result.deviation.max(offset.distance / offset.tolerance);
             let rate = jacobian(model, &q, tool) * nalgebra::Vector6::from(qd);
-            let speed = rate.fixed_rows::<3>(0).norm();
-            result.tcp_speed = result.tcp_speed.max(speed / offset.ceiling);
+            let speed = rate.fixed_rows::<3>(0).norm() / offset.ceiling;
+            result.tcp_speed = result.tcp_speed.max(speed);
+            if speed > 1.0 || torque > 1.0 {
+                hot.push(HotSpot { s: offset.s, speed, torque });
+            }
         }
     }
     result

@@ -25,6 +25,8 @@ const WINDOW: (usize, usize) = (8, 24);
 /// One sample of the programmed path.
 #[derive(Clone, Copy, Debug)]
 struct Place {
+    /// Place on the path.
+    s: f64,
     pose: Isometry3<f64>,
     /// Largest TCP speed here, m/s.
     ceiling: f64,
@@ -41,6 +43,8 @@ pub struct Corridor {
 /// How a pose lies to the corridor.
 #[derive(Clone, Copy, Debug)]
 pub struct Offset {
+    /// Nearest place on the path.
+    pub s: f64,
     /// Distance of the TCP, m, the turn of the tool included.
     pub distance: f64,
     /// Allowed distance, m.
@@ -85,7 +89,7 @@ impl Corridor {
             for i in 0..=n {
                 let s = piece.s + piece.length * i as f64 / n as f64;
                 let pose = fk(model, &piece.eval(s).q) * extent.tool;
-                places.push(Place { pose, ceiling, tolerance });
+                places.push(Place { s, pose, ceiling, tolerance });
             }
         }
         Some(Corridor { places })
@@ -111,6 +115,7 @@ impl Corridor {
             f(place).max(f(&self.places[lo])).max(f(&self.places[hi]))
         };
         Offset {
+            s: place.s,
             distance: best.0,
             tolerance: near(|p| p.tolerance),
             ceiling: near(|p| p.ceiling),

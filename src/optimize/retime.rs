@@ -4,7 +4,7 @@
 //! to it and checked as the controller will realise it. What breaks a limit
 //! tightens the margins and is tried again.
 
-use super::check::{Check, check};
+use super::check::{Check, HotSpot, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::energy_program::minimize_energy;
 use super::path_energy::{EnergyModel, Sharing};
@@ -84,12 +84,23 @@ const WORTHWHILE: f64 = 1e-3;
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 
 /// Margins and tolerances of one attempt.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Margins {
+    /// Share of acceleration and torque limits that the intended motion may use.
     load: f64,
+    /// Share of the speed ceilings.
     speed: f64,
+    /// Lower ceilings round places where a stream was too fast: s, half width, path speed.
+    slow: Vec<(f64, f64, f64)>,
     /// Tolerance of the points' placing, m.
     spacing: f64,
+}
+
+/// A realised stream with its faults.
+struct Attempt {
+    stream: Stream,
+    check: Check,
+    hot: Vec<HotSpot>,
 }
 
 /// The stream of a run.
@@ -164,18 +175,19 @@ impl<'a> Work<'a> {
         let mut margins = self.first_margins();
         let mut problem = None;
         for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(margins)?;
+            let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
             let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget)
                 .into_optimum()
                 .ok_or(Reason::NoSaving)?;
-            match self.realise(&optimum.profile, budget, margins) {
-                Ok((stream, check)) if check.holds() => {
-                    return Ok(self.retiming(stream, check, Some(optimum.lower_bound)));
+            match self.realise(&optimum.profile, budget, &margins) {
+                Ok(attempt) if attempt.check.holds() => {
+                    let bound = Some(optimum.lower_bound);
+                    return Ok(self.retiming(attempt.stream, attempt.check, bound));
                 }
-                Ok((_, check)) => {
-                    margins = margins.tightened(&check);
-                    problem = Some(describe(&check));
+                Ok(attempt) => {
+                    margins.tighten(&attempt, &optimum.profile);
+                    problem = Some(describe(&attempt.check));
                 }
                 Err(Reason::NoStream(why)) => {
                     margins.load *= FIRST_MARGIN;
@@ -193,24 +205,24 @@ impl<'a> Work<'a> {
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = Reason::NoSaving;
         for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(margins)?;
+            let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
-            let mut best: Option<Check> = None;
+            let mut best: Option<Attempt> = None;
             for share in RAMP_SHARES {
                 let budget = round_up(fast.duration() + share * ramp);
-                match self.realise(&fast, budget, margins) {
-                    Ok((stream, check)) if check.holds() => {
-                        return Ok(self.retiming(stream, check, None));
+                match self.realise(&fast, budget, &margins) {
+                    Ok(attempt) if attempt.check.holds() => {
+                        return Ok(self.retiming(attempt.stream, attempt.check, None));
                     }
-                    Ok((_, check)) => {
-                        problem = Reason::NoStream(describe(&check));
-                        best = Some(check);
+                    Ok(attempt) => {
+                        problem = Reason::NoStream(describe(&attempt.check));
+                        best = Some(attempt);
                     }
                     Err(reason) => problem = reason,
                 }
             }
             match best {
-                Some(check) => margins = margins.tightened(&check),
+                Some(attempt) => margins.tighten(&attempt, &fast),
                 None => margins.load *= FIRST_MARGIN,
             }
         }
@@ -222,10 +234,15 @@ impl<'a> Work<'a> {
             !matches!(leg.kind, crate::path::LegKind::Joint)
         });
         let tolerance = if line { LINE_TOLERANCE } else { JOINT_TOLERANCE };
-        Margins { load: FIRST_MARGIN, speed: FIRST_SPEED_MARGIN, spacing: 0.5 * tolerance }
+        Margins {
+            load: FIRST_MARGIN,
+            speed: FIRST_SPEED_MARGIN,
+            slow: Vec::new(),
+            spacing: 0.5 * tolerance,
+        }
     }
 
-    fn grid(&self, margins: Margins) -> Result<(PathGrid, PathLimits), Reason> {
+    fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         let caps: Vec<SpeedCap> = self
             .task
             .run
@@ -239,8 +256,17 @@ impl<'a> Work<'a> {
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
         let nodes = sampling::nodes(self.path, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
-        let grid = sampling::grid(loaded, self.path, &nodes, &caps)
+        let mut grid = sampling::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
+        if !margins.slow.is_empty() {
+            let mut ends = grid.ends().to_vec();
+            for (k, pair) in ends.iter_mut().enumerate() {
+                for (end, s) in pair.iter_mut().zip(&nodes[k..k + 2]) {
+                    end.v_max = end.v_max.min(margins.slowest(*s));
+                }
+            }
+            grid = PathGrid::new(nodes, ends).map_err(|error| no_grid(error.to_string()))?;
+        }
         let full = motion_limits(self.task.model, margins.load);
         let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
             .map_err(|error| no_grid(error.to_string()))?;
@@ -252,8 +278,8 @@ impl<'a> Work<'a> {
         &self,
         profile: &Profile,
         duration: f64,
-        margins: Margins,
-    ) -> Result<(Stream, Check), Reason> {
+        margins: &Margins,
+    ) -> Result<Attempt, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
         let reference = self.reference(profile)?;
         let spacing = Spacing {
@@ -272,6 +298,7 @@ impl<'a> Work<'a> {
             StreamFit::Failed => return Err(failed("the solver found no stream")),
         };
         let tool = self.task.run.legs[0].tool;
+        let mut hot = Vec::new();
         let check = check(
             self.task.model,
             &self.task.run.load,
@@ -279,8 +306,9 @@ impl<'a> Work<'a> {
             &stream,
             &self.corridor,
             &self.task.run.end,
+            &mut hot,
         );
-        Ok((stream, check))
+        Ok(Attempt { stream, check, hot })
     }
 
     fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
@@ -329,20 +357,39 @@ impl<'a> Work<'a> {
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
+/// Time to either side of a hot spot in which the intended motion is slowed, s: about the
+/// distance of two points.
+const HOT_TIME: f64 = 0.06;
+
 impl Margins {
-    /// Tighter where a check failed.
-    fn tightened(mut self, check: &Check) -> Margins {
+    /// Tighter where an attempt failed.
+    fn tighten(&mut self, attempt: &Attempt, profile: &Profile) {
+        let check = &attempt.check;
         let load = check.torque.max(check.acceleration);
         if load > 1.0 {
             self.load *= FIRST_MARGIN / load;
         }
-        if check.tcp_speed > 1.0 || check.velocity > 1.0 {
-            self.speed *= FIRST_SPEED_MARGIN / check.tcp_speed.max(check.velocity);
+        if check.velocity > 1.0 {
+            self.speed *= FIRST_SPEED_MARGIN / check.velocity;
+        }
+        for spot in attempt.hot.iter().filter(|spot| spot.speed > 1.0) {
+            let k = profile.s().partition_point(|s| *s < spot.s).min(profile.b().len() - 1);
+            let speed = profile.b()[k].sqrt();
+            let share = FIRST_SPEED_MARGIN / spot.speed;
+            self.slow.push((spot.s, HOT_TIME * speed, speed * share));
         }
         if check.deviation > 1.0 {
             self.spacing *= 0.5;
         }
-        self
+    }
+
+    /// The lowest of the lowered path speeds at s.
+    fn slowest(&self, s: f64) -> f64 {
+        self.slow
+            .iter()
+            .filter(|(place, width, _)| (s - place).abs() <= *width)
+            .map(|(_, _, speed)| *speed)
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
