@@ -140,6 +140,12 @@ impl ConeProgram {
         }
     }
 
+    /// Adds value · x[i] x[j] to the objective for i < j, value/2 · x[i]² for i = j: the entry of
+    /// P at (i, j) and (j, i).
+    pub(super) fn curve(&mut self, i: usize, j: usize, value: f64) {
+        self.quadratic.push(i.min(j), i.max(j), value);
+    }
+
     /// Requires `row` ≤ 0 and returns the index of its multiplier.
     pub(super) fn at_most_zero(&mut self, row: Affine) -> usize {
         self.rows.push(row);

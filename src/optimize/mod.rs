@@ -2,6 +2,7 @@
 //!
 //! The problems are plain arrays: constraints know no solver, solvers know no robot.
 
+mod banded;
 mod cone;
 mod energy_cones;
 pub mod energy_program;
@@ -10,3 +11,6 @@ pub mod limits;
 pub mod path_energy;
 pub mod profile;
 pub mod reachability;
+pub mod stream_fit;
+pub mod stream_reference;
+pub mod stream_spacing;

@@ -1,0 +1,108 @@
+//! Symmetric positive definite band matrices and their Cholesky factors.
+
+/// The lower triangle of a symmetric matrix with entries no farther than `width` off the diagonal.
+#[derive(Clone, Debug)]
+pub(super) struct Banded {
+    size: usize,
+    width: usize,
+    /// Row i holds the columns i − `width` … i.
+    entries: Vec<f64>,
+}
+
+impl Banded {
+    pub(super) fn zeros(size: usize, width: usize) -> Banded {
+        Banded { size, width, entries: vec![0.0; size * (width + 1)] }
+    }
+
+    fn index(&self, i: usize, j: usize) -> usize {
+        i * (self.width + 1) + self.width + j - i
+    }
+
+    /// Adds to the entry at (i, j) and its mirror; i ≥ j ≥ i − width.
+    pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
+        let index = self.index(i, j);
+        self.entries[index] += value;
+    }
+
+    /// The entries of the lower triangle that are not zero, as (i, j, value).
+    pub(super) fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        (0..self.size)
+            .flat_map(move |i| (i.saturating_sub(self.width)..=i).map(move |j| (i, j)))
+            .map(|(i, j)| (i, j, self.entries[self.index(i, j)]))
+            .filter(|(_, _, value)| *value != 0.0)
+    }
+
+    /// x with A x = right, by A = L Lᵀ. None if A is not positive definite.
+    pub(super) fn solve(mut self, mut right: Vec<f64>) -> Option<Vec<f64>> {
+        for i in 0..self.size {
+            for j in i.saturating_sub(self.width)..=i {
+                let mut sum = self.entries[self.index(i, j)];
+                for k in i.saturating_sub(self.width)..j {
+                    if k + self.width >= j {
+                        sum -= self.entries[self.index(i, k)] * self.entries[self.index(j, k)];
+                    }
+                }
+                let at = self.index(i, j);
+                self.entries[at] = if i > j {
+                    sum / self.entries[self.index(j, j)]
+                } else if sum > 0.0 {
+                    sum.sqrt()
+                } else {
+                    return None;
+                };
+            }
+        }
+        for i in 0..self.size {
+            let mut sum = right[i];
+            for k in i.saturating_sub(self.width)..i {
+                sum -= self.entries[self.index(i, k)] * right[k];
+            }
+            right[i] = sum / self.entries[self.index(i, i)];
+        }
+        for i in (0..self.size).rev() {
+            let mut sum = right[i];
+            for k in i + 1..self.size.min(i + self.width + 1) {
+                sum -= self.entries[self.index(k, i)] * right[k];
+            }
+            right[i] = sum / self.entries[self.index(i, i)];
+        }
+        Some(right)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+    use super::*;
+
+    #[test]
+    fn solves_what_it_was_made_from() {
+        const SIZE: usize = 23;
+        const WIDTH: usize = 4;
+        let mut matrix = Banded::zeros(SIZE, WIDTH);
+        let mut dense = vec![vec![0.0; SIZE]; SIZE];
+        for i in 0..SIZE {
+            for j in i.saturating_sub(WIDTH)..=i {
+                let value = if i == j { 9.0 } else { ((i * 7 + j * 3) % 5) as f64 - 2.0 };
+                matrix.add(i, j, value);
+                dense[i][j] = value;
+                dense[j][i] = value;
+            }
+        }
+        let x: Vec<f64> = (0..SIZE).map(|i| (i as f64).sin()).collect();
+        let right = dense.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+        for (got, wanted) in matrix.solve(right).unwrap().iter().zip(&x) {
+            assert!((got - wanted).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_not_definite() {
+        let mut matrix = Banded::zeros(2, 1);
+        matrix.add(0, 0, 1.0);
+        matrix.add(1, 0, 2.0);
+        matrix.add(1, 1, 1.0);
+        assert_eq!(matrix.solve(vec![1.0, 1.0]), None);
+    }
+}

@@ -1,0 +1,81 @@
+//! Where the points of a stream go: intervals that follow the motion's third derivative.
+//!
+//! A quadratic spline with spacing h misses a motion by at most h³ |q⃛| √3/216 (the peak of the
+//! third Bernoulli polynomial over 3!). Spacing h = (ε 216/(√3 |q⃛|))^⅓ spends the error evenly.
+
+use super::stream_reference::Reference;
+use crate::motion::stream::{DOF, Joints};
+
+/// h³ |q⃛| times this is the error of a quadratic spline.
+const ERROR_CONSTANT: f64 = 0.008_018_753_738_744_8;
+/// Samples of the density per shortest interval.
+const SAMPLES: f64 = 5.0;
+/// Largest change of the spacing along the motion, s per s: neighbours differ by a third.
+const SMOOTHNESS: f64 = 0.3;
+/// Fewest intervals where the time allows them: rest, motion, rest.
+const FEWEST: f64 = 4.0;
+
+/// How close the points of a stream may be, and how close the motion must be met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spacing {
+    /// Shortest interval, s.
+    pub shortest: f64,
+    /// Error that the spline may have, in radians or whatever `lever` makes of them.
+    pub tolerance: f64,
+    /// Weight of each joint in the error: 1 for radians, its distance to the tool for metres.
+    pub lever: Joints,
+}
+
+impl Default for Spacing {
+    fn default() -> Spacing {
+        Spacing { shortest: 0.05, tolerance: 1e-4, lever: [1.0; DOF] }
+    }
+}
+
+/// Intervals, s, that add up to `duration`, for a stream that follows `reference` in that time.
+/// None is below the shortest one unless the whole duration is.
+pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacing) -> Vec<f64> {
+    let shortest = spacing.shortest;
+    if !(duration > 2.0 * shortest && duration.is_finite()) {
+        return vec![duration];
+    }
+    let count = (duration / shortest * SAMPLES).ceil() as usize;
+    let step = duration / count as f64;
+    let longest = (duration / FEWEST).max(shortest);
+    let stretch = reference.duration() / duration;
+    let velocity = |t: f64| reference.at(t * stretch).1.map(|v| v * stretch);
+    let mut width: Vec<f64> = (0..count)
+        .map(|i| {
+            let t = (i as f64 + 0.5) * step;
+            let [before, here, after] = [t - shortest, t, t + shortest].map(velocity);
+            let jerk = (0..DOF)
+                .map(|j| spacing.lever[j] * (after[j] - 2.0 * here[j] + before[j]))
+                .map(|change| (change / (shortest * shortest)).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            (spacing.tolerance / (ERROR_CONSTANT * jerk)).cbrt().clamp(shortest, longest)
+        })
+        .collect();
+    for i in 1..count {
+        width[i] = width[i].min(width[i - 1] + SMOOTHNESS * step);
+        let back = count - 1 - i;
+        width[back] = width[back].min(width[back + 1] + SMOOTHNESS * step);
+    }
+    // Equal shares of Σ step/width, each at least 1, so that no interval is below the shortest.
+    let total: f64 = width.iter().map(|w| step / w).sum();
+    let points = total.floor().max(1.0);
+    let share = total / points;
+    let (mut intervals, mut passed, mut begin) = (Vec::new(), 0.0, 0.0);
+    for (i, w) in width.iter().enumerate() {
+        let mass = step / w;
+        let next = share * (intervals.len() + 1) as f64;
+        if passed + mass >= next && (intervals.len() + 1) as f64 + 0.5 < points {
+            let at = step * (i as f64 + (next - passed) / mass);
+            intervals.push(at - begin);
+            begin = at;
+        }
+        passed += mass;
+    }
+    intervals.push(duration - begin);
+    intervals
+}
