@@ -12,5 +12,7 @@ pub mod path_energy;
 pub mod profile;
 pub mod reachability;
 pub mod stream_fit;
+pub mod stream_limits;
+mod stream_points;
 pub mod stream_reference;
 pub mod stream_spacing;
