@@ -1,6 +1,5 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
-pub mod check;
 mod banded;
 mod cone;
 pub mod corridor;
@@ -8,9 +7,10 @@ mod energy_cones;
 pub mod energy_program;
 pub mod idle;
 pub mod path_energy;
-pub mod reason;
-pub mod retime;
-pub mod site;
+pub mod profile;
+pub mod reachability;
 pub mod stream_fit;
+pub mod stream_limits;
+mod stream_points;
 pub mod stream_reference;
 pub mod stream_spacing;

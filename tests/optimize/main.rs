@@ -6,3 +6,4 @@ mod analytic;
 mod arm;
 mod energy;
 mod reachability;
+mod stream;

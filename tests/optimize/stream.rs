@@ -1,0 +1,234 @@
+//! Streams that follow an intended motion.
+
+use joulepath::motion::stream::{DOF, Joints, Stream};
+use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
+use joulepath::optimize::profile::Profile;
+use joulepath::optimize::reachability::time_optimal;
+use joulepath::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
+use joulepath::optimize::stream_limits::StreamLimits;
+use joulepath::optimize::stream_reference::Reference;
+use joulepath::optimize::stream_spacing::{Spacing, adaptive_intervals};
+
+use crate::arm;
+
+const LEVER: Joints = [1.0; DOF];
+const FREE: StreamLimits = StreamLimits {
+    velocity: [f64::INFINITY; DOF],
+    acceleration: [f64::INFINITY; DOF],
+    jerk: [f64::INFINITY; DOF],
+};
+
+fn fitted(fit: StreamFit) -> FittedStream {
+    match fit {
+        StreamFit::Fitted(fitted) => fitted,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The motion along a path by a profile.
+fn motion(path: &arm::Path, profile: &Profile) -> Reference {
+    Reference::sample(profile.duration(), 2000, |t| {
+        let (s, speed, _) = profile.at(t);
+        let (q, q1, _) = path.at(s);
+        (q, q1.map(|x| x * speed))
+    })
+    .unwrap()
+}
+
+/// Electrical energy of a realised stream, J, by dense sampling of the arm's dynamics.
+fn realised_energy(stream: &Stream, model: &EnergyModel) -> f64 {
+    const STEPS: usize = 12;
+    let mut sum = 0.0;
+    for piece in stream.pieces() {
+        let dt = piece.length / STEPS as f64;
+        for i in 0..STEPS {
+            let (q, qd, qdd) = piece.at((i as f64 + 0.5) * dt);
+            let torque = arm::torque(&q, &qd, &qdd);
+            let powers: Joints = std::array::from_fn(|j| torque[j] * qd[j]);
+            let copper: f64 = (0..DOF).map(|j| model.loss[j] * torque[j] * torque[j]).sum();
+            let drawn: f64 = match model.sharing {
+                Sharing::PerJoint => powers.iter().map(|p| p.max(model.regeneration * p)).sum(),
+                Sharing::Bus => {
+                    let p: f64 = powers.iter().sum();
+                    p.max(model.regeneration * p)
+                }
+            };
+            sum += dt * (drawn + copper + model.base_w);
+        }
+    }
+    sum
+}
+
+/// A smooth motion from rest to rest in which joints 0…2 move, joint 3 rests.
+fn smooth(duration: f64) -> Reference {
+    Reference::sample(duration, 4000, |t| {
+        // q = A (x³ (10 − 15 x + 6 x²)), x = t/T.
+        let x = t / duration;
+        let (shape, slope) =
+            (x * x * x * (10.0 - 15.0 * x + 6.0 * x * x), 30.0 * (x * (1.0 - x)).powi(2));
+        let size = [1.0, -0.7, 0.4, 0.0, 0.0, 0.0];
+        (
+            std::array::from_fn(|j| 0.1 * j as f64 + size[j] * shape),
+            size.map(|a| a * slope / duration),
+        )
+    })
+    .unwrap()
+}
+
+#[test]
+fn the_motion_of_a_stream_is_met_by_its_own_points() {
+    const EXACT: f64 = 1e-7;
+    let intervals = vec![0.08, 0.05, 0.06, 0.09, 0.07, 0.05, 0.1];
+    let point = |i: usize| std::array::from_fn(|j| (0.5 * i as f64 + j as f64).sin());
+    let own = Stream::new(point(0), (1..=intervals.len()).map(point).collect(), intervals.clone())
+        .unwrap();
+    let reference = Reference::sample(own.duration(), 20_000, |t| {
+        let (q, qd, _) = own.eval(t);
+        (q, qd)
+    })
+    .unwrap();
+    let fit = fitted(fit_stream(&reference, intervals, &FREE, &LEVER).unwrap());
+    for (got, wanted) in fit.stream.points().iter().zip(own.points()) {
+        for j in 0..DOF {
+            assert!((got[j] - wanted[j]).abs() < EXACT, "{got:?} {wanted:?}");
+        }
+    }
+    assert!(fit.deviation < EXACT && fit.lag < EXACT);
+}
+
+#[test]
+fn ends_and_resting_joints_are_exact() {
+    let reference = smooth(1.0);
+    for n in [1, 2, 3, 20] {
+        let fit = fitted(fit_stream(&reference, vec![1.0 / n as f64; n], &FREE, &LEVER).unwrap());
+        assert_eq!(fit.stream.start(), reference.start());
+        assert_eq!(fit.stream.end(), reference.end());
+        assert!(fit.stream.points().iter().all(|p| p[3..] == reference.start()[3..]));
+    }
+}
+
+#[test]
+fn the_error_falls_with_the_third_power_of_the_spacing() {
+    let errors = [10, 20, 40].map(|n| {
+        let intervals = vec![1.0 / f64::from(n); n as usize];
+        let fit = fitted(fit_stream(&smooth(1.0), intervals, &FREE, &LEVER).unwrap());
+        fit.lag.max(fit.deviation)
+    });
+    for pair in errors.windows(2) {
+        assert!(pair[0] / pair[1] > 5.0, "{errors:?}");
+    }
+    assert!(errors[2] < 1e-4);
+}
+
+#[test]
+fn limits_are_kept_or_the_time_is_refused() {
+    let reference = smooth(0.6);
+    let intervals = || vec![0.05; 12];
+    let free = fitted(fit_stream(&reference, intervals(), &FREE, &LEVER).unwrap()).stream;
+    let of = |share: f64| StreamLimits {
+        velocity: free.max_velocity().map(|v| v.max(1e-3) * share),
+        acceleration: free.max_acceleration().map(|a| a.max(1e-3) * share),
+        jerk: free.max_jerk().map(|j| j.max(1e-3) * share),
+    };
+    // Somewhat less than the free fit uses is possible with another timing.
+    let tight = of(0.97);
+    assert!(tight.worst_ratio(&free) > 1.02);
+    let fit = fitted(fit_stream(&reference, intervals(), &tight, &LEVER).unwrap());
+    assert!(tight.worst_ratio(&fit.stream) <= 1.0);
+    assert!(fit.lag > 1e-3 && fit.deviation < 0.3 * fit.lag, "{} {}", fit.lag, fit.deviation);
+    // Half is not, but in the time that the stretch says.
+    let impossible = of(0.5);
+    let refused = fit_stream(&reference, intervals(), &impossible, &LEVER).unwrap();
+    let StreamFit::TooFast { stretch } = refused else { panic!("{refused:?}") };
+    let slower = intervals().iter().map(|d| d * stretch * 1.0001).collect();
+    fitted(fit_stream(&reference, slower, &impossible, &LEVER).unwrap());
+    let faster = intervals().iter().map(|d| d * 0.5 * (1.0 + stretch)).collect();
+    let refused = fit_stream(&reference, faster, &of(0.4), &LEVER).unwrap();
+    assert!(matches!(refused, StreamFit::TooFast { .. }));
+}
+
+#[test]
+fn a_single_point_that_breaks_a_limit_is_refused() {
+    let limits = StreamLimits { velocity: [0.1; DOF], ..FREE };
+    let refused = fit_stream(&smooth(1.0), vec![1.0], &limits, &LEVER).unwrap();
+    let StreamFit::TooFast { stretch } = refused else { panic!("{refused:?}") };
+    // Up and down in equal halves: twice the mean speed of 1 rad/s.
+    assert!((stretch - 20.0).abs() < 1e-9);
+}
+
+#[test]
+fn intervals_follow_the_third_derivative() {
+    let spacing = Spacing { shortest: 0.02, tolerance: 1e-4, ..Spacing::default() };
+    // At rest but for a quick move in the middle third.
+    let quick = smooth(1.0);
+    let still = |q: &Joints| (*q, [0.0; DOF]);
+    let reference = Reference::sample(3.0, 6000, |t| match t {
+        t if t < 1.0 => still(quick.start()),
+        t if t > 2.0 => still(quick.end()),
+        t => quick.at(t - 1.0),
+    })
+    .unwrap();
+    for duration in [3.0, 1.7, 0.3, 0.05, 0.02, 0.01] {
+        let intervals = adaptive_intervals(&reference, duration, &spacing);
+        let sum: f64 = intervals.iter().sum();
+        assert!((sum - duration).abs() < 1e-12);
+        let least = intervals.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(least >= spacing.shortest.min(duration) * (1.0 - 1e-9), "{duration}: {least}");
+        for pair in intervals.windows(2) {
+            assert!(pair[0] / pair[1] < 2.0 && pair[1] / pair[0] < 2.0, "{intervals:?}");
+        }
+    }
+    let adaptive = adaptive_intervals(&reference, 3.0, &spacing);
+    let n = adaptive.len();
+    let uniform = vec![3.0 / n as f64; n];
+    let [adaptive, uniform] = [adaptive, uniform].map(|intervals| {
+        let fit = fitted(fit_stream(&reference, intervals, &FREE, &LEVER).unwrap());
+        fit.lag.max(fit.deviation)
+    });
+    assert!(adaptive < 0.5 * uniform, "{n}: {adaptive} {uniform}");
+    assert!(adaptive < 6.0 * spacing.tolerance, "{adaptive}");
+}
+
+#[test]
+fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
+    let reference = smooth(1.0);
+    for tolerance in [1e-3, 1e-4, 1e-5] {
+        let spacing = Spacing { shortest: 0.02, tolerance, ..Spacing::default() };
+        let intervals = adaptive_intervals(&reference, 1.0, &spacing);
+        let fit = fitted(fit_stream(&reference, intervals, &FREE, &LEVER).unwrap());
+        let error = fit.lag.max(fit.deviation);
+        assert!(error < 2.0 * tolerance && error > 0.5 * tolerance, "{tolerance}: {error}");
+    }
+}
+
+#[test]
+fn streams_realise_most_of_the_promised_saving() {
+    const SHARE: f64 = 0.85;
+    let limits = arm::limits();
+    let model =
+        EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing: Sharing::Bus, regeneration: 0.0 };
+    let stream_limits = StreamLimits {
+        velocity: arm::VELOCITY,
+        acceleration: *limits.acceleration(),
+        jerk: limits.acceleration().map(|a| 20.0 * a),
+    };
+    for seed in 0..10 {
+        let path = arm::Path::random(seed);
+        let grid = arm::grid(&path, 60, 1.0);
+        let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+        let time = 1.3 * fastest.duration();
+        let outcome = minimize_energy(&grid, &limits, &model, &fastest, time);
+        let best = outcome.into_optimum().unwrap();
+        let reference = motion(&path, &best.profile);
+        let spacing = Spacing { tolerance: 3e-4, ..Spacing::default() };
+        let intervals = adaptive_intervals(&reference, time, &spacing);
+        let fit = fit_stream(&reference, intervals, &stream_limits, &LEVER).unwrap();
+        let stream = fitted(fit).stream;
+        assert!(stream_limits.worst_ratio(&stream) <= 1.0);
+        let spent = evaluate(&grid, &fastest, &model).total();
+        let realised = realised_energy(&stream, &model);
+        let share = (spent - realised) / (spent - best.energy.total());
+        assert!(share > SHARE, "seed {seed}: {share}");
+    }
+}
