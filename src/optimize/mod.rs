@@ -1,14 +1,16 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
 mod banded;
+pub mod check;
 mod cone;
 pub mod corridor;
 mod energy_cones;
 pub mod energy_program;
 pub mod idle;
 pub mod path_energy;
-pub mod profile;
-pub mod reachability;
+pub mod reason;
+pub mod retime;
+pub mod site;
 pub mod stream_fit;
 pub mod stream_limits;
 mod stream_points;
