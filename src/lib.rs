@@ -3,6 +3,7 @@
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
 pub mod cli;
+pub mod config;
 pub mod diagnostics;
 pub mod dynamics;
 pub mod emit;
@@ -12,6 +13,7 @@ pub mod kinematics;
 pub mod motion;
 pub mod optimize;
 pub mod path;
+pub mod report;
 pub mod retrofit;
 pub mod robot;
 pub mod syntax;

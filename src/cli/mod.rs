@@ -1,7 +1,12 @@
 //! The command line.
 
+pub mod common;
 pub mod input;
+pub mod optimize;
+pub mod output;
 pub mod parse;
+pub mod robots;
+pub mod simulate;
 
 use std::process::ExitCode;
 
@@ -18,6 +23,10 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Parse(parse::ParseArgs),
+    Simulate(simulate::SimulateArgs),
+    #[command(alias = "optimise")]
+    Optimize(Box<optimize::OptimizeArgs>),
+    Robots(robots::RobotsArgs),
 }
 
 /// Runs the command that the arguments ask for.
@@ -25,6 +34,9 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Parse(args) => parse::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Optimize(args) => optimize::run(&args),
+        Command::Robots(args) => robots::run(&args),
     };
     result.unwrap_or_else(|error| {
         report(&error);

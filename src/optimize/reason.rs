@@ -9,6 +9,12 @@ pub enum Reason {
     UnknownStart(String),
     /// A target or other argument that may be another one at the next run.
     NotConstant(String),
+    /// It could not be worked out.
+    Unresolved(String),
+    /// It does not run in the simulated cycle.
+    NotReached,
+    /// It stands in a compact IF, which holds one statement only.
+    CompactIf,
     /// The path can't be followed as programmed.
     Path(String),
     /// An instruction that does more than move.
@@ -52,6 +58,9 @@ impl Reason {
             Reason::FirstMovement => "first-movement",
             Reason::UnknownStart(_) => "unknown-start",
             Reason::NotConstant(_) => "not-constant",
+            Reason::Unresolved(_) => "unresolved",
+            Reason::NotReached => "not-reached",
+            Reason::CompactIf => "compact-if",
             Reason::Path(_) => "path",
             Reason::Instruction(_) => "instruction",
             Reason::Timed => "timed",
@@ -73,6 +82,24 @@ impl Reason {
     }
 }
 
+impl Reason {
+    /// True if something that a user may want rewritten was refused; not where there is
+    /// nothing to do.
+    pub fn is_refusal(&self) -> bool {
+        !matches!(
+            self,
+            Reason::FirstMovement
+                | Reason::NoMotion
+                | Reason::NoSaving
+                | Reason::Timed
+                | Reason::NotReached
+                | Reason::ShortDwell(_)
+                | Reason::UnknownDwell
+                | Reason::NeedsSetting(_)
+        )
+    }
+}
+
 impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: ", self.code())?;
@@ -80,7 +107,12 @@ impl std::fmt::Display for Reason {
             Reason::FirstMovement => f.write_str("the first movement brings the robot to a known place"),
             Reason::UnknownStart(why) => write!(f, "where it starts is not known ({why})"),
             Reason::NotConstant(what) => f.write_str(what),
-            Reason::Path(why) | Reason::NoStream(why) | Reason::Verification(why) => f.write_str(why),
+            Reason::Unresolved(why)
+            | Reason::Path(why)
+            | Reason::NoStream(why)
+            | Reason::Verification(why) => f.write_str(why),
+            Reason::NotReached => f.write_str("it does not run in the simulated cycle"),
+            Reason::CompactIf => f.write_str("a compact IF holds one statement only"),
             Reason::Instruction(name) => write!(f, "{name} does more than move"),
             Reason::Timed => f.write_str("it has its time already (\\T)"),
             Reason::Argument(name) => write!(f, "the argument \\{name} is not modelled"),

@@ -5,11 +5,11 @@
 //! which it ran (another start, other values of loop variables or parameters)
 //! is a variant.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::reason::Reason;
-use crate::ir::hir::Block;
-use crate::ir::instructions::MoveForm;
+use crate::ir::hir::{Block, Callee, StmtKind};
+use crate::ir::instructions::{MoveForm, is_movement};
 use crate::ir::movement::{LocalValue, Movement, Settings};
 use crate::ir::program::Program;
 use crate::ir::value::Dependence;
@@ -138,6 +138,9 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     for record in &run.moves {
         movement_is_eligible(&record.movement)?;
     }
+    if run.moves.windows(2).any(|pair| pair[0].movement.tool != pair[1].movement.tool) {
+        return Err(Reason::Setting("a change of tool".into()));
+    }
     if !run.start_known {
         return Err(Reason::UnknownStart("a movement before it could not be worked out".into()));
     }
@@ -176,6 +179,9 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
     if movement.concurrent {
         return Err(Reason::Argument("Conc".into()));
     }
+    if movement.total_load.is_some() {
+        return Err(Reason::Argument("TLoad".into()));
+    }
     if let Some(name) = movement.other_arguments.first() {
         return Err(Reason::Argument(name.to_string()));
     }
@@ -202,11 +208,13 @@ fn settings_allow(settings: &Settings) -> Result<(), Reason> {
 /// Where each statement stands: its list and its place in it.
 struct Places {
     by_span: BTreeMap<Span, (usize, usize)>,
+    /// Statements of compact IFs.
+    compact: BTreeSet<Span>,
 }
 
 impl Places {
     fn new(program: &Program) -> Places {
-        let mut places = Places { by_span: BTreeMap::new() };
+        let mut places = Places { by_span: BTreeMap::new(), compact: BTreeSet::new() };
         let mut lists = 0;
         for module in &program.modules {
             for routine in &module.routines {
@@ -224,6 +232,12 @@ impl Places {
         for (index, stmt) in block.iter().enumerate() {
             self.by_span.insert(stmt.span, (list, index));
             for inner in stmt.kind.blocks() {
+                // A compact IF ends with its statement, the long form with ENDIF after it.
+                if let Some(last) = inner.last()
+                    && last.span.end == stmt.span.end
+                {
+                    self.compact.insert(last.span);
+                }
                 self.block(inner, lists);
             }
         }
@@ -231,6 +245,9 @@ impl Places {
 
     /// Whether the statements of a run follow each other in one list.
     fn neighbours(&self, run: &Run) -> Result<(), Reason> {
+        if run.moves.iter().any(|record| self.compact.contains(&record.movement.span)) {
+            return Err(Reason::CompactIf);
+        }
         for pair in run.moves.windows(2) {
             let place = |i: usize| self.by_span.get(&pair[i].movement.span);
             match (place(0), place(1)) {
@@ -242,5 +259,43 @@ impl Places {
             }
         }
         Ok(())
+    }
+}
+
+/// The movement statements of a program that did not run in a simulation.
+pub fn not_reached(program: &Program, simulation: &Simulation) -> Vec<Span> {
+    let mut ran: BTreeSet<Span> = BTreeSet::new();
+    for event in &simulation.events {
+        match &event.what {
+            What::Run(run) => ran.extend(run.moves.iter().map(|record| record.movement.span)),
+            What::Left(unresolved) => {
+                ran.insert(unresolved.span);
+            }
+            What::Wait(_) | What::Output(..) => {}
+        }
+    }
+    let mut spans = Vec::new();
+    for module in &program.modules {
+        for routine in &module.routines {
+            for block in routine.blocks() {
+                movements(block, &mut spans);
+            }
+        }
+    }
+    spans.retain(|span| !ran.contains(span));
+    spans
+}
+
+fn movements(block: &Block, spans: &mut Vec<Span>) {
+    for stmt in block {
+        if let StmtKind::Call(call) = &stmt.kind
+            && let Callee::Name(name) = &call.callee
+            && is_movement(&name.key)
+        {
+            spans.push(stmt.span);
+        }
+        for inner in stmt.kind.blocks() {
+            movements(inner, spans);
+        }
     }
 }

@@ -60,6 +60,28 @@ pub struct Segment {
     pub events: Vec<usize>,
 }
 
+impl Segment {
+    /// A piece without costs yet.
+    pub(super) fn new(span: Span, kind: SegmentKind, reason: Option<Reason>) -> Segment {
+        Segment {
+            span,
+            kind,
+            rewritten: false,
+            reason,
+            executions: 0,
+            rewritten_executions: 0,
+            time_before_s: 0.0,
+            time_after_s: 0.0,
+            energy_before_j: 0.0,
+            energy_after_j: 0.0,
+            lower_bound_j: None,
+            points: 0,
+            potential_j: 0.0,
+            events: Vec::new(),
+        }
+    }
+}
+
 /// What the verifier saw.
 #[derive(Clone, Debug)]
 pub struct Verification {
@@ -129,10 +151,7 @@ impl Retrofit {
 
     /// True if some piece that could have been rewritten was refused.
     pub fn refused(&self) -> bool {
-        self.segments.iter().any(|segment| {
-            segment.kind == SegmentKind::Timing
-                && segment.reason.as_ref().is_some_and(|reason| *reason != Reason::FirstMovement)
-        })
+        self.segments.iter().any(|s| s.reason.as_ref().is_some_and(Reason::is_refusal))
     }
 }
 

@@ -6,9 +6,11 @@ use super::figures::{Segment, SegmentKind};
 use super::work::Way;
 use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
+use crate::motion::timeline::What;
 use crate::optimize::idle::Dwell;
 use crate::optimize::reason::Reason;
 use crate::optimize::site::Site;
+use crate::text::Span;
 
 /// Dwells shorter than this are not listed, s: gripper times.
 const SHORTEST_DWELL: f64 = 0.1;
@@ -20,6 +22,7 @@ pub(super) fn segments(
     sites: &[Site],
     ways: &[Way],
     dwells: &[Dwell],
+    not_reached: &[Span],
 ) -> Vec<Segment> {
     let cost = |simulation: &Simulation, account: &Account, events: &[usize]| {
         let time: f64 = events.iter().map(|i| simulation.events[*i].duration).sum();
@@ -31,22 +34,7 @@ pub(super) fn segments(
     };
     let mut segments = Vec::new();
     for (index, site) in sites.iter().enumerate() {
-        let mut segment = Segment {
-            span: site.span,
-            kind: SegmentKind::Timing,
-            rewritten: false,
-            reason: None,
-            executions: 0,
-            rewritten_executions: 0,
-            time_before_s: 0.0,
-            time_after_s: 0.0,
-            energy_before_j: 0.0,
-            energy_after_j: 0.0,
-            lower_bound_j: None,
-            points: 0,
-            potential_j: 0.0,
-            events: Vec::new(),
-        };
+        let mut segment = Segment::new(site.span, SegmentKind::Timing, None);
         let mut bound = 0.0;
         for way in ways.iter().filter(|way| way.site == index) {
             let events = &site.variants[way.variant].events;
@@ -74,9 +62,32 @@ pub(super) fn segments(
         segment.lower_bound_j = segment.rewritten.then_some(bound).filter(|b| b.is_finite());
         segments.push(segment);
     }
+    segments.extend(left(before));
+    segments.extend(
+        not_reached
+            .iter()
+            .map(|span| Segment::new(*span, SegmentKind::Timing, Some(Reason::NotReached))),
+    );
     segments.extend(idle(before, before_account, after_account, dwells));
     segments.sort_by_key(|segment| segment.span);
     segments
+}
+
+/// Movements that could not be worked out, by statement.
+fn left(simulation: &Simulation) -> Vec<Segment> {
+    let mut by_place: BTreeMap<Span, Segment> = BTreeMap::new();
+    for event in &simulation.events {
+        if let What::Left(unresolved) = &event.what {
+            let reason = Reason::Unresolved(unresolved.reason.clone());
+            by_place
+                .entry(unresolved.span)
+                .or_insert_with(|| {
+                    Segment::new(unresolved.span, SegmentKind::Timing, Some(reason))
+                })
+                .executions += 1;
+        }
+    }
+    by_place.into_values().collect()
 }
 
 /// Dwells by place.
@@ -95,21 +106,8 @@ fn idle(
             dwell.events.iter().flat_map(|i| &account.events[*i]).map(EnergyParts::energy_j).sum()
         };
         let time: f64 = dwell.events.iter().map(|i| simulation.events[*i].duration).sum();
-        let segment = by_place.entry(dwell.span).or_insert_with(|| Segment {
-            span: dwell.span,
-            kind: SegmentKind::Idle,
-            rewritten: false,
-            reason: Some(dwell.reason.clone()),
-            executions: 0,
-            rewritten_executions: 0,
-            time_before_s: 0.0,
-            time_after_s: 0.0,
-            energy_before_j: 0.0,
-            energy_after_j: 0.0,
-            lower_bound_j: None,
-            points: 0,
-            potential_j: 0.0,
-            events: Vec::new(),
+        let segment = by_place.entry(dwell.span).or_insert_with(|| {
+            Segment::new(dwell.span, SegmentKind::Idle, Some(dwell.reason.clone()))
         });
         segment.executions += 1;
         segment.time_before_s += time;

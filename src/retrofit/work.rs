@@ -16,7 +16,7 @@ use crate::optimize::corridor::Ceilings;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::{Goal, Retiming, Task, fastest, retime};
-use crate::optimize::site::{Site, sites};
+use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::Model;
 use crate::syntax::{self, SyntaxError};
 use crate::text::SourceFile;
@@ -232,6 +232,7 @@ pub fn retrofit(
         &sites,
         &ways,
         &dwells,
+        &not_reached(&program, &simulation),
     );
     outputs::add_brake_note(&mut checked.0, files, model, &dwells);
     let potential_j = dwells.iter().map(|dwell| dwell.potential_j).sum();

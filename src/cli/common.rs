@@ -1,0 +1,189 @@
+//! Options that several commands share.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+
+use super::input::{self, Input};
+use crate::config::{self, Config};
+use crate::motion::Options;
+use crate::retrofit::Source;
+use crate::robot::{self, Model};
+use crate::text::{FileId, SourceFile};
+
+/// Options of commands that run a program.
+#[derive(Debug, Args)]
+pub struct ProgramArgs {
+    /// Module files, folders, .pgf programs or controller backups.
+    #[arg(required = true)]
+    pub paths: Vec<PathBuf>,
+
+    /// The robot: a name (joulepath robots list) or a robot file.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub robot: Option<String>,
+
+    /// Configuration; otherwise the nearest joulepath.toml above the program.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+
+    /// The procedure that starts the program.
+    #[arg(long)]
+    pub entry: Option<String>,
+
+    /// Where the robot stands at first, axes in degrees.
+    #[arg(long, value_name = "DEG,…", allow_hyphen_values = true)]
+    pub start: Option<String>,
+
+    /// When an input comes, such as diPart=2.5 (s after the start or the last wait for it).
+    #[arg(long = "input", value_name = "SIGNAL=SECONDS")]
+    pub inputs: Vec<String>,
+
+    /// How the result is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+
+    /// No notes on standard error.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Forms of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// A program ready to run.
+pub struct Job {
+    /// What was read.
+    pub input: Input,
+    /// The files of the program; their ids count from 0.
+    pub files: Vec<Source>,
+    /// The robot.
+    pub model: Model,
+    /// The configuration.
+    pub config: Config,
+    /// The routine that starts the program.
+    pub entry: String,
+    /// For simulations.
+    pub options: Options,
+}
+
+impl Job {
+    /// The files alone, for reports.
+    pub fn sources(&self) -> Vec<SourceFile> {
+        self.files.iter().map(|source| source.file.clone()).collect()
+    }
+}
+
+/// Reads program, configuration and robot.
+///
+/// # Errors
+/// Whatever is missing or wrong, with the way out.
+pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
+    let input = input::read(&args.paths)?;
+    for unreadable in &input.unreadable {
+        note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
+    }
+    let (config, folder) = configuration(args)?;
+    let name = match (&args.robot, &config.robot) {
+        (Some(name), _) => name.clone(),
+        (None, Some(name)) => {
+            let beside = folder.join(name);
+            if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() }
+        }
+        (None, None) => bail!(
+            "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
+             --robot FILE.toml, or robot = \"…\" in {}",
+            config::FILE_NAME
+        ),
+    };
+    let model = robot::load(&name)?;
+    if model.dof != 6 {
+        bail!(
+            "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
+            model.name,
+            model.dof
+        );
+    }
+    let entry = args.entry.clone().or_else(|| config.entry.clone()).unwrap_or_else(|| "main".into());
+    let mut inputs: BTreeMap<String, f64> =
+        config.inputs.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect();
+    for text in &args.inputs {
+        let (name, seconds) = input_time(text)?;
+        inputs.insert(name, seconds);
+    }
+    if let Some((name, t)) = inputs.iter().find(|(_, t)| !(t.is_finite() && **t >= 0.0)) {
+        bail!("the input {name} comes after {t} s; give a time of 0 or more");
+    }
+    let start = args.start.as_deref().map(start_position).transpose()?;
+    let files: Vec<Source> = input
+        .program()
+        .enumerate()
+        .map(|(i, file)| Source {
+            file: SourceFile::new(
+                FileId(i as u32),
+                file.source.path.clone(),
+                file.source.bytes.clone(),
+            ),
+            relative: file.relative.clone(),
+        })
+        .collect();
+    Ok(Job { input, files, model, config, entry, options: Options { start, inputs } })
+}
+
+fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
+    let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
+        path: path.to_string_lossy().into_owned(),
+        reason: error.to_string(),
+    };
+    let read = |path: &Path| -> anyhow::Result<(Config, PathBuf)> {
+        let text = fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        Ok((config::parse(&path.to_string_lossy(), &text)?, folder))
+    };
+    if let Some(path) = &args.config {
+        return read(path);
+    }
+    if let Some(first) = args.paths.first() {
+        let absolute = fs::canonicalize(first).unwrap_or_else(|_| first.clone());
+        if let Some(path) = config::candidates(&absolute).into_iter().find(|p| p.is_file()) {
+            return read(&path);
+        }
+    }
+    Ok((Config::default(), PathBuf::new()))
+}
+
+fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
+    let wrong = || format!("--input {text}: write it as SIGNAL=SECONDS, such as diPart=2.5");
+    let (name, seconds) = text.split_once('=').with_context(wrong)?;
+    let seconds = seconds.trim().trim_end_matches('s').trim();
+    let seconds: f64 = seconds.parse().map_err(|_| anyhow::anyhow!(wrong()))?;
+    Ok((name.trim().to_lowercase(), seconds))
+}
+
+fn start_position(text: &str) -> anyhow::Result<[f64; 6]> {
+    let wrong = || {
+        anyhow::anyhow!("--start {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0")
+    };
+    let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let values: [f64; 6] = values.map_err(|_| wrong())?.try_into().map_err(|_| wrong())?;
+    if values.iter().any(|x: &f64| !x.is_finite()) {
+        return Err(wrong());
+    }
+    Ok(values.map(f64::to_radians))
+}
+
+/// A note on standard error.
+#[expect(clippy::print_stderr, reason = "notes go to standard error")]
+pub fn note(quiet: bool, text: &str) {
+    if !quiet {
+        eprintln!("note: {text}");
+    }
+}

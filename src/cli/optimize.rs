@@ -1,0 +1,258 @@
+//! `joulepath optimize`: the main job.
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use similar::TextDiff;
+
+use super::common::{self, Format, Job, ProgramArgs};
+use super::output;
+use crate::optimize::corridor::Ceilings;
+use crate::report::place::Places;
+use crate::report::{self};
+use crate::retrofit::{Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, retrofit};
+use crate::text::charset;
+
+/// Retrofit a program: the same work with less energy in no more time.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath optimize fixtures/pick_place --robot IRB1600-10/1.45 --out optimized"
+)]
+pub struct OptimizeArgs {
+    #[command(flatten)]
+    program: ProgramArgs,
+
+    /// Write the complete program into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Print the changes as a unified diff.
+    #[arg(long)]
+    diff: bool,
+
+    /// Change the files themselves; each keeps a copy with .bak appended.
+    #[arg(long)]
+    in_place: bool,
+
+    /// Write a report as one HTML file.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+
+    /// What is minimised.
+    #[arg(long, value_enum, default_value_t = ObjectiveArg::Energy)]
+    objective: ObjectiveArg,
+
+    /// Time for the cycle, s; otherwise no run takes longer than before.
+    #[arg(long, value_name = "SECONDS", conflicts_with = "time_factor")]
+    takt: Option<f64>,
+
+    /// Each run takes this many times as long as before.
+    #[arg(long, value_name = "X")]
+    time_factor: Option<f64>,
+
+    /// Least time between two points of a stream, s.
+    #[arg(long, value_name = "SECONDS")]
+    spacing: Option<f64>,
+
+    /// Let lines and arcs be faster than programmed.
+    #[arg(long)]
+    allow_faster_tcp: bool,
+
+    /// Exit with 1 if some movement was refused.
+    #[arg(long)]
+    strict: bool,
+}
+
+/// What is minimised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ObjectiveArg {
+    /// Energy in the time that there is.
+    Energy,
+    /// Time.
+    Time,
+}
+
+/// Least spacing that a controller may be asked for, s.
+const LEAST_SPACING_S: f64 = 0.004;
+/// Largest sensible spacing, s.
+const LARGEST_SPACING_S: f64 = 1.0;
+/// Spacing of the points that a controller plans in time, s.
+const SPACING_S: f64 = 0.05;
+
+/// Runs the command.
+///
+/// # Errors
+/// Unusable input, or output that can't be written.
+pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    let settings_of = |job: &Job| settings(args, job);
+    let job = common::prepare(&args.program)?;
+    let settings = settings_of(&job)?;
+    let result = {
+        let bar = progress(args.program.quiet);
+        let result = retrofit(&job.files, &job.model, &settings, &|done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        });
+        bar.finish_and_clear();
+        result?
+    };
+    let sources = job.sources();
+    let places = Places::new(&sources);
+    let mut written = Vec::new();
+    if let Some(folder) = &args.out {
+        written.extend(write_folder(folder, &result)?);
+    }
+    if args.in_place {
+        written.extend(write_in_place(&job, &result)?);
+    }
+    if let Some(path) = &args.report {
+        let html = String::new();
+        output::write(path, html.as_bytes())?;
+        written.push(path.display().to_string());
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            let value = report::json::retrofit(&job.model, &job.entry, places, &result, &written);
+            serde_json::to_writer_pretty(&mut out, &value)?;
+            writeln!(out)?;
+        }
+        Format::Text => {
+            for text in report::text::notes(&job.model, places, &result.before.0) {
+                common::note(args.program.quiet, &text);
+            }
+            for path in &written {
+                common::note(args.program.quiet, &format!("wrote {path}"));
+            }
+            if args.diff {
+                write!(out, "{}", diff(&job, &result))?;
+            } else {
+                write!(out, "{}", report::text::retrofit(&job.model, places, &result))?;
+            }
+        }
+    }
+    let refused = args.strict && result.refused();
+    Ok(ExitCode::from(u8::from(refused)))
+}
+
+fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
+    let positive = |value: f64, flag: &str| {
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            bail!("{flag} {value}: give a positive number")
+        }
+    };
+    let takt = args.takt.or(if args.time_factor.is_some() { None } else { job.config.takt_s });
+    let budget = match (takt, args.time_factor) {
+        (Some(takt), _) => Budget::Takt(positive(takt, "--takt")?),
+        (None, Some(factor)) => Budget::Factor(positive(factor, "--time-factor")?),
+        (None, None) => Budget::AsBefore,
+    };
+    let spacing_s = args.spacing.or(job.config.spacing_s).unwrap_or(SPACING_S);
+    if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
+        bail!("--spacing {spacing_s}: give {LEAST_SPACING_S} to {LARGEST_SPACING_S} s");
+    }
+    Ok(Settings {
+        entry: job.entry.clone(),
+        options: job.options.clone(),
+        objective: match args.objective {
+            ObjectiveArg::Energy => Objective::Energy,
+            ObjectiveArg::Time => Objective::Time,
+        },
+        budget,
+        spacing_s,
+        ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
+    })
+}
+
+fn progress(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} runs {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// The complete program below a folder.
+fn write_folder(folder: &Path, result: &Retrofit) -> anyhow::Result<Vec<String>> {
+    let mut written = Vec::new();
+    for file in &result.outputs {
+        let path = folder.join(&file.path);
+        output::write(&path, &file.bytes)?;
+        written.push(path.display().to_string());
+    }
+    Ok(written)
+}
+
+/// The changed files in place of the original ones, each with a backup; new files beside.
+fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
+    let changed: Vec<(&OutputFile, PathBuf)> = result
+        .outputs
+        .iter()
+        .filter(|file| file.kind != OutputKind::Unchanged)
+        .map(|file| (file, place(job, file)))
+        .collect();
+    let backup = |path: &Path| PathBuf::from(format!("{}.bak", path.display()));
+    for (file, path) in &changed {
+        let taken = if file.kind == OutputKind::New { path.clone() } else { backup(path) };
+        if taken.exists() {
+            bail!(
+                "'{}' exists already and would be overwritten: move it away first, or use --out",
+                taken.display()
+            );
+        }
+    }
+    let mut written = Vec::new();
+    for (file, path) in &changed {
+        if file.kind == OutputKind::Changed {
+            let copy = backup(path);
+            std::fs::copy(path, &copy)
+                .with_context(|| format!("cannot write '{}'", copy.display()))?;
+            written.push(copy.display().to_string());
+        }
+        output::write(path, &file.bytes)?;
+        written.push(path.display().to_string());
+    }
+    Ok(written)
+}
+
+/// Where an output lies in the user's own tree.
+fn place(job: &Job, file: &OutputFile) -> PathBuf {
+    if let Some(source) = file.input.and_then(|i| job.files.get(i)) {
+        return PathBuf::from(&source.file.path);
+    }
+    // New files go where the others' relative paths start.
+    let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
+    PathBuf::from(root.unwrap_or_default()).join(&file.path)
+}
+
+fn diff(job: &Job, result: &Retrofit) -> String {
+    let mut text = String::new();
+    for file in &result.outputs {
+        let before = match (file.kind, file.input) {
+            (OutputKind::Unchanged, _) => continue,
+            (OutputKind::Changed, Some(i)) => job.files[i].file.bytes.as_slice(),
+            _ => &[],
+        };
+        let charset = charset(&file.bytes);
+        let (old, new) = (charset.decode(before), charset.decode(&file.bytes));
+        let from = if file.kind == OutputKind::New {
+            "/dev/null".to_owned()
+        } else {
+            format!("a/{}", file.path)
+        };
+        let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
+        text.push_str(
+            &diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string(),
+        );
+    }
+    text
+}

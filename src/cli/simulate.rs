@@ -1,0 +1,63 @@
+//! `joulepath simulate`: a program on the virtual controller.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::common::{self, Format, ProgramArgs};
+use super::output;
+use crate::energy::account;
+use crate::energy::trajectory::trajectory;
+use crate::motion;
+use crate::report::place::Places;
+use crate::report::{self};
+use crate::retrofit::read_program;
+
+/// Run a program on the virtual controller: time and energy of each move.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath simulate fixtures/pick_place --robot IRB1600-10/1.45 --input diMcReady=20"
+)]
+pub struct SimulateArgs {
+    #[command(flatten)]
+    program: ProgramArgs,
+
+    /// Write the planned motion as CSV, at most 2 ms apart.
+    #[arg(long, value_name = "FILE.csv")]
+    trajectory: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Unusable input, or output that can't be written.
+pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
+    let job = common::prepare(&args.program)?;
+    let (program, entry) = read_program(&job.files, &job.entry)?;
+    let simulation = motion::simulate(&program, entry, &job.model, &job.options);
+    let account = account(&job.model, &simulation);
+    let sources = job.sources();
+    let places = Places::new(&sources);
+    if let Some(path) = &args.trajectory {
+        let samples = trajectory(&job.model, &simulation);
+        output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            let value =
+                report::json::simulation(&job.model, &job.entry, places, &simulation, &account);
+            serde_json::to_writer_pretty(&mut out, &value)?;
+            writeln!(out)?;
+        }
+        Format::Text => {
+            for text in report::text::notes(&job.model, places, &simulation) {
+                common::note(args.program.quiet, &text);
+            }
+            write!(out, "{}", report::text::simulation(&job.model, places, &simulation, &account))?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,76 @@
+//! `joulepath.toml`: what a cell needs to be told once.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+/// Name of the file that is looked for.
+pub const FILE_NAME: &str = "joulepath.toml";
+
+/// The configuration. Unknown keys are errors.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// Robot: a name of the catalogue or a file, relative to the configuration.
+    pub robot: Option<String>,
+    /// The routine that starts the program.
+    pub entry: Option<String>,
+    /// Time for the cycle, s.
+    pub takt_s: Option<f64>,
+    /// Least time between two points of a stream, s.
+    pub spacing_s: Option<f64>,
+    /// Seconds after which an input comes.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, f64>,
+}
+
+/// A configuration that can't be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// It can't be read.
+    #[error("cannot read the configuration '{path}': {reason}; check the path, or leave --config out")]
+    Unreadable {
+        /// Its path.
+        path: String,
+        /// Why.
+        reason: String,
+    },
+    /// It is wrong.
+    #[error("{path}: {reason}; known keys are robot, entry, takt_s, spacing_s and [inputs]")]
+    Wrong {
+        /// Its path.
+        path: String,
+        /// From the parser, with line and column.
+        reason: String,
+    },
+}
+
+/// Parses a configuration; `path` names it in messages.
+///
+/// # Errors
+/// Wrong TOML, unknown keys, wrong types.
+pub fn parse(path: &str, text: &str) -> Result<Config, ConfigError> {
+    toml::from_str(text).map_err(|error| ConfigError::Wrong {
+        path: path.to_owned(),
+        reason: error.to_string().trim().to_owned(),
+    })
+}
+
+/// The folders in which a configuration may lie for a program, nearest first.
+pub fn candidates(program: &Path) -> Vec<PathBuf> {
+    program.ancestors().map(|folder| folder.join(FILE_NAME)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_keys_are_named() {
+        let error = parse("joulepath.toml", "robto = \"x\"").expect_err("unknown key");
+        assert!(error.to_string().contains("robto"), "{error}");
+        let config = parse("joulepath.toml", "robot = \"a\"\n[inputs]\ndiA = 2.5").expect("valid");
+        assert_eq!(config.inputs["diA"], 2.5);
+    }
+}

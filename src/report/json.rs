@@ -1,0 +1,238 @@
+//! The JSON of `simulate` and `optimize`: field names are a contract.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::place::Places;
+use crate::energy::{Account, EnergyParts};
+use crate::motion::Simulation;
+use crate::motion::timeline::{Run, WaitBasis, What};
+use crate::optimize::check::Check;
+use crate::retrofit::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind};
+use crate::robot::Model;
+
+/// The six parts, or nulls where the robot has no dynamics.
+#[derive(Serialize)]
+struct Parts {
+    mechanical_j: Option<f64>,
+    friction_j: Option<f64>,
+    copper_j: Option<f64>,
+    drive_j: Option<f64>,
+    idle_j: Option<f64>,
+    brake_j: Option<f64>,
+}
+
+impl Parts {
+    fn new(parts: &EnergyParts, known: bool) -> Parts {
+        let value = |x: f64| known.then_some(x);
+        Parts {
+            mechanical_j: value(parts.mechanical_j),
+            friction_j: value(parts.friction_j),
+            copper_j: value(parts.copper_j),
+            drive_j: value(parts.drive_j),
+            idle_j: value(parts.idle_j),
+            brake_j: value(parts.brake_j),
+        }
+    }
+}
+
+/// The result of `simulate`.
+pub fn simulation(
+    model: &Model,
+    entry: &str,
+    places: Places<'_>,
+    simulation: &Simulation,
+    account: &Account,
+) -> Value {
+    let known = model.has_dynamics();
+    let mut moves = Vec::new();
+    let mut waits = Vec::new();
+    for (event, parts) in simulation.events.iter().zip(&account.events) {
+        match &event.what {
+            What::Run(run) => {
+                for (i, (record, part)) in run.moves.iter().zip(parts).enumerate() {
+                    let place = places.of(record.movement.span);
+                    moves.push(json!({
+                        "file": place.file,
+                        "line": place.first,
+                        "instruction": &*record.movement.instruction,
+                        "routine": &*record.movement.routine,
+                        "t_start_s": event.t_start + record.t_start,
+                        "duration_s": record.duration,
+                        "energy_j": known.then(|| part.energy_j()),
+                        "limit": limit(run, i),
+                    }));
+                }
+            }
+            What::Wait(wait) => {
+                let place = places.of(wait.wait.span);
+                waits.push(json!({
+                    "file": place.file,
+                    "line": place.first,
+                    "instruction": &*wait.wait.instruction,
+                    "t_start_s": event.t_start,
+                    "duration_s": event.duration,
+                    "basis": basis(wait.basis),
+                }));
+            }
+            What::Output(..) | What::Left(_) => {}
+        }
+    }
+    json!({
+        "robot": model.name,
+        "entry": entry,
+        "cycle_s": simulation.cycle_s,
+        "energy_j": known.then(|| account.total.energy_j()),
+        "motion_energy_j": known.then(|| account.total.motion_energy_j()),
+        "energy": Parts::new(&account.total, known),
+        "moves": moves,
+        "waits": waits,
+        "unresolved": unresolved(places, simulation),
+        "assumed": assumed(model, simulation),
+    })
+}
+
+fn basis(basis: WaitBasis) -> &'static str {
+    match basis {
+        WaitBasis::Stated => "stated",
+        WaitBasis::Input => "input",
+        WaitBasis::Unknown => "unknown",
+    }
+}
+
+/// What sets the pace of a movement.
+fn limit(run: &Run, index: usize) -> &'static str {
+    let movement = &run.moves[index].movement;
+    if movement.time.is_some() {
+        return "time";
+    }
+    if run.problem.is_some() {
+        return "estimated";
+    }
+    let record = &run.moves[index];
+    if record.duration <= 0.0 {
+        return "none";
+    }
+    // The mean speed against the programmed one.
+    let leg = &run.legs[index];
+    let from = if index == 0 { None } else { Some(run.legs[index - 1].target) };
+    let distance = from.map(|from| {
+        (from.translation.vector - leg.target.translation.vector).norm()
+    });
+    match distance {
+        Some(d) if d / record.duration > 0.9 * leg.speed.tcp => "speed",
+        _ => "acceleration",
+    }
+}
+
+/// `unresolved` of the contract.
+fn unresolved(places: Places<'_>, simulation: &Simulation) -> Vec<Value> {
+    simulation
+        .unresolved
+        .iter()
+        .map(|note| {
+            let place = places.of(note.span);
+            json!({ "file": place.file, "line": place.first, "reason": note.reason })
+        })
+        .collect()
+}
+
+/// What the robot's file and the program leave to assumption.
+pub fn assumed(model: &Model, simulation: &Simulation) -> Vec<String> {
+    let mut list = model.assumed();
+    list.extend(simulation.assumed.iter().cloned());
+    list
+}
+
+fn figures(figures: &Figures) -> Value {
+    json!({
+        "cycle_s": figures.cycle_s,
+        "energy_j": figures.energy_j,
+        "motion_energy_j": figures.motion_energy_j,
+    })
+}
+
+/// The result of `optimize`. `outputs` are the paths that were written.
+pub fn retrofit(
+    model: &Model,
+    entry: &str,
+    places: Places<'_>,
+    retrofit: &Retrofit,
+    outputs: &[String],
+) -> Value {
+    let segments: Vec<Value> =
+        retrofit.segments.iter().map(|segment| segment_value(places, segment)).collect();
+    let worst = &retrofit.verification.worst;
+    let checks: Vec<Value> = retrofit
+        .verification
+        .checks
+        .iter()
+        .map(|(what, held)| json!({ "check": what, "passed": held }))
+        .collect();
+    json!({
+        "robot": model.name,
+        "entry": entry,
+        "original": figures(&retrofit.original),
+        "optimized": figures(&retrofit.optimized),
+        "saving_percent": retrofit.saving_percent(),
+        "motion_saving_percent": retrofit.motion_saving_percent(),
+        "potential_j": retrofit.potential_j,
+        "segments": segments,
+        "verification": {
+            "passed": retrofit.verification.passed,
+            "max_ratio": ratios(worst),
+            "max_path_deviation_m": worst.deviation_m,
+            "endpoint_error_rad": worst.endpoint_error_rad,
+            "checks": checks,
+        },
+        "files": retrofit.outputs.iter().map(file).collect::<Vec<Value>>(),
+        "outputs": outputs,
+        "unresolved": unresolved(places, &retrofit.before.0),
+        "assumed": assumed(model, &retrofit.before.0),
+    })
+}
+
+fn ratios(check: &Check) -> Value {
+    json!({
+        "velocity": check.velocity,
+        "acceleration": check.acceleration,
+        "jerk": check.jerk,
+        "torque": check.torque,
+        "tcp_speed": check.tcp_speed,
+    })
+}
+
+fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
+    let place = places.of(segment.span);
+    json!({
+        "file": place.file,
+        "line_first": place.first,
+        "line_last": place.last,
+        "kind": match segment.kind {
+            SegmentKind::Timing => "timing",
+            SegmentKind::Idle => "idle",
+        },
+        "rewritten": segment.rewritten,
+        "reason": segment.reason.as_ref().map(ToString::to_string),
+        "executions": segment.executions,
+        "rewritten_executions": segment.rewritten_executions,
+        "time_before_s": segment.time_before_s,
+        "time_after_s": segment.time_after_s,
+        "energy_before_j": segment.energy_before_j,
+        "energy_after_j": segment.energy_after_j,
+        "lower_bound_j": segment.lower_bound_j,
+        "points": segment.points,
+        "potential_j": segment.potential_j,
+    })
+}
+
+fn file(output: &OutputFile) -> Value {
+    json!({
+        "path": output.path,
+        "kind": match output.kind {
+            OutputKind::Unchanged => "unchanged",
+            OutputKind::Changed => "changed",
+            OutputKind::New => "new",
+        },
+    })
+}
