@@ -3,10 +3,12 @@
 use joulepath::motion::stream::{DOF, Joints, Stream};
 use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
+use joulepath::optimize::plant::{Plant, stream_energy};
 use joulepath::optimize::profile::Profile;
 use joulepath::optimize::reachability::time_optimal;
 use joulepath::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
+use joulepath::optimize::stream_polish::{Corridor, polish_stream};
 use joulepath::optimize::stream_reference::Reference;
 use joulepath::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -34,30 +36,6 @@ fn motion(path: &arm::Path, profile: &Profile) -> Reference {
         (q, q1.map(|x| x * speed))
     })
     .unwrap()
-}
-
-/// Electrical energy of a realised stream, J, by dense sampling of the arm's dynamics.
-fn realised_energy(stream: &Stream, model: &EnergyModel) -> f64 {
-    const STEPS: usize = 12;
-    let mut sum = 0.0;
-    for piece in stream.pieces() {
-        let dt = piece.length / STEPS as f64;
-        for i in 0..STEPS {
-            let (q, qd, qdd) = piece.at((i as f64 + 0.5) * dt);
-            let torque = arm::torque(&q, &qd, &qdd);
-            let powers: Joints = std::array::from_fn(|j| torque[j] * qd[j]);
-            let copper: f64 = (0..DOF).map(|j| model.loss[j] * torque[j] * torque[j]).sum();
-            let drawn: f64 = match model.sharing {
-                Sharing::PerJoint => powers.iter().map(|p| p.max(model.regeneration * p)).sum(),
-                Sharing::Bus => {
-                    let p: f64 = powers.iter().sum();
-                    p.max(model.regeneration * p)
-                }
-            };
-            sum += dt * (drawn + copper + model.base_w);
-        }
-    }
-    sum
 }
 
 /// A smooth motion from rest to rest in which joints 0…2 move, joint 3 rests.
@@ -227,8 +205,88 @@ fn streams_realise_most_of_the_promised_saving() {
         let stream = fitted(fit).stream;
         assert!(stream_limits.worst_ratio(&stream) <= 1.0);
         let spent = evaluate(&grid, &fastest, &model).total();
-        let realised = realised_energy(&stream, &model);
+        let realised = stream_energy(&stream, &arm::SyntheticArm, &model).total();
         let share = (spent - realised) / (spent - best.energy.total());
         assert!(share > SHARE, "seed {seed}: {share}");
+    }
+}
+
+#[test]
+fn dbg_stream() {
+    let limits = arm::limits();
+    for (mi, model) in [
+        EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing: Sharing::PerJoint, regeneration: 0.0 },
+        EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing: Sharing::Bus, regeneration: 0.0 },
+    ]
+    .iter()
+    .enumerate()
+    {
+        for seed in 0..12 {
+            for factor in [1.1, 1.3] {
+                let path = arm::Path::random(seed);
+                let grid = arm::grid(&path, 60, 1.0);
+                let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+                let t = factor * fastest.duration();
+                let best =
+                    minimize_energy(&grid, &limits, model, &fastest, t).into_optimum().unwrap();
+                let at_fastest =
+                    joulepath::optimize::path_energy::evaluate(&grid, &fastest, model).total();
+                let reference = motion(&path, &best.profile);
+                let stream_limits = StreamLimits {
+                    velocity: [3.1, 2.6, 3.1, 5.6, 6.8, 7.8],
+                    acceleration: *limits.acceleration(),
+                    jerk: limits.acceleration().map(|a| a * 20.0),
+                };
+                for tol in [1e-4, 1e-3] {
+                    let spacing = Spacing { tolerance: tol, ..Spacing::default() };
+                    let intervals = adaptive_intervals(&reference, t, &spacing);
+                    let begin = std::time::Instant::now();
+                    let n = intervals.len();
+                    let least = intervals.iter().copied().fold(1.0, f64::min);
+                    let fit = fit_stream(&reference, intervals, &stream_limits, &LEVER).unwrap();
+                    let ms = begin.elapsed().as_secs_f64() * 1e3;
+                    match fit {
+                        StreamFit::Fitted(f) => {
+                            let e = stream_energy(&f.stream, &arm::SyntheticArm, model).total();
+                            let mut tau = 0.0f64;
+                            for i in 0..2000 {
+                                let (q, qd, qdd) = f.stream.eval(t * f64::from(i) / 2000.0);
+                                let torque = arm::SyntheticArm.full_torque(&q, &qd, &qdd);
+                                for j in 0..DOF {
+                                    tau = tau.max(torque[j].abs() / limits.torque()[j]);
+                                }
+                            }
+                            let begin = std::time::Instant::now();
+                            let p = polish_stream(
+                                &f.stream,
+                                &reference,
+                                &arm::SyntheticArm,
+                                &stream_limits,
+                                model,
+                                &Corridor { tolerance: 1e-3, lever: LEVER },
+                            )
+                            .unwrap();
+                            let ms = begin.elapsed().as_secs_f64() * 1e3;
+                            let save =
+                                |e: f64| (at_fastest - e) / (at_fastest - best.energy.total());
+                            println!(
+                                "m{mi} {seed} {factor} tol {tol}: n {n} dev {:.2e} share {:.3} torque {tau:.3} | polish {ms:.0} ms {:?} share {:.3} dev {:.2e} torque {:.3} limit {:.3}",
+                                f.deviation,
+                                save(e),
+                                p.status,
+                                save(p.energy),
+                                p.deviation,
+                                p.worst_share,
+                                stream_limits.worst_ratio(&p.stream)
+                            );
+                            let _ = (least, ms);
+                        }
+                        other => {
+                            println!("m{mi} {seed} {factor} tol {tol}: n {n} {ms:.1} ms {other:?}")
+                        }
+                    }
+                }
+            }
+        }
     }
 }
