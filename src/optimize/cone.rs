@@ -26,6 +26,11 @@ impl Affine {
         Affine { terms: Vec::new(), constant }
     }
 
+    /// Σ coefficients · x.
+    pub(super) fn over(coefficients: &[f64]) -> Affine {
+        Affine { terms: coefficients.iter().copied().enumerate().collect(), constant: 0.0 }
+    }
+
     /// Adds coefficient · x[variable]; nothing for a variable that was eliminated at 0.
     pub(super) fn add(&mut self, variable: Option<usize>, coefficient: f64) -> &mut Affine {
         if let Some(index) = variable.filter(|_| coefficient != 0.0) {

@@ -122,6 +122,27 @@ impl Corridor {
         }
     }
 
+    /// The largest TCP speed near a pose, searched on the whole path: of all places as near as
+    /// the nearest the highest.
+    pub fn ceiling_near(&self, pose: &Isometry3<f64>) -> f64 {
+        const STRIDE: usize = 8;
+        let square = |place: &Place| {
+            let turn = METRES_PER_RADIAN * pose.rotation.angle_to(&place.pose.rotation);
+            (pose.translation.vector - place.pose.translation.vector).norm_squared() + turn * turn
+        };
+        let mut coarse = (f64::INFINITY, 0);
+        for (i, place) in self.places.iter().enumerate().step_by(STRIDE) {
+            let distance = square(place);
+            if distance < coarse.0 {
+                coarse = (distance, i);
+            }
+        }
+        let lo = coarse.1.saturating_sub(STRIDE);
+        let hi = (coarse.1 + STRIDE).min(self.places.len() - 1);
+        let fine = self.places[lo..=hi].iter().map(|place| (square(place), place.ceiling));
+        fine.fold((f64::INFINITY, f64::INFINITY), |a, b| if b.0 < a.0 { b } else { a }).1
+    }
+
     /// Distance of a pose from the stretch before and after a place.
     fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
         let place = &self.places[i].pose;

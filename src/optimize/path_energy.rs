@@ -65,7 +65,7 @@ const GAUSS: [(f64, f64); 5] = [
 
 impl EnergyModel {
     /// Braking power that is lost, W, at the joint powers `p` (W).
-    fn braked(&self, p: &Joints) -> f64 {
+    pub(super) fn braked(&self, p: &Joints) -> f64 {
         let negative = match self.sharing {
             Sharing::PerJoint => p.iter().map(|p| (-p).max(0.0)).sum(),
             Sharing::Bus => (-p.iter().sum::<f64>()).max(0.0),

@@ -10,11 +10,15 @@ use super::energy_program::minimize_energy;
 use super::path_energy::{EnergyModel, Sharing};
 use super::reason::Reason;
 use super::stream_fit::{StreamFit, fit_stream};
+use super::plant::Plant;
 use super::stream_limits::StreamLimits;
+use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_spacing::{Spacing, adaptive_intervals};
 use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
+use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
+use crate::kinematics::{fk, jacobian};
 use crate::energy::{EnergyParts, account};
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::Stream;
@@ -181,7 +185,10 @@ impl<'a> Work<'a> {
             let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget)
                 .into_optimum()
                 .ok_or(Reason::NoSaving)?;
-            match self.realise(&optimum.profile, budget, &margins) {
+            let t0 = std::time::Instant::now();
+            let r = self.realise(&optimum.profile, budget, &margins);
+            eprintln!("budget {budget:.3} fast {:.3} load {:.3} speed {:.3} spacing {:.5} before {:.1} promised {:.1} lb {:.1} -> {:?} {:?}", fast.duration(), margins.load, margins.speed, margins.spacing, self.task.energy_before.motion_energy_j(), optimum.energy.total(), optimum.lower_bound, r.as_ref().map(|a| (a.stream.points().len(), self.retiming(a.stream.clone(), a.check, None).energy.motion_energy_j(), describe(&a.check))), t0.elapsed());
+            match r {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = Some(optimum.lower_bound);
                     return Ok(self.retiming(attempt.stream, attempt.check, bound));
@@ -291,13 +298,23 @@ impl<'a> Work<'a> {
         let intervals = rounded(adaptive_intervals(&reference, duration, &spacing), duration);
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
             .map_err(|error| failed(&error.to_string()))?;
-        let stream = match fit {
-            StreamFit::Fitted(fitted) => self.rounded(&fitted.stream)?,
+        let fitted = match fit {
+            StreamFit::Fitted(fitted) => fitted.stream,
             StreamFit::TooFast { .. } => {
                 return Err(failed("speed, acceleration and jerk leave no stream in this time"));
             }
             StreamFit::Failed => return Err(failed("the solver found no stream")),
         };
+        let polished = polish_stream(
+            &fitted,
+            &reference,
+            &RobotPlant { work: self, margins },
+            &self.limits,
+            &self.model,
+            &PolishCorridor { tolerance: margins.spacing, lever: self.lever },
+        )
+        .map_err(|error| failed(&error.to_string()))?;
+        let stream = self.rounded(&polished.stream)?;
         let tool = self.task.run.legs[0].tool;
         let mut hot = Vec::new();
         let check = check(
@@ -352,6 +369,37 @@ impl<'a> Work<'a> {
             duration_s: duration + task.run.settling,
             lower_bound_j: bound + idle,
         }
+    }
+}
+
+/// The robot with its load, as the polishing of a stream sees it.
+struct RobotPlant<'a> {
+    work: &'a Work<'a>,
+    margins: &'a Margins,
+}
+
+impl Plant for RobotPlant<'_> {
+    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        let task = self.work.task;
+        let mut data = Data::new();
+        let tau = rnea(task.model, &mut data, &task.run.load, q, qd, qdd);
+        std::array::from_fn(|j| tau[j] + task.model.friction.viscous[j] * qd[j])
+    }
+
+    fn dry_friction(&self) -> Joints {
+        std::array::from_fn(|j| self.work.task.model.friction.coulomb[j])
+    }
+
+    fn torque_limit(&self) -> Joints {
+        motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
+    }
+
+    fn speed_share(&self, q: &Joints, qd: &Joints) -> f64 {
+        let task = self.work.task;
+        let tool = &task.run.legs[0].tool;
+        let ceiling = self.work.corridor.ceiling_near(&(fk(task.model, q) * tool));
+        let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
+        rate.fixed_rows::<3>(0).norm() / (self.margins.speed * ceiling)
     }
 }
 

@@ -57,6 +57,12 @@ impl Points {
         (if i == 0 { &self.start } else { &self.end })[self.joints[m]]
     }
 
+    /// The variables of a stream with these knots and ends, rad.
+    pub(super) fn variables(&self, stream: &Stream) -> Vec<f64> {
+        let inner = &stream.points()[..self.knots.points() - 1];
+        inner.iter().flat_map(|point| self.joints.iter().map(|j| point[*j])).collect()
+    }
+
     /// All limits as rows in the variables (rad).
     pub(super) fn limit_rows(&self, limits: &StreamLimits) -> Vec<LimitRow> {
         let n = self.knots.points();

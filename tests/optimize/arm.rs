@@ -6,6 +6,7 @@
 use joulepath::motion::stream::{DOF, Joints};
 use joulepath::motion::timing::grid::{PathGrid, PathPoint, rest_to_rest_nodes};
 use joulepath::motion::timing::limits::PathLimits;
+use joulepath::optimize::plant::Plant;
 
 type Vec3 = [f64; 3];
 
@@ -126,11 +127,22 @@ impl Path {
     }
 }
 
-/// Torque, Nm, at joint positions, velocities and accelerations; friction with sgn(0) = 0.
-pub(crate) fn torque(q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
-    let still = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-    let rigid = rigid_torque(q, qd, qdd, GRAVITY);
-    std::array::from_fn(|j| rigid[j] + COULOMB[j] * still(qd[j]) + VISCOUS[j] * qd[j])
+/// The arm as streams see it.
+pub(crate) struct SyntheticArm;
+
+impl Plant for SyntheticArm {
+    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        let rigid = rigid_torque(q, qd, qdd, GRAVITY);
+        std::array::from_fn(|j| rigid[j] + VISCOUS[j] * qd[j])
+    }
+
+    fn dry_friction(&self) -> Joints {
+        COULOMB
+    }
+
+    fn torque_limit(&self) -> Joints {
+        TORQUE
+    }
 }
 
 fn rigid_torque(q: &Joints, qd: &Joints, qdd: &Joints, gravity: f64) -> Joints {

@@ -4,6 +4,7 @@
 
 mod analytic;
 mod arm;
+mod data;
 mod energy;
 mod reachability;
 mod stream;

@@ -1,0 +1,460 @@
+//! Lower energy for a stream at its own intervals, within all limits: the realised motion counts.
+//!
+//! Sequential quadratic programming on the points. The copper loss is a sum of squares of torques
+//! that are linearised in the points (Gauss–Newton), as is the power that may be braked away,
+//! which has an epigraph per place. Joint limits are linear rows and hold exactly; torque and
+//! tool speed are linearised rows with one common slack that is priced. A distance from the path
+//! is priced too: one of the tolerance costs the share `DEVIATION_PRICE` of the energy.
+
+use super::banded::Banded;
+use super::cone::{Affine, ConeProgram, ConeStatus};
+use super::path_energy::{EnergyModel, Sharing};
+use super::plant::{Plant, stream_energy, worst_share};
+use super::stream_limits::StreamLimits;
+use super::stream_points::{LimitRow, Points};
+use super::stream_reference::Reference;
+use crate::motion::stream::{DOF, Joints, Piece, Stream, StreamError};
+
+/// How the polishing ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PolishStatus {
+    /// No further step lowers the energy.
+    Converged,
+    /// The iteration limit was reached.
+    Stopped,
+}
+
+/// A polished stream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polished {
+    /// The stream, never worse than the given one in the sum of energy and priced violations.
+    pub stream: Stream,
+    /// How the polishing ended.
+    pub status: PolishStatus,
+    /// Energy of the realised motion, J.
+    pub energy: f64,
+    /// Largest share of a torque limit or of the speed ceiling.
+    pub worst_share: f64,
+    /// Largest distance of the realised motion from the path of the reference, in the units of
+    /// the levers.
+    pub deviation: f64,
+}
+
+/// How much a stream may leave the path of its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corridor {
+    /// Distance that costs a noticeable share of the energy; infinite for a free path.
+    pub tolerance: f64,
+    /// Weight of each joint in the distance.
+    pub lever: Joints,
+}
+
+/// Share of the energy that a mean distance of the tolerance costs.
+const DEVIATION_PRICE: f64 = 0.02;
+/// Energies that the full violation of a limit costs.
+const VIOLATION_PRICE: f64 = 20.0;
+/// Steps.
+const MAX_STEPS: usize = 25;
+/// Relative fall of the merit at which the steps end.
+const CONVERGED: f64 = 1e-4;
+/// Room that the programs keep to the limits.
+const MARGIN: f64 = 1e-3;
+/// Share of its limit from which a row is part of a program.
+const NEAR: f64 = 0.6;
+/// Unit of the variables, rad.
+const UNIT: f64 = 0.01;
+/// Price of a step of one unit in every variable at the begin, in energies; and its bounds.
+const DAMPING: f64 = 1e-3;
+const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
+/// Factor on the damping after a good or a bad step.
+const DAMPING_STEP: f64 = 5.0;
+/// The programs' objective per energy: their accuracy is absolute.
+const SCALE: f64 = 100.0;
+/// Steps of the differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
+const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
+/// Smallest tolerance that is taken literally.
+const TIGHTEST: f64 = 1e-7;
+/// Steps to the nearest point of the path.
+const NEAREST_STEPS: usize = 6;
+/// Speed below which a path has no direction.
+const SLOWEST: f64 = 1e-6;
+/// Simpson's rule on a piece.
+const SIMPSON: [(f64, f64); 3] = [(0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0)];
+
+/// Lowers the energy of `stream`, which starts and ends as `reference` and keeps `limits`.
+///
+/// # Errors
+/// None for a stream that exists; the same as of making one.
+pub fn polish_stream(
+    stream: &Stream,
+    reference: &Reference,
+    plant: &impl Plant,
+    limits: &StreamLimits,
+    model: &EnergyModel,
+    corridor: &Corridor,
+) -> Result<Polished, StreamError> {
+    let points = Points::new(reference, stream.intervals().to_vec())?;
+    let rows = points.limit_rows(limits);
+    let unit = stream_energy(stream, plant, model).total().abs().max(f64::MIN_POSITIVE);
+    let polish = Polish { reference, plant, model, corridor, points, rows, unit };
+    let mut best = polish.judge(stream.clone());
+    let mut damping = DAMPING;
+    let mut status = PolishStatus::Stopped;
+    if polish.points.size() == 0 {
+        return Ok(polish.polished(best, PolishStatus::Converged));
+    }
+    for _ in 0..MAX_STEPS {
+        let Some(step) = polish.step(&best, damping) else {
+            status = PolishStatus::Converged;
+            break;
+        };
+        let variables: Vec<f64> = polish
+            .points
+            .variables(&best.stream)
+            .iter()
+            .zip(&step.change)
+            .map(|(x, change)| x + change)
+            .collect();
+        let next = polish.judge(polish.points.stream(&variables)?);
+        let kept = limits.worst_ratio(&next.stream) <= limits.worst_ratio(&best.stream).max(1.0);
+        let fall = best.merit - next.merit;
+        if kept && fall > 0.0 {
+            if fall > 0.5 * step.predicted {
+                damping = (damping / DAMPING_STEP).max(DAMPING_RANGE.0);
+            }
+            best = next;
+            if fall < CONVERGED {
+                status = PolishStatus::Converged;
+                break;
+            }
+        } else if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
+            damping *= DAMPING_STEP;
+        } else {
+            status = PolishStatus::Converged;
+            break;
+        }
+    }
+    Ok(polish.polished(best, status))
+}
+
+/// A stream with its merit in energies of the first one.
+struct Judged {
+    stream: Stream,
+    merit: f64,
+}
+
+/// A proposed change of the variables (rad) and the fall of the merit that the program expects.
+struct Proposal {
+    change: Vec<f64>,
+    predicted: f64,
+}
+
+struct Polish<'a, P> {
+    reference: &'a Reference,
+    plant: &'a P,
+    model: &'a EnergyModel,
+    corridor: &'a Corridor,
+    points: Points,
+    rows: Vec<LimitRow>,
+    unit: f64,
+}
+
+/// Torque, speed share and their derivatives at one place: `by[kind][i]` holds the change of
+/// them per change of q, q̇ or q̈ of joint i.
+struct Linearised {
+    torque: Joints,
+    speed: f64,
+    torque_by: [[Joints; DOF]; 3],
+    speed_by: [[f64; DOF]; 3],
+}
+
+impl<P: Plant> Polish<'_, P> {
+    fn polished(&self, best: Judged, status: PolishStatus) -> Polished {
+        let places = places(&best.stream);
+        Polished {
+            status,
+            energy: stream_energy(&best.stream, self.plant, self.model).total(),
+            worst_share: worst_share(&best.stream, self.plant),
+            deviation: places.iter().map(|p| norm(&self.offset(p).0)).fold(0.0, f64::max),
+            stream: best.stream,
+        }
+    }
+
+    fn judge(&self, stream: Stream) -> Judged {
+        let energy = stream_energy(&stream, self.plant, self.model).total() / self.unit;
+        let price = self.deviation_price();
+        let places = places(&stream);
+        let distance: f64 =
+            places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
+        let merit = energy + VIOLATION_PRICE * self.violation(&stream) + price * distance;
+        Judged { stream, merit }
+    }
+
+    fn violation(&self, stream: &Stream) -> f64 {
+        (worst_share(stream, self.plant) - (1.0 - MARGIN)).max(0.0)
+    }
+
+    /// Price of ∫ distance² dt, in energies.
+    fn deviation_price(&self) -> f64 {
+        DEVIATION_PRICE
+            / (self.corridor.tolerance.max(TIGHTEST).powi(2) * self.points.knots.duration())
+    }
+
+    /// The vector from the nearest point of the reference's path to the place, scaled by the
+    /// levers, and the direction of the path there, of length one, zero at rest.
+    fn offset(&self, place: &Place) -> (Joints, Joints) {
+        let lever = &self.corridor.lever;
+        let stretch = self.reference.duration() / self.points.knots.duration();
+        let mut t = place.t * stretch;
+        let (mut offset, mut along) = (Joints::default(), Joints::default());
+        for _ in 0..NEAREST_STEPS {
+            let (q, qd) = self.reference.at(t);
+            offset = std::array::from_fn(|j| lever[j] * (place.q[j] - q[j]));
+            along = std::array::from_fn(|j| lever[j] * qd[j]);
+            let speed = norm(&along);
+            if speed < SLOWEST {
+                return (offset, Joints::default());
+            }
+            let ahead: f64 = offset.iter().zip(&along).map(|(o, a)| o * a).sum();
+            t = (t + ahead / (speed * speed)).clamp(0.0, self.reference.duration());
+            along = along.map(|a| a / speed);
+        }
+        (offset, along)
+    }
+
+    /// Torque, speed share and their derivatives at a place.
+    fn linearise(&self, place: &Place) -> Linearised {
+        let at = |kind: usize, joint: usize, step: f64| {
+            let mut state = [place.q, place.qd, place.qdd];
+            state[kind][joint] += step;
+            let [q, qd, qdd] = state;
+            (self.plant.torque(&q, &qd, &qdd), self.plant.speed_share(&q, &qd))
+        };
+        let mut out = Linearised {
+            torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
+            speed: self.plant.speed_share(&place.q, &place.qd),
+            torque_by: Default::default(),
+            speed_by: Default::default(),
+        };
+        for (kind, step) in DIFFERENCES.into_iter().enumerate() {
+            for joint in self.points.joints.iter().copied() {
+                let ((low, slow), (high, fast)) = (at(kind, joint, -step), at(kind, joint, step));
+                out.torque_by[kind][joint] =
+                    std::array::from_fn(|j| (high[j] - low[j]) / (2.0 * step));
+                out.speed_by[kind][joint] = (fast - slow) / (2.0 * step);
+            }
+        }
+        out
+    }
+
+    /// The change that the quadratic program around `best` proposes. None if there is none.
+    fn step(&self, best: &Judged, damping: f64) -> Option<Proposal> {
+        let size = self.points.size();
+        let variables = self.points.variables(&best.stream);
+        let width = (3 * self.points.joints.len() - 1).min(size);
+        let mut model = Quadratic {
+            matrix: Banded::zeros(size, width),
+            gradient: vec![0.0; size],
+            brakes: Vec::new(),
+            shares: Vec::new(),
+            now: VIOLATION_PRICE * self.violation(&best.stream),
+        };
+        for place in places(&best.stream) {
+            self.add_place(&place, &mut model);
+        }
+        let slack = size;
+        let mut program = ConeProgram::new(size + 1 + model.brakes.len());
+        for (i, j, value) in model.matrix.entries() {
+            program.curve(i, j, SCALE * value);
+        }
+        let price = 2.0 * damping / size as f64;
+        for i in 0..size {
+            program.curve(i, i, SCALE * price);
+        }
+        program.minimize(&Affine::over(&model.gradient).times(SCALE));
+        program.minimize(&Affine::default().plus(Some(slack), SCALE * VIOLATION_PRICE));
+        program.at_most_zero(Affine::default().plus(Some(slack), -1.0));
+        for (i, (power, lost)) in model.brakes.iter().enumerate() {
+            let braked = Some(size + 1 + i);
+            program.minimize(&Affine::default().plus(braked, SCALE * lost));
+            program.at_most_zero(Affine::default().plus(braked, -1.0));
+            program.at_most_zero(power.clone().times(-1.0).plus(braked, -1.0));
+        }
+        for share in model.shares {
+            program.at_most_zero(share.shift(-(1.0 - MARGIN)).plus(Some(slack), -1.0));
+        }
+        for row in &self.rows {
+            let value = row.value(&variables);
+            if value > NEAR {
+                let mut affine = Affine::constant((value - (1.0 - MARGIN)).min(0.0));
+                for (index, weight) in &row.terms {
+                    affine.add(Some(*index), UNIT * weight);
+                }
+                program.at_most_zero(affine);
+            }
+        }
+        let solution = program.solve();
+        if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
+            return None;
+        }
+        let change = &solution.x[..size];
+        let damped: f64 = change.iter().map(|x| 0.5 * price * x * x).sum();
+        Some(Proposal {
+            predicted: model.now - (solution.objective / SCALE - damped),
+            change: change.iter().map(|x| UNIT * x).collect(),
+        })
+    }
+
+    /// Adds the costs and limits at a place to the model.
+    fn add_place(&self, place: &Place, model: &mut Quadratic) {
+        let lin = self.linearise(place);
+        let weights = self.points.knots.weights(place.piece, place.tau);
+        let mut columns = Vec::new();
+        for (k, i) in weights.support.clone().enumerate() {
+            for (m, joint) in self.points.joints.iter().enumerate() {
+                if let Some(index) = self.points.variable(i, m) {
+                    let [w, w1, w2] =
+                        [weights.position[k], weights.velocity[k], weights.acceleration[k]]
+                            .map(|w| UNIT * w);
+                    let torque = std::array::from_fn(|j| {
+                        w * lin.torque_by[0][*joint][j]
+                            + w1 * lin.torque_by[1][*joint][j]
+                            + w2 * lin.torque_by[2][*joint][j]
+                    });
+                    let speed = w * lin.speed_by[0][*joint] + w1 * lin.speed_by[1][*joint];
+                    columns.push(Column { index, joint: *joint, w, w1, torque, speed });
+                }
+            }
+        }
+        let per = place.seconds / self.unit;
+        let (offset, along) = self.offset(place);
+        let price = self.deviation_price() * place.seconds;
+        let lever = &self.corridor.lever;
+        for (n, a) in columns.iter().enumerate() {
+            let mut slope = 2.0 * price * a.w * lever[a.joint] * offset[a.joint];
+            for j in 0..DOF {
+                slope +=
+                    per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + place.qd[j]);
+            }
+            slope += per * a.w1 * lin.torque[a.joint];
+            model.gradient[a.index] += slope;
+            for b in &columns[..=n] {
+                let mut curve: f64 = (0..DOF)
+                    .map(|j| 2.0 * per * self.model.loss[j] * a.torque[j] * b.torque[j])
+                    .sum();
+                let mut normal = -along[a.joint] * along[b.joint];
+                if a.joint == b.joint {
+                    normal += 1.0;
+                    curve += 2.0 * per * lin.torque_by[1][a.joint][a.joint].max(0.0) * a.w1 * b.w1;
+                }
+                curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
+                let (i, j) = (a.index.max(b.index), a.index.min(b.index));
+                model.matrix.add(i, j, curve);
+            }
+        }
+        self.add_brakes(place, &lin, &columns, model);
+        let limit = self.plant.torque_limit();
+        for j in 0..DOF {
+            let share = lin.torque[j] / limit[j];
+            if share.abs() > NEAR {
+                let sign = share.signum();
+                let mut row = Affine::constant(share.abs());
+                for column in &columns {
+                    row.add(Some(column.index), sign * column.torque[j] / limit[j]);
+                }
+                model.shares.push(row);
+            }
+        }
+        if lin.speed > NEAR {
+            let mut row = Affine::constant(lin.speed);
+            for column in &columns {
+                row.add(Some(column.index), column.speed);
+            }
+            model.shares.push(row);
+        }
+    }
+
+    /// Adds the powers at a place that may be braked away.
+    fn add_brakes(
+        &self,
+        place: &Place,
+        lin: &Linearised,
+        columns: &[Column],
+        model: &mut Quadratic,
+    ) {
+        let lost = (1.0 - self.model.regeneration) * place.seconds / self.unit;
+        if lost <= 0.0 {
+            return;
+        }
+        let groups: Vec<Vec<usize>> = match self.model.sharing {
+            Sharing::Bus => vec![self.points.joints.clone()],
+            Sharing::PerJoint => self.points.joints.iter().map(|j| vec![*j]).collect(),
+        };
+        for group in groups {
+            let now: f64 = group.iter().map(|j| lin.torque[*j] * place.qd[*j]).sum();
+            model.now += lost * (-now).max(0.0);
+            let mut power = Affine::constant(now);
+            for column in columns {
+                let mut by: f64 = group.iter().map(|j| place.qd[*j] * column.torque[*j]).sum();
+                if group.contains(&column.joint) {
+                    by += column.w1 * lin.torque[column.joint];
+                }
+                power.add(Some(column.index), by);
+            }
+            model.brakes.push((power, lost));
+        }
+    }
+}
+
+/// A place of the realised motion.
+struct Place {
+    piece: usize,
+    /// Time in the piece, and weight in the integral, s.
+    tau: f64,
+    seconds: f64,
+    t: f64,
+    q: Joints,
+    qd: Joints,
+    qdd: Joints,
+}
+
+/// The places at which a stream is judged and linearised.
+fn places(stream: &Stream) -> Vec<Place> {
+    let pieces = stream.pieces().enumerate();
+    let of = |(index, piece): (usize, Piece)| {
+        SIMPSON.map(|(share, weight)| {
+            let tau = share * piece.length;
+            let (q, qd, qdd) = piece.at(tau);
+            let seconds = weight * piece.length;
+            Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
+        })
+    };
+    pieces.flat_map(of).collect()
+}
+
+/// What a variable does at a place, per unit of it.
+struct Column {
+    index: usize,
+    joint: usize,
+    /// Change of the joint's position and velocity.
+    w: f64,
+    w1: f64,
+    torque: Joints,
+    speed: f64,
+}
+
+/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is braked away and broken.
+struct Quadratic {
+    matrix: Banded,
+    gradient: Vec<f64>,
+    /// Powers that are lost where they are negative, W, and energies lost per W.
+    brakes: Vec<(Affine, f64)>,
+    /// Shares of limits.
+    shares: Vec<Affine>,
+    /// The braked and the broken part at x = 0.
+    now: f64,
+}
+
+fn norm(vector: &Joints) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
