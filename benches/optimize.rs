@@ -9,8 +9,9 @@ use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_energy::{EnergyModel, Sharing};
 use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
-use joulepath::optimize::stream_fit::fit_stream;
+use joulepath::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
+use joulepath::optimize::stream_polish::{Corridor, polish_stream};
 use joulepath::optimize::stream_reference::Reference;
 use joulepath::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -64,10 +65,20 @@ fn stream(c: &mut Criterion) {
         acceleration: *arm::limits().acceleration(),
         jerk: arm::limits().acceleration().map(|a| 20.0 * a),
     };
-    c.bench_function("stream fit", |b| {
+    let fit = || {
+        let spacing = Spacing { tolerance: 5e-4, ..Spacing::default() };
+        let intervals = adaptive_intervals(&reference, profile.duration(), &spacing);
+        fit_stream(black_box(&reference), intervals, &limits, &[1.0; DOF]).unwrap()
+    };
+    c.bench_function("stream fit", |b| b.iter(fit));
+    let StreamFit::Fitted(fitted) = fit() else { return };
+    let (sharing, regeneration) = (Sharing::Bus, 0.0);
+    let model = EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing, regeneration };
+    let corridor = Corridor { tolerance: 1e-3, lever: [1.0; DOF] };
+    c.bench_function("stream polish", |b| {
+        let stream = black_box(&fitted.stream);
         b.iter(|| {
-            let intervals = adaptive_intervals(&reference, profile.duration(), &Spacing::default());
-            fit_stream(black_box(&reference), intervals, &limits, &[1.0; DOF])
+            polish_stream(stream, &reference, &arm::SyntheticArm, &limits, &model, &corridor)
         });
     });
 }

@@ -113,7 +113,10 @@ fn timing(
 ) -> Result<Vec<Cubic>, NoTiming> {
     let nodes = sampling::nodes(path, INTERVALS);
     let path_limits = PathLimits::new(limits.acceleration, limits.torque).map_err(|_| NoTiming)?;
-    let mut grid = sampling::grid(loaded, path, &nodes, caps).map_err(|_| NoTiming)?;
+    // The moving average must keep the programmed speeds too.
+    let mut grid = sampling::grid(loaded, path, &nodes, caps)
+        .map_err(|_| NoTiming)?
+        .holding(0.5 * planning.ramp_s, 0.0);
     let mut pieces = Vec::new();
     for _ in 0..CORRECTIONS {
         let profile = time_optimal(&grid, &path_limits).into_profile().ok_or(NoTiming)?;

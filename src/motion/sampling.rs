@@ -29,16 +29,41 @@ pub struct Loaded<'a> {
     pub load: &'a Load,
 }
 
-/// Nodes in s: the ends of the pieces, and about `count` in all, evenly spread.
+/// Fewest intervals of a leg.
+const LEG_INTERVALS: usize = 4;
+/// Nodes nearer to each other than this share of the path are one.
+const NODE_DISTANCE: f64 = 1e-4;
+
+/// Nodes in s: about `count` intervals in all, closer towards the ends of the legs, where speeds
+/// change; and the edges and kinks of the zones.
 pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
     let length = path.length();
     let mut nodes = vec![0.0];
-    for piece in path.pieces() {
-        // Short pieces are the ramps of a zone: one interval each.
-        let n = (piece.length / length * count as f64).round().max(1.0) as usize;
-        nodes.extend((1..=n).map(|i| piece.s + piece.length * i as f64 / n as f64));
+    let mut begin = 0.0;
+    for leg in path.legs() {
+        let end = path.leg_end(leg);
+        let n = ((end - begin) / length * count as f64).round().max(LEG_INTERVALS as f64);
+        nodes.extend((1..=n as usize).map(|i| {
+            let share = 0.5 * (1.0 - (std::f64::consts::PI * i as f64 / n).cos());
+            begin + (end - begin) * share
+        }));
+        begin = end;
     }
-    nodes
+    let zones = path.pieces().iter().filter(|piece| {
+        matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone)
+    });
+    nodes.extend(zones.flat_map(|piece| [piece.s, piece.s + piece.length]));
+    nodes.sort_by(f64::total_cmp);
+    let mut kept: Vec<f64> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        if kept.last().is_none_or(|last| node - last > NODE_DISTANCE * length) {
+            kept.push(node);
+        }
+    }
+    if let Some(last) = kept.last_mut() {
+        *last = length;
+    }
+    kept
 }
 
 /// The grid at these nodes, with the speed caps of the legs.

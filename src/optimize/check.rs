@@ -72,19 +72,7 @@ impl Check {
     }
 }
 
-/// A place where the TCP is too fast or the torque too high.
-#[derive(Clone, Copy, Debug)]
-pub struct HotSpot {
-    /// Place on the path.
-    pub s: f64,
-    /// Share of the TCP speed.
-    pub speed: f64,
-    /// Share of the torque.
-    pub torque: f64,
-}
-
 /// Checks the realised motion of a stream, in the corridor and towards the end of a run.
-/// The places where it exceeds a limit are added to `hot`.
 pub fn check(
     model: &Model,
     load: &Load,
@@ -92,7 +80,6 @@ pub fn check(
     stream: &Stream,
     corridor: &Corridor,
     end: &Joints,
-    hot: &mut Vec<HotSpot>,
 ) -> Check {
     let limits = &model.limits;
     let share = |values: &Joints, limit: &Option<Vec<f64>>| {
@@ -129,9 +116,6 @@ pub fn check(
             let rate = jacobian(model, &q, tool) * nalgebra::Vector6::from(qd);
             let speed = rate.fixed_rows::<3>(0).norm() / offset.ceiling;
             result.tcp_speed = result.tcp_speed.max(speed);
-            if speed > 1.0 || torque > 1.0 {
-                hot.push(HotSpot { s: offset.s, speed, torque });
-            }
         }
     }
     result

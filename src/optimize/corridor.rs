@@ -25,8 +25,6 @@ const WINDOW: (usize, usize) = (8, 24);
 /// One sample of the programmed path.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// Place on the path.
-    s: f64,
     pose: Isometry3<f64>,
     /// Largest TCP speed here, m/s.
     ceiling: f64,
@@ -43,8 +41,6 @@ pub struct Corridor {
 /// How a pose lies to the corridor.
 #[derive(Clone, Copy, Debug)]
 pub struct Offset {
-    /// Nearest place on the path.
-    pub s: f64,
     /// Distance of the TCP, m, the turn of the tool included.
     pub distance: f64,
     /// Allowed distance, m.
@@ -89,7 +85,7 @@ impl Corridor {
             for i in 0..=n {
                 let s = piece.s + piece.length * i as f64 / n as f64;
                 let pose = fk(model, &piece.eval(s).q) * extent.tool;
-                places.push(Place { s, pose, ceiling, tolerance });
+                places.push(Place { pose, ceiling, tolerance });
             }
         }
         Some(Corridor { places })
@@ -115,32 +111,31 @@ impl Corridor {
             f(place).max(f(&self.places[lo])).max(f(&self.places[hi]))
         };
         Offset {
-            s: place.s,
             distance: best.0,
             tolerance: near(|p| p.tolerance),
             ceiling: near(|p| p.ceiling),
         }
     }
 
-    /// The largest TCP speed near a pose, searched on the whole path: of all places as near as
-    /// the nearest the highest.
-    pub fn ceiling_near(&self, pose: &Isometry3<f64>) -> f64 {
+    /// The lowest TCP speed allowed within `reach` (m of path) of the place nearest to a pose,
+    /// searched on the whole path.
+    pub fn ceiling_near(&self, pose: &Isometry3<f64>, reach: f64) -> f64 {
         const STRIDE: usize = 8;
         let square = |place: &Place| {
             let turn = METRES_PER_RADIAN * pose.rotation.angle_to(&place.pose.rotation);
             (pose.translation.vector - place.pose.translation.vector).norm_squared() + turn * turn
         };
-        let mut coarse = (f64::INFINITY, 0);
-        for (i, place) in self.places.iter().enumerate().step_by(STRIDE) {
-            let distance = square(place);
-            if distance < coarse.0 {
-                coarse = (distance, i);
-            }
-        }
-        let lo = coarse.1.saturating_sub(STRIDE);
-        let hi = (coarse.1 + STRIDE).min(self.places.len() - 1);
-        let fine = self.places[lo..=hi].iter().map(|place| (square(place), place.ceiling));
-        fine.fold((f64::INFINITY, f64::INFINITY), |a, b| if b.0 < a.0 { b } else { a }).1
+        let nearest = |range: &mut dyn Iterator<Item = usize>| {
+            let pairs = range.map(|i| (square(&self.places[i]), i));
+            pairs.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a }).1
+        };
+        let coarse = nearest(&mut (0..self.places.len()).step_by(STRIDE));
+        let last = self.places.len() - 1;
+        let around =
+            |i: usize, n: usize| i.saturating_sub(n)..=(i + n).min(last);
+        let fine = nearest(&mut around(coarse, STRIDE));
+        let n = (reach / SPACING).ceil() as usize;
+        self.places[around(fine, n)].iter().map(|p| p.ceiling).fold(f64::INFINITY, f64::min)
     }
 
     /// Distance of a pose from the stretch before and after a place.

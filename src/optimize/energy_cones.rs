@@ -16,7 +16,7 @@
 //! - w √b ≥ w g with g d ≥ 1: as a function of the time per length the viscous work is convex.
 //!   This relaxation is exact wherever time is worth more than the friction that it saves.
 //!
-//! Path and time are scaled to one. Limits are rows at both ends of each interval, in the
+//! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
 //! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
 //! those that come near their bound are in a program, and it is solved again when others turn up.
 //! The rest at both ends is eliminated: there the cones would have no interior.
@@ -107,8 +107,8 @@ pub(super) struct Programs<'a> {
 }
 
 impl<'a> Programs<'a> {
-    /// The programs for profiles that take at most `duration` (s); `start` scales the objective
-    /// and chooses the first rows.
+    /// The programs for profiles that take at most `duration` (s); `start` sets the scales and
+    /// chooses the first rows.
     pub(super) fn new(
         grid: &'a PathGrid,
         limits: &PathLimits,
@@ -120,7 +120,7 @@ impl<'a> Programs<'a> {
         let parts = evaluate(grid, start, model);
         let unit = parts.friction.abs() + parts.copper + parts.drive + parts.base;
         let unit = if unit > 0.0 { unit } else { 1.0 };
-        let speed = grid.length() / duration;
+        let speed = grid.length() / start.duration();
         let scale = Scale { speed, unit, duration };
         let costs: Vec<IntervalCost> =
             (0..n).map(|k| IntervalCost::new(grid, model, k, &scale)).collect();

@@ -61,11 +61,16 @@ const NO_INTERIOR: f64 = 1e-5;
 const CONVERGED: f64 = 1e-4;
 /// Programs with tangents.
 const MAX_TANGENTS: usize = 8;
+/// Longest time of the uniformly slowed start, over that of the fastest profile.
+const SLOWEST: f64 = 1e3;
+/// Steps of the search for the best time of the start.
+const PACE_STEPS: usize = 16;
 /// Bisection steps for a slow profile by a speed cap.
 const CAP_STEPS: usize = 40;
 
-/// The profile of least energy that takes at most `duration` (s) from rest to rest and keeps the
-/// limits at both ends of each interval. `fastest` is the fastest profile on the same grid.
+/// The profile of least energy that takes at most `duration` (s, may be infinite) from rest to
+/// rest and keeps the limits at both ends of each interval. `fastest` is the fastest profile on
+/// the same grid.
 pub fn minimize_energy(
     grid: &PathGrid,
     limits: &PathLimits,
@@ -77,7 +82,8 @@ pub fn minimize_energy(
     if duration.is_nan() || duration < fastest.duration() {
         return too_short;
     }
-    let Some(start) = slowed(grid, limits, fastest, duration) else {
+    let pace = best_pace(grid, model, fastest, duration);
+    let Some(start) = slowed(grid, limits, fastest, pace) else {
         return too_short;
     };
     let constant = path_constant(grid);
@@ -148,6 +154,31 @@ impl Search<'_> {
             self.best.energy = energy;
             self.best.marginal = step.marginal;
         }
+    }
+}
+
+/// The time up to `duration` in which the uniformly slowed fastest profile costs least, s: holding
+/// the arm up and the base power can make slowness dear. It sets the scales of the programs.
+fn best_pace(grid: &PathGrid, model: &EnergyModel, fastest: &Profile, duration: f64) -> f64 {
+    let cost = |log: f64| {
+        let slower = fastest.scaled_to(fastest.duration() * log.exp());
+        slower.map_or(f64::INFINITY, |p| evaluate(grid, &p, model).total())
+    };
+    let whole = (duration / fastest.duration()).min(SLOWEST).ln();
+    let (mut lo, mut hi) = (0.0, whole);
+    for _ in 0..PACE_STEPS {
+        let (a, b) = (lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0);
+        if cost(a) > cost(b) {
+            lo = a;
+        } else {
+            hi = b;
+        }
+    }
+    let inner = 0.5 * (lo + hi);
+    if cost(inner) < cost(whole) {
+        fastest.duration() * inner.exp()
+    } else {
+        duration.min(SLOWEST * fastest.duration())
     }
 }
 

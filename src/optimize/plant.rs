@@ -27,53 +27,49 @@ pub trait Plant {
 }
 
 /// The sign of a velocity, 0 at rest.
-pub(super) fn direction(velocity: f64) -> f64 {
+fn direction(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
-/// Simpson's rule on each part of a piece: (time as a share of the part, weight).
-const SIMPSON: [(f64, f64); 3] = [(0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0)];
-/// Parts of a piece.
-const PARTS: usize = 4;
+/// Steps on a piece at which it is judged; even, for Simpson's rule.
+const STEPS: usize = 8;
 
-/// The energies of the motion that a stream is realised as. Friction holds the dry part; the
-/// viscous part is with the mechanical one, from which a plant does not tell it.
-pub fn stream_energy(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> EnergyParts {
-    let dry = plant.dry_friction();
-    let mut sum = EnergyParts::default();
+/// What the motion that a stream is realised as costs, and how near it comes to the limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Realised {
+    /// Energies. Friction is the dry part; the viscous part is with the mechanical one, from
+    /// which a plant does not tell it.
+    pub energy: EnergyParts,
+    /// The largest share of a torque limit or of the speed ceiling.
+    pub worst_share: f64,
+}
+
+/// Plays a stream on a plant, by Simpson's rule on each piece.
+pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Realised {
+    let (dry, limit) = (plant.dry_friction(), plant.torque_limit());
+    let mut out = Realised::default();
+    let sum = &mut out.energy;
     for piece in stream.pieces() {
-        let part = piece.length / PARTS as f64;
-        for (i, (share, weight)) in (0..PARTS).flat_map(|i| SIMPSON.map(|point| (i, point))) {
-            let (q, qd, qdd) = piece.at((i as f64 + share) * part);
-            let seconds = weight * part;
+        let step = piece.length / STEPS as f64;
+        for i in 0..=STEPS {
+            let (q, qd, qdd) = piece.at(i as f64 * step);
+            let ends = i == 0 || i == STEPS;
+            let weight = if ends { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+            let seconds = weight / 3.0 * step;
             let smooth = plant.torque(&q, &qd, &qdd);
             let torque: Joints = std::array::from_fn(|j| smooth[j] + dry[j] * direction(qd[j]));
             let power: Joints = std::array::from_fn(|j| torque[j] * qd[j]);
             sum.time += seconds;
             sum.base += seconds * model.base_w;
             sum.drive += seconds * model.braked(&power);
+            out.worst_share = out.worst_share.max(plant.speed_share(&q, &qd));
             for j in 0..DOF {
                 sum.mechanical += seconds * smooth[j] * qd[j];
                 sum.friction += seconds * dry[j] * qd[j].abs();
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
+                out.worst_share = out.worst_share.max(torque[j].abs() / limit[j]);
             }
         }
     }
-    sum
-}
-
-/// The largest share of a torque limit or of the speed ceiling that the realised motion uses, at
-/// the same places.
-pub fn worst_share(stream: &Stream, plant: &impl Plant) -> f64 {
-    let limit = plant.torque_limit();
-    let mut worst = 0.0f64;
-    for piece in stream.pieces() {
-        for i in 0..=2 * PARTS {
-            let (q, qd, qdd) = piece.at(piece.length * i as f64 / (2 * PARTS) as f64);
-            let torque = plant.full_torque(&q, &qd, &qdd);
-            worst = (0..DOF).fold(worst, |worst, j| worst.max(torque[j].abs() / limit[j]));
-            worst = worst.max(plant.speed_share(&q, &qd));
-        }
-    }
-    worst
+    out
 }

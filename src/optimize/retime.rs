@@ -4,7 +4,7 @@
 //! to it and checked as the controller will realise it. What breaks a limit
 //! tightens the margins and is tried again.
 
-use super::check::{Check, HotSpot, check};
+use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::energy_program::minimize_energy;
 use super::path_energy::{EnergyModel, Sharing};
@@ -83,6 +83,10 @@ const ATTEMPTS: usize = 6;
 const FIRST_MARGIN: f64 = 0.98;
 /// Margin to speed ceilings at first.
 const FIRST_SPEED_MARGIN: f64 = 0.995;
+/// Time over which the points of a stream smooth its speed to either side, s.
+const SHAPING_TIME: f64 = 0.04;
+/// Reach of lower ceilings at first, m.
+const FIRST_REACH: f64 = 0.004;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
@@ -95,8 +99,9 @@ struct Margins {
     load: f64,
     /// Share of the speed ceilings.
     speed: f64,
-    /// Lower ceilings round places where a stream was too fast: s, half width, path speed.
-    slow: Vec<(f64, f64, f64)>,
+    /// Distance before and behind a lower ceiling from which it holds, m: a stream is shaped at
+    /// places some way apart.
+    reach: f64,
     /// Tolerance of the points' placing, m.
     spacing: f64,
 }
@@ -105,7 +110,6 @@ struct Margins {
 struct Attempt {
     stream: Stream,
     check: Check,
-    hot: Vec<HotSpot>,
 }
 
 /// The stream of a run.
@@ -194,7 +198,7 @@ impl<'a> Work<'a> {
                     return Ok(self.retiming(attempt.stream, attempt.check, bound));
                 }
                 Ok(attempt) => {
-                    margins.tighten(&attempt, &optimum.profile);
+                    margins.tighten(&attempt.check);
                     problem = Some(describe(&attempt.check));
                 }
                 Err(Reason::NoStream(why)) => {
@@ -230,7 +234,7 @@ impl<'a> Work<'a> {
                 }
             }
             match best {
-                Some(attempt) => margins.tighten(&attempt, &fast),
+                Some(attempt) => margins.tighten(&attempt.check),
                 None => margins.load *= FIRST_MARGIN,
             }
         }
@@ -245,7 +249,7 @@ impl<'a> Work<'a> {
         Margins {
             load: FIRST_MARGIN,
             speed: FIRST_SPEED_MARGIN,
-            slow: Vec::new(),
+            reach: FIRST_REACH,
             spacing: 0.5 * tolerance,
         }
     }
@@ -264,17 +268,9 @@ impl<'a> Work<'a> {
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
         let nodes = sampling::nodes(self.path, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
-        let mut grid = sampling::grid(loaded, self.path, &nodes, &caps)
+        let grid = sampling::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
-        if !margins.slow.is_empty() {
-            let mut ends = grid.ends().to_vec();
-            for (k, pair) in ends.iter_mut().enumerate() {
-                for (end, s) in pair.iter_mut().zip(&nodes[k..k + 2]) {
-                    end.v_max = end.v_max.min(margins.slowest(*s));
-                }
-            }
-            grid = PathGrid::new(nodes, ends).map_err(|error| no_grid(error.to_string()))?;
-        }
+        let grid = grid.holding(SHAPING_TIME, margins.reach);
         let full = motion_limits(self.task.model, margins.load);
         let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
             .map_err(|error| no_grid(error.to_string()))?;
@@ -316,7 +312,6 @@ impl<'a> Work<'a> {
         .map_err(|error| failed(&error.to_string()))?;
         let stream = self.rounded(&polished.stream)?;
         let tool = self.task.run.legs[0].tool;
-        let mut hot = Vec::new();
         let check = check(
             self.task.model,
             &self.task.run.load,
@@ -324,9 +319,8 @@ impl<'a> Work<'a> {
             &stream,
             &self.corridor,
             &self.task.run.end,
-            &mut hot,
         );
-        Ok(Attempt { stream, check, hot })
+        Ok(Attempt { stream, check })
     }
 
     fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
@@ -397,7 +391,8 @@ impl Plant for RobotPlant<'_> {
     fn speed_share(&self, q: &Joints, qd: &Joints) -> f64 {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
-        let ceiling = self.work.corridor.ceiling_near(&(fk(task.model, q) * tool));
+        let pose = fk(task.model, q) * tool;
+        let ceiling = self.work.corridor.ceiling_near(&pose, self.margins.reach);
         let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
         rate.fixed_rows::<3>(0).norm() / (self.margins.speed * ceiling)
     }
@@ -406,14 +401,9 @@ impl Plant for RobotPlant<'_> {
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
-/// Time to either side of a hot spot in which the intended motion is slowed, s: about the
-/// distance of two points.
-const HOT_TIME: f64 = 0.06;
-
 impl Margins {
     /// Tighter where an attempt failed.
-    fn tighten(&mut self, attempt: &Attempt, profile: &Profile) {
-        let check = &attempt.check;
+    fn tighten(&mut self, check: &Check) {
         let load = check.torque.max(check.acceleration);
         if load > 1.0 {
             self.load *= FIRST_MARGIN / load;
@@ -421,24 +411,12 @@ impl Margins {
         if check.velocity > 1.0 {
             self.speed *= FIRST_SPEED_MARGIN / check.velocity;
         }
-        for spot in attempt.hot.iter().filter(|spot| spot.speed > 1.0) {
-            let k = profile.s().partition_point(|s| *s < spot.s).min(profile.b().len() - 1);
-            let speed = profile.b()[k].sqrt();
-            let share = FIRST_SPEED_MARGIN / spot.speed;
-            self.slow.push((spot.s, HOT_TIME * speed, speed * share));
+        if check.tcp_speed > 1.0 {
+            self.reach *= 2.0;
         }
         if check.deviation > 1.0 {
             self.spacing *= 0.5;
         }
-    }
-
-    /// The lowest of the lowered path speeds at s.
-    fn slowest(&self, s: f64) -> f64 {
-        self.slow
-            .iter()
-            .filter(|(place, width, _)| (s - place).abs() <= *width)
-            .map(|(_, _, speed)| *speed)
-            .fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -9,7 +9,7 @@
 use super::banded::Banded;
 use super::cone::{Affine, ConeProgram, ConeStatus};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{Plant, stream_energy, worst_share};
+use super::plant::{Plant, Realised, realise};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -31,10 +31,8 @@ pub struct Polished {
     pub stream: Stream,
     /// How the polishing ended.
     pub status: PolishStatus,
-    /// Energy of the realised motion, J.
-    pub energy: f64,
-    /// Largest share of a torque limit or of the speed ceiling.
-    pub worst_share: f64,
+    /// What its motion costs and how near it comes to the limits.
+    pub realised: Realised,
     /// Largest distance of the realised motion from the path of the reference, in the units of
     /// the levers.
     pub deviation: f64,
@@ -70,7 +68,7 @@ const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 const DAMPING_STEP: f64 = 5.0;
 /// The programs' objective per energy: their accuracy is absolute.
 const SCALE: f64 = 100.0;
-/// Steps of the differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
+/// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
 const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Smallest tolerance that is taken literally.
 const TIGHTEST: f64 = 1e-7;
@@ -95,7 +93,7 @@ pub fn polish_stream(
 ) -> Result<Polished, StreamError> {
     let points = Points::new(reference, stream.intervals().to_vec())?;
     let rows = points.limit_rows(limits);
-    let unit = stream_energy(stream, plant, model).total().abs().max(f64::MIN_POSITIVE);
+    let unit = realise(stream, plant, model).energy.total().abs().max(f64::MIN_POSITIVE);
     let polish = Polish { reference, plant, model, corridor, points, rows, unit };
     let mut best = polish.judge(stream.clone());
     let mut damping = DAMPING;
@@ -140,6 +138,7 @@ pub fn polish_stream(
 /// A stream with its merit in energies of the first one.
 struct Judged {
     stream: Stream,
+    realised: Realised,
     merit: f64,
 }
 
@@ -173,25 +172,22 @@ impl<P: Plant> Polish<'_, P> {
         let places = places(&best.stream);
         Polished {
             status,
-            energy: stream_energy(&best.stream, self.plant, self.model).total(),
-            worst_share: worst_share(&best.stream, self.plant),
+            realised: best.realised,
             deviation: places.iter().map(|p| norm(&self.offset(p).0)).fold(0.0, f64::max),
             stream: best.stream,
         }
     }
 
     fn judge(&self, stream: Stream) -> Judged {
-        let energy = stream_energy(&stream, self.plant, self.model).total() / self.unit;
+        let realised = realise(&stream, self.plant, self.model);
         let price = self.deviation_price();
         let places = places(&stream);
         let distance: f64 =
             places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
-        let merit = energy + VIOLATION_PRICE * self.violation(&stream) + price * distance;
-        Judged { stream, merit }
-    }
-
-    fn violation(&self, stream: &Stream) -> f64 {
-        (worst_share(stream, self.plant) - (1.0 - MARGIN)).max(0.0)
+        let merit = realised.energy.total() / self.unit
+            + VIOLATION_PRICE * violation(&realised)
+            + price * distance;
+        Judged { stream, realised, merit }
     }
 
     /// Price of ∫ distance² dt, in energies.
@@ -224,12 +220,7 @@ impl<P: Plant> Polish<'_, P> {
 
     /// Torque, speed share and their derivatives at a place.
     fn linearise(&self, place: &Place) -> Linearised {
-        let at = |kind: usize, joint: usize, step: f64| {
-            let mut state = [place.q, place.qd, place.qdd];
-            state[kind][joint] += step;
-            let [q, qd, qdd] = state;
-            (self.plant.torque(&q, &qd, &qdd), self.plant.speed_share(&q, &qd))
-        };
+        let here = self.plant.torque(&place.q, &place.qd, &place.qdd);
         let mut out = Linearised {
             torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
             speed: self.plant.speed_share(&place.q, &place.qd),
@@ -238,10 +229,12 @@ impl<P: Plant> Polish<'_, P> {
         };
         for (kind, step) in DIFFERENCES.into_iter().enumerate() {
             for joint in self.points.joints.iter().copied() {
-                let ((low, slow), (high, fast)) = (at(kind, joint, -step), at(kind, joint, step));
-                out.torque_by[kind][joint] =
-                    std::array::from_fn(|j| (high[j] - low[j]) / (2.0 * step));
-                out.speed_by[kind][joint] = (fast - slow) / (2.0 * step);
+                let mut state = [place.q, place.qd, place.qdd];
+                state[kind][joint] += step;
+                let [q, qd, qdd] = state;
+                let next = self.plant.torque(&q, &qd, &qdd);
+                out.torque_by[kind][joint] = std::array::from_fn(|j| (next[j] - here[j]) / step);
+                out.speed_by[kind][joint] = (self.plant.speed_share(&q, &qd) - out.speed) / step;
             }
         }
         out
@@ -257,7 +250,7 @@ impl<P: Plant> Polish<'_, P> {
             gradient: vec![0.0; size],
             brakes: Vec::new(),
             shares: Vec::new(),
-            now: VIOLATION_PRICE * self.violation(&best.stream),
+            now: VIOLATION_PRICE * violation(&best.realised),
         };
         for place in places(&best.stream) {
             self.add_place(&place, &mut model);
@@ -453,6 +446,11 @@ struct Quadratic {
     shares: Vec<Affine>,
     /// The braked and the broken part at x = 0.
     now: f64,
+}
+
+/// By how much the limits are broken, with the room that is kept to them.
+fn violation(realised: &Realised) -> f64 {
+    (realised.worst_share - (1.0 - MARGIN)).max(0.0)
 }
 
 fn norm(vector: &Joints) -> f64 {

@@ -15,6 +15,9 @@ const SMOOTHNESS: f64 = 0.3;
 /// Fewest intervals where the time allows them: rest, motion, rest.
 const FEWEST: f64 = 4.0;
 
+/// Most intervals, whatever the shortest one is.
+const MOST: f64 = 1e4;
+
 /// How close the points of a stream may be, and how close the motion must be met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
@@ -35,7 +38,7 @@ impl Default for Spacing {
 /// Intervals, s, that add up to `duration`, for a stream that follows `reference` in that time.
 /// None is below the shortest one unless the whole duration is.
 pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacing) -> Vec<f64> {
-    let shortest = spacing.shortest;
+    let shortest = spacing.shortest.max(duration / MOST);
     if !(duration > 2.0 * shortest && duration.is_finite()) {
         return vec![duration];
     }

@@ -176,7 +176,7 @@ fn compare(
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }
-    let check = check(model, &run.load, &run.legs[0].tool, stream, &corridor, &run.end, &mut Vec::new());
+    let check = check(model, &run.load, &run.legs[0].tool, stream, &corridor, &run.end);
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points".into());
     }

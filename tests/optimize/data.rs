@@ -140,6 +140,21 @@ fn the_unit_of_the_path_does_not_matter() {
 }
 
 #[test]
+fn unlimited_time_ends_where_slowness_costs() {
+    // Holding the arm up costs copper losses, so that there is a best time.
+    let grid = arm::grid(&arm::Path::random(2), 40, 1.0);
+    let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
+    let of = |time: f64| {
+        let outcome = minimize_energy(&grid, &arm::limits(), &MODEL, &fastest, time);
+        outcome.into_optimum().unwrap()
+    };
+    let (enough, endless) = (of(20.0 * fastest.duration()), of(f64::INFINITY));
+    assert!(enough.profile.duration() < 10.0 * fastest.duration());
+    assert!(enough.energy.total() < of(1.2 * fastest.duration()).energy.total());
+    assert!(endless.energy.total() < 1.01 * enough.energy.total());
+}
+
+#[test]
 fn short_and_long_moves_solve() {
     let limits = arm::limits();
     for seed in 0..6 {

@@ -115,7 +115,7 @@ fn random_paths_save_more_than_uniform_slowing_within_all_limits() {
     const BETWEEN: f64 = 5e-3;
     const GAP: f64 = 0.03;
     let limits = arm::limits();
-    for seed in 0..20 {
+    for seed in 0..12 {
         let path = arm::Path::random(seed);
         let grid = arm::grid(&path, 60, 1.0);
         let fine = arm::grid(&path, 1200, 1.0);
@@ -168,7 +168,7 @@ fn random_changes_of_the_profile_are_not_better() {
 #[test]
 fn the_bound_of_a_coarse_grid_holds_for_a_fine_one() {
     let limits = arm::limits();
-    for seed in 0..8 {
+    for seed in 0..5 {
         for model in models() {
             let path = arm::Path::random(seed);
             let coarse = arm::grid(&path, 60, 1.0);

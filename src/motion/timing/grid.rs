@@ -166,6 +166,27 @@ impl PathGrid {
         PathGrid::new(s, nodes.windows(2).map(|w| [w[0], w[1]]).collect())
     }
 
+    /// The same path with each bound on ṡ holding earlier and longer: from the distance that
+    /// it takes `time` (s) to pass at that bound, and `distance` besides, before it to as much
+    /// behind it. What smooths a profile over time then keeps the bounds.
+    pub(crate) fn holding(&self, time: f64, distance: f64) -> PathGrid {
+        let bounds: Vec<(f64, f64, f64)> = self
+            .ends
+            .iter()
+            .zip(self.s.windows(2))
+            .flat_map(|(pair, s)| [(s[0], pair[0].v_max), (s[1], pair[1].v_max)])
+            .map(|(s, v)| (s, v, if v.is_finite() { v * time + distance } else { 0.0 }))
+            .collect();
+        let mut held = self.clone();
+        for (k, pair) in held.ends.iter_mut().enumerate() {
+            for (end, s) in pair.iter_mut().zip(&self.s[k..k + 2]) {
+                let near = bounds.iter().filter(|(at, _, reach)| (at - s).abs() <= *reach);
+                end.v_max = near.map(|(_, v, _)| *v).fold(end.v_max, f64::min);
+            }
+        }
+        held
+    }
+
     /// The same path with the path speed capped at `v_max`, which must be positive.
     pub(crate) fn capped(&self, v_max: f64) -> PathGrid {
         let mut capped = self.clone();
