@@ -104,6 +104,8 @@ struct Margins {
     reach: f64,
     /// Tolerance of the points' placing, m.
     spacing: f64,
+    /// Distance from the path that costs the polishing a share of the energy, m.
+    corridor: f64,
 }
 
 /// A realised stream with its faults.
@@ -251,6 +253,7 @@ impl<'a> Work<'a> {
             speed: FIRST_SPEED_MARGIN,
             reach: FIRST_REACH,
             spacing: 0.5 * tolerance,
+            corridor: 0.5 * tolerance,
         }
     }
 
@@ -307,7 +310,7 @@ impl<'a> Work<'a> {
             &RobotPlant { work: self, margins },
             &self.limits,
             &self.model,
-            &PolishCorridor { tolerance: margins.spacing, lever: self.lever },
+            &PolishCorridor { tolerance: margins.corridor, lever: self.lever },
         )
         .map_err(|error| failed(&error.to_string()))?;
         let stream = self.rounded(&polished.stream)?;
@@ -415,7 +418,8 @@ impl Margins {
             self.reach *= 2.0;
         }
         if check.deviation > 1.0 {
-            self.spacing *= 0.5;
+            self.corridor *= 0.4 / check.deviation.min(2.0);
+            self.spacing *= 0.7;
         }
     }
 }
