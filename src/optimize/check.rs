@@ -35,9 +35,6 @@ pub struct Check {
     pub in_range: bool,
 }
 
-/// Rounding of figures that touch a limit.
-const ROUNDING: f64 = 1e-6;
-
 impl Check {
     /// The largest share of a limit.
     pub fn worst(&self) -> f64 {
@@ -48,7 +45,7 @@ impl Check {
 
     /// True if nothing is exceeded.
     pub fn holds(&self) -> bool {
-        self.worst() <= 1.0 + ROUNDING && self.in_range
+        self.worst() <= 1.0 && self.in_range
     }
 
     /// The larger of each figure.

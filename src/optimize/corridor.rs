@@ -117,9 +117,34 @@ impl Corridor {
         }
     }
 
-    /// The lowest TCP speed allowed within `reach` (m of path) of the place nearest to a pose,
-    /// searched on the whole path.
-    pub fn ceiling_near(&self, pose: &Isometry3<f64>, reach: f64) -> f64 {
+    /// The ceilings of all places, each lower one holding from `reach` (m) before it to as much
+    /// behind it and rising from there as a motion can that gains `acceleration` (m/s²): the
+    /// same for a motion, but without steps.
+    pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
+        let last = self.places.len() - 1;
+        let n = (reach / SPACING).ceil() as usize;
+        let mut eased: Vec<f64> = (0..=last)
+            .map(|i| {
+                let around = i.saturating_sub(n)..=(i + n).min(last);
+                self.places[around].iter().map(|p| p.ceiling).fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        let step = |i: usize| {
+            let (a, b) = (&self.places[i].pose, &self.places[i + 1].pose);
+            (a.translation.vector - b.translation.vector).norm()
+        };
+        let rise = |from: f64, d: f64| (from * from + 2.0 * acceleration * d).sqrt();
+        for i in 0..last {
+            eased[i + 1] = eased[i + 1].min(rise(eased[i], step(i)));
+        }
+        for i in (0..last).rev() {
+            eased[i] = eased[i].min(rise(eased[i + 1], step(i)));
+        }
+        eased
+    }
+
+    /// The value at a pose of something given at each place, searched on the whole path.
+    pub fn interpolate(&self, pose: &Isometry3<f64>, values: &[f64]) -> f64 {
         const STRIDE: usize = 8;
         let square = |place: &Place| {
             let turn = METRES_PER_RADIAN * pose.rotation.angle_to(&place.pose.rotation);
@@ -131,11 +156,21 @@ impl Corridor {
         };
         let coarse = nearest(&mut (0..self.places.len()).step_by(STRIDE));
         let last = self.places.len() - 1;
-        let around =
-            |i: usize, n: usize| i.saturating_sub(n)..=(i + n).min(last);
-        let fine = nearest(&mut around(coarse, STRIDE));
-        let n = (reach / SPACING).ceil() as usize;
-        self.places[around(fine, n)].iter().map(|p| p.ceiling).fold(f64::INFINITY, f64::min)
+        let i = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
+        // Between the nearest place and its neighbour on the side of the pose.
+        let here = self.places[i].pose.translation.vector;
+        let from = pose.translation.vector - here;
+        for k in [i + 1, i.wrapping_sub(1)] {
+            if k > last {
+                continue;
+            }
+            let along = self.places[k].pose.translation.vector - here;
+            let share = from.dot(&along) / along.norm_squared();
+            if share > 0.0 {
+                return values[i] + (values[k] - values[i]) * share.min(1.0);
+            }
+        }
+        values[i]
     }
 
     /// Distance of a pose from the stretch before and after a place.

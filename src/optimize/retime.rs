@@ -85,8 +85,14 @@ const FIRST_MARGIN: f64 = 0.98;
 const FIRST_SPEED_MARGIN: f64 = 0.995;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
+/// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
+const EASING: f64 = 10.0;
 /// Reach of lower ceilings at first, m.
-const FIRST_REACH: f64 = 0.004;
+const FIRST_REACH: f64 = 0.006;
+/// Placing of the points at first, share of the tolerance of the path.
+const FIRST_SPACING: f64 = 0.1;
+/// Corridor of the polishing at first, share of the tolerance of the path.
+const FIRST_CORRIDOR: f64 = 0.3;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
@@ -191,10 +197,7 @@ impl<'a> Work<'a> {
             let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget)
                 .into_optimum()
                 .ok_or(Reason::NoSaving)?;
-            let t0 = std::time::Instant::now();
-            let r = self.realise(&optimum.profile, budget, &margins);
-            eprintln!("budget {budget:.3} fast {:.3} load {:.3} speed {:.3} spacing {:.5} before {:.1} promised {:.1} lb {:.1} -> {:?} {:?}", fast.duration(), margins.load, margins.speed, margins.spacing, self.task.energy_before.motion_energy_j(), optimum.energy.total(), optimum.lower_bound, r.as_ref().map(|a| (a.stream.points().len(), self.retiming(a.stream.clone(), a.check, None).energy.motion_energy_j(), describe(&a.check))), t0.elapsed());
-            match r {
+            match self.realise(&optimum.profile, budget, &margins) {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = Some(optimum.lower_bound);
                     return Ok(self.retiming(attempt.stream, attempt.check, bound));
@@ -252,8 +255,8 @@ impl<'a> Work<'a> {
             load: FIRST_MARGIN,
             speed: FIRST_SPEED_MARGIN,
             reach: FIRST_REACH,
-            spacing: 0.5 * tolerance,
-            corridor: 0.5 * tolerance,
+            spacing: FIRST_SPACING * tolerance,
+            corridor: FIRST_CORRIDOR * tolerance,
         }
     }
 
@@ -307,7 +310,11 @@ impl<'a> Work<'a> {
         let polished = polish_stream(
             &fitted,
             &reference,
-            &RobotPlant { work: self, margins },
+            &RobotPlant {
+                work: self,
+                margins,
+                ceilings: self.corridor.eased(margins.reach, EASING),
+            },
             &self.limits,
             &self.model,
             &PolishCorridor { tolerance: margins.corridor, lever: self.lever },
@@ -373,6 +380,8 @@ impl<'a> Work<'a> {
 struct RobotPlant<'a> {
     work: &'a Work<'a>,
     margins: &'a Margins,
+    /// TCP speed at the places of the corridor, m/s.
+    ceilings: Vec<f64>,
 }
 
 impl Plant for RobotPlant<'_> {
@@ -395,7 +404,7 @@ impl Plant for RobotPlant<'_> {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
         let pose = fk(task.model, q) * tool;
-        let ceiling = self.work.corridor.ceiling_near(&pose, self.margins.reach);
+        let ceiling = self.work.corridor.interpolate(&pose, &self.ceilings);
         let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
         rate.fixed_rows::<3>(0).norm() / (self.margins.speed * ceiling)
     }

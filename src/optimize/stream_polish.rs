@@ -52,13 +52,15 @@ const DEVIATION_PRICE: f64 = 0.02;
 /// Energies that the full violation of a limit costs.
 const VIOLATION_PRICE: f64 = 20.0;
 /// Steps.
-const MAX_STEPS: usize = 25;
+const MAX_STEPS: usize = 10;
 /// Relative fall of the merit at which the steps end.
-const CONVERGED: f64 = 1e-4;
+const CONVERGED: f64 = 3e-4;
 /// Room that the programs keep to the limits.
 const MARGIN: f64 = 1e-3;
 /// Share of its limit from which a row is part of a program.
 const NEAR: f64 = 0.6;
+/// Rounds in which rows are added to a program.
+const MAX_ROUNDS: usize = 6;
 /// Unit of the variables, rad.
 const UNIT: f64 = 0.01;
 /// Price of a step of one unit in every variable at the begin, in energies; and its bounds.
@@ -101,8 +103,9 @@ pub fn polish_stream(
     if polish.points.size() == 0 {
         return Ok(polish.polished(best, PolishStatus::Converged));
     }
+    let mut model = polish.model(&best);
     for _ in 0..MAX_STEPS {
-        let Some(step) = polish.step(&best, damping) else {
+        let Some(step) = polish.step(&best, &model, damping) else {
             status = PolishStatus::Converged;
             break;
         };
@@ -125,6 +128,7 @@ pub fn polish_stream(
                 status = PolishStatus::Converged;
                 break;
             }
+            model = polish.model(&best);
         } else if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
             damping *= DAMPING_STEP;
         } else {
@@ -240,10 +244,9 @@ impl<P: Plant> Polish<'_, P> {
         out
     }
 
-    /// The change that the quadratic program around `best` proposes. None if there is none.
-    fn step(&self, best: &Judged, damping: f64) -> Option<Proposal> {
+    /// The quadratic model of merit and limits around `best`.
+    fn model(&self, best: &Judged) -> Quadratic {
         let size = self.points.size();
-        let variables = self.points.variables(&best.stream);
         let width = (3 * self.points.joints.len() - 1).min(size);
         let mut model = Quadratic {
             matrix: Banded::zeros(size, width),
@@ -255,6 +258,13 @@ impl<P: Plant> Polish<'_, P> {
         for place in places(&best.stream) {
             self.add_place(&place, &mut model);
         }
+        model
+    }
+
+    /// The change that the quadratic program around `best` proposes. None if there is none.
+    fn step(&self, best: &Judged, model: &Quadratic, damping: f64) -> Option<Proposal> {
+        let size = self.points.size();
+        let variables = self.points.variables(&best.stream);
         let slack = size;
         let mut program = ConeProgram::new(size + 1 + model.brakes.len());
         for (i, j, value) in model.matrix.entries() {
@@ -273,29 +283,42 @@ impl<P: Plant> Polish<'_, P> {
             program.at_most_zero(Affine::default().plus(braked, -1.0));
             program.at_most_zero(power.clone().times(-1.0).plus(braked, -1.0));
         }
-        for share in model.shares {
-            program.at_most_zero(share.shift(-(1.0 - MARGIN)).plus(Some(slack), -1.0));
+        for share in &model.shares {
+            program.at_most_zero(share.clone().shift(-(1.0 - MARGIN)).plus(Some(slack), -1.0));
         }
-        for row in &self.rows {
-            let value = row.value(&variables);
-            if value > NEAR {
+        let mut active: Vec<bool> =
+            self.rows.iter().map(|row| row.value(&variables) > NEAR).collect();
+        // Rows that a step would break are added until it breaks none.
+        for _ in 0..MAX_ROUNDS {
+            let mut program = program.clone();
+            for (row, _) in self.rows.iter().zip(&active).filter(|(_, active)| **active) {
+                let value = row.value(&variables);
                 let mut affine = Affine::constant((value - (1.0 - MARGIN)).min(0.0));
                 for (index, weight) in &row.terms {
                     affine.add(Some(*index), UNIT * weight);
                 }
                 program.at_most_zero(affine);
             }
+            let solution = program.solve();
+            if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
+                return None;
+            }
+            let change: Vec<f64> = solution.x[..size].iter().map(|x| UNIT * x).collect();
+            let next: Vec<f64> = variables.iter().zip(&change).map(|(x, d)| x + d).collect();
+            let mut added = false;
+            for (row, active) in self.rows.iter().zip(&mut active) {
+                let broken = !*active && row.value(&next) > 1.0 - MARGIN;
+                *active |= broken;
+                added |= broken;
+            }
+            if !added {
+                let damped: f64 =
+                    solution.x[..size].iter().map(|x| 0.5 * price * x * x).sum();
+                let predicted = model.now - (solution.objective / SCALE - damped);
+                return Some(Proposal { change, predicted });
+            }
         }
-        let solution = program.solve();
-        if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
-            return None;
-        }
-        let change = &solution.x[..size];
-        let damped: f64 = change.iter().map(|x| 0.5 * price * x * x).sum();
-        Some(Proposal {
-            predicted: model.now - (solution.objective / SCALE - damped),
-            change: change.iter().map(|x| UNIT * x).collect(),
-        })
+        None
     }
 
     /// Adds the costs and limits at a place to the model.
