@@ -157,24 +157,14 @@ impl Lowering<'_> {
             })
             .map(|(group, parameters, parameter)| self.param(group, parameters, parameter))
             .collect();
-        let mut data = Vec::new();
-        let mut body = Vec::new();
-        if let Some(block) = routine.body() {
-            let mut children = block.children().peekable();
-            while let Some(declaration) = children.peek().copied().and_then(ast::Data::cast) {
-                data.push(self.data(declaration));
-                children.next();
-            }
-            body = children.filter_map(|child| self.stmt(child)).collect();
-        }
         let handler = |kind| routine.handlers(kind).next().map(|node| self.block_in(node));
         Routine {
             kind,
             scope: scope(routine.scope()),
             name: self.ident_in(routine.name(), node),
             params,
-            data,
-            body,
+            data: routine.data().map(|data| self.data(data)).collect(),
+            body: self.block_in(node),
             backward: handler(NodeKind::BackwardHandler),
             error: routine
                 .handlers(NodeKind::ErrorHandler)

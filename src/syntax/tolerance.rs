@@ -12,9 +12,11 @@ pub enum Tolerance {
     DeclarationOrder,
     /// A lone `;` where a declaration or a statement can stand.
     EmptyStatement,
+    /// Other text than version and language between the `%%%`.
+    HeaderContents,
     /// `LOCAL VAR` or `TASK VAR` inside a routine.
     ScopeInRoutine,
-    /// A data declaration after the first statement of a block.
+    /// A data declaration elsewhere than first in its routine.
     DataBetweenStatements,
     /// `CONST` without a value.
     ConstWithoutValue,
@@ -22,9 +24,12 @@ pub enum Tolerance {
     ParenthesizedArguments,
     /// `, \Opt`: a comma before an optional argument or parameter.
     CommaBeforeOptional,
+    /// `\Error`: an optional argument named as a keyword.
+    KeywordAsArgument,
     /// `a*-1`: a sign after an operator.
     SignAfterOperator,
-    /// `a AND NOT b`: `NOT` elsewhere than first in its expression.
+    /// `a AND NOT b`: `NOT` elsewhere than first in its expression or behind
+    /// `OR` and `XOR`.
     NotAfterOperator,
     /// `f(x).c`, `f(x){1}`: a component of the value of a function.
     ComponentOfCall,
@@ -34,7 +39,7 @@ pub enum Tolerance {
     DefaultNotLast,
     /// Handlers in another order than `BACKWARD`, `ERROR`, `UNDO`.
     HandlerOrder,
-    /// Module attributes in another order than the fixed one.
+    /// Module attributes in another order than the fixed one, or twice.
     AttributeOrder,
 }
 
@@ -56,11 +61,13 @@ impl Tolerance {
         Tolerance::DeclarationOutsideModule,
         Tolerance::DeclarationOrder,
         Tolerance::EmptyStatement,
+        Tolerance::HeaderContents,
         Tolerance::ScopeInRoutine,
         Tolerance::DataBetweenStatements,
         Tolerance::ConstWithoutValue,
         Tolerance::ParenthesizedArguments,
         Tolerance::CommaBeforeOptional,
+        Tolerance::KeywordAsArgument,
         Tolerance::SignAfterOperator,
         Tolerance::NotAfterOperator,
         Tolerance::ComponentOfCall,

@@ -119,18 +119,6 @@ impl<'a> Parser<'a> {
         self.bytes.get(range.start as usize..range.end as usize).unwrap_or_default()
     }
 
-    /// An identifier, or a word that is reserved only where it serves.
-    fn is_name(kind: TokenKind) -> bool {
-        matches!(
-            kind,
-            TokenKind::Identifier
-                | TokenKind::Alias
-                | TokenKind::Record
-                | TokenKind::Task
-                | TokenKind::Undo
-        )
-    }
-
     // --- moving ---
 
     fn skip_trivia(&mut self) {
@@ -200,7 +188,7 @@ impl<'a> Parser<'a> {
     /// A name that is declared or that is no value.
     fn name(&mut self) {
         match self.current() {
-            kind if Self::is_name(kind) => self.leaf(NodeKind::Name),
+            TokenKind::Identifier => self.leaf(NodeKind::Name),
             TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
             kind if kind.is_keyword() && !self.quiet && !self.first_on_line(self.position) => {
                 let message =
@@ -225,7 +213,8 @@ impl<'a> Parser<'a> {
     fn push_error(&mut self, start: u32, end: u32, message: String, related: Option<Related>) {
         // A file that is cut off is one mistake, whatever it leaves open.
         let cut_off = self.at(TokenKind::EndOfFile);
-        if !self.quiet && !(cut_off && self.cut_off_reported) {
+        let told = self.quiet || cut_off && self.cut_off_reported;
+        if !told {
             self.cut_off_reported |= cut_off;
             self.errors.push(SyntaxError { start, end, message, related });
         }

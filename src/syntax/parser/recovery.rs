@@ -299,8 +299,6 @@ pub(super) fn starts_statement(kind: TokenKind) -> bool {
             | TokenKind::Retry
             | TokenKind::TryNext
             | TokenKind::Connect
-            | TokenKind::Alias
-            | TokenKind::Record
     ) || starts_data(kind)
 }
 

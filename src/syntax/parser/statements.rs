@@ -10,7 +10,6 @@ impl Parser<'_> {
     /// Statements up to a keyword that ends them.
     pub(super) fn block(&mut self) {
         let mark = self.mark();
-        let mut data_only = true;
         loop {
             self.quiet = false;
             if self.at(TokenKind::EndOfFile) {
@@ -27,11 +26,6 @@ impl Parser<'_> {
                 }
                 self.stray();
             } else {
-                let data = starts_data(kind);
-                if data && !data_only {
-                    self.tolerate(Tolerance::DataBetweenStatements, self.position);
-                }
-                data_only &= data;
                 self.statement();
             }
             debug_assert!(self.position > before, "every round reads something");
@@ -44,7 +38,7 @@ impl Parser<'_> {
     }
 
     /// Whether a routine starts with `LOCAL` here.
-    fn at_routine(&mut self) -> bool {
+    pub(super) fn at_routine(&mut self) -> bool {
         self.at(TokenKind::Local)
             && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
     }
@@ -118,13 +112,11 @@ impl Parser<'_> {
                 self.tolerate(Tolerance::EmptyStatement, self.position);
                 self.leaf(NodeKind::EmptyStatement);
             }
-            TokenKind::Task if !starts_data(self.next()) => self.name_statement(),
-            TokenKind::Local | TokenKind::Task => {
-                self.tolerate(Tolerance::ScopeInRoutine, self.position);
+            kind if starts_data(kind) => {
+                self.tolerate(Tolerance::DataBetweenStatements, self.position);
                 self.data_declaration();
             }
-            kind if starts_data(kind) => self.data_declaration(),
-            kind if Self::is_name(kind) => self.name_statement(),
+            TokenKind::Identifier => self.name_statement(),
             _ => {
                 let mark = self.mark();
                 self.error_unexpected("a statement");
@@ -323,11 +315,16 @@ impl Parser<'_> {
 
     /// `ELSEIF … THEN …`, `ELSE …`
     fn else_branches(&mut self) {
+        let mut after_else = false;
         loop {
             let mark = self.mark();
+            let branch = matches!(self.current(), TokenKind::ElseIf | TokenKind::Else);
+            if branch && after_else {
+                self.error_expected("ENDIF");
+            }
+            after_else |= self.at(TokenKind::Else);
             match self.current() {
                 TokenKind::ElseIf => {
-                    self.quiet = false;
                     self.bump();
                     self.expression();
                     self.end_header(TokenKind::Then);
@@ -431,6 +428,9 @@ impl Parser<'_> {
                     self.finish(mark, NodeKind::CaseBranch);
                 }
                 TokenKind::Default => {
+                    if after_default {
+                        self.error_expected("ENDTEST");
+                    }
                     after_default = true;
                     self.bump();
                     self.end_header(TokenKind::Colon);
