@@ -1,5 +1,7 @@
 //! The fixtures of the parser: each input beside what it is read as.
 
+#![expect(clippy::unwrap_used, reason = "a fixture that cannot be read fails the test")]
+
 use std::path::{Path, PathBuf};
 
 use joulepath::diagnostics::{Diagnostic, Label, Paint, full};

@@ -146,7 +146,7 @@ impl Parser<'_> {
             TokenKind::Number => self.leaf(NodeKind::NumberLiteral),
             TokenKind::String => self.leaf(NodeKind::StringLiteral),
             TokenKind::True | TokenKind::False => self.leaf(NodeKind::BoolLiteral),
-            TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+            TokenKind::Placeholder => return self.variable(),
             TokenKind::UnclosedString => {
                 let message = "expected '\"' at the end of this string".to_owned();
                 self.error_at(self.position, message);

@@ -258,11 +258,11 @@ impl Parser<'_> {
                 self.in_order(progress, Part::Types, start);
                 self.alias();
             }
-            TokenKind::Semicolon => {
+            TokenKind::Semicolon if !scoped => {
                 self.tolerate(Tolerance::EmptyStatement, start);
                 self.leaf(NodeKind::EmptyStatement);
             }
-            TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+            TokenKind::Placeholder if !scoped => self.leaf(NodeKind::Placeholder),
             _ if scoped || starts_data(kind) => {
                 self.in_order(progress, Part::Data, start);
                 self.data_declaration();

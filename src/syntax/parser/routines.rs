@@ -111,7 +111,8 @@ impl Parser<'_> {
 
     /// `[VAR|PERS|INOUT] type name {*}`
     fn parameter(&mut self) {
-        if self.at(TokenKind::Placeholder) && self.next() != TokenKind::Identifier {
+        let typed = matches!(self.next(), TokenKind::Identifier | TokenKind::Placeholder);
+        if self.at(TokenKind::Placeholder) && !typed {
             self.leaf(NodeKind::Placeholder);
             return;
         }

@@ -262,7 +262,6 @@ impl Parser<'_> {
     fn placeholder_statement(&mut self) {
         match self.next() {
             TokenKind::Assign | TokenKind::Dot | TokenKind::LeftBrace => self.assignment(),
-            _ if self.text(self.position) == b"<ID>" => self.call_statement(),
             _ => self.leaf(NodeKind::Placeholder),
         }
     }
