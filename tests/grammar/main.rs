@@ -8,13 +8,16 @@
 
 mod earley;
 mod ebnf;
+#[path = "../support/mod.rs"]
+mod support;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use earley::Grammar;
 use ebnf::Ebnf;
 use joulepath::syntax::{self, KEYWORDS, NodeKind, Parse, TokenKind, Tolerance};
+use support::{Random, fixtures};
 
 /// The parts of the grammar of programs; the lexical part is apart.
 const PARTS: [&str; 6] = ["modules", "data", "routines", "statements", "arguments", "expressions"];
@@ -48,30 +51,14 @@ const PIECES: [&str; 18] = [
 /// Longest fixture that is mutated, in tokens: the recogniser is slow.
 const LONGEST: usize = 400;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
-}
-
 fn part(name: &str) -> BTreeMap<String, Ebnf> {
-    let path = root().join("grammar").join(name).with_extension("ebnf");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("grammar").join(name).with_extension("ebnf");
     ebnf::read(&std::fs::read_to_string(path).unwrap())
 }
 
 fn productions() -> BTreeMap<String, Ebnf> {
     PARTS.iter().flat_map(|name| part(name)).collect()
-}
-
-fn fixtures(folder: &str) -> Vec<(String, Vec<u8>)> {
-    let mut files: Vec<PathBuf> = std::fs::read_dir(root().join("fixtures/syntax").join(folder))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension != "snap"))
-        .collect();
-    files.sort();
-    let read = |path: PathBuf| {
-        (path.file_stem().unwrap().to_str().unwrap().to_owned(), std::fs::read(&path).unwrap())
-    };
-    files.into_iter().map(read).collect()
 }
 
 /// Kinds and texts of the tokens that are no trivia.
@@ -168,7 +155,7 @@ fn fixtures_exercise_every_production() {
     let mut tolerances = BTreeSet::new();
     for (name, bytes) in fixtures("ok") {
         let parse = syntax::parse(&bytes);
-        kinds.extend(parse.tree.nodes().map(|node| node.kind()));
+        kinds.extend(parse.tree.nodes().map(syntax::Node::kind));
         tolerances.extend(parse.tolerances.iter().map(|used| used.tolerance));
         let derivation = recognised(&grammar, &significant(&bytes));
         assert_eq!(derivation.is_some(), strict(&parse), "{name}");
@@ -369,18 +356,5 @@ fn lexical_match(terminal: &Ebnf, unit: &[u8]) -> bool {
         }
         Ebnf::Words(words) if words.starts_with("a whole file") => false,
         other => panic!("{other:?} stands for no text"),
-    }
-}
-
-/// Splitmix64: repeatable, and good enough to choose mutations.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % limit as u64) as usize
     }
 }

@@ -105,7 +105,7 @@ impl<'a> Parser<'a> {
         while self.tokens.kind(next).is_trivia() {
             next += 1;
         }
-        self.steps += 1;
+        self.steps += (next - index) as u64;
         next
     }
 
@@ -129,10 +129,11 @@ impl<'a> Parser<'a> {
 
     fn bump(&mut self) {
         if self.position < self.tokens.len() {
+            let before = self.position;
             self.position += 1;
             self.end = self.position;
-            self.steps += 1;
             self.skip_trivia();
+            self.steps += (self.position - before) as u64;
         }
     }
 

@@ -317,6 +317,7 @@ impl Parser<'_> {
         if starts_statement(self.current()) {
             self.block();
         } else {
+            self.bump();
             self.recover();
         }
     }
