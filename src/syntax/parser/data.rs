@@ -81,6 +81,7 @@ impl Parser<'_> {
             let before = self.position;
             match self.current() {
                 TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+                TokenKind::Identifier if self.misspelt_closer() > 0 => break,
                 TokenKind::Identifier => self.record_component(),
                 kind if ends_block(kind) || kind.is_keyword() => break,
                 _ => {

@@ -193,6 +193,7 @@ impl Parser<'_> {
             match self.current() {
                 TokenKind::EndModule | TokenKind::EndOfFile => break,
                 TokenKind::Module if self.at_module() => break,
+                TokenKind::Identifier if self.misspelt_closer() > 0 => break,
                 _ => self.item(&mut progress),
             }
             debug_assert!(self.position > before, "every round reads something");

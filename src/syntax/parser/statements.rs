@@ -222,7 +222,7 @@ impl Parser<'_> {
             }
             self.close_bracket(TokenKind::RightParen, "',' or ')'");
         } else if !matches!(self.current(), TokenKind::Semicolon | TokenKind::EndOfFile)
-            && !self.ends_call_early(callee)
+            && !self.ends_early(callee)
         {
             self.arguments();
         }
@@ -230,23 +230,29 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::CallStatement);
     }
 
-    /// A callee at the end of its line, with the next statement after it.
-    fn ends_call_early(&mut self, callee: usize) -> bool {
-        self.first_on_line(self.position) && {
-            let kind = self.current();
-            ends_block(kind)
-                || starts_statement(kind) && kind.is_keyword()
-                || kind == TokenKind::Identifier
-                    && match self.next() {
-                        TokenKind::Identifier | TokenKind::Assign | TokenKind::Colon => true,
-                        // An argument would stand further to the right.
-                        TokenKind::Semicolon => {
-                            let column = self.indentation(self.position);
-                            column.is_some() && column == self.indentation(callee)
-                        }
-                        _ => false,
-                    }
+    /// Whether the next statement starts on the line after the word of this one
+    /// at `word`, whose `;` is missing then. An argument or a value on a line
+    /// of its own stands further to the right.
+    fn ends_early(&mut self, word: usize) -> bool {
+        let kind = self.current();
+        if !self.first_on_line(self.position) {
+            return false;
         }
+        if ends_block(kind) || starts_statement(kind) && kind.is_keyword() {
+            return true;
+        }
+        let line = self.first_of_line(word);
+        kind == TokenKind::Identifier
+            && self.indentation(self.position) <= self.indentation(line)
+            && matches!(
+                self.next(),
+                TokenKind::Identifier
+                    | TokenKind::Assign
+                    | TokenKind::Colon
+                    | TokenKind::Semicolon
+                    | TokenKind::String
+                    | TokenKind::Backslash
+            )
     }
 
     /// `%expr%`
@@ -453,11 +459,10 @@ impl Parser<'_> {
     /// `RETURN value;`, `RAISE number;`
     fn value_statement(&mut self, kind: NodeKind) {
         let mark = self.mark();
+        let word = self.position;
         self.bump();
-        let bare = self.at(TokenKind::Semicolon)
-            || ends_block(self.current())
-            || self.first_on_line(self.position) && self.looks_like_start();
-        if !bare {
+        let bare = self.at(TokenKind::Semicolon) || ends_block(self.current());
+        if !bare && !self.ends_early(word) {
             self.expression();
         }
         self.end_statement("an operator or ';'");
