@@ -57,7 +57,12 @@ fn what_controllers_accept_is_read_without_errors() {
         let tree = syntax::dump(&fixture.parse.tree, &fixture.source.bytes);
         let tolerances = fixture.parse.tolerances.iter().map(|used| {
             let position = fixture.source.position(used.start);
-            format!("tolerated {}:{} {:?}\n", position.line, position.column, used.tolerance)
+            format!(
+                "tolerated {}:{} {}\n",
+                position.line,
+                position.column,
+                used.tolerance.production()
+            )
         });
         snapshot("ok", &fixture, &format!("{tree}{}", tolerances.collect::<String>()));
     }

@@ -524,7 +524,7 @@ mod tests {
             ExprKind::Field(base, name) => format!("{}.{}", shown(base), name.key),
             ExprKind::Index(base, indices) => format!("{}{{{}}}", shown(base), list(indices)),
             ExprKind::Call(name, args) => {
-                let args: Vec<String> = args.iter().map(|arg| shown_arg(arg)).collect();
+                let args: Vec<String> = args.iter().map(shown_arg).collect();
                 format!("{}({})", name.key, args.join(" "))
             }
             ExprKind::Aggregate(parts) => format!("[{}]", list(parts)),

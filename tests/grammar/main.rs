@@ -110,14 +110,8 @@ fn node_kinds_are_productions() {
         );
     }
     for tolerance in Tolerance::ALL {
-        let mut name = String::new();
-        for (i, letter) in format!("{tolerance:?}").chars().enumerate() {
-            if i > 0 && letter.is_uppercase() {
-                name.push('_');
-            }
-            name.push(letter.to_ascii_lowercase());
-        }
-        assert!(tolerated.contains_key(&name), "{name} is missing in grammar/tolerances.ebnf");
+        let name = tolerance.production();
+        assert!(tolerated.contains_key(name), "{name} is missing in grammar/tolerances.ebnf");
     }
 }
 
