@@ -1,10 +1,13 @@
 //! The fixtures of the parser: each input beside what it is read as.
 
-use std::path::{Path, PathBuf};
+#![expect(clippy::unwrap_used, reason = "a fixture that cannot be read fails the test")]
+
+mod support;
 
 use joulepath::diagnostics::{Diagnostic, Label, Paint, full};
-use joulepath::syntax::{self, Element, Node, NodeKind, Parse, ast};
+use joulepath::syntax::{self, Node, NodeKind, Parse, ast};
 use joulepath::text::{FileId, SourceFile, Span};
+use support::{check_tree, fixture_folder, fixtures};
 
 const ID: FileId = FileId(0);
 
@@ -15,30 +18,18 @@ struct Fixture {
     parse: Parse,
 }
 
-fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/syntax").join(name)
-}
-
-fn fixtures(name: &str) -> Vec<Fixture> {
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder(name))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension != "snap"))
-        .collect();
-    paths.sort();
-    let read = |path: PathBuf| {
-        let bytes = std::fs::read(&path).unwrap();
+fn read(folder: &str) -> Vec<Fixture> {
+    let read = |(file, bytes): (String, Vec<u8>)| {
         let parse = syntax::parse(&bytes);
-        let file = path.file_name().unwrap().to_str().unwrap().to_owned();
-        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let name = file.split('.').next().unwrap().to_owned();
         Fixture { name, source: SourceFile::new(ID, file, bytes), parse }
     };
-    paths.into_iter().map(read).collect()
+    fixtures(folder).into_iter().map(read).collect()
 }
 
 fn snapshot(folder_name: &str, fixture: &Fixture, text: &str) {
     insta::with_settings!({
-        snapshot_path => folder(folder_name),
+        snapshot_path => fixture_folder(folder_name),
         prepend_module_to_snapshot => false,
         omit_expression => true,
     }, {
@@ -61,12 +52,17 @@ fn rendered(fixture: &Fixture) -> String {
 
 #[test]
 fn what_controllers_accept_is_read_without_errors() {
-    for fixture in fixtures("ok") {
+    for fixture in read("ok") {
         assert_eq!(rendered(&fixture), "", "{} has errors", fixture.name);
         let tree = syntax::dump(&fixture.parse.tree, &fixture.source.bytes);
         let tolerances = fixture.parse.tolerances.iter().map(|used| {
             let position = fixture.source.position(used.start);
-            format!("tolerated {}:{} {:?}\n", position.line, position.column, used.tolerance)
+            format!(
+                "tolerated {}:{} {}\n",
+                position.line,
+                position.column,
+                used.tolerance.production()
+            )
         });
         snapshot("ok", &fixture, &format!("{tree}{}", tolerances.collect::<String>()));
     }
@@ -75,7 +71,7 @@ fn what_controllers_accept_is_read_without_errors() {
 #[test]
 fn each_mistake_is_one_error() {
     let mut cascades = Vec::new();
-    for fixture in fixtures("err") {
+    for fixture in read("err") {
         let errors = rendered(&fixture);
         if fixture.parse.errors.len() != 1 {
             cascades.push(format!("{}:\n{errors}", fixture.name));
@@ -91,7 +87,7 @@ fn each_mistake_is_one_error() {
 #[test]
 fn recovery_keeps_the_statements_around_a_mistake() {
     let mut lost = Vec::new();
-    for fixture in fixtures("err") {
+    for fixture in read("err") {
         let bytes = &fixture.source.bytes;
         let text = String::from_utf8_lossy(bytes);
         let wanted = text.lines().filter(|line| line.trim_start().starts_with("Keep")).count();
@@ -111,36 +107,7 @@ fn recovery_keeps_the_statements_around_a_mistake() {
 
 #[test]
 fn every_fixture_is_lossless() {
-    for fixture in fixtures("ok").iter().chain(&fixtures("err")) {
+    for fixture in read("ok").iter().chain(&read("err")) {
         check_tree(&fixture.parse, &fixture.source.bytes);
-    }
-}
-
-/// Joined tokens are the source, children lie in their parents in order, and
-/// the walk over elements meets each token once.
-fn check_tree(parse: &Parse, bytes: &[u8]) {
-    let root = parse.tree.root();
-    let joined: Vec<u8> = root.all_tokens().flat_map(|token| token.text(bytes).to_vec()).collect();
-    assert!(joined == bytes, "tokens are not the source");
-    let mut walked = 0;
-    let mut stack = vec![root];
-    while let Some(node) = stack.pop() {
-        let outer = node.range();
-        let mut before = outer.start;
-        for element in node.elements() {
-            match element {
-                Element::Token(_) => walked += 1,
-                Element::Node(child) => {
-                    let inner = child.range();
-                    assert!(before <= inner.start && inner.end <= outer.end, "{:?}", child.kind());
-                    before = inner.end;
-                    stack.push(child);
-                }
-            }
-        }
-    }
-    assert_eq!(walked, parse.tree.tokens().len(), "tokens in the walk");
-    for error in &parse.errors {
-        assert!(error.start <= error.end && error.end as usize <= bytes.len());
     }
 }

@@ -122,7 +122,7 @@ struct ErrorReport {
 
 #[derive(Serialize)]
 struct ToleranceReport {
-    name: String,
+    name: &'static str,
     count: usize,
 }
 
@@ -153,7 +153,7 @@ fn report(file: &InputFile, parse: &Parse) -> FileReport {
     });
     let tolerances = syntax::Tolerance::ALL.iter().filter_map(|&tolerance| {
         let count = parse.tolerances.iter().filter(|used| used.tolerance == tolerance).count();
-        (count > 0).then(|| ToleranceReport { name: format!("{tolerance:?}"), count })
+        (count > 0).then(|| ToleranceReport { name: tolerance.production(), count })
     });
     FileReport {
         path: source.path.clone(),

@@ -142,7 +142,12 @@ impl<'t> Routine<'t> {
         self.0.child(NodeKind::Parameters).into_iter().flat_map(Node::children).map(ParameterGroup)
     }
 
-    /// Its statements and its own data.
+    /// The data declared before its statements.
+    pub fn data(self) -> impl Iterator<Item = Data<'t>> {
+        self.0.children().filter_map(Data::cast)
+    }
+
+    /// Its statements.
     #[must_use]
     pub fn body(self) -> Option<Node<'t>> {
         self.0.child(NodeKind::Block)

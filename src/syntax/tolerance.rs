@@ -1,41 +1,66 @@
 //! Deviations from the strict grammar that are accepted.
 
-/// What is accepted although the grammar does not have it, because controllers
-/// or the people who write for them produce it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Tolerance {
+/// Declares the tolerances and the names of their productions.
+macro_rules! tolerances {
+    ($($(#[$doc:meta])* $tolerance:ident = $production:literal,)*) => {
+        /// What is accepted although the grammar does not have it, because
+        /// controllers or the people who write for them produce it.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Tolerance {
+            $($(#[$doc])* $tolerance,)*
+        }
+
+        impl Tolerance {
+            /// All of them.
+            pub const ALL: &[Tolerance] = &[$(Tolerance::$tolerance,)*];
+
+            /// Its production in `grammar/tolerances.ebnf`.
+            #[must_use]
+            pub fn production(self) -> &'static str {
+                match self { $(Tolerance::$tolerance => $production,)* }
+            }
+        }
+    };
+}
+
+tolerances! {
     /// Prose or other text outside `MODULE … ENDMODULE`.
-    TextOutsideModule,
+    TextOutsideModule = "text_outside_module",
     /// Declarations of a file that has no `MODULE` around them.
-    DeclarationOutsideModule,
+    DeclarationOutsideModule = "declaration_outside_module",
     /// Types, data and routines in another order than this.
-    DeclarationOrder,
+    DeclarationOrder = "declaration_order",
     /// A lone `;` where a declaration or a statement can stand.
-    EmptyStatement,
+    EmptyStatement = "empty_statement",
+    /// Other text than version and language between the `%%%`.
+    HeaderContents = "header_contents",
     /// `LOCAL VAR` or `TASK VAR` inside a routine.
-    ScopeInRoutine,
-    /// A data declaration after the first statement of a block.
-    DataBetweenStatements,
+    ScopeInRoutine = "scope_in_routine",
+    /// A data declaration elsewhere than first in its routine.
+    DataBetweenStatements = "data_between_statements",
     /// `CONST` without a value.
-    ConstWithoutValue,
+    ConstWithoutValue = "const_without_value",
     /// `Proc(a, b);`: the arguments of a call in parentheses.
-    ParenthesizedArguments,
+    ParenthesizedArguments = "parenthesized_arguments",
     /// `, \Opt`: a comma before an optional argument or parameter.
-    CommaBeforeOptional,
+    CommaBeforeOptional = "comma_before_optional",
+    /// `\Error`: an optional argument named as a keyword.
+    KeywordAsArgument = "keyword_as_argument",
     /// `a*-1`: a sign after an operator.
-    SignAfterOperator,
-    /// `a AND NOT b`: `NOT` elsewhere than first in its expression.
-    NotAfterOperator,
+    SignAfterOperator = "sign_after_operator",
+    /// `a AND NOT b`: `NOT` elsewhere than first in its expression or behind
+    /// `OR` and `XOR`.
+    NotAfterOperator = "not_after_operator",
     /// `f(x).c`, `f(x){1}`: a component of the value of a function.
-    ComponentOfCall,
+    ComponentOfCall = "component_of_call",
     /// `|\b`: the backslash repeated before an alternative parameter.
-    BackslashInAlternative,
+    BackslashInAlternative = "backslash_in_alternative",
     /// `DEFAULT` elsewhere than last in its `TEST`.
-    DefaultNotLast,
+    DefaultNotLast = "default_not_last",
     /// Handlers in another order than `BACKWARD`, `ERROR`, `UNDO`.
-    HandlerOrder,
-    /// Module attributes in another order than the fixed one.
-    AttributeOrder,
+    HandlerOrder = "handler_order",
+    /// Module attributes in another order than the fixed one, or twice.
+    AttributeOrder = "attribute_order",
 }
 
 /// A tolerance and where it was used.
@@ -47,26 +72,4 @@ pub struct Tolerated {
     pub start: u32,
     /// One past the last byte.
     pub end: u32,
-}
-
-impl Tolerance {
-    /// All of them.
-    pub const ALL: &[Tolerance] = &[
-        Tolerance::TextOutsideModule,
-        Tolerance::DeclarationOutsideModule,
-        Tolerance::DeclarationOrder,
-        Tolerance::EmptyStatement,
-        Tolerance::ScopeInRoutine,
-        Tolerance::DataBetweenStatements,
-        Tolerance::ConstWithoutValue,
-        Tolerance::ParenthesizedArguments,
-        Tolerance::CommaBeforeOptional,
-        Tolerance::SignAfterOperator,
-        Tolerance::NotAfterOperator,
-        Tolerance::ComponentOfCall,
-        Tolerance::BackslashInAlternative,
-        Tolerance::DefaultNotLast,
-        Tolerance::HandlerOrder,
-        Tolerance::AttributeOrder,
-    ];
 }

@@ -36,7 +36,7 @@ impl Parser<'_> {
         let mark = self.mark();
         match self.current() {
             TokenKind::Star => self.argument_value(),
-            kind if Self::is_name(kind) && self.next() == TokenKind::Assign => {
+            TokenKind::Identifier if self.next() == TokenKind::Assign => {
                 self.name();
                 self.bump();
                 let height = self.argument_value();
@@ -64,6 +64,7 @@ impl Parser<'_> {
         let mut height = 1;
         if self.current().is_keyword() {
             // The names of optional arguments are apart from all others.
+            self.tolerate(Tolerance::KeywordAsArgument, self.position);
             self.leaf(NodeKind::Name);
         } else {
             self.name();

@@ -47,7 +47,7 @@ impl Parser<'_> {
 
     pub(super) fn type_name(&mut self) {
         match self.current() {
-            kind if Self::is_name(kind) => self.leaf(NodeKind::TypeName),
+            TokenKind::Identifier => self.leaf(NodeKind::TypeName),
             TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
             _ => {
                 self.error_expected("the name of a type");
@@ -72,13 +72,17 @@ impl Parser<'_> {
         self.open(TokenKind::EndRecord, self.position);
         self.bump();
         self.name();
-        self.eat(TokenKind::Semicolon);
+        if self.at(TokenKind::Semicolon) {
+            self.tolerate(Tolerance::EmptyStatement, self.position);
+            self.leaf(NodeKind::EmptyStatement);
+        }
         loop {
             self.quiet = false;
             let before = self.position;
             match self.current() {
                 TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
-                kind if Self::is_name(kind) => self.record_component(),
+                TokenKind::Identifier if self.misspelt_closer() > 0 => break,
+                TokenKind::Identifier => self.record_component(),
                 kind if ends_block(kind) || kind.is_keyword() => break,
                 _ => {
                     self.error_expected("a component or ENDRECORD");

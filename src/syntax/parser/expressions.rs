@@ -125,7 +125,11 @@ impl Parser<'_> {
             _ => return self.primary(expected),
         };
         let height = self.deeper(|parser| {
+            let not = parser.at(TokenKind::Not);
             parser.bump();
+            if not && parser.at(TokenKind::Not) {
+                parser.tolerate(Tolerance::NotAfterOperator, parser.position);
+            }
             let below = parser.binary(level, "an expression");
             parser.taller(mark, NodeKind::UnaryExpression, below)
         });
@@ -142,7 +146,7 @@ impl Parser<'_> {
             TokenKind::Number => self.leaf(NodeKind::NumberLiteral),
             TokenKind::String => self.leaf(NodeKind::StringLiteral),
             TokenKind::True | TokenKind::False => self.leaf(NodeKind::BoolLiteral),
-            TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+            TokenKind::Placeholder => return self.variable(),
             TokenKind::UnclosedString => {
                 let message = "expected '\"' at the end of this string".to_owned();
                 self.error_at(self.position, message);
@@ -154,7 +158,7 @@ impl Parser<'_> {
             TokenKind::LeftBracket => {
                 return self.bracketed(NodeKind::Aggregate, TokenKind::RightBracket);
             }
-            kind if Self::is_name(kind) => return self.variable_or_call(),
+            TokenKind::Identifier => return self.variable_or_call(),
             _ => {
                 self.error_expected(expected);
                 self.missing();
@@ -187,7 +191,7 @@ impl Parser<'_> {
     pub(super) fn variable(&mut self) -> Height {
         let mark = self.mark();
         match self.current() {
-            kind if Self::is_name(kind) => self.leaf(NodeKind::Reference),
+            TokenKind::Identifier => self.leaf(NodeKind::Reference),
             TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
             _ => {
                 self.error_expected("a variable");
@@ -226,11 +230,7 @@ impl Parser<'_> {
             match self.current() {
                 TokenKind::Dot => {
                     self.bump();
-                    if self.current().is_keyword() {
-                        self.leaf(NodeKind::Name);
-                    } else {
-                        self.name();
-                    }
+                    self.name();
                     height = self.taller(mark, NodeKind::FieldAccess, height);
                 }
                 TokenKind::LeftBrace => {

@@ -105,7 +105,7 @@ impl<'a> Parser<'a> {
         while self.tokens.kind(next).is_trivia() {
             next += 1;
         }
-        self.steps += 1;
+        self.steps += (next - index) as u64;
         next
     }
 
@@ -119,18 +119,6 @@ impl<'a> Parser<'a> {
         self.bytes.get(range.start as usize..range.end as usize).unwrap_or_default()
     }
 
-    /// An identifier, or a word that is reserved only where it serves.
-    fn is_name(kind: TokenKind) -> bool {
-        matches!(
-            kind,
-            TokenKind::Identifier
-                | TokenKind::Alias
-                | TokenKind::Record
-                | TokenKind::Task
-                | TokenKind::Undo
-        )
-    }
-
     // --- moving ---
 
     fn skip_trivia(&mut self) {
@@ -141,10 +129,11 @@ impl<'a> Parser<'a> {
 
     fn bump(&mut self) {
         if self.position < self.tokens.len() {
+            let before = self.position;
             self.position += 1;
             self.end = self.position;
-            self.steps += 1;
             self.skip_trivia();
+            self.steps += (self.position - before) as u64;
         }
     }
 
@@ -200,7 +189,7 @@ impl<'a> Parser<'a> {
     /// A name that is declared or that is no value.
     fn name(&mut self) {
         match self.current() {
-            kind if Self::is_name(kind) => self.leaf(NodeKind::Name),
+            TokenKind::Identifier => self.leaf(NodeKind::Name),
             TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
             kind if kind.is_keyword() && !self.quiet && !self.first_on_line(self.position) => {
                 let message =
@@ -225,7 +214,8 @@ impl<'a> Parser<'a> {
     fn push_error(&mut self, start: u32, end: u32, message: String, related: Option<Related>) {
         // A file that is cut off is one mistake, whatever it leaves open.
         let cut_off = self.at(TokenKind::EndOfFile);
-        if !self.quiet && !(cut_off && self.cut_off_reported) {
+        let told = self.quiet || cut_off && self.cut_off_reported;
+        if !told {
             self.cut_off_reported |= cut_off;
             self.errors.push(SyntaxError { start, end, message, related });
         }

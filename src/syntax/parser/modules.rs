@@ -67,6 +67,7 @@ impl Parser<'_> {
     /// `%%% VERSION:1 LANGUAGE:ENGLISH %%%`
     fn header(&mut self) {
         let mark = self.mark();
+        let start = self.position;
         self.bump();
         while !matches!(
             self.current(),
@@ -75,15 +76,36 @@ impl Parser<'_> {
         {
             self.bump();
         }
+        if !self.is_plain_header(start) {
+            self.tolerate(Tolerance::HeaderContents, start);
+        }
         self.expect(TokenKind::HeaderMark);
         self.finish(mark, NodeKind::Header);
+    }
+
+    /// Whether what was read since the `%%%` at `start` is version and language.
+    fn is_plain_header(&mut self, start: usize) -> bool {
+        let words: [(TokenKind, &[u8]); 6] = [
+            (TokenKind::Identifier, b"VERSION"),
+            (TokenKind::Colon, b":"),
+            (TokenKind::Number, b""),
+            (TokenKind::Identifier, b"LANGUAGE"),
+            (TokenKind::Colon, b":"),
+            (TokenKind::Identifier, b""),
+        ];
+        let mut token = start;
+        words.iter().all(|&(kind, word)| {
+            token = self.after(token);
+            self.tokens.kind(token) == kind
+                && (word.is_empty() || self.text(token).eq_ignore_ascii_case(word))
+        }) && self.after(token) == self.position
     }
 
     /// Whether a module starts here: the keyword and a name, first on a line.
     fn at_module(&mut self) -> bool {
         self.at(TokenKind::Module)
             && self.first_on_line(self.position)
-            && Self::is_name(self.next())
+            && (self.next() == TokenKind::Identifier)
     }
 
     /// Whether a declaration starts here, told from prose by what follows.
@@ -92,8 +114,8 @@ impl Parser<'_> {
             TokenKind::Var | TokenKind::Pers | TokenKind::Const => {
                 let after = self.after(self.position);
                 let name = self.after(after);
-                return Self::is_name(self.tokens.kind(after))
-                    && Self::is_name(self.tokens.kind(name));
+                return (self.tokens.kind(after) == TokenKind::Identifier)
+                    && (self.tokens.kind(name) == TokenKind::Identifier);
             }
             TokenKind::Local | TokenKind::Task => {
                 return starts_data(self.next())
@@ -113,7 +135,7 @@ impl Parser<'_> {
             | TokenKind::Alias => self.next(),
             _ => return false,
         };
-        self.first_on_line(self.position) && Self::is_name(next)
+        self.first_on_line(self.position) && (next == TokenKind::Identifier)
     }
 
     /// Declarations of a file that has no module around them.
@@ -171,6 +193,7 @@ impl Parser<'_> {
             match self.current() {
                 TokenKind::EndModule | TokenKind::EndOfFile => break,
                 TokenKind::Module if self.at_module() => break,
+                TokenKind::Identifier if self.misspelt_closer() > 0 => break,
                 _ => self.item(&mut progress),
             }
             debug_assert!(self.position > before, "every round reads something");
@@ -194,7 +217,7 @@ impl Parser<'_> {
                 self.error_expected("SYSMODULE, NOVIEW, NOSTEPIN, VIEWONLY or READONLY");
                 break;
             }
-            if order < last {
+            if order <= last {
                 self.tolerate(Tolerance::AttributeOrder, self.position);
             }
             last = order.max(last);
@@ -236,11 +259,11 @@ impl Parser<'_> {
                 self.in_order(progress, Part::Types, start);
                 self.alias();
             }
-            TokenKind::Semicolon => {
+            TokenKind::Semicolon if !scoped => {
                 self.tolerate(Tolerance::EmptyStatement, start);
                 self.leaf(NodeKind::EmptyStatement);
             }
-            TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+            TokenKind::Placeholder if !scoped => self.leaf(NodeKind::Placeholder),
             _ if scoped || starts_data(kind) => {
                 self.in_order(progress, Part::Data, start);
                 self.data_declaration();
@@ -295,6 +318,7 @@ impl Parser<'_> {
         if starts_statement(self.current()) {
             self.block();
         } else {
+            self.bump();
             self.recover();
         }
     }

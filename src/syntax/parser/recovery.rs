@@ -29,6 +29,16 @@ impl Parser<'_> {
         Some(gap.iter().rev().take_while(|b| !matches!(b, b'\n' | b'\r')).count())
     }
 
+    /// The first token of the line that a token is on.
+    pub(super) fn first_of_line(&mut self, token: usize) -> usize {
+        let mut first = token;
+        while first > 0 && !self.first_on_line(first) {
+            first -= 1;
+            self.steps += 1;
+        }
+        first
+    }
+
     /// Whether a statement seems to start at the current token, which is no
     /// continuation of the line before.
     pub(super) fn looks_like_start(&mut self) -> bool {
@@ -299,8 +309,6 @@ pub(super) fn starts_statement(kind: TokenKind) -> bool {
             | TokenKind::Retry
             | TokenKind::TryNext
             | TokenKind::Connect
-            | TokenKind::Alias
-            | TokenKind::Record
     ) || starts_data(kind)
 }
 

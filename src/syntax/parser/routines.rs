@@ -1,7 +1,7 @@
 //! Routines: `grammar/routines.ebnf`.
 
 use super::Parser;
-use super::recovery::ends_block;
+use super::recovery::{ends_block, starts_data};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
@@ -34,10 +34,22 @@ impl Parser<'_> {
         if self.quiet {
             self.rest_of_header();
         }
+        self.routine_data();
         self.block();
         self.handlers();
         self.close();
         self.finish(mark, kind);
+    }
+
+    /// Data declarations before the statements.
+    fn routine_data(&mut self) {
+        while starts_data(self.current()) && !self.at_routine() {
+            self.quiet = false;
+            if matches!(self.current(), TokenKind::Local | TokenKind::Task) {
+                self.tolerate(Tolerance::ScopeInRoutine, self.position);
+            }
+            self.data_declaration();
+        }
     }
 
     /// Skips what is left of the line of the header of a routine or module.
@@ -99,7 +111,8 @@ impl Parser<'_> {
 
     /// `[VAR|PERS|INOUT] type name {*}`
     fn parameter(&mut self) {
-        if self.at(TokenKind::Placeholder) && !Self::is_name(self.next()) {
+        let typed = matches!(self.next(), TokenKind::Identifier | TokenKind::Placeholder);
+        if self.at(TokenKind::Placeholder) && !typed {
             self.leaf(NodeKind::Placeholder);
             return;
         }
@@ -144,12 +157,15 @@ impl Parser<'_> {
         };
         while order(self.current()) > 0 {
             let kind = self.current();
+            self.quiet = false;
             if order(kind) < order(last) {
                 self.tolerate(Tolerance::HandlerOrder, self.position);
+            } else if kind == last && kind != TokenKind::Error {
+                let message = format!("a routine has one {} handler", kind.describe());
+                self.error_at(self.position, message);
             }
             last = kind;
             let mark = self.mark();
-            self.quiet = false;
             self.bump();
             if kind == TokenKind::Error && self.at(TokenKind::LeftParen) {
                 self.error_numbers();

@@ -10,7 +10,6 @@ impl Parser<'_> {
     /// Statements up to a keyword that ends them.
     pub(super) fn block(&mut self) {
         let mark = self.mark();
-        let mut data_only = true;
         loop {
             self.quiet = false;
             if self.at(TokenKind::EndOfFile) {
@@ -27,11 +26,6 @@ impl Parser<'_> {
                 }
                 self.stray();
             } else {
-                let data = starts_data(kind);
-                if data && !data_only {
-                    self.tolerate(Tolerance::DataBetweenStatements, self.position);
-                }
-                data_only &= data;
                 self.statement();
             }
             debug_assert!(self.position > before, "every round reads something");
@@ -44,7 +38,7 @@ impl Parser<'_> {
     }
 
     /// Whether a routine starts with `LOCAL` here.
-    fn at_routine(&mut self) -> bool {
+    pub(super) fn at_routine(&mut self) -> bool {
         self.at(TokenKind::Local)
             && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
     }
@@ -118,13 +112,11 @@ impl Parser<'_> {
                 self.tolerate(Tolerance::EmptyStatement, self.position);
                 self.leaf(NodeKind::EmptyStatement);
             }
-            TokenKind::Task if !starts_data(self.next()) => self.name_statement(),
-            TokenKind::Local | TokenKind::Task => {
-                self.tolerate(Tolerance::ScopeInRoutine, self.position);
+            kind if starts_data(kind) => {
+                self.tolerate(Tolerance::DataBetweenStatements, self.position);
                 self.data_declaration();
             }
-            kind if starts_data(kind) => self.data_declaration(),
-            kind if Self::is_name(kind) => self.name_statement(),
+            TokenKind::Identifier => self.name_statement(),
             _ => {
                 let mark = self.mark();
                 self.error_unexpected("a statement");
@@ -230,7 +222,7 @@ impl Parser<'_> {
             }
             self.close_bracket(TokenKind::RightParen, "',' or ')'");
         } else if !matches!(self.current(), TokenKind::Semicolon | TokenKind::EndOfFile)
-            && !self.ends_call_early(callee)
+            && !self.ends_early(callee)
         {
             self.arguments();
         }
@@ -238,23 +230,29 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::CallStatement);
     }
 
-    /// A callee at the end of its line, with the next statement after it.
-    fn ends_call_early(&mut self, callee: usize) -> bool {
-        self.first_on_line(self.position) && {
-            let kind = self.current();
-            ends_block(kind)
-                || starts_statement(kind) && kind.is_keyword()
-                || kind == TokenKind::Identifier
-                    && match self.next() {
-                        TokenKind::Identifier | TokenKind::Assign | TokenKind::Colon => true,
-                        // An argument would stand further to the right.
-                        TokenKind::Semicolon => {
-                            let column = self.indentation(self.position);
-                            column.is_some() && column == self.indentation(callee)
-                        }
-                        _ => false,
-                    }
+    /// Whether the next statement starts on the line after the word of this one
+    /// at `word`, whose `;` is missing then. An argument or a value on a line
+    /// of its own stands further to the right.
+    fn ends_early(&mut self, word: usize) -> bool {
+        let kind = self.current();
+        if !self.first_on_line(self.position) {
+            return false;
         }
+        if ends_block(kind) || starts_statement(kind) && kind.is_keyword() {
+            return true;
+        }
+        let line = self.first_of_line(word);
+        kind == TokenKind::Identifier
+            && self.indentation(self.position) <= self.indentation(line)
+            && matches!(
+                self.next(),
+                TokenKind::Identifier
+                    | TokenKind::Assign
+                    | TokenKind::Colon
+                    | TokenKind::Semicolon
+                    | TokenKind::String
+                    | TokenKind::Backslash
+            )
     }
 
     /// `%expr%`
@@ -270,7 +268,6 @@ impl Parser<'_> {
     fn placeholder_statement(&mut self) {
         match self.next() {
             TokenKind::Assign | TokenKind::Dot | TokenKind::LeftBrace => self.assignment(),
-            _ if self.text(self.position) == b"<ID>" => self.call_statement(),
             _ => self.leaf(NodeKind::Placeholder),
         }
     }
@@ -323,11 +320,16 @@ impl Parser<'_> {
 
     /// `ELSEIF … THEN …`, `ELSE …`
     fn else_branches(&mut self) {
+        let mut after_else = false;
         loop {
             let mark = self.mark();
+            let branch = matches!(self.current(), TokenKind::ElseIf | TokenKind::Else);
+            if branch && after_else {
+                self.error_expected("ENDIF");
+            }
+            after_else |= self.at(TokenKind::Else);
             match self.current() {
                 TokenKind::ElseIf => {
-                    self.quiet = false;
                     self.bump();
                     self.expression();
                     self.end_header(TokenKind::Then);
@@ -431,6 +433,9 @@ impl Parser<'_> {
                     self.finish(mark, NodeKind::CaseBranch);
                 }
                 TokenKind::Default => {
+                    if after_default {
+                        self.error_expected("ENDTEST");
+                    }
                     after_default = true;
                     self.bump();
                     self.end_header(TokenKind::Colon);
@@ -454,11 +459,10 @@ impl Parser<'_> {
     /// `RETURN value;`, `RAISE number;`
     fn value_statement(&mut self, kind: NodeKind) {
         let mark = self.mark();
+        let word = self.position;
         self.bump();
-        let bare = self.at(TokenKind::Semicolon)
-            || ends_block(self.current())
-            || self.first_on_line(self.position) && self.looks_like_start();
-        if !bare {
+        let bare = self.at(TokenKind::Semicolon) || ends_block(self.current());
+        if !bare && !self.ends_early(word) {
             self.expression();
         }
         self.end_statement("an operator or ';'");

@@ -1,0 +1,257 @@
+//! The front end on broken, hostile and large input: it loses no byte, never
+//! panics, and its work grows with the length of the input only.
+
+#![expect(clippy::unwrap_used, reason = "a missing fixture fails the test")]
+
+mod support;
+
+use joulepath::ir;
+use joulepath::syntax::{self, MAX_DEPTH, Parse};
+use joulepath::text::FileId;
+use support::{Random, check_tree, fixtures};
+
+/// Mutations of each fixture.
+const MUTATIONS: usize = 60;
+/// Most looks at a token per token: constant, whatever the input.
+const STEPS_PER_TOKEN: u64 = 8;
+
+fn check(bytes: &[u8]) -> Parse {
+    let parse = syntax::parse(bytes);
+    check_tree(&parse, bytes);
+    let tokens = parse.tree.tokens().len() as u64;
+    assert!(parse.steps <= STEPS_PER_TOKEN * (tokens + 1), "{} for {tokens}", parse.steps);
+    let _ = ir::lower(FileId(0), &parse, bytes);
+    parse
+}
+
+/// The ranges of the tokens of some bytes.
+fn ranges(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let parse = syntax::parse(bytes);
+    let range = |token: syntax::Token<'_>| token.range().start as usize..token.range().end as usize;
+    parse.tree.root().all_tokens().map(range).collect()
+}
+
+#[test]
+fn mutated_programs_are_read_without_loss() {
+    let mut random = Random(7);
+    let mut read = 0;
+    for (_, source) in fixtures("ok").into_iter().chain(fixtures("err")) {
+        let tokens = ranges(&source);
+        for _ in 0..MUTATIONS {
+            let mut bytes = source.clone();
+            for _ in 0..=random.below(3) {
+                mutate(&mut bytes, &tokens, &mut random);
+            }
+            check(&bytes);
+            read += 1;
+        }
+    }
+    assert!(read > 5_000, "{read} mutations");
+}
+
+/// Deletes, doubles or swaps tokens of the original, or damages bytes.
+fn mutate(bytes: &mut Vec<u8>, tokens: &[std::ops::Range<usize>], random: &mut Random) {
+    let clip = |range: &std::ops::Range<usize>, length: usize| {
+        range.start.min(length)..range.end.min(length)
+    };
+    let mut token = || match tokens.len() {
+        0 => 0..0,
+        count => clip(&tokens[random.below(count)], bytes.len()),
+    };
+    let (one, two) = (token(), token());
+    let at = random.below(bytes.len() + 1);
+    match random.below(7) {
+        0 => {
+            bytes.drain(one);
+        }
+        1 => {
+            let copy = bytes[one.clone()].to_vec();
+            bytes.splice(one.end..one.end, copy);
+        }
+        2 => {
+            let (first, second) = if one.start < two.start { (one, two) } else { (two, one) };
+            if first.end <= second.start {
+                let moved = bytes[first.clone()].to_vec();
+                let other = bytes.splice(second, moved).collect::<Vec<u8>>();
+                bytes.splice(first, other);
+            }
+        }
+        3 => {
+            let noise = (0..=random.below(8)).map(|_| random.below(256) as u8);
+            let noise: Vec<u8> = noise.collect();
+            bytes.splice(at..at, noise);
+        }
+        4 if at < bytes.len() => bytes[at] = random.below(256) as u8,
+        5 => bytes.truncate(at),
+        _ => {
+            let end = (at + random.below(20)).min(bytes.len());
+            bytes.drain(at..end);
+        }
+    }
+}
+
+#[test]
+fn random_bytes_are_read_without_loss() {
+    let mut random = Random(11);
+    for length in (0..400).chain([5_000, 20_000]) {
+        let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
+        check(&bytes);
+    }
+}
+
+#[test]
+fn every_truncation_is_read_without_loss() {
+    let (_, bytes) = fixtures("ok").into_iter().find(|(n, _)| n == "control_flow.mod").unwrap();
+    for length in 0..bytes.len() {
+        let parse = check(&bytes[..length]);
+        // A word that is cut in two can be a mistake of its own.
+        let inside = length > 0 && !bytes[length - 1].is_ascii_whitespace();
+        let most = if inside { 2 } else { 1 };
+        assert!(parse.errors.len() <= most, "cut at {length}: {:?}", parse.errors);
+    }
+}
+
+/// A program around some statements.
+fn program(statements: &str) -> Vec<u8> {
+    format!("MODULE a\nPROC main()\n{statements}\nKeep;\nENDPROC\nENDMODULE\n").into_bytes()
+}
+
+#[test]
+fn what_is_nested_too_deeply_is_one_error() {
+    let many = 100_000;
+    let nested = [
+        format!("x := {}1{};", "(".repeat(many), ")".repeat(many)),
+        format!("x := {}1;", "(".repeat(many)),
+        format!("x := {}1{};", "[".repeat(many), "]".repeat(many)),
+        format!("x := {}1{};", "f(".repeat(many), ")".repeat(many)),
+        format!("x := {}1{};", "a{".repeat(many), "}".repeat(many)),
+        format!("x := {}1;", "-".repeat(many)),
+        format!("x := {}1;", "NOT ".repeat(many)),
+        format!("x := 1{};", " + 1".repeat(many)),
+        format!("x := 1{};", " + f(1)".repeat(many)),
+        format!("x := a{};", ".b".repeat(many)),
+        format!("x := a{};", "{1}".repeat(many)),
+        format!("{}y;{}", "IF a THEN ".repeat(many), " ENDIF".repeat(many)),
+        format!("{}y;{}", "IF a THEN\n".repeat(many), "\nENDIF".repeat(many)),
+        format!("{}y;", "IF a ".repeat(many)),
+        format!("{}y;{}", "WHILE a DO ".repeat(many), " ENDWHILE".repeat(many)),
+        format!("{}{}", "TEST a CASE 1: ".repeat(many), " ENDTEST".repeat(many)),
+        format!("{}{}", "FOR i FROM 1 TO 2 DO ".repeat(many), " ENDFOR".repeat(many)),
+    ];
+    for statements in &nested {
+        let start = &statements[..30];
+        let parse = check(&program(statements));
+        assert_eq!(parse.errors.len(), 1, "{start}: {:?}", parse.errors.get(..3));
+        // What follows is read again.
+        let kept = parse.tree.nodes().any(|node| {
+            syntax::ast::Call::cast(node)
+                .and_then(syntax::ast::Call::name)
+                .is_some_and(|name| name.text(&program(statements)) == b"Keep")
+        });
+        assert!(kept, "{start}");
+    }
+    // Unclosed blocks swallow what follows; they only must not overflow.
+    for opener in
+        ["IF a THEN ", "ELSE ", "WHILE a DO\n", "CASE 1: ", "TEST x CASE 1: ", "PROC a() "]
+    {
+        check(&program(&opener.repeat(many)));
+        check(opener.repeat(many).as_bytes());
+    }
+    for opener in ["MODULE a\n", "%%%\n", "ENDMODULE ", "MODULE ", "RECORD a\n", "TRAP "] {
+        check(opener.repeat(many).as_bytes());
+    }
+}
+
+#[test]
+fn nesting_up_to_the_limit_is_read() {
+    let levels = MAX_DEPTH as usize - 1;
+    let statements = format!("x := {}1{};", "(".repeat(levels), ")".repeat(levels));
+    assert_eq!(check(&program(&statements)).errors, []);
+    let statements = format!("x := {}1{};", "(".repeat(levels + 1), ")".repeat(levels + 1));
+    assert_eq!(check(&program(&statements)).errors.len(), 1);
+}
+
+/// Steps per token must not grow with the length of inputs that tempt a parser
+/// to look ahead or back again and again.
+#[test]
+fn work_is_linear() {
+    let pieces = [
+        "x := 1;\n",
+        "IF a ",
+        "IF a THEN ",
+        "Proc(",
+        "Proc(a ",
+        "Proc(a, ",
+        "a ",
+        "a\n",
+        "(",
+        ")",
+        "[",
+        ";",
+        "%",
+        "%%%\n",
+        "\"",
+        "\"\n",
+        "! c\n",
+        "ELSE\n",
+        "ELSEIF ",
+        "ENDIF\n",
+        "CASE ",
+        "TEST ",
+        "END IF\n",
+        "ENIDF\n",
+        "ERROR (",
+        "VAR num ",
+        "CONST ",
+        "LOCAL ",
+        "TASK\n",
+        "MODULE ",
+        "MODULE a\n",
+        "ENDMODULE\n",
+        "PROC ",
+        "PROC a(",
+        "RECORD a ",
+        "\\",
+        "\\a?",
+        ", \\",
+        ":= ",
+        "NOT ",
+        "a.b",
+        "a{1}",
+        "- ",
+        "* ",
+        "<SMT> ",
+        "<",
+        "@",
+        "\u{3000}",
+        "é",
+        "ENDPROC ",
+        "FOR ",
+        "FOR i FROM ",
+        "CONNECT a ",
+        "a: ",
+        "GOTO ",
+        "0x",
+        "1.",
+        "RETURN\n",
+        "UNDO\n",
+        "module text\n",
+        "text\n",
+    ];
+    for piece in pieces {
+        for around in ["", "MODULE a\n", "MODULE a PROC b() ", "MODULE a PROC b()\nx := "] {
+            let text = format!("{around}{}", piece.repeat(20_000));
+            check(text.as_bytes());
+        }
+    }
+}
+
+#[test]
+fn long_lines_and_large_files_are_read() {
+    let list = format!("x := [{}1];", "1, ".repeat(1_000_000));
+    assert_eq!(check(&program(&list)).errors, []);
+    let string = format!("x := \"{}\";", "a".repeat(5_000_000));
+    assert_eq!(check(&program(&string)).errors, []);
+    let text = "MoveL p10, v100, z10, tool0 \\WObj:=wobj0;\n".repeat(100_000);
+    assert_eq!(check(&program(&text)).errors, []);
+}

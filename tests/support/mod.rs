@@ -1,0 +1,79 @@
+//! What several tests need.
+
+#![allow(
+    dead_code,
+    clippy::allow_attributes,
+    reason = "each test uses its part of this module; an expectation would fail in the others"
+)]
+
+use std::path::{Path, PathBuf};
+
+use joulepath::syntax::{Element, Parse};
+
+/// The inputs of a folder of `fixtures/syntax`: file names and bytes, sorted.
+pub(crate) fn fixtures(folder: &str) -> Vec<(String, Vec<u8>)> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(fixture_folder(folder))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension != "snap"))
+        .collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        (path.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read(&path).unwrap())
+    };
+    paths.into_iter().map(read).collect()
+}
+
+/// The path of a folder of `fixtures/syntax`.
+pub(crate) fn fixture_folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/syntax").join(name)
+}
+
+/// Joined tokens are the source, children lie in their parents in order, and
+/// the walk over elements meets each token once.
+pub(crate) fn check_tree(parse: &Parse, bytes: &[u8]) {
+    let root = parse.tree.root();
+    let mut joined = 0;
+    for token in root.all_tokens() {
+        let range = token.range();
+        assert!(range.start as usize == joined && range.end > range.start, "token {range:?}");
+        joined = range.end as usize;
+    }
+    assert_eq!(joined, bytes.len(), "tokens end with the source");
+    let mut walked = 0;
+    let mut stack = vec![root];
+    while let Some(node) = stack.pop() {
+        let outer = node.range();
+        let mut before = outer.start;
+        for element in node.elements() {
+            match element {
+                Element::Token(_) => walked += 1,
+                Element::Node(child) => {
+                    let inner = child.range();
+                    assert!(before <= inner.start && inner.end <= outer.end, "{:?}", child.kind());
+                    before = inner.end;
+                    stack.push(child);
+                }
+            }
+        }
+    }
+    assert_eq!(walked, parse.tree.tokens().len(), "tokens in the walk");
+    for error in &parse.errors {
+        assert!(error.start <= error.end && error.end as usize <= bytes.len());
+    }
+}
+
+/// Splitmix64 (Steele, Lea, Flood 2014): repeatable, and good enough to choose
+/// mutations.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    /// A number below `limit`, which is positive.
+    pub(crate) fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % limit as u64) as usize
+    }
+}
