@@ -2,7 +2,7 @@
 
 /// Decimals of an axis position in degrees. A `num` holds six or seven digits; the rest keeps
 /// a simulation of the text from drifting against the one that it was written for.
-pub const JOINT_DECIMALS: usize = 8;
+pub const JOINT_DECIMALS: usize = 6;
 /// Decimals of a time in seconds.
 pub const TIME_DECIMALS: usize = 4;
 

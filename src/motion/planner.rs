@@ -20,9 +20,7 @@ use crate::path::joint_path::{DOF, Joints};
 /// Intervals of the grid for one path, besides those of its zones.
 const INTERVALS: usize = 64;
 /// Passes that lower the speed where the average breaks an acceleration limit.
-const CORRECTIONS: usize = 4;
-/// Excess of acceleration that starts another pass.
-const EXCESS: f64 = 1.02;
+const CORRECTIONS: usize = 3;
 /// Halvings of the search for a speed that makes a move last as long as its `\T` says.
 const HALVINGS: usize = 30;
 
@@ -117,14 +115,14 @@ fn timing(
     let mut grid = sampling::grid(loaded, path, &nodes, caps)
         .map_err(|_| NoTiming)?
         .holding(0.5 * planning.ramp_s, 0.0);
-    let mut pieces = Vec::new();
+    // Always as many passes: to stop at a threshold would make the time jump with the start.
     for _ in 0..CORRECTIONS {
         let profile = time_optimal(&grid, &path_limits).into_profile().ok_or(NoTiming)?;
-        pieces = smoothed(&profile, planning.ramp_s);
-        let Some(slower) = slowed(path, &grid, &pieces, limits) else { break };
-        grid = slower;
+        let pieces = smoothed(&profile, planning.ramp_s);
+        grid = slowed(path, &grid, &pieces, limits).ok_or(NoTiming)?;
     }
-    Ok(pieces)
+    let profile = time_optimal(&grid, &path_limits).into_profile().ok_or(NoTiming)?;
+    Ok(smoothed(&profile, planning.ramp_s))
 }
 
 fn smoothed(profile: &Profile, ramp: f64) -> Vec<Cubic> {
@@ -132,8 +130,7 @@ fn smoothed(profile: &Profile, ramp: f64) -> Vec<Cubic> {
     moving_average(profile.times(), &speeds, ramp)
 }
 
-/// The grid with lower speeds where the smoothed motion breaks an acceleration limit; `None`
-/// where it breaks none.
+/// The grid with lower speeds where the smoothed motion breaks an acceleration limit.
 fn slowed(
     path: &Arc<JointPath>,
     grid: &PathGrid,
@@ -143,9 +140,9 @@ fn slowed(
     let motion = TimedMotion::Path(path.clone(), pieces.to_vec());
     let s = grid.s();
     let mut ratio = vec![1.0_f64; grid.intervals()];
-    let mut worst = 1.0_f64;
     for piece in pieces {
-        for share in [0.0, 0.5] {
+        // Inside the stretches: at their ends lie nodes, where rounding would decide the interval.
+        for share in [0.25, 0.75] {
             let tau = share * piece.duration;
             let at = piece.at(tau)[0];
             let qdd = motion.at(piece.t + tau).qdd;
@@ -153,11 +150,7 @@ fn slowed(
                 (0..DOF).map(|j| qdd[j].abs() / limits.acceleration[j]).fold(0.0, f64::max);
             let k = s.partition_point(|x| *x <= at).clamp(1, ratio.len()) - 1;
             ratio[k] = ratio[k].max(excess);
-            worst = worst.max(excess);
         }
-    }
-    if worst <= EXCESS {
-        return None;
     }
     let mut ends = grid.ends().to_vec();
     for (k, pair) in ends.iter_mut().enumerate() {

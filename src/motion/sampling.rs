@@ -31,6 +31,8 @@ pub struct Loaded<'a> {
 
 /// Fewest intervals of a leg.
 const LEG_INTERVALS: usize = 4;
+/// Intervals of a zone.
+const ZONE_INTERVALS: usize = 8;
 /// Nodes nearer to each other than this share of the path are one.
 const NODE_DISTANCE: f64 = 1e-4;
 
@@ -49,10 +51,21 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
         }));
         begin = end;
     }
-    let zones = path.pieces().iter().filter(|piece| {
-        matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone)
-    });
-    nodes.extend(zones.flat_map(|piece| [piece.s, piece.s + piece.length]));
+    // Evenly in each zone, whatever pieces it happens to be made of.
+    let mut zone: Option<(f64, f64)> = None;
+    let is_zone =
+        |kind: PieceKind| matches!(kind, PieceKind::CartesianZone | PieceKind::JointZone);
+    for piece in path.pieces() {
+        let end = piece.s + piece.length;
+        zone = match (zone, is_zone(piece.kind)) {
+            (Some((begin, _)), true) => Some((begin, end)),
+            (None, true) => Some((piece.s, end)),
+            (found, false) => {
+                nodes.extend(found.into_iter().flat_map(zone_nodes));
+                None
+            }
+        };
+    }
     nodes.sort_by(f64::total_cmp);
     let mut kept: Vec<f64> = Vec::with_capacity(nodes.len());
     for node in nodes {
@@ -64,6 +77,12 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
         *last = length;
     }
     kept
+}
+
+/// The edges of a zone and nodes between them.
+fn zone_nodes((begin, end): (f64, f64)) -> impl Iterator<Item = f64> {
+    (0..=ZONE_INTERVALS)
+        .map(move |i| begin + (end - begin) * i as f64 / ZONE_INTERVALS as f64)
 }
 
 /// The grid at these nodes, with the speed caps of the legs.

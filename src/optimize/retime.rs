@@ -476,9 +476,10 @@ fn quantum() -> f64 {
     10_f64.powi(-(TIME_DECIMALS as i32))
 }
 
+/// At least half a step below `t`: what rounding the figures of one stream does to the time of
+/// the next movement must not add up to a longer cycle.
 fn round_down(t: f64) -> f64 {
-    // A hair of room for the rounding of the time itself.
-    ((t + 1e-9) / quantum()).floor() * quantum()
+    (t / quantum() - 0.5).floor() * quantum()
 }
 
 fn round_up(t: f64) -> f64 {
