@@ -13,9 +13,9 @@ const SIZE: Size = Size { width: 1260.0, height: 460.0 };
 /// Half the width of the tick of a lower bound, px.
 const BOUND: f64 = 6.0;
 /// Length and half width of an arrow's head, px.
-const HEAD: (f64, f64) = (8.0, 4.0);
-/// Room that a label takes, px.
-const LABEL: (f64, f64) = (24.0, 13.0);
+const HEAD: (f64, f64) = (7.0, 3.5);
+/// Least distance of a label from points and other labels, px.
+const LABEL: (f64, f64) = (17.0, 12.0);
 
 /// A segment's mean execution.
 struct Point {
@@ -50,10 +50,11 @@ pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<Str
         return None;
     }
     let ends = || points.iter().flat_map(|p| [p.before, p.after]);
+    let bounds = points.iter().filter_map(|p| p.bound);
     let frame = Frame::new(
         SIZE,
-        Scale::with_zero(ends().map(|p| p[0]), 10),
-        Scale::with_zero(ends().map(|p| p[1]).chain(points.iter().filter_map(|p| p.bound)), 6),
+        scale(ends().map(|p| p[0]), 10),
+        scale(ends().map(|p| p[1]).chain(bounds), 8),
     );
     let mut content = String::new();
     for point in &points {
@@ -62,10 +63,21 @@ pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<Str
     labels(&mut content, &frame, &points);
     Some(frame.svg(
         "energy over time of each segment, before and after",
-        "time of one execution (s)",
-        "energy of one execution (J)",
+        "time of one run (s)",
+        "energy of one run (J)",
         &content,
     ))
+}
+
+/// Room around the values, as a share of their range.
+const MARGIN: f64 = 0.05;
+
+/// A scale without 0: the arrows are short beside their distance from it.
+fn scale(values: impl Iterator<Item = f64>, count: usize) -> Scale {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let margin = MARGIN * (high - low);
+    Scale::new(low - margin, high + margin, count)
 }
 
 fn mark(out: &mut String, frame: &Frame, point: &Point) {
@@ -91,19 +103,22 @@ fn mark(out: &mut String, frame: &Frame, point: &Point) {
             x + BOUND
         );
     }
-    let _ = write!(out, "<circle class=\"from\" cx=\"{x0:.1}\" cy=\"{y0:.1}\" r=\"4\"/>");
+    let _ = write!(out, "<circle class=\"from\" cx=\"{x0:.1}\" cy=\"{y0:.1}\" r=\"3\"/>");
     let length = (x1 - x0).hypot(y1 - y0);
     if point.rewritten && length > 0.0 {
         let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
-        let (bx, by) = (x1 - HEAD.0 * ux, y1 - HEAD.0 * uy);
+        // A short arrow is all head.
+        let head = HEAD.0.min(length);
+        let side = HEAD.1 * head / HEAD.0;
+        let (bx, by) = (x1 - head * ux, y1 - head * uy);
         let _ = write!(
             out,
             "<line class=\"shaft\" x1=\"{x0:.1}\" y1=\"{y0:.1}\" x2=\"{bx:.1}\" y2=\"{by:.1}\"/>\
              <polygon class=\"head\" points=\"{x1:.1},{y1:.1} {:.1},{:.1} {:.1},{:.1}\"/>",
-            bx - HEAD.1 * uy,
-            by + HEAD.1 * ux,
-            bx + HEAD.1 * uy,
-            by - HEAD.1 * ux,
+            bx - side * uy,
+            by + side * ux,
+            bx + side * uy,
+            by - side * ux,
         );
     }
     out.push_str("</g>");
@@ -111,21 +126,18 @@ fn mark(out: &mut String, frame: &Frame, point: &Point) {
 
 /// The numbers of the segments beside their points, where there is room.
 fn labels(out: &mut String, frame: &Frame, points: &[Point]) {
-    let mut taken: Vec<[f64; 2]> = points
-        .iter()
-        .flat_map(|p| [p.before, p.after])
-        .map(|[t, e]| frame.at(t, e))
-        .collect();
+    let mut taken: Vec<[f64; 2]> =
+        points.iter().flat_map(|p| [p.before, p.after]).map(|[t, e]| frame.at(t, e)).collect();
     let [left, top, right, bottom] = frame.area();
     for point in points {
         let [x, y] = frame.at(point.before[0], point.before[1]);
-        let places = [(18.0, 0.0), (-18.0, 0.0), (0.0, -15.0), (14.0, -13.0), (-14.0, -13.0)];
+        let places = [(18.0, 0.0), (-18.0, 0.0), (0.0, -14.0), (18.0, -13.0), (-18.0, -13.0)];
         let free = places.into_iter().map(|(dx, dy)| [x + dx, y + dy]).find(|[cx, cy]| {
             (left..=right).contains(cx)
                 && (top..=bottom).contains(cy)
-                && taken.iter().all(|[tx, ty]| {
-                    (tx - cx).abs() > 0.5 * LABEL.0 || (ty - cy).abs() > 0.5 * LABEL.1
-                })
+                && taken
+                    .iter()
+                    .all(|[tx, ty]| (tx - cx).abs() > LABEL.0 || (ty - cy).abs() > LABEL.1)
         });
         if let Some([cx, cy]) = free {
             taken.push([cx, cy]);

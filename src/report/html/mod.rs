@@ -39,7 +39,11 @@ pub fn optimize_report(
     model: &Model,
     entry: &str,
 ) -> Result<String, ReportError> {
-    let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
+    // Paths below the input are short, and the same wherever the program lies.
+    let originals: Vec<SourceFile> = files
+        .iter()
+        .map(|source| SourceFile { path: source.relative.clone(), ..source.file.clone() })
+        .collect();
     let places = Places::new(&originals);
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
@@ -51,7 +55,7 @@ pub fn optimize_report(
     context.insert("movements", &movements::movements(retrofit, model, places));
     context.insert("dwells", &standstill::standstill(retrofit, model, places));
     context.insert("joints", &(1..=model.dof).collect::<Vec<usize>>());
-    context.insert("sources", &source::sources(retrofit, files));
+    context.insert("sources", &source::sources(retrofit, &originals));
     context.insert("verification", &proof::verification(retrofit));
     context.insert("basis", &proof::basis(retrofit, model, places));
     let mut tera = Tera::default();

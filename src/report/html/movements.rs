@@ -10,7 +10,7 @@ use crate::energy::{Account, EnergyParts};
 use crate::optimize::corridor::{Ceilings, Corridor};
 use crate::path::joint_path::{DOF, Joints};
 use crate::report::place::Places;
-use crate::report::svg::{Curve, Plot, Rule, Size};
+use crate::report::svg::{Curve, NEAR, Plot, Rule, Size};
 use crate::retrofit::Retrofit;
 use crate::robot::Model;
 
@@ -122,7 +122,8 @@ fn way_plots(
 fn plots(model: &Model, sides: &[Vec<Sample>; 2]) -> Vec<Figure> {
     let mut figures = Vec::new();
     if let Some(limit) = &model.limits.velocity {
-        figures.push(shares("Joint speeds", "share of the speed limit (%)", sides, limit, |s| s.qd));
+        figures
+            .push(shares("Joint speeds", "share of the speed limit (%)", sides, limit, |s| s.qd));
     }
     if let Some(limit) = &model.limits.torque {
         let title = "share of the torque limit (%)";
@@ -130,10 +131,16 @@ fn plots(model: &Model, sides: &[Vec<Sample>; 2]) -> Vec<Figure> {
     }
     figures.push(figure("Electrical power", "power (W)", pair(sides, |s| s.electrical_w), vec![]));
     let mut curves = pair(sides, |s| s.tcp_speed);
-    let ceiling = sides[1].iter().map(|s| [s.t, s.ceiling]).collect();
-    curves.insert(0, Curve { class: "ceiling".into(), points: ceiling });
+    curves.insert(0, ceiling(sides));
     figures.push(figure("TCP speed", "speed (m/s)", curves, vec![]));
     figures
+}
+
+/// The ceiling of the TCP speed over the time of the new motion, where it comes near the speeds.
+fn ceiling(sides: &[Vec<Sample>; 2]) -> Curve {
+    let fastest = sides.iter().flatten().map(|s| s.tcp_speed).fold(0.0, f64::max);
+    let near = |s: &Sample| if NEAR * s.ceiling <= fastest { s.ceiling } else { f64::NAN };
+    Curve { class: "ceiling".into(), points: sides[1].iter().map(|s| [s.t, near(s)]).collect() }
 }
 
 /// Signed shares of the limits of six joints.
@@ -153,8 +160,7 @@ fn shares(
             });
         }
     }
-    let rules =
-        vec![Rule { value: 100.0, label: "limit" }, Rule { value: -100.0, label: "limit" }];
+    let rules = vec![Rule { value: 100.0, label: "limit" }, Rule { value: -100.0, label: "limit" }];
     figure(caption, title, curves, rules)
 }
 

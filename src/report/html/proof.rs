@@ -64,7 +64,11 @@ pub(super) fn verification(retrofit: &Retrofit) -> Verification {
             share("allowed path deviation", worst.deviation),
         ],
         deviation_mm: fixed(1e3 * worst.deviation_m, 3),
-        endpoint_error_rad: format!("{:.1e}", worst.endpoint_error_rad),
+        endpoint_error_rad: if worst.endpoint_error_rad == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{:.1e}", worst.endpoint_error_rad)
+        },
         outputs: retrofit
             .outputs
             .iter()

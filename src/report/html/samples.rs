@@ -68,3 +68,53 @@ pub(super) fn samples(model: &Model, run: &Run, corridor: Option<&Corridor>) -> 
     }
     rows
 }
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
+mod tests {
+    use super::*;
+    use crate::energy::EnergyParts;
+    use crate::energy::account::run_energy;
+    use crate::motion::timeline::What;
+    use crate::motion::{Options, simulate};
+    use crate::optimize::corridor::Ceilings;
+    use crate::retrofit::{Source, read_program};
+    use crate::text::{FileId, SourceFile};
+
+    const PROGRAM: &str = "MODULE M
+CONST jointtarget a:=[[0,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST jointtarget b:=[[20,10,-5,0,80,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget c:=[[750,150,1121.5],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+PROC main()
+MoveAbsJ a,v1000,fine,tool0;
+MoveAbsJ b,v1000,z10,tool0;
+MoveL c,v300,fine,tool0;
+ENDPROC
+ENDMODULE";
+    /// The trapezoidal rule over jumps of the power, relative.
+    const QUADRATURE: f64 = 2e-3;
+
+    #[test]
+    fn the_plotted_power_encloses_the_accounted_energy() {
+        let model = crate::robot::find("IRB1600-10/1.45").unwrap();
+        let file = SourceFile::new(FileId(0), "M.mod".into(), PROGRAM.into());
+        let files = [Source { file, relative: "M.mod".into() }];
+        let (program, entry) = read_program(&files, "main").unwrap();
+        let simulation = simulate(&program, entry, &model, &Options::default());
+        let What::Run(run) = &simulation.events[1].what else { panic!("no run") };
+        let corridor = Corridor::new(&model, run, Ceilings::Programmed);
+        let samples = samples(&model, run, corridor.as_ref());
+
+        let area: f64 = samples
+            .windows(2)
+            .map(|p| 0.5 * (p[0].electrical_w + p[1].electrical_w) * (p[1].t - p[0].t))
+            .sum();
+        let energy: f64 = run_energy(&model, run).iter().map(EnergyParts::energy_j).sum();
+        assert!((area - energy).abs() < QUADRATURE * energy, "{area} J for {energy} J");
+
+        // The line may be as fast as programmed, the joint movement as fast as the robot.
+        assert_eq!(samples.last().unwrap().ceiling, 0.3);
+        assert_eq!(Some(samples[0].ceiling), model.limits.tcp_speed);
+        assert!(samples.iter().all(|s| s.tcp_speed <= s.ceiling * 1.001));
+    }
+}

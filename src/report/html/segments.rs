@@ -14,8 +14,8 @@ pub(super) struct Row {
     place: String,
     kind: &'static str,
     rewritten: bool,
-    /// Those that are rewritten, of all.
-    executions: String,
+    executions: usize,
+    rewritten_executions: usize,
     costs: Costs,
     bound: Option<String>,
     points: Option<usize>,
@@ -125,12 +125,8 @@ fn row(number: usize, segment: &Segment, places: Places<'_>) -> Row {
             SegmentKind::Idle => "dwell",
         },
         rewritten: segment.rewritten,
-        executions: match segment.kind {
-            SegmentKind::Timing => {
-                format!("{} of {}", segment.rewritten_executions, segment.executions)
-            }
-            SegmentKind::Idle => segment.executions.to_string(),
-        },
+        executions: segment.executions,
+        rewritten_executions: segment.rewritten_executions,
         costs: Sums::of(segment).text(),
         bound: segment.lower_bound_j.map(joules),
         points: segment.rewritten.then_some(segment.points),

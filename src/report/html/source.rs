@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::format::joules;
+use crate::energy::EnergyParts;
 use crate::motion::timeline::What;
-use crate::retrofit::{Retrofit, Source};
+use crate::retrofit::Retrofit;
 use crate::text::{SourceFile, Span};
 
 /// Lines shown before and after those that cost something.
@@ -55,8 +56,28 @@ struct Costs {
     streams: BTreeMap<u32, (u32, f64)>,
 }
 
+impl Costs {
+    /// Lines that run as a stream now, with their joules. Streams that share a line share a
+    /// cell.
+    fn add_stream(&mut self, mut first: u32, mut last: u32, mut energy: f64) {
+        while let Some((other, (end, joules))) =
+            self.streams.range(..=last).next_back().map(|(k, v)| (*k, *v))
+            && end >= first
+        {
+            self.streams.remove(&other);
+            (first, last, energy) = (first.min(other), last.max(end), energy + joules);
+        }
+        self.streams.insert(first, (last, energy));
+    }
+
+    /// Whether a line runs as a stream now.
+    fn is_streamed(&self, line: u32) -> bool {
+        self.streams.range(..=line).next_back().is_some_and(|(_, (end, _))| line <= *end)
+    }
+}
+
 /// The files that cost something, in their order.
-pub(super) fn sources(retrofit: &Retrofit, files: &[Source]) -> Vec<Annotated> {
+pub(super) fn sources(retrofit: &Retrofit, files: &[SourceFile]) -> Vec<Annotated> {
     let mut all: Vec<Costs> = files.iter().map(|_| Costs::default()).collect();
     streams(retrofit, files, &mut all);
     moves_and_waits(retrofit, files, &mut all);
@@ -64,29 +85,20 @@ pub(super) fn sources(retrofit: &Retrofit, files: &[Source]) -> Vec<Annotated> {
         .iter()
         .zip(&all)
         .filter(|(_, costs)| !costs.before.is_empty())
-        .map(|(source, costs)| annotated(source, costs))
+        .map(|(file, costs)| annotated(file, costs))
         .collect()
 }
 
-fn streams(retrofit: &Retrofit, files: &[Source], all: &mut [Costs]) {
+fn streams(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs]) {
     for segment in retrofit.segments.iter().filter(|segment| segment.rewritten) {
         let index = segment.span.file.0 as usize;
-        let (Some(source), Some(costs)) = (files.get(index), all.get_mut(index)) else { continue };
-        let [first, last] = lines(&source.file, segment.span);
-        let mut stream = (first, last, segment.energy_after_j);
-        // Several on one line share a cell.
-        while let Some((other, (end, energy))) =
-            costs.streams.range(..=stream.1).next_back().map(|(k, v)| (*k, *v))
-            && end >= stream.0
-        {
-            costs.streams.remove(&other);
-            stream = (stream.0.min(other), stream.1.max(end), stream.2 + energy);
-        }
-        costs.streams.insert(stream.0, (stream.1, stream.2));
+        let (Some(file), Some(costs)) = (files.get(index), all.get_mut(index)) else { continue };
+        let [first, last] = lines(file, segment.span);
+        costs.add_stream(first, last, segment.energy_after_j);
     }
 }
 
-fn moves_and_waits(retrofit: &Retrofit, files: &[Source], all: &mut [Costs]) {
+fn moves_and_waits(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs]) {
     let (before, after) = (&retrofit.before.1.events, &retrofit.after.1.events);
     for (i, event) in retrofit.before.0.events.iter().enumerate() {
         let spans: Vec<Span> = match &event.what {
@@ -96,17 +108,15 @@ fn moves_and_waits(retrofit: &Retrofit, files: &[Source], all: &mut [Costs]) {
         };
         for (k, span) in spans.into_iter().enumerate() {
             let index = span.file.0 as usize;
-            let (Some(source), Some(costs)) = (files.get(index), all.get_mut(index)) else {
+            let (Some(file), Some(costs)) = (files.get(index), all.get_mut(index)) else {
                 continue;
             };
-            let [line, _] = lines(&source.file, span);
-            let energy = |events: &[Vec<crate::energy::EnergyParts>]| {
-                events.get(i).and_then(|parts| parts.get(k)).map_or(0.0, |part| part.energy_j())
+            let [line, _] = lines(file, span);
+            let energy = |events: &[Vec<EnergyParts>]| {
+                events.get(i).and_then(|parts| parts.get(k)).map_or(0.0, EnergyParts::energy_j)
             };
             *costs.before.entry(line).or_default() += energy(before);
-            let streamed =
-                costs.streams.range(..=line).next_back().is_some_and(|(_, (end, _))| line <= *end);
-            if !streamed {
+            if !costs.is_streamed(line) {
                 *costs.after.entry(line).or_default() += energy(after);
             }
         }
@@ -119,8 +129,7 @@ fn lines(file: &SourceFile, span: Span) -> [u32; 2] {
     [file.position(span.start).line, file.position(last).line]
 }
 
-fn annotated(source: &Source, costs: &Costs) -> Annotated {
-    let file = &source.file;
+fn annotated(file: &SourceFile, costs: &Costs) -> Annotated {
     let count = file.lines.count();
     let hottest = costs.before.values().copied().fold(0.0, f64::max);
     let mut shown: Vec<u32> = Vec::new();
@@ -165,14 +174,46 @@ fn annotated(source: &Source, costs: &Costs) -> Annotated {
     }
 }
 
-/// A line without its end, cut where it is very long.
+/// A line without its end and without control characters, cut where it is very long.
 fn text(file: &SourceFile, number: u32) -> String {
     let range = file.lines.range(number);
     let span = Span { file: file.id, start: range.start, end: range.end };
     let text = file.text(span);
-    let line = text.trim_end_matches(['\r', '\n']);
-    match line.char_indices().nth(MAX_CHARACTERS) {
-        Some((end, _)) => format!("{}\u{2026}", &line[..end]),
-        None => line.to_owned(),
+    let mut characters = text
+        .trim_end_matches(['\r', '\n'])
+        .chars()
+        .map(|c| if c.is_control() && c != '\t' { char::REPLACEMENT_CHARACTER } else { c });
+    let mut line: String = characters.by_ref().take(MAX_CHARACTERS).collect();
+    if characters.next().is_some() {
+        line.push('\u{2026}');
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::FileId;
+
+    #[test]
+    fn streams_that_share_a_line_share_a_cell() {
+        let mut costs = Costs::default();
+        for (first, last) in [(10, 12), (20, 21), (12, 12), (13, 19), (19, 20)] {
+            costs.add_stream(first, last, 1.0);
+        }
+        let cells: Vec<_> = costs.streams.iter().map(|(k, v)| (*k, v.0, v.1)).collect();
+        assert_eq!(cells, [(10, 12, 2.0), (13, 21, 3.0)]);
+        let streamed: Vec<u32> = (0..30).filter(|line| costs.is_streamed(*line)).collect();
+        assert_eq!(streamed, (10..=21).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn lines_are_printable_and_not_endless() {
+        let long = "x".repeat(2 * MAX_CHARACTERS);
+        let bytes = format!("\ta\0b\u{c}\r\n{long}\n").into_bytes();
+        let file = SourceFile::new(FileId(0), "a.mod".into(), bytes);
+        assert_eq!(text(&file, 1), "\ta\u{fffd}b\u{fffd}");
+        assert_eq!(text(&file, 2).chars().count(), MAX_CHARACTERS + 1);
+        assert_eq!(text(&file, 3), "");
     }
 }

@@ -37,10 +37,7 @@ pub(super) fn standstill(retrofit: &Retrofit, model: &Model, places: Places<'_>)
     for dwell in &dwells {
         by_place.entry(dwell.span).or_default().push(dwell);
     }
-    by_place
-        .into_iter()
-        .map(|(span, dwells)| row(places.of(span).to_string(), &dwells))
-        .collect()
+    by_place.into_iter().map(|(span, dwells)| row(places.of(span).to_string(), &dwells)).collect()
 }
 
 fn row(place: String, dwells: &[&Dwell]) -> Row {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::format::{fixed, joules, saved_percent, seconds};
 use crate::energy::EnergyParts;
 use crate::report::svg::Scale;
-use crate::retrofit::Retrofit;
+use crate::retrofit::{Retrofit, SegmentKind};
 
 /// A figure of the whole cycle.
 #[derive(Serialize)]
@@ -66,9 +66,8 @@ pub(super) fn summary(retrofit: &Retrofit) -> Summary {
         change: change(before, after, "saved", "more"),
     };
     let parts = [&retrofit.before.1.total, &retrofit.after.1.total];
-    let eligible = retrofit.segments.iter().filter(|s| {
-        s.kind == crate::retrofit::SegmentKind::Timing && s.executions > 0
-    });
+    let eligible =
+        retrofit.segments.iter().filter(|s| s.kind == SegmentKind::Timing && s.executions > 0);
     Summary {
         cards: vec![
             Card {
@@ -183,8 +182,12 @@ mod tests {
 
     #[test]
     fn bars_are_as_long_as_their_parts() {
-        let before =
-            EnergyParts { mechanical_j: -10.0, friction_j: 60.0, idle_j: 30.0, ..EnergyParts::default() };
+        let before = EnergyParts {
+            mechanical_j: -10.0,
+            friction_j: 60.0,
+            idle_j: 30.0,
+            ..EnergyParts::default()
+        };
         let after = EnergyParts { friction_j: 45.0, idle_j: 30.0, ..EnergyParts::default() };
         let widths = widths(&bars([&before, &after]));
         let per_joule = (WIDTH - NAME - VALUE) / 100.0;

@@ -82,7 +82,7 @@ impl Frame {
         }
         let _ = write!(
             out,
-            "<text class=\"title\" x=\"6\" y=\"12\">{}</text>\
+            "<text class=\"title\" x=\"{left:.1}\" y=\"12\">{}</text>\
              <text class=\"title end\" x=\"{right:.1}\" y=\"{:.1}\">{}</text>{content}</svg>",
             escape(y_title),
             height - 5.0,

@@ -12,6 +12,6 @@ mod scale;
 
 pub use escape::escape;
 pub use frame::{Frame, Size};
-pub use plot::{Curve, Plot, Rule};
+pub use plot::{Curve, NEAR, Plot, Rule};
 pub use polyline::{MAX_POINTS, points, simplify};
 pub use scale::Scale;

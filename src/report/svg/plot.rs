@@ -46,7 +46,7 @@ pub struct Plot<'a> {
 }
 
 /// Share of a level from which on a plot is extended to it.
-const NEAR: f64 = 0.6;
+pub const NEAR: f64 = 0.6;
 
 impl Plot<'_> {
     /// As SVG.
@@ -68,13 +68,12 @@ impl Plot<'_> {
         let [left, _, right, _] = frame.area();
         for rule in rules {
             let [_, y] = frame.at(0.0, rule.value);
-            let below = if rule.value > 0.0 { -4.0 } else { 12.0 };
             let _ = write!(
                 content,
                 "<line class=\"limit\" x1=\"{left:.1}\" y1=\"{y:.1}\" x2=\"{right:.1}\" \
                  y2=\"{y:.1}\"/><text class=\"note end\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
                 right - 4.0,
-                y + below,
+                y - 4.0,
                 escape(rule.label),
             );
         }

@@ -101,6 +101,6 @@ mod tests {
     fn short_curves_stay() {
         assert!(simplify(&[]).is_empty());
         assert_eq!(simplify(&[[1.0, 2.0]]), [[1.0, 2.0]]);
-        assert_eq!(points(&[[1.0, 2.0], [3.14, 4.0]]), "1.0,2.0 3.1,4.0");
+        assert_eq!(points(&[[1.0, 2.0], [3.26, 4.0]]), "1.0,2.0 3.3,4.0");
     }
 }

@@ -95,7 +95,10 @@ mod tests {
         assert_eq!(labels(0.0, 0.004), ["0.000", "0.001", "0.002", "0.003", "0.004"]);
         assert_eq!(labels(0.0, 1234.0), ["0", "500", "1000", "1500"]);
         let exact = Scale::exact(0.3, 2.04, 4).ticks();
-        assert_eq!(exact.into_iter().map(|(_, label)| label).collect::<Vec<_>>(), ["0.5", "1.0", "1.5", "2.0"]);
+        assert_eq!(
+            exact.into_iter().map(|(_, label)| label).collect::<Vec<_>>(),
+            ["0.5", "1.0", "1.5", "2.0"]
+        );
     }
 
     #[test]
