@@ -129,9 +129,22 @@ fn labels(out: &mut String, frame: &Frame, points: &[Point]) {
     let mut taken: Vec<[f64; 2]> =
         points.iter().flat_map(|p| [p.before, p.after]).map(|[t, e]| frame.at(t, e)).collect();
     let [left, top, right, bottom] = frame.area();
-    for point in points {
+    // Those that save most come first.
+    let mut order: Vec<&Point> = points.iter().collect();
+    let saved = |point: &Point| point.before[1] - point.after[1];
+    order.sort_by(|a, b| saved(b).total_cmp(&saved(a)));
+    for point in order {
         let [x, y] = frame.at(point.before[0], point.before[1]);
-        let places = [(18.0, 0.0), (-18.0, 0.0), (0.0, -14.0), (18.0, -13.0), (-18.0, -13.0)];
+        let places = [
+            (18.0, 0.0),
+            (-18.0, 0.0),
+            (0.0, -14.0),
+            (18.0, -13.0),
+            (-18.0, -13.0),
+            (18.0, 13.0),
+            (-18.0, 13.0),
+            (0.0, 14.0),
+        ];
         let free = places.into_iter().map(|(dx, dy)| [x + dx, y + dy]).find(|[cx, cy]| {
             (left..=right).contains(cx)
                 && (top..=bottom).contains(cy)
