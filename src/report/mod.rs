@@ -1,7 +1,9 @@
-//! Results as text and JSON.
+//! Results as text, JSON and HTML.
 
+pub mod html;
 pub mod json;
 pub mod place;
+pub mod svg;
 pub mod table;
 pub mod text;
 pub mod trajectory;

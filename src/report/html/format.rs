@@ -1,0 +1,53 @@
+//! Figures as text.
+
+/// A number with so many decimals, a real minus sign, and a dash where there is none.
+pub(super) fn fixed(x: f64, decimals: usize) -> String {
+    if !x.is_finite() {
+        return "\u{2013}".to_owned();
+    }
+    let text = format!("{x:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|b| matches!(b, b'0' | b'.')) => digits.to_owned(),
+        Some(digits) => format!("\u{2212}{digits}"),
+        None => text,
+    }
+}
+
+/// s, to the millisecond.
+pub(super) fn seconds(x: f64) -> String {
+    fixed(x, 3)
+}
+
+/// J, to a tenth.
+pub(super) fn joules(x: f64) -> String {
+    fixed(x, 1)
+}
+
+/// What is saved of `before`, %; nothing of nothing.
+pub(super) fn saved_percent(before: f64, after: f64) -> f64 {
+    if before > 0.0 { 100.0 * (before - after) / before } else { 0.0 }
+}
+
+/// The smallest and the largest figure, or one where they read the same.
+pub(super) fn range(values: impl IntoIterator<Item = f64>, decimals: usize) -> String {
+    let (low, high) = values
+        .into_iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = (fixed(low, decimals), fixed(high, decimals));
+    if low == high { low } else { format!("{low}\u{2013}{high}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_have_no_negative_zero_and_no_nan() {
+        assert_eq!(fixed(-0.04, 1), "0.0");
+        assert_eq!(fixed(-0.06, 1), "\u{2212}0.1");
+        assert_eq!(fixed(f64::NAN, 1), "\u{2013}");
+        assert_eq!(range([0.25, 0.8, 0.3], 2), "0.25\u{2013}0.80");
+        assert_eq!(range([0.251, 0.252], 2), "0.25");
+        assert_eq!(range([], 2), "\u{2013}");
+    }
+}
