@@ -93,7 +93,7 @@ impl Case {
                 return Err(format!("{} stands in the place of {}", output.path, source.relative));
             }
             let spans = self.rewritten(i);
-            if (output.kind == OutputKind::Changed) != !spans.is_empty() {
+            if (output.kind == OutputKind::Unchanged) != spans.is_empty() {
                 return Err(format!("{} is called {:?}", output.path, output.kind));
             }
             only_guards_added(&source.file.bytes, &output.bytes, &spans)
@@ -235,7 +235,8 @@ fn changed_bytes_are_found() {
     let span = start..start + "MoveJ p,v,fine,t;".len();
     let good = "! a\n  IF jpAt(jpFrom1) THEN\n      jpRun1 t;\n  ELSE\n  MoveJ p,v,fine,t;\n  \
                 ENDIF\n! b\n";
-    let check = |output: &str| only_guards_added(original, output.as_bytes(), &[span.clone()]);
+    let check =
+        |output: &str| only_guards_added(original, output.as_bytes(), std::slice::from_ref(&span));
     assert_eq!(check(good), Ok(()));
     let bad = [
         ("! a", "! A"),
