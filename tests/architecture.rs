@@ -40,6 +40,10 @@ fn is_path(text: &str) -> bool {
     FOLDERS.contains(&first) && text.contains('/') && !text.contains(['…', '*', ' ', '<'])
 }
 
+fn is_page(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "md")
+}
+
 #[test]
 fn named_files_exist() {
     let mut missing = Vec::new();
@@ -47,7 +51,7 @@ fn named_files_exist() {
         let text = page(path);
         let folder = Path::new(path).parent().unwrap();
         for name in named(&text) {
-            let is_link = !name.contains("://") && name.ends_with(".md") && !is_path(name);
+            let is_link = !name.contains("://") && is_page(name) && !is_path(name);
             let target = if is_link { folder.join(name) } else { Path::new(name).to_path_buf() };
             if (is_link || is_path(name)) && !name.contains("NAME") && !target.exists() {
                 missing.push(format!("{path}: {name}"));
