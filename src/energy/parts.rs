@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 /// Joules by cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyParts {
-    /// ∫ Σ τ_rigid q̇ dt: change of kinetic and potential energy.
+    /// ∫ Σ `τ_rigid` q̇ dt: change of kinetic and potential energy.
     pub mechanical_j: f64,
     /// Work against friction.
     pub friction_j: f64,

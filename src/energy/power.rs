@@ -11,9 +11,9 @@ use crate::robot::{Model, Sharing};
 pub struct Power {
     /// Joint torques with friction, Nm.
     pub tau: Joints,
-    /// Σ τ_rigid q̇, W.
+    /// Σ `τ_rigid` q̇, W.
     pub rigid_w: f64,
-    /// Σ τ_friction q̇, W.
+    /// Σ `τ_friction` q̇, W.
     pub friction_w: f64,
     /// Copper loss, W.
     pub copper_w: f64,

@@ -12,7 +12,7 @@ const NORM_TOLERANCE: f64 = 0.01;
 type Converted<T> = Result<T, String>;
 
 /// Numbers of a list of exactly `N`.
-pub fn nums<const N: usize>(datum: &Datum, what: &str) -> Converted<[f64; N]> {
+pub(super) fn nums<const N: usize>(datum: &Datum, what: &str) -> Converted<[f64; N]> {
     let list = list(datum, what)?;
     if list.len() != N {
         return Err(format!("{what} has {} components instead of {N}", list.len()));
@@ -25,7 +25,7 @@ pub fn nums<const N: usize>(datum: &Datum, what: &str) -> Converted<[f64; N]> {
 }
 
 /// A finite number.
-pub fn num(datum: &Datum, what: &str) -> Converted<f64> {
+pub(super) fn num(datum: &Datum, what: &str) -> Converted<f64> {
     match datum {
         Datum::Num(x) if x.is_finite() => Ok(*x),
         Datum::Unknown(u) => Err(u.reason.clone()),
@@ -66,7 +66,7 @@ fn orient(datum: &Datum, what: &str) -> Converted<UnitQuaternion<f64>> {
 }
 
 /// A `pose`.
-pub fn pose(datum: &Datum, what: &str) -> Converted<Isometry3<f64>> {
+pub(super) fn pose(datum: &Datum, what: &str) -> Converted<Isometry3<f64>> {
     let [trans, rot] = parts::<2>(datum, what)?;
     frame(trans, rot, what)
 }
@@ -78,7 +78,7 @@ fn frame(trans: &Datum, rot: &Datum, what: &str) -> Converted<Isometry3<f64>> {
 }
 
 /// The inverse of [`pose`].
-pub fn pose_datum(pose: &Isometry3<f64>) -> Datum {
+pub(super) fn pose_datum(pose: &Isometry3<f64>) -> Datum {
     let t = pose.translation.vector / MM;
     let q = pose.rotation;
     Datum::List(vec![
@@ -88,7 +88,7 @@ pub fn pose_datum(pose: &Isometry3<f64>) -> Datum {
 }
 
 /// A `robtarget`; external axes are not looked at.
-pub fn robtarget(datum: &Datum) -> Converted<RobTarget> {
+pub(super) fn robtarget(datum: &Datum) -> Converted<RobTarget> {
     let [trans, rot, conf, _] = parts::<4>(datum, "the robtarget")?;
     let conf = nums::<4>(conf, "the configuration")?;
     Ok(RobTarget {
@@ -98,13 +98,13 @@ pub fn robtarget(datum: &Datum) -> Converted<RobTarget> {
 }
 
 /// A `jointtarget`: rad.
-pub fn jointtarget(datum: &Datum) -> Converted<[f64; 6]> {
+pub(super) fn jointtarget(datum: &Datum) -> Converted<[f64; 6]> {
     let [joints, _] = parts::<2>(datum, "the jointtarget")?;
     Ok(nums::<6>(joints, "the jointtarget")?.map(f64::to_radians))
 }
 
 /// A `speeddata`.
-pub fn speed(datum: &Datum) -> Converted<Speed> {
+pub(super) fn speed(datum: &Datum) -> Converted<Speed> {
     let [tcp, ori, _, _] = nums::<4>(datum, "the speed")?;
     if tcp <= 0.0 || ori <= 0.0 {
         return Err("the programmed speed is not positive".into());
@@ -113,7 +113,7 @@ pub fn speed(datum: &Datum) -> Converted<Speed> {
 }
 
 /// A `zonedata`.
-pub fn zone(datum: &Datum) -> Converted<Zone> {
+pub(super) fn zone(datum: &Datum) -> Converted<Zone> {
     let [fine, sizes @ ..] = parts::<7>(datum, "the zone")?;
     let [tcp, ori, _, angle, _, _] =
         nums::<6>(&Datum::List(sizes.to_vec()), "the zone")?.map(|x| x.max(0.0));
@@ -127,7 +127,7 @@ pub fn zone(datum: &Datum) -> Converted<Zone> {
 }
 
 /// A `loaddata`.
-pub fn load(datum: &Datum) -> Converted<LoadData> {
+pub(super) fn load(datum: &Datum) -> Converted<LoadData> {
     let [mass, cog, axes, ix, iy, iz] = parts::<6>(datum, "the load")?;
     let mass = num(mass, "the mass of the load")?;
     if mass < 0.0 {
@@ -147,7 +147,7 @@ pub fn load(datum: &Datum) -> Converted<LoadData> {
 }
 
 /// A `tooldata` of this name.
-pub fn tool(datum: &Datum, name: &str) -> Converted<Tool> {
+pub(super) fn tool(datum: &Datum, name: &str) -> Converted<Tool> {
     let [robhold, tframe, tload] = parts::<3>(datum, "the tool")?;
     Ok(Tool {
         name: name.into(),
@@ -158,7 +158,7 @@ pub fn tool(datum: &Datum, name: &str) -> Converted<Tool> {
 }
 
 /// A `wobjdata`.
-pub fn work_object(datum: &Datum) -> Converted<WorkObject> {
+pub(super) fn work_object(datum: &Datum) -> Converted<WorkObject> {
     let [robhold, fixed, _, user, object] = parts::<5>(datum, "the work object")?;
     Ok(WorkObject {
         robhold: boolean(robhold, "robhold of the work object")?,
@@ -168,7 +168,7 @@ pub fn work_object(datum: &Datum) -> Converted<WorkObject> {
 }
 
 /// `Offs`: displaced in the object frame, mm.
-pub fn offs(target: &Datum, offset: [f64; 3]) -> Converted<Datum> {
+pub(super) fn offs(target: &Datum, offset: [f64; 3]) -> Converted<Datum> {
     let [trans, rot, conf, external] = parts::<4>(target, "the robtarget")?;
     let [x, y, z] = nums::<3>(trans, "the robtarget")?;
     let moved = [x + offset[0], y + offset[1], z + offset[2]];
@@ -182,7 +182,7 @@ pub fn offs(target: &Datum, offset: [f64; 3]) -> Converted<Datum> {
 
 /// `RelTool`: displaced (mm) and then turned (degrees, about x, y, z in this order)
 /// in the tool's frame.
-pub fn rel_tool(target: &Datum, offset: [f64; 3], turn: [f64; 3]) -> Converted<Datum> {
+pub(super) fn rel_tool(target: &Datum, offset: [f64; 3], turn: [f64; 3]) -> Converted<Datum> {
     let [trans, rot, conf, external] = parts::<4>(target, "the robtarget")?;
     let frame = frame(trans, rot, "the robtarget")?;
     let [rx, ry, rz] = turn.map(f64::to_radians);

@@ -1,6 +1,6 @@
 //! What RAPID's own instructions do, as far as movements, time and data go.
 //!
-//! Names: the instruction table of RobotWare 6. An instruction that is neither
+//! Names: the instruction table of `RobotWare` 6. An instruction that is neither
 //! here nor in the program is unknown: it may move the robot and write its
 //! arguments.
 
@@ -45,11 +45,12 @@ pub fn movement(key: &str) -> Option<MoveSignature> {
         "movec" => (Circular, 0, 0, true, true),
         "moveextj" => (ExternalJoint, 0, 0, true, false),
         "movejdo" | "movejao" | "movejgo" | "movejsync" => (Joint, 0, 0, true, false),
-        "moveldo" | "movelao" | "movelgo" | "movelsync" => (Linear, 0, 0, true, false),
+        "moveldo" | "movelao" | "movelgo" | "movelsync" | "trigglios" | "movepnp" => {
+            (Linear, 0, 0, true, false)
+        }
         "movecdo" | "movecao" | "movecgo" | "movecsync" => (Circular, 0, 0, true, false),
         "triggj" | "triggjios" => (Joint, 0, usize::from(key == "triggj"), true, false),
         "triggl" => (Linear, 0, 1, true, false),
-        "trigglios" => (Linear, 0, 0, true, false),
         "triggc" => (Circular, 0, 1, true, false),
         "triggabsj" => (AbsJ, 0, 1, true, false),
         // Signal, SearchPoint, ToPoint, Speed, Tool
@@ -57,7 +58,6 @@ pub fn movement(key: &str) -> Option<MoveSignature> {
         "searchc" => (Circular, 2, 0, false, false),
         // Signal, SearchJointPos, ToJointPos, Speed
         "searchextj" => (ExternalJoint, 2, 0, false, false),
-        "movepnp" => (Linear, 0, 0, true, false),
         _ => return None,
     };
     Some(MoveSignature { form, before, between, zone, plain })

@@ -1,6 +1,6 @@
 //! From syntax to movements: modules, symbols, values, execution. Knows no robot.
 
-pub mod convert;
+mod convert;
 pub mod exec;
 pub mod hir;
 pub mod instructions;

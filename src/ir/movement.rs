@@ -165,7 +165,7 @@ pub struct Movement {
     pub tool: Tool,
     /// Work object.
     pub wobj: WorkObject,
-    /// `\TLoad`: replaces the tool's load and GripLoad, in the flange's frame.
+    /// `\TLoad`: replaces the tool's load and `GripLoad`, in the flange's frame.
     pub total_load: Option<LoadData>,
     /// Settings in force.
     pub settings: Arc<Settings>,

@@ -25,7 +25,7 @@ pub fn joints(q: &[f64]) -> String {
 
 /// What reading an emitted axis position gives, rad.
 pub fn joint_as_emitted(x: f64) -> f64 {
-    let scale = 10_f64.powi(JOINT_DECIMALS as i32);
+    let scale = f64::from(10_u32.pow(JOINT_DECIMALS as u32));
     ((x.to_degrees() * scale).round() / scale).to_radians()
 }
 

@@ -1,6 +1,6 @@
 //! Names that every controller knows: speeds, zones, tool0, wobj0, load0.
 //!
-//! Values: RAPID reference of RobotWare 6 (speeddata, zonedata).
+//! Values: RAPID reference of `RobotWare` 6 (speeddata, zonedata).
 
 use super::value::{Datum, Value};
 
@@ -9,14 +9,14 @@ const SPEEDS: [u32; 23] = [
     5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500,
     3000, 4000, 5000,
 ];
-/// The two above, of RobotWare 5 and later.
+/// The two above, of `RobotWare` 5 and later.
 const FAST_SPEEDS: [u32; 2] = [6000, 7000];
 /// TCP speed of `vmax` where the robot does not state another, mm/s.
 const VMAX: f64 = 7000.0;
 /// Reorientation, linear and rotating external axis speed of all `vN`.
 const OTHER_SPEEDS: [f64; 3] = [500.0, 5000.0, 1000.0];
 
-/// `zN`: pzone_tcp, pzone_ori, pzone_eax (mm), zone_ori (deg), zone_leax, zone_reax.
+/// `zN`: `pzone_tcp, pzone_ori, pzone_eax` (mm), `zone_ori` (deg), `zone_leax, zone_reax`.
 const ZONES: [(&str, [f64; 6]); 15] = [
     ("z0", [0.3, 0.3, 0.3, 0.03, 0.3, 0.03]),
     ("z1", [1.0, 1.0, 1.0, 0.1, 1.0, 0.1]),

@@ -193,12 +193,11 @@ impl RoutineScope<'_> {
             let writes = match callee {
                 Some(Symbol::Routine(id)) => {
                     let params = &self.program.routine(id).params;
-                    let index = match name {
-                        Some(key) => params.iter().position(|p| p.name.key == *key),
-                        None => {
-                            let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
-                            required.map(|(i, _)| i).nth(position)
-                        }
+                    let index = if let Some(key) = name {
+                        params.iter().position(|p| p.name.key == *key)
+                    } else {
+                        let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
+                        required.map(|(i, _)| i).nth(position)
                     };
                     index.is_some_and(|index| found.params.contains(&(id, index)))
                 }

@@ -5,7 +5,7 @@ use crate::robot::Model;
 
 /// Time in which the acceleration builds up where the robot's file has none, s.
 ///
-/// Measured: RobotStudio run of an IRB6640, MoveL of 500 mm at vmax.
+/// Measured: `RobotStudio` run of an IRB6640, `MoveL` of 500 mm at vmax.
 const RAMP_S: f64 = 0.10;
 
 /// Figures of the planner under the settings in force.

@@ -1,8 +1,8 @@
 //! The timing that the controller gives to a path.
 //!
 //! The fastest motion within the speeds, accelerations and torques, then a
-//! moving average over the time in which the acceleration builds up (measured on
-//! an IRC5: 0.1 s, FACTS of the controller runs).
+//! moving average over the time in which the acceleration builds up
+//! (docs/controller.md has the measurements).
 
 use std::sync::Arc;
 

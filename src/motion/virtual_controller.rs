@@ -25,7 +25,7 @@ use crate::robot::Model;
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Where the robot stands at first, rad; otherwise at the target of the first movement if
-    /// that is a MoveAbsJ, else at zero.
+    /// that is a `MoveAbsJ`, else at zero.
     pub start: Option<Joints>,
     /// Seconds after which an input comes, by lower-case name: counted from the start of the
     /// cycle or from the end of the last wait for it.
@@ -315,12 +315,10 @@ impl VirtualController<'_> {
                 values.iter().zip(limit).map(|(x, l)| x / l).fold(0.0, f64::max)
             })
         };
-        // Rounding of emitted figures is no reason to be late.
-        const ROUNDING: f64 = 1.0 + 1e-3;
         let speed = worst(&stream.max_velocity(), &limits.velocity);
         let acceleration = worst(&stream.max_acceleration(), &limits.acceleration).sqrt();
         let scale = speed.max(acceleration);
-        if scale > ROUNDING { scale } else { 1.0 }
+        if scale > 1.0 + LATENESS_ROUNDING { scale } else { 1.0 }
     }
 
     fn plan_run(
@@ -373,6 +371,9 @@ impl VirtualController<'_> {
     }
 }
 
+/// Excess over a limit that is rounding of emitted figures and no reason to be late.
+const LATENESS_ROUNDING: f64 = 1e-3;
+
 /// Motions with their start in the run, duration of each move, and what went wrong at which leg.
 type Planned = (Vec<(f64, TimedMotion)>, Vec<f64>, Option<(usize, String)>);
 
@@ -406,7 +407,7 @@ fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
     }
 }
 
-/// A run of timed MoveAbsJ whose zones are large enough for the half-distance cut.
+/// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
 fn as_stream(start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
     let mut intervals = Vec::with_capacity(legs.len());
     for movement in movements {

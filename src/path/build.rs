@@ -119,12 +119,11 @@ fn measure<'a>(
             (length, Some(curve))
         }
     };
-    let extent = match &curve {
-        Some(curve) => curve.length(),
-        None => {
-            let widest = (0..DOF).map(|j| (leg.end[j] - start[j]).abs()).fold(0.0, f64::max);
-            length.max(METRES_PER_RADIAN * widest)
-        }
+    let extent = if let Some(curve) = &curve {
+        curve.length()
+    } else {
+        let widest = (0..DOF).map(|j| (leg.end[j] - start[j]).abs()).fold(0.0, f64::max);
+        length.max(METRES_PER_RADIAN * widest)
     };
     Ok(Measured { leg, index, length, angle, extent, curve })
 }
@@ -361,7 +360,7 @@ impl Builder<'_> {
         let lu = j.lu();
         let twist = stack(&at.linear, &at.angular);
         let q1 = lu.solve(&twist).ok_or_else(singular)?;
-        if !(q1.amax() < SINGULAR_RATE) {
+        if q1.amax() >= SINGULAR_RATE || q1.iter().any(|x| x.is_nan()) {
             return Err(singular());
         }
         let q1: Joints = q1.into();

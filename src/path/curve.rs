@@ -150,6 +150,9 @@ fn corner_angular(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> Vector3<f64> 
     rate + cross * a + phi.cross(&cross) * b
 }
 
+/// Twice the area of a triangle against its size: below, the radius is not determined.
+const FLAT: f64 = 1e-6;
+
 /// The circle through three points: centre and angle from the first to the last by way of
 /// the second, about a unit normal. `None` if they lie on a line.
 pub fn circle(
@@ -160,8 +163,6 @@ pub fn circle(
     let a = via - start;
     let b = end - start;
     let normal = a.cross(&b);
-    // Twice the area of the triangle against its size: below, the radius is not determined.
-    const FLAT: f64 = 1e-6;
     if normal.norm() < FLAT * a.norm().max(b.norm()).powi(2) || normal.norm() == 0.0 {
         return None;
     }

@@ -15,17 +15,15 @@ impl Executor<'_> {
     pub(super) fn call_statement(&mut self, stmt: &Stmt, call: &Call) -> Flow {
         let (key, text, span) = match &call.callee {
             Callee::Name(name) => (name.key.clone(), name.text.clone(), name.span),
-            Callee::Late(expr) => match self.eval(expr).datum {
-                Datum::Text(name) => {
-                    // "Module:Proc" names a local procedure of a module.
-                    let proc = name.rsplit(':').next().unwrap_or(&name);
-                    (proc.to_lowercase(), proc.to_owned(), expr.span)
-                }
-                _ => {
+            Callee::Late(expr) => {
+                let Datum::Text(name) = self.eval(expr).datum else {
                     self.opaque(stmt.span, "the procedure called by %…% is not known");
                     return Flow::Next;
-                }
-            },
+                };
+                // "Module:Proc" names a local procedure of a module.
+                let proc = name.rsplit(':').next().unwrap_or(&name);
+                (proc.to_lowercase(), proc.to_owned(), expr.span)
+            }
         };
         match self.program.resolve(self.frame().module, &key) {
             Some(Symbol::Routine(id)) => match self.call_routine(id, &call.args, span) {

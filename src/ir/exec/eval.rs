@@ -267,7 +267,7 @@ impl Executor<'_> {
                     }
                     path.reverse();
                     let type_key = self.cells[cell].value.type_key.clone();
-                    let place = self.place(type_key, &path);
+                    let place = self.place(&type_key, &path);
                     let slot = &mut self.cells[cell].value.datum;
                     match place {
                         Some(indices) => store(slot, &indices, value.datum),
@@ -297,8 +297,8 @@ impl Executor<'_> {
     }
 
     /// The component numbers of a path, from the outside in.
-    fn place(&mut self, type_key: Arc<str>, path: &[Step<'_>]) -> Option<Vec<usize>> {
-        let mut key = type_key.to_string();
+    fn place(&mut self, type_key: &str, path: &[Step<'_>]) -> Option<Vec<usize>> {
+        let mut key = type_key.to_owned();
         let mut indices = Vec::with_capacity(path.len());
         for step in path {
             match step {
@@ -423,16 +423,15 @@ fn logic(a: &Datum, b: &Datum, f: fn(bool, bool) -> bool) -> Option<Datum> {
 }
 
 fn arithmetic(op: BinaryOp, a: f64, b: f64, expr: &Expr) -> Datum {
-    let zero = || Datum::unknown("division by zero", expr.span);
     match op {
         BinaryOp::Add => Datum::Num(a + b),
         BinaryOp::Sub => Datum::Num(a - b),
         BinaryOp::Mul => Datum::Num(a * b),
-        BinaryOp::Div if b == 0.0 => zero(),
+        BinaryOp::Div | BinaryOp::IntDiv | BinaryOp::Mod if b == 0.0 => {
+            Datum::unknown("division by zero", expr.span)
+        }
         BinaryOp::Div => Datum::Num(a / b),
-        BinaryOp::IntDiv if b == 0.0 => zero(),
         BinaryOp::IntDiv => Datum::Num((a / b).trunc()),
-        BinaryOp::Mod if b == 0.0 => zero(),
         BinaryOp::Mod => Datum::Num(a % b),
         BinaryOp::Lt => Datum::Bool(a < b),
         BinaryOp::Le => Datum::Bool(a <= b),

@@ -77,18 +77,16 @@ impl Executor<'_> {
             .map(|datum| (datum, "num"))
             .or_else(|| geometric(&name.key, &data, turn))
             .or_else(|| textual(&name.key, &data));
-        match known {
-            Some((datum, type_key)) => Value { datum, type_key: type_key.into(), origin },
-            None => {
-                let robot = ["crobt", "cpos", "ctool", "cwobj", "calcrobt", "calcjointt"];
-                let reason = if robot.contains(&name.key.as_str()) {
-                    format!("{} depends on where the robot is", name.text)
-                } else {
-                    format!("the function '{}' is not known", name.text)
-                };
-                Value::unknown(reason, expr.span)
-            }
+        if let Some((datum, type_key)) = known {
+            return Value { datum, type_key: type_key.into(), origin };
         }
+        let robot = ["crobt", "cpos", "ctool", "cwobj", "calcrobt", "calcjointt"];
+        let reason = if robot.contains(&name.key.as_str()) {
+            format!("{} depends on where the robot is", name.text)
+        } else {
+            format!("the function '{}' is not known", name.text)
+        };
+        Value::unknown(reason, expr.span)
     }
 
     fn present(&mut self, args: &[Arg]) -> Value {

@@ -36,13 +36,14 @@ impl<'e> Arguments<'e> {
         Arguments { positional, optional }
     }
 
-    pub(super) fn option(&self, key: &str) -> Option<Option<&'e Expr>> {
-        self.optional.iter().find(|(k, _, _)| *k == key).map(|(_, _, expr)| *expr)
+    /// Whether an option is given, with or without a value.
+    pub(super) fn has_option(&self, key: &str) -> bool {
+        self.optional.iter().any(|(k, _, _)| *k == key)
     }
 
     /// The value of an option that is present and has one.
     pub(super) fn option_value(&self, key: &str) -> Option<&'e Expr> {
-        self.option(key).flatten()
+        self.optional.iter().find(|(k, _, _)| *k == key).and_then(|(_, _, expr)| *expr)
     }
 }
 
@@ -59,7 +60,6 @@ impl Executor<'_> {
                 self.wait_signal(stmt, text, &arguments);
             }
             "waituntil" => self.wait_until(stmt, text, &arguments),
-            "waitrob" => {}
             "setdo" | "setgo" | "setao" | "set" | "reset" | "pulsedo" | "invertdo" => {
                 self.output(stmt, key, text, &arguments);
             }
@@ -73,7 +73,7 @@ impl Executor<'_> {
             "velset" | "accset" | "confj" | "confl" | "gripload" | "pdispset" | "pdispoff" => {
                 self.setting(key, text, &arguments);
             }
-            "singarea" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
+            "waitrob" | "singarea" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
             "eoffsset" | "eoffson" | "softact" | "pdispon" | "pathacclim" | "worldacclim"
             | "speedrefresh" | "corrcon" | "speedlimaxis" | "egmreset" | "tuneservo" => {
                 self.unmodelled(key, text, &arguments);
@@ -239,7 +239,7 @@ impl Executor<'_> {
             values.push(self.level(value));
         }
         let num = |i: usize| values.get(i).and_then(|v| v.datum.num());
-        let on = arguments.option("on").is_some();
+        let on = arguments.has_option("on");
         let mut settings = Settings::clone(&self.settings);
         settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
         let unknown = match key {
@@ -305,7 +305,7 @@ impl Executor<'_> {
                 .positional
                 .iter()
                 .all(|expr| self.eval(expr).datum == Datum::Bool(false)),
-            "worldacclim" => arguments.option("off").is_some(),
+            "worldacclim" => arguments.has_option("off"),
             "speedrefresh" => arguments
                 .positional
                 .first()

@@ -172,7 +172,7 @@ impl Executor<'_> {
             wobj,
             total_load,
             settings: self.settings.clone(),
-            concurrent: arguments.option("conc").is_some(),
+            concurrent: arguments.has_option("conc"),
             other_arguments,
             origin,
             locals,
@@ -219,7 +219,7 @@ impl Executor<'_> {
                 angle: zone.angle * scale,
             };
         }
-        if arguments.option("inpos").is_some() {
+        if arguments.has_option("inpos") {
             zone.fine = true;
         }
         Ok(zone)

@@ -1,0 +1,75 @@
+//! The documentation names what exists.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::path::Path;
+
+/// Pages that people are sent to.
+const PAGES: [&str; 8] = [
+    "README.md",
+    "CONTRIBUTING.md",
+    "docs/architecture.md",
+    "docs/controller.md",
+    "docs/energy.md",
+    "docs/reasons.md",
+    "docs/robots.md",
+    "fixtures/README.md",
+];
+
+fn page(path: &str) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// What stands between backticks or in the brackets of a link, outside of code blocks.
+fn named(text: &str) -> Vec<&str> {
+    let prose = text.split("```").step_by(2);
+    let mut named = Vec::new();
+    for part in prose {
+        named.extend(part.split('`').skip(1).step_by(2));
+        named.extend(part.split("](").skip(1).filter_map(|link| link.split(')').next()));
+    }
+    named
+}
+
+/// Whether text between backticks is meant as a file or folder of the crate.
+fn is_path(text: &str) -> bool {
+    const FOLDERS: [&str; 9] =
+        ["src", "tests", "docs", "fixtures", "templates", "grammar", "benches", "examples", ".ci"];
+    let first = text.split('/').next().unwrap_or_default();
+    FOLDERS.contains(&first) && text.contains('/') && !text.contains(['…', '*', ' ', '<'])
+}
+
+fn is_page(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "md")
+}
+
+#[test]
+fn named_files_exist() {
+    let mut missing = Vec::new();
+    for path in PAGES {
+        let text = page(path);
+        let folder = Path::new(path).parent().unwrap();
+        for name in named(&text) {
+            let is_link = !name.contains("://") && is_page(name) && !is_path(name);
+            let target = if is_link { folder.join(name) } else { Path::new(name).to_path_buf() };
+            if (is_link || is_path(name)) && !name.contains("NAME") && !target.exists() {
+                missing.push(format!("{path}: {name}"));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "named but not there:\n{}", missing.join("\n"));
+}
+
+#[test]
+fn every_folder_has_its_place_on_the_map() {
+    let text = page("docs/architecture.md");
+    let map = &text[text.find("## Code map").unwrap()..];
+    for entry in fs::read_dir("src").unwrap() {
+        let entry = entry.unwrap();
+        if entry.file_type().unwrap().is_dir() {
+            let name = format!("`src/{}`", entry.file_name().to_str().unwrap());
+            assert!(map.contains(&name), "docs/architecture.md says nothing of {name}");
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! House rules that clippy does not know.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+mod rust_source;
+
+use rust_source::{Token, files, tokens};
+
+/// Lines beyond which a file has more than one purpose.
+const MAX_LINES: usize = 600;
+
+/// Signs of unfinished work and of silenced lints, as sequences of tokens.
+const FORBIDDEN: [(&[&str], &str); 4] = [
+    (&["[", "allow", "("], "use #[expect(…, reason = \"…\")]: it says why and when it is over"),
+    (&["todo", "!"], "finish it, or return an error that says what is missing"),
+    (&["unimplemented", "!"], "finish it, or return an error that says what is missing"),
+    (&["[", "ignore"], "a test that does not run proves nothing"),
+];
+
+fn find(source: &[Token<'_>], sequence: &[&str]) -> Option<usize> {
+    source
+        .windows(sequence.len())
+        .find(|window| window.iter().zip(sequence).all(|(token, text)| token.text == *text))
+        .map(|window| window[0].line)
+}
+
+#[test]
+fn files_of_the_library_are_small() {
+    let mut large = Vec::new();
+    for file in files(&["src"]) {
+        let lines = file.text.lines().count();
+        if lines > MAX_LINES {
+            large.push(format!("{}: {lines} lines, split it by purpose", file.path));
+        }
+    }
+    assert!(large.is_empty(), "{}", large.join("\n"));
+}
+
+#[test]
+fn nothing_is_silenced_or_unfinished() {
+    let mut found = Vec::new();
+    for file in files(&["src", "tests", "benches"]) {
+        let source = tokens(&file.text);
+        for (sequence, advice) in FORBIDDEN {
+            if let Some(line) = find(&source, sequence) {
+                found.push(format!("{}:{line}: {}: {advice}", file.path, sequence.concat()));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn forbidden_sequences_are_found_in_code_only() {
+    let bad = ["#[allow(dead_code)]", "#![allow(\n x)]", "todo!()", "#[test]\n#[ignore]"];
+    for text in bad {
+        let source = tokens(text);
+        assert!(FORBIDDEN.iter().any(|(sequence, _)| find(&source, sequence).is_some()), "{text}");
+    }
+    for text in ["// #[allow(x)]", "\"todo!()\"", "#[expect(x)]", "/* unimplemented!() */"] {
+        let source = tokens(text);
+        assert!(FORBIDDEN.iter().all(|(sequence, _)| find(&source, sequence).is_none()), "{text}");
+    }
+}

@@ -1,0 +1,254 @@
+//! What is not a rewritten movement comes out byte for byte.
+//!
+//! The outputs are taken apart by another way than the one that made them: around the statements
+//! that the result calls rewritten there has to stand a guard, and every other byte has to be
+//! the original's.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use joulepath::motion::Options;
+use joulepath::optimize::corridor::Ceilings;
+use joulepath::retrofit::{
+    Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
+};
+use joulepath::robot::find;
+use joulepath::text::{FileId, SourceFile, Span};
+
+/// Extensions of RAPID modules in the fixtures.
+const EXTENSIONS: [&str; 2] = ["mod", "sys"];
+/// Marks a movement of `fixtures/hard` that can't be rewritten.
+const REFUSED: &str = "! Refused:";
+/// Beginnings of statements that move the robot.
+const MOVES: [&str; 3] = ["Move", "Trigg", "Search"];
+
+/// A program with what became of it.
+struct Case {
+    name: String,
+    files: Vec<Source>,
+    result: Retrofit,
+}
+
+fn case(name: &str, paths: &[PathBuf]) -> Case {
+    let files: Vec<Source> = paths
+        .iter()
+        .enumerate()
+        .map(|(i, path)| {
+            let relative = path.file_name().unwrap().to_str().unwrap().to_owned();
+            let bytes = std::fs::read(path).unwrap();
+            Source { file: SourceFile::new(FileId(i as u32), relative.clone(), bytes), relative }
+        })
+        .collect();
+    let settings = Settings {
+        entry: "main".into(),
+        options: Options::default(),
+        objective: Objective::Energy,
+        budget: Budget::AsBefore,
+        spacing_s: 0.05,
+        ceilings: Ceilings::Programmed,
+    };
+    let model = find("IRB1600-10/1.45").unwrap();
+    let result = retrofit(&files, &model, &settings, &|_, _| ());
+    let result = result.unwrap_or_else(|error| panic!("{name}: {error}"));
+    Case { name: name.to_owned(), files, result }
+}
+
+fn modules(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(folder);
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            let extension = path.extension().and_then(|extension| extension.to_str());
+            extension.is_some_and(|extension| EXTENSIONS.contains(&extension))
+        })
+        .collect();
+    paths.sort();
+    paths
+}
+
+impl Case {
+    /// Bytes of a file that the result calls rewritten, in order.
+    fn rewritten(&self, file: usize) -> Vec<Range<usize>> {
+        let segments = self.result.segments.iter().filter(|segment| segment.rewritten);
+        let mut spans: Vec<Range<usize>> = segments
+            .filter(|segment| segment.span.file.0 as usize == file)
+            .map(|segment| segment.span.start as usize..segment.span.end as usize)
+            .collect();
+        spans.sort_by_key(|span| span.start);
+        spans
+    }
+
+    /// What is wrong with the outputs.
+    fn check(&self) -> Result<(), String> {
+        let originals: Vec<&OutputFile> =
+            self.result.outputs.iter().filter(|output| output.kind != OutputKind::New).collect();
+        if originals.len() != self.files.len() {
+            return Err(format!("{} of {} files", originals.len(), self.files.len()));
+        }
+        for (i, (output, source)) in originals.iter().zip(&self.files).enumerate() {
+            if output.path != source.relative || output.input != Some(i) {
+                return Err(format!("{} stands in the place of {}", output.path, source.relative));
+            }
+            let spans = self.rewritten(i);
+            if (output.kind == OutputKind::Unchanged) != spans.is_empty() {
+                return Err(format!("{} is called {:?}", output.path, output.kind));
+            }
+            only_guards_added(&source.file.bytes, &output.bytes, &spans)
+                .map_err(|why| format!("{}: {why}", output.path))?;
+        }
+        Ok(())
+    }
+
+    /// Whether the movement of a line stayed, with a reason.
+    fn refusal(&self, line: u32) -> Result<(), String> {
+        let file = &self.files[0].file;
+        let covers = |span: Span| {
+            (file.position(span.start).line..=file.position(span.end).line).contains(&line)
+        };
+        let segments: Vec<_> =
+            self.result.segments.iter().filter(|segment| covers(segment.span)).collect();
+        if segments.iter().any(|segment| segment.rewritten) {
+            return Err(format!("{}:{line}: refused in the source, but rewritten", self.name));
+        }
+        let noted = self.result.before.0.unresolved.iter().any(|note| covers(note.span));
+        if noted || segments.iter().any(|segment| segment.reason.is_some()) {
+            Ok(())
+        } else {
+            Err(format!("{}:{line}: stays, but no reason is given", self.name))
+        }
+    }
+}
+
+/// Takes the guards out of an output; what is left has to be the original.
+fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> Result<(), String> {
+    let end_of_line = match original.iter().position(|b| *b == b'\n') {
+        Some(i) if i > 0 && original[i - 1] == b'\r' => "\r\n",
+        _ => "\n",
+    };
+    let mut rest = output;
+    let mut from = 0;
+    for span in spans {
+        let statements = &original[span.clone()];
+        let line = original[..span.start].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+        let indent: String = original[line..span.start]
+            .iter()
+            .take_while(|b| b.is_ascii_whitespace())
+            .map(|b| char::from(*b))
+            .collect();
+        let place = original[..span.start].split(|b| *b == b'\n').count();
+
+        rest = rest
+            .strip_prefix(&original[from..span.start])
+            .ok_or(format!("bytes before line {place} differ"))?;
+        let otherwise = format!("{end_of_line}{indent}ELSE{end_of_line}{indent}");
+        let head = find_bytes(rest, otherwise.as_bytes())
+            .ok_or(format!("no guard before line {place}"))?;
+        guard_is_plain(&rest[..head], &format!("{end_of_line}{indent}"))
+            .map_err(|why| format!("guard before line {place}: {why}"))?;
+        rest = rest[head + otherwise.len()..]
+            .strip_prefix(statements)
+            .ok_or(format!("the statements from line {place} on differ"))?;
+        let tail = format!("{end_of_line}{indent}ENDIF");
+        rest = rest
+            .strip_prefix(tail.as_bytes())
+            .ok_or(format!("the guard of line {place} has no end"))?;
+        from = span.end;
+    }
+    if rest == &original[from..] { Ok(()) } else { Err("bytes after the last guard differ".into()) }
+}
+
+/// `IF … THEN`, a call, and any number of `ELSEIF … THEN` with a call.
+fn guard_is_plain(head: &[u8], line_break: &str) -> Result<(), String> {
+    let head = std::str::from_utf8(head).map_err(|error| error.to_string())?;
+    for (i, line) in head.split(line_break).enumerate() {
+        let (begin, end) = match i {
+            0 => ("IF jpAt(jpFrom", " THEN"),
+            _ if i % 2 == 0 => ("ELSEIF jpAt(jpFrom", " THEN"),
+            _ => ("    jpRun", ";"),
+        };
+        if !(line.starts_with(begin) && line.ends_with(end)) {
+            return Err(format!("'{line}'"));
+        }
+    }
+    Ok(())
+}
+
+fn find_bytes(bytes: &[u8], part: &[u8]) -> Option<usize> {
+    bytes.windows(part.len()).position(|window| window == part)
+}
+
+/// Lines (from 1) of the movements below a `! Refused:` comment.
+fn refused_lines(bytes: &[u8]) -> Vec<u32> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = Vec::new();
+    let mut open = false;
+    for (i, line) in text.lines().enumerate() {
+        let statement = line.trim_start();
+        open |= statement.starts_with(REFUSED);
+        if open && MOVES.iter().any(|name| statement.starts_with(name)) {
+            lines.push(i as u32 + 1);
+            open = false;
+        }
+    }
+    lines
+}
+
+#[test]
+fn programs_keep_every_byte_outside_their_guards() {
+    for name in ["pick_place", "paper"] {
+        let case = case(name, &modules(name));
+        case.check().unwrap_or_else(|why| panic!("{name}: {why}"));
+        let rewritten: usize = (0..case.files.len()).map(|i| case.rewritten(i).len()).sum();
+        assert!(rewritten > 0, "{name}: nothing was rewritten, so nothing was tested");
+    }
+}
+
+#[test]
+fn hard_programs_keep_every_byte_and_every_refused_movement() {
+    let mut rewritten = 0;
+    let mut refused = 0;
+    let mut wrong = Vec::new();
+    for path in modules("hard") {
+        let case = case(path.file_name().unwrap().to_str().unwrap(), std::slice::from_ref(&path));
+        if let Err(why) = case.check() {
+            wrong.push(format!("{}: {why}", case.name));
+        }
+        rewritten += case.rewritten(0).len();
+        let file = &case.files[0].file;
+        for line in refused_lines(&file.bytes) {
+            refused += 1;
+            wrong.extend(case.refusal(line).err());
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(rewritten > 0 && refused > 0, "{rewritten} rewritten, {refused} refused");
+}
+
+/// The check finds what it is there for.
+#[test]
+fn changed_bytes_are_found() {
+    let original = b"! a\n  MoveJ p,v,fine,t;\n! b\n";
+    let start = find_bytes(original, b"MoveJ").unwrap();
+    let span = start..start + "MoveJ p,v,fine,t;".len();
+    let good = "! a\n  IF jpAt(jpFrom1) THEN\n      jpRun1 t;\n  ELSE\n  MoveJ p,v,fine,t;\n  \
+                ENDIF\n! b\n";
+    let check =
+        |output: &str| only_guards_added(original, output.as_bytes(), std::slice::from_ref(&span));
+    assert_eq!(check(good), Ok(()));
+    let bad = [
+        ("! a", "! A"),
+        ("! b", "!  b"),
+        ("MoveJ p,v,fine", "MoveJ p,v,z10"),
+        ("  ENDIF", "  Stop;\n  ENDIF"),
+        ("ENDIF\n", "ENDIF\r\n"),
+        ("jpRun1 t;", "jpRun1 t;\n      Stop;"),
+        ("jpAt(jpFrom1)", "TRUE"),
+    ];
+    for (from, to) in bad {
+        assert!(check(&good.replacen(from, to, 1)).is_err(), "{from} -> {to}");
+    }
+    assert!(only_guards_added(original, good.as_bytes(), &[]).is_err());
+}
