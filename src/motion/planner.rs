@@ -161,18 +161,13 @@ fn slowed(
         if excess > 1.0 {
             let at = [s[k], s[k + 1]];
             for (end, at) in pair.iter_mut().zip(at) {
-                let speed = speed_at(pieces, at);
-                end.v_max = end.v_max.min(speed / excess.sqrt());
+                let speed = motion.path_speed(motion.time_at(at));
+                // At rest there is no speed to lower.
+                if speed > 0.0 {
+                    end.v_max = end.v_max.min(speed / excess.sqrt());
+                }
             }
         }
     }
     PathGrid::new(s.to_vec(), ends).ok()
-}
-
-fn speed_at(pieces: &[Cubic], s: f64) -> f64 {
-    let after = pieces.partition_point(|p| p.state[0] <= s);
-    let here = |i: usize| pieces.get(i).map_or(0.0, |p| p.state[1]);
-    // Near the ends the speed itself is small: a cap there would forbid starting.
-    let speed = here(after.saturating_sub(1)).max(here(after));
-    if speed > 0.0 { speed } else { f64::INFINITY }
 }

@@ -87,6 +87,17 @@ impl TimedMotion {
         }
     }
 
+    /// ṡ of a path motion at `t`; of a stream, 0.
+    pub fn path_speed(&self, t: f64) -> f64 {
+        match self {
+            TimedMotion::Path(_, pieces) => {
+                let after = pieces.partition_point(|p| p.t <= t);
+                pieces.get(after.saturating_sub(1)).map_or(0.0, |p| p.at(t - p.t)[1].max(0.0))
+            }
+            TimedMotion::Stream(_) => 0.0,
+        }
+    }
+
     /// The time at which a path motion passes s; of a stream, 0.
     pub fn time_at(&self, s: f64) -> f64 {
         match self {

@@ -180,7 +180,8 @@ impl PathGrid {
         let mut held = self.clone();
         for (k, pair) in held.ends.iter_mut().enumerate() {
             for (end, s) in pair.iter_mut().zip(&self.s[k..k + 2]) {
-                let near = bounds.iter().filter(|(at, _, reach)| (at - s).abs() <= *reach);
+                // A hair more: round figures put nodes exactly at the reach.
+                let near = bounds.iter().filter(|(at, _, reach)| (at - s).abs() <= reach * 1.001);
                 end.v_max = near.map(|(_, v, _)| *v).fold(end.v_max, f64::min);
             }
         }
