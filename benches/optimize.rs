@@ -5,10 +5,10 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::motion::stream::DOF;
-use joulepath::optimize::energy_program::minimize_energy;
-use joulepath::optimize::path_energy::{EnergyModel, Sharing};
 use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
+use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::path_energy::{EnergyModel, Sharing};
 use joulepath::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
 use joulepath::optimize::stream_polish::{Corridor, polish_stream};

@@ -112,7 +112,8 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             model.dof
         );
     }
-    let entry = args.entry.clone().or_else(|| config.entry.clone()).unwrap_or_else(|| "main".into());
+    let entry =
+        args.entry.clone().or_else(|| config.entry.clone()).unwrap_or_else(|| "main".into());
     let mut inputs: BTreeMap<String, f64> =
         config.inputs.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect();
     for text in &args.inputs {
@@ -170,7 +171,9 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
 
 fn start_position(text: &str) -> anyhow::Result<[f64; 6]> {
     let wrong = || {
-        anyhow::anyhow!("--start {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0")
+        anyhow::anyhow!(
+            "--start {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0"
+        )
     };
     let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     let values: [f64; 6] = values.map_err(|_| wrong())?.try_into().map_err(|_| wrong())?;

@@ -22,6 +22,7 @@ use crate::text::charset;
 #[command(
     after_help = "Example: joulepath optimize fixtures/pick_place --robot IRB1600-10/1.45 --out optimized"
 )]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub struct OptimizeArgs {
     #[command(flatten)]
     program: ProgramArgs,
@@ -110,7 +111,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         written.extend(write_in_place(&job, &result)?);
     }
     if let Some(path) = &args.report {
-        let html = String::new();
+        let html = report::html::optimize_report(&result, &job.files, &job.model, &job.entry)?;
         output::write(path, html.as_bytes())?;
         written.push(path.display().to_string());
     }
@@ -250,9 +251,7 @@ fn diff(job: &Job, result: &Retrofit) -> String {
             format!("a/{}", file.path)
         };
         let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
-        text.push_str(
-            &diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string(),
-        );
+        text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
     }
     text
 }

@@ -14,7 +14,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let failed = || format!("cannot write '{}'; check the folder and its permissions", path.display());
+    let failed =
+        || format!("cannot write '{}'; check the folder and its permissions", path.display());
     std::fs::create_dir_all(folder).with_context(failed)?;
     let mut file = tempfile::NamedTempFile::new_in(folder).with_context(failed)?;
     file.write_all(bytes).with_context(failed)?;

@@ -29,7 +29,9 @@ pub struct Config {
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
     /// It can't be read.
-    #[error("cannot read the configuration '{path}': {reason}; check the path, or leave --config out")]
+    #[error(
+        "cannot read the configuration '{path}': {reason}; check the path, or leave --config out"
+    )]
     Unreadable {
         /// Its path.
         path: String,

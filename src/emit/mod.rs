@@ -9,6 +9,4 @@ pub mod stream_module;
 
 pub use brake_note::{BrakeDwell, brake_note};
 pub use names::Names;
-pub use stream_module::{
-    EmitError, Emitted, EmittedStream, Site, can_guard, emit, end_of_line,
-};
+pub use stream_module::{EmitError, Emitted, EmittedStream, Site, can_guard, emit, end_of_line};

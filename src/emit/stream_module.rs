@@ -4,8 +4,8 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use super::names::Names;
-use crate::ir::number::{TIME_DECIMALS, joints, number};
 use crate::ir::movement::LocalValue;
+use crate::ir::number::{TIME_DECIMALS, joints, number};
 use crate::ir::value::Datum;
 use crate::text::{Edit, SourceFile, Span};
 
@@ -204,11 +204,9 @@ fn condition(
             targets.push(TargetText { r#type: "jointtarget", name: constant.to_owned(), value });
             Ok(format!("@joints({name},{constant})"))
         }
-        (_, Datum::Num(x)) if x.is_finite() => Ok(format!(
-            "Abs({name}-({}))<{}",
-            number(*x, 6),
-            number(NUMBER_TOLERANCE, 6)
-        )),
+        (_, Datum::Num(x)) if x.is_finite() => {
+            Ok(format!("Abs({name}-({}))<{}", number(*x, 6), number(NUMBER_TOLERANCE, 6)))
+        }
         (_, Datum::Bool(b)) => Ok(format!("{name}={}", if *b { "TRUE" } else { "FALSE" })),
         _ => match &local.alias {
             Some(alias) => Ok(format!("{name}={alias}")),

@@ -70,11 +70,8 @@ pub fn holding_w(model: &Model, load: &Load, q: &Joints) -> Joints {
 /// Longest interval of the quadrature, s.
 const MAX_STEP: f64 = 0.01;
 /// Gauss-Legendre with three points on [−1, 1]: exact up to degree 5.
-const GAUSS: [(f64, f64); 3] = [
-    (-0.774_596_669_241_483_4, 5.0 / 9.0),
-    (0.0, 8.0 / 9.0),
-    (0.774_596_669_241_483_4, 5.0 / 9.0),
-];
+const GAUSS: [(f64, f64); 3] =
+    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// The motion energy (without idle and brake parts) between two times of a motion.
 pub fn motion_energy(

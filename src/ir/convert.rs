@@ -190,8 +190,7 @@ pub(super) fn rel_tool(target: &Datum, offset: [f64; 3], turn: [f64; 3]) -> Conv
         * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), ry)
         * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rz);
     let [dx, dy, dz] = offset;
-    let moved =
-        frame * Isometry3::from_parts(Translation3::new(dx * MM, dy * MM, dz * MM), turned);
+    let moved = frame * Isometry3::from_parts(Translation3::new(dx * MM, dy * MM, dz * MM), turned);
     let Datum::List(mut list) = pose_datum(&moved) else { return Err("not a pose".into()) };
     list.push(conf.clone());
     list.push(external.clone());

@@ -43,11 +43,7 @@ pub fn lookup(key: &str) -> Option<Value> {
     Some(match key {
         "vmax" => speed(VMAX),
         "tool0" => Value::constant(
-            Datum::List(vec![
-                Datum::Bool(true),
-                identity_pose(),
-                light_load(),
-            ]),
+            Datum::List(vec![Datum::Bool(true), identity_pose(), light_load()]),
             "tooldata",
         ),
         "wobj0" => Value::constant(

@@ -219,8 +219,7 @@ impl RoutineScope<'_> {
                         found.params.insert((self.id, index));
                     }
                 } else if !routine.data.iter().any(|d| d.name.key == name.key)
-                    && let Some(Symbol::Data(id)) =
-                        self.program.resolve(self.id.module, &name.key)
+                    && let Some(Symbol::Data(id)) = self.program.resolve(self.id.module, &name.key)
                     && self.program.data(id).kind != DataKind::Const
                 {
                     found.data.insert(id);

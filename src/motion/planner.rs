@@ -7,13 +7,13 @@
 use std::sync::Arc;
 
 use super::controller::Planning;
+use super::sampling::{self, Loaded, SpeedCap};
+use super::smooth::{Cubic, moving_average};
+use super::timed::TimedMotion;
 use super::timing::grid::PathGrid;
 use super::timing::limits::PathLimits;
 use super::timing::profile::Profile;
 use super::timing::reachability::time_optimal;
-use super::sampling::{self, Loaded, SpeedCap};
-use super::smooth::{Cubic, moving_average};
-use super::timed::TimedMotion;
 use crate::path::JointPath;
 use crate::path::joint_path::{DOF, Joints};
 
@@ -82,7 +82,11 @@ pub fn plan(
             })
             .collect();
         let pieces = timing(loaded, path, &slowed, limits, planning)?;
-        if duration(&pieces) > time { low = share } else { high = share }
+        if duration(&pieces) > time {
+            low = share;
+        } else {
+            high = share;
+        }
         best = pieces;
     }
     let stretch = time / duration(&best);

@@ -53,8 +53,7 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
     }
     // Evenly in each zone, whatever pieces it happens to be made of.
     let mut zone: Option<(f64, f64)> = None;
-    let is_zone =
-        |kind: PieceKind| matches!(kind, PieceKind::CartesianZone | PieceKind::JointZone);
+    let is_zone = |kind: PieceKind| matches!(kind, PieceKind::CartesianZone | PieceKind::JointZone);
     for piece in path.pieces() {
         let end = piece.s + piece.length;
         zone = match (zone, is_zone(piece.kind)) {
@@ -81,8 +80,7 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
 
 /// The edges of a zone and nodes between them.
 fn zone_nodes((begin, end): (f64, f64)) -> impl Iterator<Item = f64> {
-    (0..=ZONE_INTERVALS)
-        .map(move |i| begin + (end - begin) * i as f64 / ZONE_INTERVALS as f64)
+    (0..=ZONE_INTERVALS).map(move |i| begin + (end - begin) * i as f64 / ZONE_INTERVALS as f64)
 }
 
 /// The grid at these nodes, with the speed caps of the legs.

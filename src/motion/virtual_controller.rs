@@ -335,10 +335,8 @@ impl VirtualController<'_> {
             Ok(paths) => (paths, None),
             Err(error) => {
                 // For the time alone: the same points joint by joint.
-                let joint: Vec<Leg> = legs
-                    .iter()
-                    .map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() })
-                    .collect();
+                let joint: Vec<Leg> =
+                    legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
                 let problem = Some((error.leg(), error.to_string()));
                 (build(self.model, &joint).unwrap_or_default(), problem)
             }

@@ -49,6 +49,7 @@ impl Check {
     }
 
     /// The larger of each figure.
+    #[must_use]
     pub fn max(&self, other: &Check) -> Check {
         Check {
             velocity: self.velocity.max(other.velocity),
@@ -88,9 +89,7 @@ pub fn check(
         velocity: share(&stream.max_velocity(), &limits.velocity),
         acceleration: share(&stream.max_acceleration(), &limits.acceleration),
         jerk: share(&stream.max_jerk(), &limits.jerk),
-        endpoint_error_rad: (0..DOF)
-            .map(|j| (stream.end()[j] - end[j]).abs())
-            .fold(0.0, f64::max),
+        endpoint_error_rad: (0..DOF).map(|j| (stream.end()[j] - end[j]).abs()).fold(0.0, f64::max),
         ..Check::none()
     };
     let mut data = Data::new();

@@ -4,8 +4,8 @@ use nalgebra::{Isometry3, Vector3};
 
 use crate::ir::movement::Movement;
 use crate::kinematics::fk;
-use crate::motion::timeline::Run;
 use crate::motion::timed::TimedMotion;
+use crate::motion::timeline::Run;
 use crate::path::PieceKind;
 use crate::robot::Model;
 
@@ -110,11 +110,7 @@ impl Corridor {
             let hi = (best.1 + 1).min(self.places.len() - 1);
             f(place).max(f(&self.places[lo])).max(f(&self.places[hi]))
         };
-        Offset {
-            distance: best.0,
-            tolerance: near(|p| p.tolerance),
-            ceiling: near(|p| p.ceiling),
-        }
+        Offset { distance: best.0, tolerance: near(|p| p.tolerance), ceiling: near(|p| p.ceiling) }
     }
 
     /// The ceilings of all places, each lower one holding from `reach` (m) before it to as much
@@ -181,7 +177,8 @@ impl Corridor {
         let aside = |k: usize| {
             let along = self.places[k].pose.translation.vector - place.translation.vector;
             let square = along.norm_squared();
-            let share = if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+            let share =
+                if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
             (from - along * share).norm()
         };
         let mut straight = from.norm();
@@ -209,7 +206,9 @@ impl Ceilings {
     pub fn of(self, movement: &Movement) -> f64 {
         use crate::ir::instructions::MoveForm::{Circular, Linear};
         match (self, movement.form) {
-            (Ceilings::Programmed, Linear | Circular) => movement.speed.tcp,
+            (Ceilings::Programmed, Linear | Circular) => {
+                movement.speed.tcp.min(movement.settings.speed_max)
+            }
             _ => f64::INFINITY,
         }
     }

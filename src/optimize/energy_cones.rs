@@ -22,11 +22,11 @@
 //! The rest at both ends is eliminated: there the cones would have no interior.
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
+use super::path_energy::{EnergyModel, Sharing, evaluate};
+use crate::motion::stream::DOF;
 use crate::motion::timing::grid::PathGrid;
 use crate::motion::timing::limits::{PathLimits, Row, rows};
-use super::path_energy::{EnergyModel, Sharing, evaluate};
 use crate::motion::timing::profile::Profile;
-use crate::motion::stream::DOF;
 
 /// What stands for √b where it is concave.
 #[derive(Clone, Copy)]

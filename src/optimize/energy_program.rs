@@ -5,12 +5,12 @@
 //! answer counts only after the profile itself has been verified and evaluated.
 
 use super::energy_cones::{Programs, Root, Step};
+use super::path_energy::{EnergyModel, EnergyParts, evaluate};
+use crate::motion::stream::DOF;
 use crate::motion::timing::grid::{PathGrid, PathPoint};
 use crate::motion::timing::limits::{PathLimits, worst_ratio};
-use super::path_energy::{EnergyModel, EnergyParts, evaluate};
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
-use crate::motion::stream::DOF;
 
 /// A profile and what is known of its quality.
 #[derive(Clone, Debug, PartialEq)]

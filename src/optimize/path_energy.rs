@@ -4,9 +4,9 @@
 //! or as a sum on a common bus) is lost but for the share that is given back; a motor adds
 //! copper losses k τ².
 
+use crate::motion::stream::{DOF, Joints};
 use crate::motion::timing::grid::{PathGrid, PathPoint};
 use crate::motion::timing::profile::Profile;
-use crate::motion::stream::{DOF, Joints};
 
 /// Who can use the braking power of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

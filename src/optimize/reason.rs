@@ -104,7 +104,9 @@ impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: ", self.code())?;
         match self {
-            Reason::FirstMovement => f.write_str("the first movement brings the robot to a known place"),
+            Reason::FirstMovement => {
+                f.write_str("the first movement brings the robot to a known place")
+            }
             Reason::UnknownStart(why) => write!(f, "where it starts is not known ({why})"),
             Reason::NotConstant(what) => f.write_str(what),
             Reason::Unresolved(why)
@@ -130,10 +132,15 @@ impl std::fmt::Display for Reason {
             Reason::NoMotion => f.write_str("the robot is there already"),
             Reason::NoSaving => f.write_str("no energy is saved in the time that there is"),
             Reason::TooManyVariants(n) => write!(f, "it runs in {n} different ways"),
+            Reason::ShortDwell(break_even) if break_even.is_infinite() => {
+                f.write_str("nothing is to be held, or no brake is known")
+            }
             Reason::ShortDwell(break_even) => {
                 write!(f, "the brake pays from {break_even:.1} s on")
             }
-            Reason::UnknownDwell => f.write_str("how long it waits is not known (--input states it)"),
+            Reason::UnknownDwell => {
+                f.write_str("how long it waits is not known (--input states it)")
+            }
             Reason::NeedsSetting(break_even) => write!(
                 f,
                 "the brake pays from {break_even:.1} s on, by a setting of the controller"

@@ -8,18 +8,18 @@ use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::energy_program::minimize_energy;
 use super::path_energy::{EnergyModel, Sharing};
+use super::plant::Plant;
 use super::reason::Reason;
 use super::stream_fit::{StreamFit, fit_stream};
-use super::plant::Plant;
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_spacing::{Spacing, adaptive_intervals};
-use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
 use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
-use crate::kinematics::{fk, jacobian};
 use crate::energy::{EnergyParts, account};
+use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
+use crate::kinematics::{fk, jacobian};
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::Stream;
 use crate::motion::timed::TimedMotion;
@@ -89,6 +89,8 @@ const SHAPING_TIME: f64 = 0.04;
 const EASING: f64 = 10.0;
 /// Reach of lower ceilings at first, m.
 const FIRST_REACH: f64 = 0.006;
+/// Rounding between two integrations of the same energy, relative.
+const BOUND_ROUNDING: f64 = 1e-5;
 /// Placing of the points at first, share of the tolerance of the path.
 const FIRST_SPACING: f64 = 0.1;
 /// Corridor of the polishing at first, share of the tolerance of the path.
@@ -199,7 +201,7 @@ impl<'a> Work<'a> {
                 .ok_or(Reason::NoSaving)?;
             match self.realise(&optimum.profile, budget, &margins) {
                 Ok(attempt) if attempt.check.holds() => {
-                    let bound = Some(optimum.lower_bound);
+                    let bound = self.lower_bound(budget);
                     return Ok(self.retiming(attempt.stream, attempt.check, bound));
                 }
                 Ok(attempt) => {
@@ -214,6 +216,14 @@ impl<'a> Work<'a> {
             }
         }
         Err(Reason::NoStream(problem.unwrap_or_default()))
+    }
+
+    /// A bound on the motion energy of the path in this time at the full limits, J.
+    fn lower_bound(&self, budget: f64) -> Option<f64> {
+        let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
+        let fast = fastest_profile(&grid, &limits).ok()?;
+        let outcome = minimize_energy(&grid, &limits, &self.model, &fast, budget);
+        outcome.into_optimum().map(|optimum| optimum.lower_bound)
     }
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
@@ -247,9 +257,8 @@ impl<'a> Work<'a> {
     }
 
     fn first_margins(&self) -> Margins {
-        let line = self.task.run.legs.iter().any(|leg| {
-            !matches!(leg.kind, crate::path::LegKind::Joint)
-        });
+        let line =
+            self.task.run.legs.iter().any(|leg| !matches!(leg.kind, crate::path::LegKind::Joint));
         let tolerance = if line { LINE_TOLERANCE } else { JOINT_TOLERANCE };
         Margins {
             load: FIRST_MARGIN,
@@ -260,7 +269,13 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// The problem on the path, shaped so that a stream can follow its solution.
     fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+        let (grid, limits) = self.bare_grid(margins)?;
+        Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
+    }
+
+    fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         let caps: Vec<SpeedCap> = self
             .task
             .run
@@ -276,7 +291,6 @@ impl<'a> Work<'a> {
         let no_grid = |why: String| Reason::NoStream(why);
         let grid = sampling::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
-        let grid = grid.holding(SHAPING_TIME, margins.reach);
         let full = motion_limits(self.task.model, margins.load);
         let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
             .map_err(|error| no_grid(error.to_string()))?;
@@ -297,7 +311,8 @@ impl<'a> Work<'a> {
             tolerance: margins.spacing,
             lever: self.lever,
         };
-        let intervals = rounded(adaptive_intervals(&reference, duration, &spacing), duration);
+        let intervals =
+            rounded_intervals(&adaptive_intervals(&reference, duration, &spacing), duration);
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
             .map_err(|error| failed(&error.to_string()))?;
         let fitted = match fit {
@@ -320,7 +335,7 @@ impl<'a> Work<'a> {
             &PolishCorridor { tolerance: margins.corridor, lever: self.lever },
         )
         .map_err(|error| failed(&error.to_string()))?;
-        let stream = self.rounded(&polished.stream)?;
+        let stream = rounded_points(&polished.stream)?;
         let tool = self.task.run.legs[0].tool;
         let check = check(
             self.task.model,
@@ -335,8 +350,7 @@ impl<'a> Work<'a> {
 
     fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
         let n = (profile.duration() / REFERENCE_STEP).ceil().max(8.0) as usize;
-        let times: Vec<f64> =
-            (0..=n).map(|i| profile.duration() * i as f64 / n as f64).collect();
+        let times: Vec<f64> = (0..=n).map(|i| profile.duration() * i as f64 / n as f64).collect();
         let mut q = Vec::with_capacity(n + 1);
         let mut qd = Vec::with_capacity(n + 1);
         for (i, t) in times.iter().enumerate() {
@@ -348,13 +362,6 @@ impl<'a> Work<'a> {
         Reference::new(times, q, qd).map_err(|error| Reason::NoStream(error.to_string()))
     }
 
-    /// The stream with points as the emitted text will say them.
-    fn rounded(&self, stream: &Stream) -> Result<Stream, Reason> {
-        let points = stream.points().iter().map(|q| q.map(joint_as_emitted)).collect();
-        Stream::new(*stream.start(), points, stream.intervals().to_vec())
-            .map_err(|error| Reason::NoStream(error.to_string()))
-    }
-
     fn retiming(&self, stream: Stream, check: Check, bound: Option<f64>) -> Retiming {
         let task = self.task;
         let duration = stream.duration();
@@ -364,7 +371,11 @@ impl<'a> Work<'a> {
             + account::base(task.model, duration)
             + account::at_rest(task.model, &task.run.load, &task.run.end, task.run.settling);
         let idle = energy.energy_j() - energy.motion_energy_j();
-        let bound = bound.unwrap_or(f64::NEG_INFINITY).min(moving.motion_energy_j());
+        // The realised motion may cut a corner within the tolerance and so pass below the bound of
+        // the path itself: then the bound says no more than that.
+        let achieved = moving.motion_energy_j();
+        let bound =
+            bound.unwrap_or(f64::NEG_INFINITY).min(achieved - BOUND_ROUNDING * achieved.abs());
         Retiming {
             stream,
             check,
@@ -414,6 +425,11 @@ impl Plant for RobotPlant<'_> {
 const REFERENCE_STEP: f64 = 0.005;
 
 impl Margins {
+    /// The limits themselves.
+    fn none() -> Margins {
+        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, corridor: 0.0 }
+    }
+
     /// Tighter where an attempt failed.
     fn tighten(&mut self, check: &Check) {
         let load = check.torque.max(check.acceleration);
@@ -473,7 +489,7 @@ fn levers(model: &Model, run: &Run) -> Joints {
 const MIN_LEVER: f64 = 0.1;
 
 fn quantum() -> f64 {
-    10_f64.powi(-(TIME_DECIMALS as i32))
+    1.0 / 10_f64.powf(TIME_DECIMALS as f64)
 }
 
 /// At least half a step below `t`: what rounding the figures of one stream does to the time of
@@ -486,13 +502,20 @@ fn round_up(t: f64) -> f64 {
     (t / quantum()).ceil() * quantum()
 }
 
+/// The stream with points as the emitted text will say them.
+fn rounded_points(stream: &Stream) -> Result<Stream, Reason> {
+    let points = stream.points().iter().map(|q| q.map(joint_as_emitted)).collect();
+    Stream::new(*stream.start(), points, stream.intervals().to_vec())
+        .map_err(|error| Reason::NoStream(error.to_string()))
+}
+
 /// Intervals as they will be emitted, with the same sum.
-fn rounded(intervals: Vec<f64>, duration: f64) -> Vec<f64> {
+fn rounded_intervals(intervals: &[f64], duration: f64) -> Vec<f64> {
     let total = (duration / quantum()).round() as i64;
     let mut ticks: Vec<i64> = Vec::with_capacity(intervals.len());
     let mut exact = 0.0;
     let mut used = 0;
-    for interval in &intervals {
+    for interval in intervals {
         exact += interval / quantum();
         let tick = exact.round() as i64 - used;
         ticks.push(tick);

@@ -16,7 +16,7 @@ use crate::ir::value::Dependence;
 use crate::motion::Simulation;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Run, What};
-use crate::path::joint_path::{DOF, Joints};
+use crate::path::joint_path::{DOF, JointPath, Joints, PieceKind};
 use crate::text::Span;
 
 /// A place with the ways in which it ran.
@@ -68,8 +68,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         let locals = locals(run);
         let known = site.variants.iter_mut().find(|variant| {
             let other = variant.events.first().map(|i| &simulation.events[*i].what);
-            matches!(other, Some(What::Run(other)) if same(run, other))
-                && variant.locals == locals
+            matches!(other, Some(What::Run(other)) if same(run, other)) && variant.locals == locals
         });
         match known {
             Some(variant) => {
@@ -113,9 +112,10 @@ fn same(a: &Run, b: &Run) -> bool {
     close(&a.start, &b.start)
         && a.load == b.load
         && a.legs.len() == b.legs.len()
-        && a.legs.iter().zip(&b.legs).all(|(a, b)| {
-            close(&a.end, &b.end) && a.speed == b.speed && a.zone == b.zone
-        })
+        && a.legs
+            .iter()
+            .zip(&b.legs)
+            .all(|(a, b)| close(&a.end, &b.end) && a.speed == b.speed && a.zone == b.zone)
 }
 
 fn locals(run: &Run) -> Vec<LocalValue> {
@@ -149,10 +149,23 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     }
     match run.motions.as_slice() {
         [] => Err(Reason::NoMotion),
+        [(_, TimedMotion::Path(path, _))] if passes_singularity(path) => {
+            Err(Reason::Path("a line passes close to a singularity".into()))
+        }
         [(_, TimedMotion::Path(..))] => Ok(()),
         [(_, TimedMotion::Stream(_))] => Err(Reason::Timed),
         _ => Err(Reason::SharpCorner),
     }
+}
+
+/// Whether joints turn so fast along a line or arc, rad per m, that small errors of the model
+/// would count.
+fn passes_singularity(path: &JointPath) -> bool {
+    const NEAR_SINGULAR: f64 = 30.0;
+    path.pieces().iter().any(|piece| {
+        matches!(piece.kind, PieceKind::Cartesian | PieceKind::CartesianZone)
+            && piece.eval(piece.s).q1.iter().any(|rate| rate.abs() > NEAR_SINGULAR)
+    })
 }
 
 fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {

@@ -312,8 +312,7 @@ impl<P: Plant> Polish<'_, P> {
                 added |= broken;
             }
             if !added {
-                let damped: f64 =
-                    solution.x[..size].iter().map(|x| 0.5 * price * x * x).sum();
+                let damped: f64 = solution.x[..size].iter().map(|x| 0.5 * price * x * x).sum();
                 let predicted = model.now - (solution.objective / SCALE - damped);
                 return Some(Proposal { change, predicted });
             }

@@ -366,9 +366,8 @@ impl Builder<'_> {
         let q1: Joints = q1.into();
         let rate: Matrix6<f64> = jacobian_dot(self.model, &q, &q1, &leg.leg.tool);
         let bias = rate * Vector6::from(q1);
-        let q2 = lu
-            .solve(&(stack(&at.linear_rate, &at.angular_rate) - bias))
-            .ok_or_else(singular)?;
+        let q2 =
+            lu.solve(&(stack(&at.linear_rate, &at.angular_rate) - bias)).ok_or_else(singular)?;
         Ok(PathPoint { q, q1, q2: q2.into() })
     }
 

@@ -105,7 +105,8 @@ impl Curve {
                 let z = x / half - 1.0;
                 let [integral, weight, slope] = blend::turn(z);
                 let along = *half * z;
-                let position = corner.translation.vector + d1 * along + (d2 - d1) * (half * integral);
+                let position =
+                    corner.translation.vector + d1 * along + (d2 - d1) * (half * integral);
                 let angular_rate = (corner_angular(turns, *half, z + ANGULAR_STEP)
                     - corner_angular(turns, *half, z - ANGULAR_STEP))
                     / (2.0 * ANGULAR_STEP * half);
@@ -167,8 +168,8 @@ pub fn circle(
         return None;
     }
     let n2 = normal.norm_squared();
-    let offset = (b.norm_squared() * normal.cross(&a) - a.norm_squared() * normal.cross(&b))
-        / (2.0 * n2);
+    let offset =
+        (b.norm_squared() * normal.cross(&a) - a.norm_squared() * normal.cross(&b)) / (2.0 * n2);
     let center = start + offset;
     let unit = normal.normalize();
     let radius = start - center;
@@ -236,7 +237,9 @@ mod tests {
     #[test]
     fn circle_passes_the_via_point_both_ways_round() {
         let at = |deg: f64| Vector3::new(deg.to_radians().cos(), deg.to_radians().sin(), 0.2);
-        for (via, end, expected) in [(30.0, 90.0, 90.0), (200.0, 300.0, 300.0), (-30.0, -200.0, 200.0)] {
+        for (via, end, expected) in
+            [(30.0, 90.0, 90.0), (200.0, 300.0, 300.0), (-30.0, -200.0, 200.0)]
+        {
             let (center, normal, angle) = circle(&at(0.0), &at(via), &at(end)).expect("a circle");
             assert!((center - Vector3::new(0.0, 0.0, 0.2)).norm() < 1e-12);
             assert!((angle.to_degrees() - expected).abs() < 1e-9, "{via} {end} {angle}");

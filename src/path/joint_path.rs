@@ -86,8 +86,7 @@ impl Piece {
             point.q[j] = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
             point.q1[j] =
                 (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h;
-            point.q2[j] =
-                (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
+            point.q2[j] = (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
         }
         point
     }

@@ -13,6 +13,7 @@ use crate::robot::Model;
 
 /// The six parts, or nulls where the robot has no dynamics.
 #[derive(Serialize)]
+#[expect(clippy::struct_field_names, reason = "the names are the contract's")]
 struct Parts {
     mechanical_j: Option<f64>,
     friction_j: Option<f64>,
@@ -116,9 +117,8 @@ fn limit(run: &Run, index: usize) -> &'static str {
     // The mean speed against the programmed one.
     let leg = &run.legs[index];
     let from = if index == 0 { None } else { Some(run.legs[index - 1].target) };
-    let distance = from.map(|from| {
-        (from.translation.vector - leg.target.translation.vector).norm()
-    });
+    let distance =
+        from.map(|from| (from.translation.vector - leg.target.translation.vector).norm());
     match distance {
         Some(d) if d / record.duration > 0.9 * leg.speed.tcp => "speed",
         _ => "acceleration",

@@ -9,7 +9,5 @@ mod segments;
 mod verify;
 mod work;
 
-pub use figures::{
-    Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification,
-};
+pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
 pub use work::{Budget, Objective, RetrofitError, Settings, Source, read_program, retrofit};

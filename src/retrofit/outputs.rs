@@ -50,8 +50,8 @@ pub(super) fn emit(
             continue;
         }
         // Insertions at distinct places of the file can't overlap.
-        let bytes = text::apply(&source.file.bytes, &edits)
-            .unwrap_or_else(|_| source.file.bytes.clone());
+        let bytes =
+            text::apply(&source.file.bytes, &edits).unwrap_or_else(|_| source.file.bytes.clone());
         outputs.push(OutputFile {
             path: source.relative.clone(),
             kind: OutputKind::Changed,

@@ -81,9 +81,7 @@ fn left(simulation: &Simulation) -> Vec<Segment> {
             let reason = Reason::Unresolved(unresolved.reason.clone());
             by_place
                 .entry(unresolved.span)
-                .or_insert_with(|| {
-                    Segment::new(unresolved.span, SegmentKind::Timing, Some(reason))
-                })
+                .or_insert_with(|| Segment::new(unresolved.span, SegmentKind::Timing, Some(reason)))
                 .executions += 1;
         }
     }

@@ -40,8 +40,7 @@ pub(super) fn verify(
     sites: &[Site],
     ways: &[Way],
 ) -> Attempt {
-    let rewritten: Vec<usize> =
-        (0..ways.len()).filter(|i| ways[*i].outcome.is_ok()).collect();
+    let rewritten: Vec<usize> = (0..ways.len()).filter(|i| ways[*i].outcome.is_ok()).collect();
     let emitted: Vec<Source> = outputs
         .iter()
         .enumerate()
@@ -96,7 +95,9 @@ pub(super) fn verify(
     }
     let cycle_kept = match settings.budget {
         super::Budget::AsBefore => simulation.cycle_s <= original.cycle_s + TIME_TOLERANCE,
-        super::Budget::Takt(takt) => simulation.cycle_s <= takt.max(original.cycle_s) + TIME_TOLERANCE,
+        super::Budget::Takt(takt) => {
+            simulation.cycle_s <= takt.max(original.cycle_s) + TIME_TOLERANCE
+        }
         super::Budget::Factor(_) => true,
     };
     note("the cycle takes no longer than allowed", cycle_kept);
@@ -116,7 +117,9 @@ pub(super) fn verify(
             }
         }
         verification.worst = worst;
-        verification.checks.push(("every stream keeps limits, path and ends".into(), failed.is_empty()));
+        verification
+            .checks
+            .push(("every stream keeps limits, path and ends".into(), failed.is_empty()));
     }
     verification.passed = failed.is_empty() && verification.checks.iter().all(|(_, held)| *held);
     Attempt { simulation, verification, failed }

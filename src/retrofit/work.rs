@@ -130,10 +130,7 @@ pub enum RetrofitError {
 ///
 /// # Errors
 /// No entry, or one in a broken module.
-pub fn read_program(
-    files: &[Source],
-    entry: &str,
-) -> Result<(Program, RoutineId), RetrofitError> {
+pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId), RetrofitError> {
     let parsed: Vec<_> = files
         .par_iter()
         .map(|source| {
@@ -217,8 +214,16 @@ pub fn retrofit(
     let mut checked = loop {
         let emitted = outputs::emit(files, &program, entry, &simulation, &sites, &ways, &names)?;
         let attempt = verify::verify(files, &emitted, model, settings, &simulation, &sites, &ways);
-        if attempt.failed.is_empty() {
+        if attempt.verification.passed || ways.iter().all(|way| way.outcome.is_err()) {
             break (emitted, attempt);
+        }
+        if attempt.failed.is_empty() {
+            // No single stream is at fault: none is kept.
+            let broken = attempt.verification.checks.iter().find(|(_, held)| !held);
+            let why = broken.map_or("the verification failed", |(what, _)| what.as_str());
+            for way in ways.iter_mut().filter(|way| way.outcome.is_ok()) {
+                way.outcome = Err(Reason::Verification(format!("did not hold: {why}")));
+            }
         }
         for (way, reason) in attempt.failed {
             ways[way].outcome = Err(reason);
@@ -306,12 +311,15 @@ fn retime_all(
                     ))
                 })
             });
-            ways.push(Way { site: s, variant: v, outcome: Err(reason.unwrap_or(Reason::NoSaving)) });
+            ways.push(Way {
+                site: s,
+                variant: v,
+                outcome: Err(reason.unwrap_or(Reason::NoSaving)),
+            });
         }
     }
-    let open: Vec<usize> = (0..ways.len())
-        .filter(|i| matches!(ways[*i].outcome, Err(Reason::NoSaving)))
-        .collect();
+    let open: Vec<usize> =
+        (0..ways.len()).filter(|i| matches!(ways[*i].outcome, Err(Reason::NoSaving))).collect();
     let tasks: Vec<(usize, Task<'_>)> = open
         .iter()
         .filter_map(|i| {
@@ -363,9 +371,8 @@ fn goals(
         Budget::AsBefore => tasks.iter().map(|(_, t)| Goal::Within(before(t))).collect(),
         Budget::Factor(x) => tasks.iter().map(|(_, t)| Goal::Exactly(x * before(t))).collect(),
         Budget::Takt(takt) => {
-            let executions = |i: usize| {
-                sites[ways[i].site].variants[ways[i].variant].events.len() as f64
-            };
+            let executions =
+                |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
             let least: Vec<f64> =
                 tasks.par_iter().map(|(_, task)| fastest(task).unwrap_or(before(task))).collect();
             let movable: f64 = tasks.iter().map(|(i, t)| executions(*i) * before(t)).sum();
@@ -402,9 +409,5 @@ fn goals(
 
 /// No verification was made: nothing was changed.
 pub(super) fn nothing_to_verify() -> Verification {
-    Verification {
-        passed: true,
-        worst: crate::optimize::check::Check::none(),
-        checks: Vec::new(),
-    }
+    Verification { passed: true, worst: crate::optimize::check::Check::none(), checks: Vec::new() }
 }

@@ -1,12 +1,12 @@
 //! Grids, limits, profiles and references as plain data; scales and degenerate paths.
 
 use joulepath::motion::stream::DOF;
-use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::motion::timing::grid::{GridError, PathGrid, PathPoint, rest_to_rest_nodes};
 use joulepath::motion::timing::limits::{PathLimits, worst_ratio};
-use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::{Reachability, time_optimal};
+use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::optimize::stream_reference::{Reference, ReferenceError};
 
 use crate::analytic::single_joint;

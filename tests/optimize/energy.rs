@@ -1,12 +1,12 @@
 //! The profile of least energy.
 
 use joulepath::motion::stream::{DOF, Joints};
-use joulepath::optimize::energy_program::{EnergyOptimum, EnergyOutcome, minimize_energy};
 use joulepath::motion::timing::grid::PathGrid;
 use joulepath::motion::timing::limits::{PathLimits, worst_ratio};
-use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
+use joulepath::optimize::energy_program::{EnergyOptimum, EnergyOutcome, minimize_energy};
+use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 
 use crate::analytic::single_joint;
 use crate::arm;

@@ -1,11 +1,11 @@
 //! Streams that follow an intended motion.
 
 use joulepath::motion::stream::{DOF, Joints, Stream};
+use joulepath::motion::timing::profile::Profile;
+use joulepath::motion::timing::reachability::time_optimal;
 use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::optimize::plant::{Plant, realise};
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::time_optimal;
 use joulepath::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
 use joulepath::optimize::stream_polish::{Corridor, polish_stream};

@@ -159,13 +159,10 @@ fn geometric(name: &str, args: &[&Datum], turn: [f64; 3]) -> Option<(Datum, &'st
     let x = |i: usize| args.get(i).and_then(|d| d.num());
     let pose = |i: usize| args.get(i).and_then(|d| convert::pose(d, "the pose").ok());
     Some(match name {
-        "offs" => {
-            (convert::offs(args.first()?, [x(1)?, x(2)?, x(3)?]).ok()?, "robtarget")
+        "offs" => (convert::offs(args.first()?, [x(1)?, x(2)?, x(3)?]).ok()?, "robtarget"),
+        "reltool" => {
+            (convert::rel_tool(args.first()?, [x(1)?, x(2)?, x(3)?], turn).ok()?, "robtarget")
         }
-        "reltool" => (
-            convert::rel_tool(args.first()?, [x(1)?, x(2)?, x(3)?], turn).ok()?,
-            "robtarget",
-        ),
         "posemult" => (convert::pose_datum(&(pose(0)? * pose(1)?)), "pose"),
         "poseinv" => (convert::pose_datum(&pose(0)?.inverse()), "pose"),
         "posevect" => {

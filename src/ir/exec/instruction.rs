@@ -142,10 +142,8 @@ impl Executor<'_> {
         if let Some(condition) = condition {
             let value = self.eval(condition);
             let value = self.level(value);
-            let input = value
-                .origin
-                .iter()
-                .any(|d| matches!(d, super::super::value::Dependence::Input(_)));
+            let input =
+                value.origin.iter().any(|d| matches!(d, super::super::value::Dependence::Input(_)));
             if value.datum == Datum::Bool(true) && !input {
                 return self.wait(stmt, text, Some(0.0), None);
             }
@@ -301,10 +299,9 @@ impl Executor<'_> {
         settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
         let off = match key {
             // The limit is lifted by FALSE, FALSE or \Off; an override of 100 is none.
-            "pathacclim" => arguments
-                .positional
-                .iter()
-                .all(|expr| self.eval(expr).datum == Datum::Bool(false)),
+            "pathacclim" => {
+                arguments.positional.iter().all(|expr| self.eval(expr).datum == Datum::Bool(false))
+            }
             "worldacclim" => arguments.has_option("off"),
             "speedrefresh" => arguments
                 .positional

@@ -5,13 +5,27 @@ use super::super::hir::{Arg, ArgKind, Expr, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{LocalValue, Movement, Target, Unresolved, Zone};
 use super::super::value::{Datum, Dependence, Origin, Value};
-use std::sync::Arc;
 use super::Executor;
 use super::instruction::Arguments;
+use std::sync::Arc;
 
 /// Options that a movement may have without changing where or how fast it goes.
-const KNOWN_OPTIONS: &[&str] =
-    &["conc", "v", "t", "z", "inpos", "wobj", "tload", "tool", "speed", "zone", "topoint", "tojointpos", "cirpoint", "noeoffs"];
+const KNOWN_OPTIONS: &[&str] = &[
+    "conc",
+    "v",
+    "t",
+    "z",
+    "inpos",
+    "wobj",
+    "tload",
+    "tool",
+    "speed",
+    "zone",
+    "topoint",
+    "tojointpos",
+    "cirpoint",
+    "noeoffs",
+];
 
 impl Executor<'_> {
     pub(super) fn movement(

@@ -80,8 +80,7 @@ fn literals_have_their_values() {
 
 #[test]
 fn calls_keep_all_forms_of_arguments() {
-    let body =
-        statements("MoveJ \\Conc, *, v100 \\T:=2, Tool:=t \\WObj?w;\n%\"a\"% 1;\nHome(2);");
+    let body = statements("MoveJ \\Conc, *, v100 \\T:=2, Tool:=t \\WObj?w;\n%\"a\"% 1;\nHome(2);");
     let calls: Vec<(String, Vec<String>)> = body
         .iter()
         .map(|stmt| match &stmt.kind {
@@ -121,8 +120,7 @@ fn spans_are_those_of_the_original_bytes() {
 #[test]
 fn names_are_decoded_and_compared_without_case() {
     let module =
-        modules(b"MODULE m\nCONST num A\xD1O := 1;\n! f\xFCr die Gr\xF6\xDFe\nENDMODULE")
-            .remove(0);
+        modules(b"MODULE m\nCONST num A\xD1O := 1;\n! f\xFCr die Gr\xF6\xDFe\nENDMODULE").remove(0);
     assert_eq!(module.data[0].name.text, "AÑO");
     assert_eq!(module.data[0].name.key, "año");
 }
@@ -159,9 +157,7 @@ fn declarations_keep_everything() {
     let params: Vec<_> = p
         .params
         .iter()
-        .map(|param| {
-            (param.name.key.as_str(), param.mode, param.dims, param.optional, param.group)
-        })
+        .map(|param| (param.name.key.as_str(), param.mode, param.dims, param.optional, param.group))
         .collect();
     assert_eq!(
         params,
@@ -195,8 +191,7 @@ fn statements_with_errors_are_broken_and_their_neighbours_are_not() {
         WHILE (a DO g; ENDWHILE
         z;",
     );
-    let kinds: Vec<bool> =
-        body.iter().map(|stmt| matches!(stmt.kind, StmtKind::Broken)).collect();
+    let kinds: Vec<bool> = body.iter().map(|stmt| matches!(stmt.kind, StmtKind::Broken)).collect();
     let StmtKind::If { branches, .. } = &body[4].kind else { panic!("{:?}", body[4]) };
     assert!(matches!(branches[0].0.kind, ExprKind::Broken));
     assert_eq!(branches[0].1.len(), 1);
@@ -224,8 +219,7 @@ fn control_flow_keeps_its_branches() {
     assert_eq!((var.key.as_str(), shown(from), shown(to)), ("i", "1".into(), "9".into()));
     assert_eq!((shown(step.as_ref().unwrap()), inner.len()), ("2".into(), 1));
     let StmtKind::Test { cases, default, .. } = &body[2].kind else { panic!() };
-    let sizes: Vec<_> =
-        cases.iter().map(|(values, block)| (values.len(), block.len())).collect();
+    let sizes: Vec<_> = cases.iter().map(|(values, block)| (values.len(), block.len())).collect();
     assert_eq!((sizes, default.as_ref().unwrap().len()), (vec![(2, 1), (1, 0)], 2));
     assert!(matches!(&body[3].kind, StmtKind::Label(name) if name.key == "lab"));
     assert!(matches!(&body[4].kind, StmtKind::Goto(name) if name.key == "lab"));
