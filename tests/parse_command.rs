@@ -108,9 +108,17 @@ fn at_statement_starts(bytes: &[u8]) -> usize {
     for token in parse.tree.root().all_tokens().filter(|token| !token.kind().is_trivia()) {
         let starts = before.is_keyword() && before != TokenKind::Proc
             || matches!(before, TokenKind::Semicolon | TokenKind::RightParen | TokenKind::Colon)
-            || matches!(before, TokenKind::Identifier | TokenKind::Number);
+            || matches!(before, TokenKind::Identifier | TokenKind::Number | TokenKind::Placeholder);
         let name = String::from_utf8_lossy(token.text(bytes)).to_lowercase();
-        let family = ["move", "trigg", "search"].iter().any(|start| name.starts_with(start));
+        let rest = |start: &str| name.strip_prefix(start).unwrap_or("?").to_owned();
+        let plain = rest("move");
+        let plain = ["sync", "do", "ao", "go"]
+            .iter()
+            .find_map(|end| plain.strip_suffix(end))
+            .unwrap_or(&plain);
+        let family = ["absj", "j", "l", "c", "extj", "pnp"].contains(&plain)
+            || ["l", "j", "c", "absj", "lios", "jios"].contains(&rest("trigg").as_str())
+            || ["l", "c", "extj"].contains(&rest("search").as_str());
         count += usize::from(token.kind() == TokenKind::Identifier && starts && family);
         before = token.kind();
     }

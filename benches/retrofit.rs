@@ -1,0 +1,47 @@
+//! The whole of `optimize` on the shipped cell: read, simulate, optimise, emit, verify.
+#![expect(missing_docs, reason = "criterion makes the functions")]
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the bench")]
+
+use std::path::Path;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use joulepath::motion::Options;
+use joulepath::optimize::corridor::Ceilings;
+use joulepath::retrofit::{Budget, Objective, Settings, Source, retrofit};
+use joulepath::robot;
+use joulepath::text::{FileId, SourceFile};
+
+fn pick_place(c: &mut Criterion) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/pick_place");
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let files: Vec<Source> = paths
+        .iter()
+        .enumerate()
+        .map(|(i, path)| {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let bytes = std::fs::read(path).unwrap();
+            let file = SourceFile::new(FileId(i as u32), name.clone(), bytes);
+            Source { file, relative: name }
+        })
+        .collect();
+    let model = robot::find("IRB1600-10/1.45").unwrap();
+    let settings = Settings {
+        entry: "main".into(),
+        options: Options::default(),
+        objective: Objective::Energy,
+        budget: Budget::AsBefore,
+        spacing_s: 0.05,
+        ceilings: Ceilings::Programmed,
+    };
+    let mut group = c.benchmark_group("retrofit");
+    group.sample_size(10);
+    group.bench_function("pick_place", |b| {
+        b.iter(|| retrofit(&files, &model, &settings, &|_, _| {}).unwrap());
+    });
+    group.finish();
+}
+
+criterion_group!(benches, pick_place);
+criterion_main!(benches);
