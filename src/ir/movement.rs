@@ -177,9 +177,6 @@ pub struct Movement {
     pub origin: Origin,
     /// Values of the loop variables and parameters among them.
     pub locals: Vec<LocalValue>,
-    /// Movements with the same number always run together: no branch on an unknown
-    /// value and no wait of unknown length lies between them.
-    pub region: u32,
 }
 
 /// A movement that can't be worked out.

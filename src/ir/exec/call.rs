@@ -162,6 +162,5 @@ impl Executor<'_> {
             reason: reason.to_owned(),
             moves: true,
         }));
-        self.new_region();
     }
 }

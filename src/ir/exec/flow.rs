@@ -108,16 +108,9 @@ impl Executor<'_> {
     fn if_statement(&mut self, branches: &[(Expr, Block)], otherwise: Option<&Block>) -> Flow {
         for (condition, block) in branches {
             match self.condition(condition) {
-                Condition::Known(false) => {}
-                Condition::Known(true) => return self.block(block),
-                Condition::Assumed(level) => {
-                    self.new_region();
-                    if level {
-                        return self.branch(block);
-                    }
-                }
+                Condition::Known(false) | Condition::Assumed(false) => {}
+                Condition::Known(true) | Condition::Assumed(true) => return self.block(block),
                 Condition::Unknown(why) => {
-                    self.new_region();
                     self.unresolved(
                         condition.span,
                         format!("the condition is not known{why}: taken as FALSE"),
@@ -126,16 +119,9 @@ impl Executor<'_> {
             }
         }
         match otherwise {
-            Some(block) => self.branch(block),
+            Some(block) => self.block(block),
             None => Flow::Next,
         }
-    }
-
-    /// A branch that another run may not take.
-    fn branch(&mut self, block: &Block) -> Flow {
-        let flow = self.block(block);
-        self.new_region();
-        flow
     }
 
     fn condition(&mut self, expr: &Expr) -> Condition {
@@ -169,7 +155,6 @@ impl Executor<'_> {
         };
         let (Some(from), Some(to)) = (from, to) else {
             self.unresolved(stmt.span, "the bounds of the loop are not known: it was passed over");
-            self.new_region();
             return Flow::Next;
         };
         // Without STEP the loop counts towards its end.
@@ -207,11 +192,7 @@ impl Executor<'_> {
     fn while_statement(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
         for pass in 0..MAX_PASSES {
             match self.condition(condition) {
-                Condition::Known(false) => return Flow::Next,
-                Condition::Assumed(false) => {
-                    self.new_region();
-                    return Flow::Next;
-                }
+                Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
                 Condition::Known(true) if is_always_true(condition) => {
                     self.unresolved(stmt.span, "an endless loop: simulated for one pass");
                     return self.block(body);
@@ -219,7 +200,6 @@ impl Executor<'_> {
                 Condition::Known(true) => {}
                 Condition::Assumed(true) => {
                     // A loop that polls an input is a wait for it.
-                    self.new_region();
                     let signal = self.first_signal(condition);
                     self.machine.waits(Wait {
                         instruction: "WHILE".into(),
@@ -231,7 +211,6 @@ impl Executor<'_> {
                     return Flow::Next;
                 }
                 Condition::Unknown(why) => {
-                    self.new_region();
                     self.unresolved(
                         condition.span,
                         format!("the condition of the loop is not known{why}: passed over"),
@@ -260,27 +239,20 @@ impl Executor<'_> {
     ) -> Flow {
         let tested = self.eval(value);
         let tested = self.level(tested);
-        let certain = !tested.origin.iter().any(|d| matches!(d, Dependence::Input(_)));
         if let Some(unknown) = tested.datum.first_unknown() {
             let reason = format!("the TEST value is not known ({})", unknown.reason);
             self.unresolved(value.span, reason);
-            self.new_region();
         } else {
             for (values, block) in cases {
                 for expr in values {
                     if self.eval(expr).datum == tested.datum {
-                        if certain {
-                            return self.block(block);
-                        }
-                        self.new_region();
-                        return self.branch(block);
+                        return self.block(block);
                     }
                 }
             }
         }
         match default {
-            Some(block) if certain => self.block(block),
-            Some(block) => self.branch(block),
+            Some(block) => self.block(block),
             None => Flow::Next,
         }
     }

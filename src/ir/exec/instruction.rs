@@ -174,9 +174,6 @@ impl Executor<'_> {
     }
 
     fn wait(&mut self, stmt: &Stmt, text: &str, duration: Option<f64>, signal: Option<Arc<str>>) {
-        if duration.is_none() {
-            self.new_region();
-        }
         let routine = self.frame().routine.clone();
         self.machine.waits(Wait {
             instruction: text.into(),

@@ -70,8 +70,6 @@ pub fn execute(program: &Program, entry: RoutineId, machine: &mut dyn Machine) -
         frames: Vec::new(),
         signals: BTreeMap::new(),
         settings: Arc::new(Settings::default()),
-        region: 0,
-        next_region: 1,
         statements: 0,
         execution: Execution::default(),
     };
@@ -114,8 +112,6 @@ struct Executor<'a> {
     /// Level of each signal that the program has set or waited for.
     signals: BTreeMap<String, f64>,
     settings: Arc<Settings>,
-    region: u32,
-    next_region: u32,
     statements: u64,
     execution: Execution,
 }
@@ -150,11 +146,5 @@ impl Executor<'_> {
         if !self.execution.assumed.contains(&text) {
             self.execution.assumed.push(text);
         }
-    }
-
-    /// From here on movements need not run together with those before.
-    fn new_region(&mut self) {
-        self.region = self.next_region;
-        self.next_region += 1;
     }
 }

@@ -190,7 +190,6 @@ impl Executor<'_> {
             other_arguments,
             origin,
             locals,
-            region: self.region,
         })
     }
 
