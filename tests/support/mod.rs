@@ -15,7 +15,7 @@ pub(crate) fn fixtures(folder: &str) -> Vec<(String, Vec<u8>)> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(fixture_folder(folder))
         .unwrap()
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension != "snap"))
+        .filter(|path| path.extension().is_some_and(|extension| extension != "snap" && extension != "new"))
         .collect();
     paths.sort();
     let read = |path: PathBuf| {

@@ -39,6 +39,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parse {
         depth: 0,
         depth_reported: false,
         cut_off_reported: false,
+        split_if: None,
         open: Vec::new(),
         steps: 0,
     };
@@ -75,9 +76,21 @@ struct Parser<'a> {
     depth_reported: bool,
     /// Whether the end of the file was already reported as too early.
     cut_off_reported: bool,
+    /// The last compact IF whose statement is on a line of its own: its `THEN`
+    /// may be missing.
+    split_if: Option<SplitIf>,
     /// Block statements and routines that are not closed yet, outermost first.
     open: Vec<Open>,
     steps: u64,
+}
+
+/// A compact IF over two lines.
+#[derive(Clone, Copy)]
+struct SplitIf {
+    /// The token of its `IF`.
+    opener: usize,
+    /// The first token of its statement.
+    statement: usize,
 }
 
 /// Something that waits for its closing keyword.
@@ -247,6 +260,12 @@ impl<'a> Parser<'a> {
             let message = format!("expected {expected}, found {}", self.found());
             self.error_at(self.position, message);
         }
+    }
+
+    /// The end of the token before one, trivia left out.
+    fn end_before(&self, token: usize) -> u32 {
+        let before = (0..token).rev().find(|&before| !self.tokens.kind(before).is_trivia());
+        before.map_or(0, |before| self.tokens.range(before).end)
     }
 
     /// Reports something that is missing behind the last token.

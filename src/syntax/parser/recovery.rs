@@ -67,7 +67,9 @@ impl Parser<'_> {
             )
     }
 
-    /// Skips the rest of a statement that has an error, with its `;`.
+    /// Skips the rest of a statement that has an error, with its `;`. Behind a
+    /// `THEN` or `DO` the statement was the header of a block, whose keyword is
+    /// missing or misspelt: the block is read with it.
     pub(super) fn recover(&mut self) {
         let mark = self.mark();
         let start = self.position;
@@ -77,6 +79,15 @@ impl Parser<'_> {
                 TokenKind::EndOfFile => break,
                 TokenKind::Semicolon => {
                     self.bump();
+                    self.skip_leftovers();
+                    break;
+                }
+                TokenKind::Then | TokenKind::Do if !self.first_on_line(self.position) => {
+                    let inside = self.depth > 0 && !self.lacks_elseif();
+                    self.bump();
+                    if inside {
+                        self.headless_block(kind);
+                    }
                     break;
                 }
                 _ if ends_block(kind) => break,
@@ -91,12 +102,40 @@ impl Parser<'_> {
         }
     }
 
+    /// Behind a keyword: reports and skips the same keyword again.
+    pub(super) fn skip_doubled(&mut self, keyword: TokenKind) {
+        if self.at(keyword) && !self.first_on_line(self.position) {
+            self.error_at(self.position, format!("{} is doubled", keyword.describe()));
+            self.leaf(NodeKind::Error);
+        }
+    }
+
+    /// Behind the `;` of a statement that has an error: what is left on the
+    /// line without a `;` of its own belongs to the same mistake.
+    fn skip_leftovers(&mut self) {
+        let mut end = self.position;
+        while !self.first_on_line(end) {
+            let kind = self.tokens.kind(end);
+            if kind == TokenKind::Semicolon || kind.is_keyword() || kind == TokenKind::EndOfFile {
+                return;
+            }
+            end = self.after(end);
+        }
+        while self.position < end {
+            self.bump();
+        }
+    }
+
     fn ended_by_unclosed_string(&self) -> bool {
         self.end > 0 && self.tokens.kind(self.end - 1) == TokenKind::UnclosedString
     }
 
     /// The end of a simple statement or declaration: its `;`, or recovery.
     pub(super) fn end_statement(&mut self, expected: &str) {
+        if self.at(TokenKind::Semicolon) && self.quiet {
+            self.recover();
+            return;
+        }
         if self.eat(TokenKind::Semicolon) {
             return;
         }
@@ -105,6 +144,7 @@ impl Parser<'_> {
             if ends_block(self.current()) || new_line && self.looks_like_start() {
                 let message = format!("expected ';', found {}", self.found());
                 self.error_before(message);
+                self.headless_branches();
                 return;
             }
             self.error_expected(expected);
@@ -199,8 +239,8 @@ impl Parser<'_> {
         }
     }
 
-    /// `ENIDF` or `END IF` for `ENDIF`, alone on its line: the number of its
-    /// tokens, or 0.
+    /// `ENIDF`, `END IF`, `END` or `END_IF` for `ENDIF`, alone on its line: the
+    /// number of its tokens, or 0.
     fn misspelling(&mut self, closer: TokenKind) -> usize {
         let word = self.text(self.position);
         if !self.at(TokenKind::Identifier)
@@ -213,10 +253,14 @@ impl Parser<'_> {
         let wanted = closer.describe().as_bytes();
         if word.eq_ignore_ascii_case(b"END") {
             let rest = wanted.get(word.len()..).unwrap_or_default();
-            return if self.text(second).eq_ignore_ascii_case(rest) { 2 } else { 0 };
+            if self.text(second).eq_ignore_ascii_case(rest) {
+                return 2;
+            }
         }
         let alone = self.tokens.kind(second) == TokenKind::EndOfFile || self.first_on_line(second);
-        usize::from(alone && is_near(word, wanted))
+        let other = closer != TokenKind::EndModule
+            && word.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"END"));
+        usize::from(alone && (other || is_near(word, wanted)))
     }
 
     /// Whether the closing keyword at hand is the wrong one for the innermost
@@ -225,10 +269,7 @@ impl Parser<'_> {
         let found = self.current();
         let owner = self.open.iter().rev().find(|open| open.closer == found).copied();
         match owner {
-            None => {
-                let next = self.next();
-                next != wanted || closes_routine(wanted)
-            }
+            None => closes_routine(wanted) || !self.is_left_over(Open { closer: wanted, opener }),
             Some(owner) => {
                 let column = self.indentation(self.position);
                 column.is_some()
@@ -238,18 +279,30 @@ impl Parser<'_> {
         }
     }
 
+    /// Whether the closing keyword at hand, which no open block wants, is one too
+    /// many, rather than the innermost block's own one mistyped.
+    fn is_left_over(&mut self, inner: Open) -> bool {
+        let doubled = self.end > 0 && self.tokens.kind(self.end - 1) == self.current();
+        let columns = (self.indentation(self.position), self.indentation(inner.opener));
+        let outside = matches!(columns, (Some(here), Some(there)) if here != there);
+        doubled || outside || self.next() == inner.closer
+    }
+
     /// At a keyword that ends a block: whether no open block wants it, so that
     /// it can only be left over.
     pub(super) fn is_stray(&mut self) -> bool {
         let kind = self.current();
-        let Some(Open { closer, .. }) = self.open.last().copied() else { return true };
+        let Some(inner) = self.open.last().copied() else { return true };
+        let closer = inner.closer;
         match kind {
             TokenKind::Else | TokenKind::ElseIf => !self.is_awaited(TokenKind::EndIf),
             TokenKind::Case | TokenKind::Default => !self.is_awaited(TokenKind::EndTest),
             TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest => {
-                !self.is_awaited(kind) && (closes_routine(closer) || self.next() == closer)
+                let outermost = closes_routine(closer) || closer == TokenKind::EndRecord;
+                !self.is_awaited(kind) && (outermost || self.is_left_over(inner))
             }
-            TokenKind::EndRecord | TokenKind::Then | TokenKind::Do => true,
+            TokenKind::EndRecord => closer != kind,
+            TokenKind::Then | TokenKind::Do => true,
             _ => false,
         }
     }

@@ -1,10 +1,11 @@
 //! Statements: `grammar/statements.ebnf`.
 
-use super::Parser;
+use super::{Parser, SplitIf, excerpt};
 use super::recovery::{ends_block, starts_data, starts_statement};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
+use crate::syntax::tree::Mark;
 
 impl Parser<'_> {
     /// Statements up to a keyword that ends them.
@@ -59,7 +60,9 @@ impl Parser<'_> {
             }
             _ => format!("{} without its beginning", kind.describe()),
         };
-        self.error_at(position, message);
+        if !self.report_missing_then() {
+            self.error_at(position, message);
+        }
         let branches = match kind {
             TokenKind::Else | TokenKind::ElseIf => self.deeper(|parser| {
                 parser.open(TokenKind::EndIf, position);
@@ -77,6 +80,71 @@ impl Parser<'_> {
             self.bump();
         }
         self.finish(mark, NodeKind::Error);
+    }
+
+    /// At a keyword that is left over: if it stands below a compact IF over two
+    /// lines, that IF lacks its `THEN`.
+    fn report_missing_then(&mut self) -> bool {
+        let kind = self.current();
+        let Some(SplitIf { opener, statement }) = self.split_if.take() else { return false };
+        let column = self.indentation(self.position);
+        if !matches!(kind, TokenKind::Else | TokenKind::ElseIf | TokenKind::EndIf)
+            || column.is_none()
+            || column != self.indentation(opener)
+        {
+            return false;
+        }
+        let found = excerpt(self.text(statement));
+        let place = self.end_before(statement);
+        let related = self.related(self.position, format!("this {} has no IF", kind.describe()));
+        self.push_error(place, place, format!("expected THEN, found '{found}'"), Some(related));
+        true
+    }
+
+    /// The statements of a block whose header had an error behind its `THEN` or
+    /// `DO`, which was read, up to its closing keyword.
+    pub(super) fn headless_block(&mut self, after: TokenKind) {
+        let opener = self.position;
+        let read = self.deeper(|parser| {
+            if after == TokenKind::Then {
+                parser.open(TokenKind::EndIf, opener);
+                parser.block();
+                parser.else_branches();
+                parser.close_stray(TokenKind::EndIf);
+            } else {
+                parser.open(TokenKind::EndFor, opener);
+                parser.open(TokenKind::EndWhile, opener);
+                parser.block();
+                parser.open.pop();
+                parser.close_stray(TokenKind::EndFor);
+                parser.eat(TokenKind::EndWhile);
+            }
+        });
+        if read.is_none() {
+            self.skip_nested();
+        }
+        self.quiet = true;
+    }
+
+    /// At the `THEN` of a header without its keyword: whether it belongs to a
+    /// branch of the innermost `IF`, as its line is not indented more than that.
+    pub(super) fn lacks_elseif(&mut self) -> bool {
+        let Some(open) = self.open.last().copied() else { return false };
+        let line = self.first_of_line(self.position);
+        let columns = (self.indentation(line), self.indentation(open.opener));
+        // One column more is the space behind the keyword that is missing.
+        open.closer == TokenKind::EndIf
+            && self.at(TokenKind::Then)
+            && matches!(columns, (Some(here), Some(there)) if here <= there + 1)
+    }
+
+    /// Behind a statement that ends in an error: branches of a `TEST` or `IF`
+    /// whose keyword is missing are part of the same mistake.
+    pub(super) fn headless_branches(&mut self) {
+        let branch = matches!(self.current(), TokenKind::Case | TokenKind::Default);
+        if branch && self.depth > 0 && self.is_stray() {
+            self.stray();
+        }
     }
 
     /// Closes what a left-over branch began, silently.
@@ -277,9 +345,20 @@ impl Parser<'_> {
         let mark = self.mark();
         let opener = self.position;
         self.bump();
+        if self.commented_condition(TokenKind::Then) {
+            self.if_block(mark, opener);
+            return;
+        }
         self.expression();
         let broken = self.quiet || self.then_follows();
+        if !broken && self.commented_condition(TokenKind::Then) {
+            self.if_block(mark, opener);
+            return;
+        }
         if !broken && starts_statement(self.current()) {
+            if self.first_on_line(self.position) {
+                self.split_if = Some(SplitIf { opener, statement: self.position });
+            }
             self.statement();
             self.finish(mark, NodeKind::CompactIf);
             return;
@@ -288,14 +367,50 @@ impl Parser<'_> {
             self.error_expected(if broken { "an operator or THEN" } else { "THEN or a statement" });
         }
         if self.end_header(TokenKind::Then) {
-            self.open(TokenKind::EndIf, opener);
-            self.block();
-            self.else_branches();
-            self.close();
-            self.finish(mark, NodeKind::IfStatement);
+            self.if_block(mark, opener);
         } else {
             self.finish(mark, NodeKind::CompactIf);
         }
+    }
+
+    /// What follows the `THEN` of the IF that began at `mark`.
+    fn if_block(&mut self, mark: Mark, opener: usize) {
+        self.open(TokenKind::EndIf, opener);
+        self.block();
+        self.else_branches();
+        self.close();
+        self.finish(mark, NodeKind::IfStatement);
+    }
+
+    /// Whether a `!` has made a comment of the rest of a condition and of the
+    /// keyword behind it, `IF a != 1 THEN`; reports it.
+    fn commented_condition(&mut self, keyword: TokenKind) -> bool {
+        if !self.first_on_line(self.position) {
+            return false;
+        }
+        let comment = (self.end..self.position)
+            .find(|&token| self.tokens.kind(token) == TokenKind::Comment)
+            .filter(|&token| !self.first_on_line(token));
+        let Some(comment) = comment else { return false };
+        let text = self.text(comment).trim_ascii_end();
+        let word = keyword.describe().as_bytes();
+        let unequal = text.starts_with(b"!=");
+        let alone = self.end > 0 && self.tokens.kind(self.end - 1).is_keyword();
+        let ends = text.len() > word.len() && {
+            let (before, last) = text.split_at(text.len() - word.len());
+            last.eq_ignore_ascii_case(word) && before.ends_with(b" ")
+        };
+        if !ends || !unequal && !alone {
+            return false;
+        }
+        let operator = if unequal { "'<>'" } else { "NOT" };
+        let message = format!("expected {operator}, found '!', which starts a comment");
+        let start = self.tokens.range(comment).start;
+        self.push_error(start, start + 1, message, None);
+        if alone {
+            self.missing();
+        }
+        true
     }
 
     /// Behind the condition of an IF, not at THEN: whether a THEN follows on
@@ -377,8 +492,12 @@ impl Parser<'_> {
         let mark = self.mark();
         self.open(TokenKind::EndWhile, self.position);
         self.bump();
-        self.expression();
-        self.end_header(TokenKind::Do);
+        if !self.commented_condition(TokenKind::Do) {
+            self.expression();
+            if !self.commented_condition(TokenKind::Do) {
+                self.end_header(TokenKind::Do);
+            }
+        }
         self.block();
         self.close();
         self.finish(mark, NodeKind::WhileStatement);
@@ -399,6 +518,9 @@ impl Parser<'_> {
             self.error_expected("CASE");
             let rest = self.mark();
             let start = self.position;
+            if !starts_statement(self.current()) && !ends_block(self.current()) {
+                self.bump();
+            }
             while !self.first_on_line(self.position) && !ends_block(self.current()) {
                 self.bump();
             }
@@ -438,6 +560,7 @@ impl Parser<'_> {
                     }
                     after_default = true;
                     self.bump();
+                    self.skip_doubled(TokenKind::Default);
                     self.end_header(TokenKind::Colon);
                     self.block();
                     self.finish(mark, NodeKind::DefaultBranch);
