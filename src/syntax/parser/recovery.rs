@@ -1,6 +1,6 @@
 //! Getting on after an error.
 
-use super::{Open, Parser};
+use super::{Line, Open, Parser};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 
@@ -33,9 +33,14 @@ impl Parser<'_> {
     pub(super) fn first_of_line(&mut self, token: usize) -> usize {
         let mut first = token;
         while first > 0 && !self.first_on_line(first) {
+            if first == self.line.token {
+                first = self.line.first;
+                break;
+            }
             first -= 1;
             self.steps += 1;
         }
+        self.line = Line { token, first };
         first
     }
 

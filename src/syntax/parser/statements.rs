@@ -1,7 +1,7 @@
 //! Statements: `grammar/statements.ebnf`.
 
-use super::{Parser, SplitIf, excerpt};
 use super::recovery::{ends_block, starts_data, starts_statement};
+use super::{Parser, SplitIf, excerpt};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
