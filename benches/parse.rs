@@ -21,11 +21,15 @@ fn programs() -> Vec<u8> {
         .filter_map(|folder| fs::read_dir(root.join(folder)).ok())
         .flat_map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())))
         .filter(|path| path.extension().is_some_and(|end| end == "mod" || end == "sys"))
-        // One encoding for the whole file.
-        .filter(|path| fs::read(path).is_ok_and(|bytes| bytes.is_ascii()))
         .collect();
     paths.sort();
-    let once: Vec<u8> = paths.iter().filter_map(|path| fs::read(path).ok()).flatten().collect();
+    let once: Vec<u8> = paths
+        .iter()
+        .filter_map(|path| fs::read(path).ok())
+        // One encoding for the whole file, and nothing to report.
+        .filter(|bytes| bytes.is_ascii() && syntax::parse(bytes).errors.is_empty())
+        .flatten()
+        .collect();
     once.repeat(BYTES / once.len().max(1) + 1)
 }
 

@@ -6,6 +6,7 @@
 //! the folder for temporary files, and the exit code is 1.
 
 #![expect(clippy::print_stdout, reason = "it is a program for the terminal")]
+#![expect(clippy::unwrap_used, reason = "missing fixtures end the program")]
 
 #[path = "../tests/support/mod.rs"]
 mod support;

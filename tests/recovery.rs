@@ -48,11 +48,11 @@ fn a_token_too_few_or_too_many_is_one_error() {
                 let parse = syntax::parse(&mutated);
                 mutations += 1;
                 if parse.errors.len() > 1 || statements(&parse) + 1 < statements(&whole) {
-                    let line = source[..token.start].iter().filter(|byte| **byte == b'\n').count();
+                    let line = source[..token.start].split(|byte| *byte == b'\n').count();
                     let messages: Vec<&str> =
                         parse.errors.iter().map(|error| error.message.as_str()).collect();
                     let text = String::from_utf8_lossy(text);
-                    wrong.push(format!("{path}:{} {text}: {messages:?}", line + 1));
+                    wrong.push(format!("{path}:{line} {text}: {messages:?}"));
                 }
             }
         }

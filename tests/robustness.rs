@@ -218,5 +218,10 @@ fn long_lines_and_large_files_are_read() {
     let string = format!("x := \"{}\";", "a".repeat(10_000_000));
     assert_eq!(check(&program(&string)).errors, []);
     let text = "MoveL p10, v100, z10, tool0 \\WObj:=wobj0;\n".repeat(1_200_000);
-    assert_eq!(check(&program(&text)).errors, []);
+    let bytes = program(&text);
+    assert!(bytes.len() > 50_000_000, "{}", bytes.len());
+    let parse = syntax::parse(&bytes);
+    check_work(&parse);
+    assert_eq!(parse.errors, []);
+    assert_eq!(parse.tree.root().range().end as usize, bytes.len());
 }

@@ -46,15 +46,14 @@ impl<'g> Generator<'g> {
 
     fn height(&self, body: &Ebnf) -> Option<usize> {
         match body {
-            Ebnf::Literal(_) | Ebnf::Words(_) | Ebnf::Optional(_) | Ebnf::Repeat(_) => Some(0),
             Ebnf::Name(name) if self.productions.contains_key(name) => {
                 self.heights.get(name.as_str()).copied()
             }
-            Ebnf::Name(_) => Some(0),
             Ebnf::Sequence(parts) => {
                 parts.iter().try_fold(0, |most, part| Some(most.max(self.height(part)?)))
             }
             Ebnf::Choice(parts) => parts.iter().filter_map(|part| self.height(part)).min(),
+            _ => Some(0),
         }
     }
 

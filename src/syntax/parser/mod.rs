@@ -6,6 +6,7 @@
 //! looks like a new statement, whichever comes first.
 
 mod arguments;
+mod blocks;
 mod data;
 mod expressions;
 mod modules;

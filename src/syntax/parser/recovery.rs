@@ -1,6 +1,7 @@
 //! Getting on after an error.
 
-use super::{Line, Open, Parser};
+use super::blocks::closes_block;
+use super::{Line, Parser};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 
@@ -188,138 +189,6 @@ impl Parser<'_> {
         }
         ended
     }
-
-    // --- closing keywords ---
-
-    pub(super) fn open(&mut self, closer: TokenKind, opener: usize) {
-        self.open.push(Open { closer, opener });
-    }
-
-    fn is_awaited(&self, closer: TokenKind) -> bool {
-        self.open.iter().any(|open| open.closer == closer)
-    }
-
-    /// Reads the keyword that closes the innermost open block.
-    pub(super) fn close(&mut self) {
-        let Some(Open { closer, opener }) = self.open.pop() else { return };
-        self.quiet = false;
-        if self.eat(closer) {
-            return;
-        }
-        let wrong = self.current();
-        let misspelt = self.misspelling(closer);
-        if misspelt > 0 {
-            let message = format!("expected {}, found {}", closer.describe(), self.found());
-            self.close_error(message, opener, false);
-            let mark = self.mark();
-            for _ in 0..misspelt {
-                self.bump();
-            }
-            self.eat(TokenKind::Semicolon);
-            self.finish(mark, NodeKind::Error);
-        } else if closes_block(wrong) && self.is_mistyped(closer, opener) {
-            let message = format!("expected {}, found {}", closer.describe(), wrong.describe());
-            self.close_error(message, opener, false);
-            self.leaf(NodeKind::Error);
-        } else {
-            let message = format!("expected {} before {}", closer.describe(), self.found());
-            self.close_error(message, opener, true);
-        }
-    }
-
-    fn close_error(&mut self, message: String, opener: usize, before: bool) {
-        let keyword = self.tokens.kind(opener).describe();
-        let related = self.related(opener, format!("this {keyword} is not closed"));
-        let range = self.tokens.range(self.position);
-        let end = if before { range.start } else { range.end };
-        self.push_error(range.start, end, message, Some(related));
-    }
-
-    /// Whether a misspelling of the keyword that closes the innermost block
-    /// stands alone on this line: the number of its tokens, or 0.
-    pub(super) fn misspelt_closer(&mut self) -> usize {
-        match self.open.last() {
-            Some(open) if self.at(TokenKind::Identifier) => self.misspelling(open.closer),
-            _ => 0,
-        }
-    }
-
-    /// `ENIDF`, `END IF`, `END` or `END_IF` for `ENDIF`, alone on its line: the
-    /// number of its tokens, or 0.
-    fn misspelling(&mut self, closer: TokenKind) -> usize {
-        let word = self.text(self.position);
-        if !self.at(TokenKind::Identifier)
-            || !word.first().is_some_and(|letter| letter.eq_ignore_ascii_case(&b'E'))
-            || !self.first_on_line(self.position)
-        {
-            return 0;
-        }
-        let second = self.after(self.position);
-        let wanted = closer.describe().as_bytes();
-        if word.eq_ignore_ascii_case(b"END") {
-            let rest = wanted.get(word.len()..).unwrap_or_default();
-            if self.text(second).eq_ignore_ascii_case(rest) {
-                return 2;
-            }
-        }
-        let alone = self.tokens.kind(second) == TokenKind::EndOfFile || self.first_on_line(second);
-        let other = closer != TokenKind::EndModule
-            && word.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"END"));
-        usize::from(alone && (other || is_near(word, wanted)))
-    }
-
-    /// Whether the closing keyword at hand is the wrong one for the innermost
-    /// block, rather than the right one for a block around it.
-    fn is_mistyped(&mut self, wanted: TokenKind, opener: usize) -> bool {
-        let found = self.current();
-        let owner = self.open.iter().rev().find(|open| open.closer == found).copied();
-        match owner {
-            None => closes_routine(wanted) || !self.is_left_over(Open { closer: wanted, opener }),
-            Some(owner) => {
-                let column = self.indentation(self.position);
-                column.is_some()
-                    && column == self.indentation(opener)
-                    && column != self.indentation(owner.opener)
-            }
-        }
-    }
-
-    /// Whether the closing keyword at hand, which no open block wants, is one too
-    /// many, rather than the innermost block's own one mistyped.
-    fn is_left_over(&mut self, inner: Open) -> bool {
-        let doubled = self.end > 0 && self.tokens.kind(self.end - 1) == self.current();
-        let columns = (self.indentation(self.position), self.indentation(inner.opener));
-        let outside = matches!(columns, (Some(here), Some(there)) if here != there);
-        doubled || outside || self.next() == inner.closer
-    }
-
-    /// At a keyword that ends a block: whether no open block wants it, so that
-    /// it can only be left over.
-    pub(super) fn is_stray(&mut self) -> bool {
-        let kind = self.current();
-        let Some(inner) = self.open.last().copied() else { return true };
-        let closer = inner.closer;
-        match kind {
-            TokenKind::Else | TokenKind::ElseIf => !self.is_awaited(TokenKind::EndIf),
-            TokenKind::Case | TokenKind::Default => !self.is_awaited(TokenKind::EndTest),
-            TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest => {
-                let outermost = closes_routine(closer) || closer == TokenKind::EndRecord;
-                !self.is_awaited(kind) && (outermost || self.is_left_over(inner))
-            }
-            TokenKind::EndRecord => closer != kind,
-            TokenKind::Then | TokenKind::Do => true,
-            _ => false,
-        }
-    }
-}
-
-/// Keywords that close a block statement or a routine.
-fn closes_block(kind: TokenKind) -> bool {
-    closes_routine(kind)
-        || matches!(
-            kind,
-            TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest
-        )
 }
 
 pub(super) fn closes_routine(kind: TokenKind) -> bool {
@@ -396,23 +265,4 @@ fn continues(kind: TokenKind) -> bool {
             | TokenKind::And
             | TokenKind::Or
     )
-}
-
-/// Whether a word differs from a keyword by one letter that is wrong, missing
-/// or too much, or by two neighbours exchanged.
-fn is_near(word: &[u8], keyword: &[u8]) -> bool {
-    let word = word.to_ascii_uppercase();
-    let same = word.iter().zip(keyword).take_while(|(a, b)| a == b).count();
-    let (a, b) = (&word[same..], &keyword[same..]);
-    match (a, b) {
-        ([first, second, a @ ..], [third, fourth, b @ ..])
-            if (first, second) == (fourth, third) && a == b =>
-        {
-            true
-        }
-        ([_, a @ ..], [_, b @ ..]) if a == b => true,
-        ([_, rest @ ..], _) if rest == b => true,
-        (_, [_, rest @ ..]) => rest == a,
-        _ => false,
-    }
 }

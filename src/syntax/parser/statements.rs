@@ -1,7 +1,7 @@
 //! Statements: `grammar/statements.ebnf`.
 
 use super::recovery::{ends_block, starts_data, starts_statement};
-use super::{Parser, SplitIf, excerpt};
+use super::{Parser, SplitIf};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
@@ -44,115 +44,6 @@ impl Parser<'_> {
             && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
     }
 
-    /// A keyword that ends a block that nothing began. A left-over `ELSE` takes
-    /// its statements and its `ENDIF` with it: they are the same mistake.
-    fn stray(&mut self) {
-        let mark = self.mark();
-        let kind = self.current();
-        let position = self.position;
-        let message = match kind {
-            TokenKind::Else | TokenKind::ElseIf => {
-                format!("{} without an IF … THEN before it", kind.describe())
-            }
-            TokenKind::EndIf => "ENDIF without an IF … THEN before it".to_owned(),
-            TokenKind::Case | TokenKind::Default => {
-                format!("{} outside TEST … ENDTEST", kind.describe())
-            }
-            _ => format!("{} without its beginning", kind.describe()),
-        };
-        if !self.report_missing_then() {
-            self.error_at(position, message);
-        }
-        let branches = match kind {
-            TokenKind::Else | TokenKind::ElseIf => self.deeper(|parser| {
-                parser.open(TokenKind::EndIf, position);
-                parser.else_branches();
-                parser.close_stray(TokenKind::EndIf);
-            }),
-            TokenKind::Case | TokenKind::Default => self.deeper(|parser| {
-                parser.open(TokenKind::EndTest, position);
-                parser.cases();
-                parser.close_stray(TokenKind::EndTest);
-            }),
-            _ => None,
-        };
-        if branches.is_none() {
-            self.bump();
-        }
-        self.finish(mark, NodeKind::Error);
-    }
-
-    /// At a keyword that is left over: if it stands below a compact IF over two
-    /// lines, that IF lacks its `THEN`.
-    fn report_missing_then(&mut self) -> bool {
-        let kind = self.current();
-        let Some(SplitIf { opener, statement }) = self.split_if.take() else { return false };
-        let column = self.indentation(self.position);
-        if !matches!(kind, TokenKind::Else | TokenKind::ElseIf | TokenKind::EndIf)
-            || column.is_none()
-            || column != self.indentation(opener)
-        {
-            return false;
-        }
-        let found = excerpt(self.text(statement));
-        let place = self.end_before(statement);
-        let related = self.related(self.position, format!("this {} has no IF", kind.describe()));
-        self.push_error(place, place, format!("expected THEN, found '{found}'"), Some(related));
-        true
-    }
-
-    /// The statements of a block whose header had an error behind its `THEN` or
-    /// `DO`, which was read, up to its closing keyword.
-    pub(super) fn headless_block(&mut self, after: TokenKind) {
-        let opener = self.position;
-        let read = self.deeper(|parser| {
-            if after == TokenKind::Then {
-                parser.open(TokenKind::EndIf, opener);
-                parser.block();
-                parser.else_branches();
-                parser.close_stray(TokenKind::EndIf);
-            } else {
-                parser.open(TokenKind::EndFor, opener);
-                parser.open(TokenKind::EndWhile, opener);
-                parser.block();
-                parser.open.pop();
-                parser.close_stray(TokenKind::EndFor);
-                parser.eat(TokenKind::EndWhile);
-            }
-        });
-        if read.is_none() {
-            self.skip_nested();
-        }
-        self.quiet = true;
-    }
-
-    /// At the `THEN` of a header without its keyword: whether it belongs to a
-    /// branch of the innermost `IF`, as its line is not indented more than that.
-    pub(super) fn lacks_elseif(&mut self) -> bool {
-        let Some(open) = self.open.last().copied() else { return false };
-        let line = self.first_of_line(self.position);
-        let columns = (self.indentation(line), self.indentation(open.opener));
-        // One column more is the space behind the keyword that is missing.
-        open.closer == TokenKind::EndIf
-            && self.at(TokenKind::Then)
-            && matches!(columns, (Some(here), Some(there)) if here <= there + 1)
-    }
-
-    /// Behind a statement that ends in an error: branches of a `TEST` or `IF`
-    /// whose keyword is missing are part of the same mistake.
-    pub(super) fn headless_branches(&mut self) {
-        let branch = matches!(self.current(), TokenKind::Case | TokenKind::Default);
-        if branch && self.depth > 0 && self.is_stray() {
-            self.stray();
-        }
-    }
-
-    /// Closes what a left-over branch began, silently.
-    fn close_stray(&mut self, closer: TokenKind) {
-        self.open.pop();
-        self.eat(closer);
-    }
-
     /// One statement or data declaration; reads at least one token.
     pub(super) fn statement(&mut self) {
         self.quiet = false;
@@ -193,52 +84,6 @@ impl Parser<'_> {
                 self.finish(mark, NodeKind::Error);
             }
         }
-    }
-
-    /// Skips a statement that is nested too deeply, with the statements in it.
-    fn skip_nested(&mut self) {
-        let mark = self.mark();
-        let mut open = 0_u32;
-        // Whether the last condition was that of an IF, whose THEN opens.
-        let mut after_if = false;
-        loop {
-            let kind = self.current();
-            match kind {
-                TokenKind::EndOfFile
-                | TokenKind::Proc
-                | TokenKind::Func
-                | TokenKind::Trap
-                | TokenKind::Module
-                | TokenKind::EndModule
-                | TokenKind::EndProc
-                | TokenKind::EndFunc
-                | TokenKind::EndTrap => break,
-                TokenKind::For | TokenKind::While | TokenKind::Test => open += 1,
-                TokenKind::If => after_if = true,
-                TokenKind::ElseIf => after_if = false,
-                TokenKind::Then if after_if => {
-                    after_if = false;
-                    open += 1;
-                }
-                TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest => {
-                    if open == 0 {
-                        break;
-                    }
-                    open -= 1;
-                    if open == 0 {
-                        self.bump();
-                        break;
-                    }
-                }
-                TokenKind::Semicolon if open == 0 => {
-                    self.bump();
-                    break;
-                }
-                _ => {}
-            }
-            self.bump();
-        }
-        self.finish(mark, NodeKind::Error);
     }
 
     /// A statement that starts with a name: label, assignment or call.
@@ -382,37 +227,6 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::IfStatement);
     }
 
-    /// Whether a `!` has made a comment of the rest of a condition and of the
-    /// keyword behind it, `IF a != 1 THEN`; reports it.
-    fn commented_condition(&mut self, keyword: TokenKind) -> bool {
-        if !self.first_on_line(self.position) {
-            return false;
-        }
-        let comment = (self.end..self.position)
-            .find(|&token| self.tokens.kind(token) == TokenKind::Comment)
-            .filter(|&token| !self.first_on_line(token));
-        let Some(comment) = comment else { return false };
-        let text = self.text(comment).trim_ascii_end();
-        let word = keyword.describe().as_bytes();
-        let unequal = text.starts_with(b"!=");
-        let alone = self.end > 0 && self.tokens.kind(self.end - 1).is_keyword();
-        let ends = text.len() > word.len() && {
-            let (before, last) = text.split_at(text.len() - word.len());
-            last.eq_ignore_ascii_case(word) && before.ends_with(b" ")
-        };
-        if !ends || !unequal && !alone {
-            return false;
-        }
-        let operator = if unequal { "'<>'" } else { "NOT" };
-        let message = format!("expected {operator}, found '!', which starts a comment");
-        let start = self.tokens.range(comment).start;
-        self.push_error(start, start + 1, message, None);
-        if alone {
-            self.missing();
-        }
-        true
-    }
-
     /// Behind the condition of an IF, not at THEN: whether a THEN follows on
     /// its line, so that the condition goes on in a way that is wrong.
     fn then_follows(&mut self) -> bool {
@@ -434,7 +248,7 @@ impl Parser<'_> {
     }
 
     /// `ELSEIF … THEN …`, `ELSE …`
-    fn else_branches(&mut self) {
+    pub(super) fn else_branches(&mut self) {
         let mut after_else = false;
         loop {
             let mark = self.mark();
@@ -537,7 +351,7 @@ impl Parser<'_> {
     }
 
     /// `CASE …:`, `DEFAULT:`
-    fn cases(&mut self) {
+    pub(super) fn cases(&mut self) {
         let mut after_default = false;
         loop {
             let mark = self.mark();
