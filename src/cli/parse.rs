@@ -16,7 +16,10 @@ use crate::text::{self, FileId, SourceFile, Span};
 
 /// Parse RAPID and report its syntax errors.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: joulepath parse backup/RAPID --format json")]
+#[command(after_help = "Movements are the calls of instructions of the Move, Trigg and \
+    Search families, wherever they stand: also in handlers and in routines that nothing \
+    calls, not in comments and strings.\n\n\
+    Example: joulepath parse backup/RAPID --format json")]
 pub struct ParseArgs {
     /// Module files, folders, .pgf programs or controller backups.
     #[arg(required = true)]
