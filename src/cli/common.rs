@@ -128,11 +128,7 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         .program()
         .enumerate()
         .map(|(i, file)| Source {
-            file: SourceFile::new(
-                FileId(i as u32),
-                file.source.path.clone(),
-                file.source.bytes.clone(),
-            ),
+            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
             relative: file.relative.clone(),
         })
         .collect();

@@ -157,10 +157,10 @@ fn report(file: &InputFile, parse: &Parse) -> FileReport {
     });
     FileReport {
         path: source.path.clone(),
-        bytes: source.bytes.len(),
+        bytes: source.stored(&source.bytes).len(),
         lines: source.lines.count(),
-        encoding: source.charset.name(),
-        bom: source.charset.bom,
+        encoding: source.encoding(),
+        bom: source.charset.bom || source.utf16.is_some(),
         encoded: text::is_encoded_module(&source.bytes),
         lossless: is_lossless(parse, &source.bytes),
         errors: errors.collect(),
