@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
-use super::input::{self, Input};
+use super::choice;
+use super::input;
 use crate::config::{self, Config};
 use crate::motion::Options;
 use crate::retrofit::Source;
@@ -61,8 +62,6 @@ pub enum Format {
 
 /// A program ready to run.
 pub struct Job {
-    /// What was read.
-    pub input: Input,
     /// The files of the program; their ids count from 0.
     pub files: Vec<Source>,
     /// The robot.
@@ -91,6 +90,10 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     for unreadable in &input.unreadable {
         note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
     }
+    let choice = choice::choose(&input)?;
+    for text in &choice.notes {
+        note(args.quiet, text);
+    }
     let (config, folder) = configuration(args)?;
     let name = match (&args.robot, &config.robot) {
         (Some(name), _) => name.clone(),
@@ -98,13 +101,26 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             let beside = folder.join(name);
             if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() }
         }
-        (None, None) => bail!(
-            "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
+        (None, None) => match choice.task.and_then(|task| task.robot.as_deref()) {
+            Some(name) => name.to_owned(),
+            None => bail!(
+                "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
              --robot FILE.toml, or robot = \"…\" in {}",
-            config::FILE_NAME
-        ),
+                config::FILE_NAME
+            ),
+        },
     };
-    let model = robot::load(&name)?;
+    let of_backup = args.robot.is_none() && config.robot.is_none();
+    let model = robot::load(&name).map_err(|error| {
+        if of_backup {
+            anyhow::anyhow!("the robot of the backup is a {name}: {error}; name yours with --robot")
+        } else {
+            error.into()
+        }
+    })?;
+    if of_backup {
+        note(args.quiet, &format!("the robot is {}, as the backup says ({name})", model.name));
+    }
     if model.dof != 6 {
         bail!(
             "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
@@ -112,8 +128,9 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             model.dof
         );
     }
-    let entry =
-        args.entry.clone().or_else(|| config.entry.clone()).unwrap_or_else(|| "main".into());
+    let of_task = choice.task.and_then(|task| task.entry.clone());
+    let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
+    let entry = entry.unwrap_or_else(|| "main".into());
     let mut inputs: BTreeMap<String, f64> =
         config.inputs.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect();
     for text in &args.inputs {
@@ -124,15 +141,16 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         bail!("the input {name} comes after {t} s; give a time of 0 or more");
     }
     let start = args.start.as_deref().map(start_position).transpose()?;
-    let files: Vec<Source> = input
-        .program()
+    let files: Vec<Source> = choice
+        .files
+        .iter()
         .enumerate()
         .map(|(i, file)| Source {
             file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
             relative: file.relative.clone(),
         })
         .collect();
-    Ok(Job { input, files, model, config, entry, options: Options { start, inputs } })
+    Ok(Job { files, model, config, entry, options: Options { start, inputs } })
 }
 
 fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
