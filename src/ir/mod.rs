@@ -2,6 +2,7 @@
 
 mod convert;
 pub mod exec;
+mod functions;
 pub mod hir;
 pub mod instructions;
 pub mod layout;
