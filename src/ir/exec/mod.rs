@@ -8,6 +8,7 @@
 
 mod call;
 mod constant;
+mod displacement;
 mod eval;
 mod flow;
 mod functions;
@@ -155,3 +156,6 @@ impl<'a> Executor<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
