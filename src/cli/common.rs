@@ -13,7 +13,7 @@ use crate::config::{self, Config};
 use crate::motion::Options;
 use crate::retrofit::Source;
 use crate::robot::{self, Model};
-use crate::text::{FileId, SourceFile};
+use crate::text::{FileId, SourceFile, is_encoded_module};
 
 /// Options of commands that run a program.
 #[derive(Debug, Args)]
@@ -93,6 +93,10 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     let choice = choice::choose(&input)?;
     for text in &choice.notes {
         note(args.quiet, text);
+    }
+    for file in choice.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
+        let path = &file.source.path;
+        note(args.quiet, &format!("'{path}' is an encoded module: what it declares is not known"));
     }
     let (config, folder) = configuration(args)?;
     let name = match (&args.robot, &config.robot) {
