@@ -70,6 +70,21 @@ fn several_motion_tasks_are_stated_with_the_way_to_choose() {
 }
 
 #[test]
+fn several_backups_are_not_one_program() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["monday", "tuesday"] {
+        copy(Path::new("fixtures/backup"), &folder.path().join(name));
+    }
+    let path = folder.path().to_str().unwrap();
+    let output = joulepath(&["simulate", path]);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error.contains("monday") && error.contains("tuesday"), "{error}");
+    // Reading them is no problem.
+    assert_eq!(joulepath(&["parse", path]).status.code(), Some(0));
+}
+
+#[test]
 fn a_robot_that_is_not_known_is_named() {
     let backup = backup();
     let motion = backup.path().join("SYSPAR/MOC.cfg");

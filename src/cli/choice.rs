@@ -63,21 +63,18 @@ fn task<'b>(backup: &'b Backup, folders: &[&str], notes: &mut Vec<String>) -> Op
     motion.sort_by_key(|task| (task.name.len(), task.name.to_lowercase()));
     let shown = |task: &Task| format!("{} (RAPID/{})", task.name, task.folder);
     let task = motion.first().or(there.first()).copied()?;
-    let mut note = format!("the program is task {} of the backup", shown(task));
-    if motion.len() > 1 {
+    let other = if motion.len() > 1 {
         let others: Vec<String> = motion[1..].iter().map(|task| shown(task)).collect();
-        note += &format!(
-            "; it has other motion tasks, {}: for one of them give its folder, as in \
-             BACKUP/RAPID/{}",
-            others.join(", "),
-            motion[1].folder
-        );
+        Some((format!("it has other motion tasks, {}", others.join(", ")), motion[1]))
     } else if motion.is_empty() && there.len() > 1 {
-        note += &format!(
-            "; nothing says which task moves the robot: for another one give its folder, as in \
-             BACKUP/RAPID/{}",
-            there[1].folder
-        );
+        Some(("nothing says which task moves the robot".to_owned(), there[1]))
+    } else {
+        None
+    };
+    let mut note = format!("the program is task {} of the backup", shown(task));
+    if let Some((why, other)) = other {
+        let folder = &other.folder;
+        note = format!("{note}; {why}: to run another one give its folder, BACKUP/RAPID/{folder}");
     }
     notes.push(note);
     Some(task)

@@ -23,9 +23,9 @@ const MIN_WORDS: usize = 3;
 const MIN_WORD: usize = 3;
 /// Length of a word without an ASCII letter that is evidence for one of [`OTHER_ALPHABET`].
 const MIN_OTHER_WORD: usize = 4;
-/// Characters that are evidence for one of [`DOUBLE_BYTE`].
+/// Characters that are evidence for Chinese, the most frequent of [`DOUBLE_BYTE`].
 const MIN_CHARACTERS: usize = 2;
-/// Characters below which Chinese, the most frequent, is taken wherever it is possible.
+/// Characters that are evidence for the others.
 const FEW_CHARACTERS: usize = 4;
 /// Bytes of lines beyond ASCII that the statistics get to see: more make it slower, not better.
 const MAX_SAMPLE: usize = 1 << 16;
@@ -55,9 +55,11 @@ pub(super) fn legacy(bytes: &[u8]) -> &'static Encoding {
         };
         if DOUBLE_BYTE.contains(&guess) && whole(guess).is_some() {
             let count = characters(guess, &lines);
-            if count >= MIN_CHARACTERS {
-                let chinese = count < FEW_CHARACTERS && whole(GBK).is_some();
-                return if chinese { GBK } else { guess };
+            if count >= FEW_CHARACTERS {
+                return guess;
+            }
+            if count >= MIN_CHARACTERS && whole(GBK).is_some() {
+                return GBK;
             }
         }
         if LATIN.contains(&guess) && sample.words >= MIN_WORDS

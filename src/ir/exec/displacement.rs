@@ -27,8 +27,7 @@ impl Executor<'_> {
             }
             Some((there, programmed)) => {
                 let shift = there.translation.vector - programmed.translation.vector;
-                settings.displacement =
-                    Some(Isometry3::from_parts(shift.into(), Default::default()));
+                settings.displacement = Some(Isometry3::translation(shift.x, shift.y, shift.z));
             }
             None => settings.other.push(text.into()),
         }

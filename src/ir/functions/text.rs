@@ -4,7 +4,7 @@ use super::{Function, Given, Typed, boolean, num};
 use crate::ir::value::Datum;
 
 /// Significant digits of a `num` as text.
-const NUM_DIGITS: usize = 6;
+const NUM_DIGITS: i32 = 6;
 
 /// The function of a name in lower case.
 pub(super) fn lookup(name: &str) -> Option<Function> {
@@ -97,15 +97,15 @@ fn written(datum: &Datum) -> Option<String> {
 /// A number with the digits of a `num`, without zeros at its end.
 fn significant(x: f64) -> String {
     let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
-    if (-5..NUM_DIGITS as i32 + 1).contains(&exponent) {
-        let decimals = (NUM_DIGITS as i32 - 1 - exponent).max(0) as usize;
+    if (-5..NUM_DIGITS).contains(&exponent) {
+        let decimals = (NUM_DIGITS - 1 - exponent) as usize;
         let text = format!("{x:.decimals$}");
         if text.contains('.') {
             return text.trim_end_matches('0').trim_end_matches('.').to_owned();
         }
         return text;
     }
-    let text = exponential(x, NUM_DIGITS - 1);
+    let text = exponential(x, NUM_DIGITS as usize - 1);
     let (digits, exponent) = text.split_once('E').unwrap_or((&text, "+00"));
     format!("{}E{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
 }
