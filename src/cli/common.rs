@@ -1,6 +1,6 @@
 //! Options that several commands share.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,9 +8,10 @@ use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
 use super::choice;
-use super::input;
+use super::input::{self, Input};
 use crate::config::{self, Config};
-use crate::motion::Options;
+use crate::motion::timeline::What;
+use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
 use crate::robot::{self, Model};
 use crate::text::{FileId, SourceFile, is_encoded_module};
@@ -62,6 +63,8 @@ pub enum Format {
 
 /// A program ready to run.
 pub struct Job {
+    /// What was read.
+    pub input: Input,
     /// The files of the program; their ids count from 0.
     pub files: Vec<Source>,
     /// The robot.
@@ -72,12 +75,36 @@ pub struct Job {
     pub entry: String,
     /// For simulations.
     pub options: Options,
+    /// The inputs of the options as the user writes them.
+    pub inputs: Vec<String>,
 }
 
 impl Job {
     /// The files alone, for reports.
     pub fn sources(&self) -> Vec<SourceFile> {
         self.files.iter().map(|source| source.file.clone()).collect()
+    }
+
+    /// Notes on inputs for which a simulated cycle does not wait.
+    pub fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
+        let waited: BTreeSet<&str> = simulation
+            .events
+            .iter()
+            .filter_map(|event| match &event.what {
+                What::Wait(wait) => wait.wait.signal.as_deref(),
+                _ => None,
+            })
+            .collect();
+        let is_waited = |name: &str| waited.iter().any(|signal| signal.to_lowercase() == name);
+        let unused = self.inputs.iter().filter(|name| !is_waited(&name.to_lowercase()));
+        unused
+            .map(|name| {
+                let known = waited.iter().copied();
+                let meant = robot::nearest(name, known)
+                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                format!("the cycle does not wait for the input {name}: its time is not used{meant}")
+            })
+            .collect()
     }
 }
 
@@ -135,16 +162,20 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     let of_task = choice.task.and_then(|task| task.entry.clone());
     let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
     let entry = entry.unwrap_or_else(|| "main".into());
-    let mut inputs: BTreeMap<String, f64> =
-        config.inputs.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect();
+    let mut times: Vec<(String, f64)> =
+        config.inputs.iter().map(|(name, t)| (name.clone(), *t)).collect();
     for text in &args.inputs {
         let (name, seconds) = input_time(text)?;
-        inputs.insert(name, seconds);
+        times.retain(|(known, _)| known.to_lowercase() != name.to_lowercase());
+        times.push((name, seconds));
     }
-    if let Some((name, t)) = inputs.iter().find(|(_, t)| !(t.is_finite() && **t >= 0.0)) {
+    if let Some((name, t)) = times.iter().find(|(_, t)| !(t.is_finite() && *t >= 0.0)) {
         bail!("the input {name} comes after {t} s; give a time of 0 or more");
     }
-    let start = args.start.as_deref().map(start_position).transpose()?;
+    let options = Options {
+        start: args.start.as_deref().map(start_position).transpose()?,
+        inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
+    };
     let files: Vec<Source> = choice
         .files
         .iter()
@@ -154,7 +185,8 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             relative: file.relative.clone(),
         })
         .collect();
-    Ok(Job { files, model, config, entry, options: Options { start, inputs } })
+    let inputs = times.into_iter().map(|(name, _)| name).collect();
+    Ok(Job { input, files, model, config, entry, options, inputs })
 }
 
 fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
@@ -184,7 +216,7 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
     let (name, seconds) = text.split_once('=').with_context(wrong)?;
     let seconds = seconds.trim().trim_end_matches('s').trim();
     let seconds: f64 = seconds.parse().map_err(|_| anyhow::anyhow!(wrong()))?;
-    Ok((name.trim().to_lowercase(), seconds))
+    Ok((name.trim().to_owned(), seconds))
 }
 
 fn start_position(text: &str) -> anyhow::Result<[f64; 6]> {

@@ -13,6 +13,7 @@ use similar::TextDiff;
 use super::common::{self, Format, Job, ProgramArgs};
 use super::output;
 use crate::optimize::corridor::Ceilings;
+use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, retrofit};
@@ -49,15 +50,20 @@ pub struct OptimizeArgs {
     objective: ObjectiveArg,
 
     /// Time for the cycle, s; otherwise no run takes longer than before.
-    #[arg(long, value_name = "SECONDS", conflicts_with = "time_factor")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        conflicts_with = "time_factor",
+        allow_negative_numbers = true
+    )]
     takt: Option<f64>,
 
-    /// Each run takes this many times as long as before.
-    #[arg(long, value_name = "X")]
+    /// Each run takes this many times as long as before, at most 10.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     time_factor: Option<f64>,
 
     /// Least time between two points of a stream, s.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     spacing: Option<f64>,
 
     /// Let lines and arcs be faster than programmed.
@@ -100,8 +106,13 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
             bar.set_position(done as u64);
         });
         bar.finish_and_clear();
-        result?
+        let mut result = result?;
+        result.notes.extend(job.unused_inputs(&result.before.0));
+        result
     };
+    for text in &result.notes {
+        common::note(args.program.quiet, text);
+    }
     let sources = job.sources();
     let places = Places::new(&sources);
     let mut written = Vec::new();
@@ -152,6 +163,9 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     let takt = args.takt.or(if args.time_factor.is_some() { None } else { job.config.takt_s });
     let budget = match (takt, args.time_factor) {
         (Some(takt), _) => Budget::Takt(positive(takt, "--takt")?),
+        (None, Some(factor)) if factor > SLOWEST => {
+            bail!("--time-factor {factor}: give at most {SLOWEST}; slower travel saves nothing")
+        }
         (None, Some(factor)) => Budget::Factor(positive(factor, "--time-factor")?),
         (None, None) => Budget::AsBefore,
     };

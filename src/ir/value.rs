@@ -66,6 +66,8 @@ pub enum Dependence {
     /// A `PERS` tool, work object or load that nothing in the program writes:
     /// used at its source value.
     TrustedPersistent(Arc<str>),
+    /// Data, and the routine that is not in the program and that may change it.
+    Exposed(Arc<str>, Arc<str>),
     /// An input signal, taken at an assumed level.
     Input(Arc<str>),
     /// The robot's position at the moment of execution.

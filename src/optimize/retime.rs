@@ -138,7 +138,10 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
                 Err(Reason::NoSaving)
             }
         }
-        Goal::Exactly(time) => work.least_energy(time),
+        Goal::Exactly(time) => work.least_energy(time).or_else(|reason| match reason {
+            Reason::NoSaving => work.within(time),
+            other => Err(other),
+        }),
         Goal::Fastest => work.least_time(),
     }
 }
@@ -146,6 +149,21 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
 /// The least time of a run as a stream, s; `None` where there is no stream.
 pub fn fastest(task: &Task<'_>) -> Option<f64> {
     Work::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
+}
+
+/// A run is made slower by this factor at most.
+pub const SLOWEST: f64 = 10.0;
+
+/// The time, s, beyond which a run takes more motion energy again since the motors hold the arm up
+/// for longer; at most [`SLOWEST`] times as long as before. `None` where there is no stream. Base
+/// power does not count: the rest of a takt has to be waited for anyway.
+pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
+    let work = Work::new(task).ok()?;
+    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let fast = fastest_profile(&grid, &limits).ok()?;
+    let longest = SLOWEST * task.run.duration();
+    let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
+    Some(optimum.profile.duration() + task.run.settling)
 }
 
 struct Work<'a> {
@@ -254,6 +272,16 @@ impl<'a> Work<'a> {
             }
         }
         Err(problem)
+    }
+
+    /// Least time, where the time is too short for more.
+    fn within(&self, time: f64) -> Result<Retiming, Reason> {
+        let retiming = self.least_time()?;
+        if retiming.duration_s <= time + quantum() {
+            Ok(retiming)
+        } else {
+            Err(Reason::TooShort(retiming.duration_s))
+        }
     }
 
     fn first_margins(&self) -> Margins {

@@ -36,6 +36,9 @@ fn changes(dependence: &Dependence) -> Option<String> {
         // Local data are those of functions that were called with values of the expression.
         Dependence::Persistent(_) | Dependence::TrustedPersistent(_) | Dependence::Local(_) => None,
         Dependence::Variable(name) => Some(format!("'{name}' is written by the program")),
+        Dependence::Exposed(name, call) => {
+            Some(format!("'{name}' may be written by '{call}', which is not in the files given"))
+        }
         Dependence::Input(name) => Some(format!("'{name}' is not declared in the files given")),
         Dependence::RobotState => Some("it depends on where the robot is".to_owned()),
     }

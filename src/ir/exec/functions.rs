@@ -5,6 +5,7 @@ use super::super::hir::{Arg, ArgKind, Expr, Ident};
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
+use super::eval::declared_twice;
 use super::flow::Flow;
 
 impl Executor<'_> {
@@ -15,6 +16,9 @@ impl Executor<'_> {
                 Flow::Return(Some(value)) => value,
                 _ => Value::unknown(format!("'{}' returned no value", name.text), expr.span),
             };
+        }
+        if self.program.resolve(self.frame().module, &name.key) == Some(Symbol::Ambiguous) {
+            return Value::unknown(declared_twice(&name.text), expr.span);
         }
         match name.key.as_str() {
             "present" => return self.present(args),

@@ -126,6 +126,17 @@ impl<'a> Executor<'a> {
     }
 
     fn run(&mut self, entry: RoutineId) {
+        let program = self.program;
+        for clash in &program.clashes {
+            for span in &clash.spans {
+                let name = &clash.name.text;
+                let times = clash.spans.len();
+                self.unresolved(
+                    *span,
+                    format!("'{name}' is declared {times} times: what uses it is left alone"),
+                );
+            }
+        }
         match self.enter(entry, Vec::new(), Vec::new()) {
             flow::Flow::Raised(at) => self.unresolved(at, "an error that no handler takes ends it"),
             flow::Flow::Jump(label) => {

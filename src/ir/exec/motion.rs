@@ -4,6 +4,7 @@ use super::super::convert;
 use super::super::hir::{Arg, ArgKind, Expr, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{LocalValue, Movement, Target, Unresolved, Zone};
+use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
 use super::instruction::Arguments;
@@ -120,7 +121,9 @@ impl Executor<'_> {
             super::super::hir::ExprKind::Ref(name) => name.text.as_str(),
             _ => "tool",
         };
-        let tool = convert::tool(&tool_value.datum, tool_name)?;
+        let named = tool;
+        let tool =
+            convert::tool(&tool_value.datum, tool_name).map_err(|why| self.blame(named, &why))?;
         let wobj = match arguments.option_value("wobj") {
             Some(expr) => self.argument(expr, &mut origin),
             None => super::super::predefined::lookup("wobj0")
@@ -208,6 +211,20 @@ impl Executor<'_> {
             _ => None,
         };
         origin.iter().filter_map(local).collect()
+    }
+
+    /// Why an argument can't be used, with the name of the data; their declaration gets a note.
+    pub(super) fn blame(&mut self, argument: &Expr, why: &str) -> String {
+        let super::super::hir::ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
+        let why = format!("'{}': {why}", name.text);
+        let frame = self.frame();
+        if !frame.names.iter().any(|(key, _)| *key == name.key)
+            && let Some(Symbol::Data(id)) = self.program.resolve(frame.module, &name.key)
+        {
+            let data = self.program.data(id);
+            self.unresolved(data.name.span, format!("{} {why}", data.type_name.text));
+        }
+        why
     }
 
     fn zone_options(
