@@ -262,7 +262,7 @@ impl<'a> Lowering<'a> {
                     Some(late) => Callee::Late(self.expr(late.children().next()?)),
                     None => Callee::Name(self.ident(call.name()?)),
                 };
-                let args = call.arguments().map(|argument| self.arg(argument)).collect();
+                let args = exact(call.arguments(), call.arguments().count(), |arg| self.arg(arg));
                 StmtKind::Call(Call { callee, args })
             }
             NodeKind::GotoStatement => StmtKind::Goto(name()?),
@@ -374,11 +374,13 @@ impl<'a> Lowering<'a> {
                 ExprKind::Index(base, children.map(|index| self.expr(index)).collect())
             }),
             NodeKind::FunctionCall => children.next().map(|name| {
-                let args = children.map(|argument| self.arg(argument)).collect();
+                let count = node.children().count() - 1;
+                let args = exact(children, count, |argument| self.arg(argument));
                 ExprKind::Call(self.ident(name), args)
             }),
             NodeKind::Aggregate => {
-                Some(ExprKind::Aggregate(children.map(|part| self.expr(part)).collect()))
+                let count = node.children().count();
+                Some(ExprKind::Aggregate(exact(children, count, |part| self.expr(part))))
             }
             NodeKind::UnaryExpression => unary_op(node)
                 .zip(children.next())
@@ -433,6 +435,18 @@ fn scope(keyword: Option<TokenKind>) -> Scope {
         Some(TokenKind::Task) => Scope::Task,
         _ => Scope::Global,
     }
+}
+
+/// Lowers the nodes of a list of known length: a vector that grows takes up to twice the memory,
+/// which is most of the time of a large file.
+fn exact<'t, T>(
+    nodes: impl Iterator<Item = Node<'t>>,
+    count: usize,
+    lower: impl FnMut(Node<'t>) -> T,
+) -> Vec<T> {
+    let mut list = Vec::with_capacity(count);
+    list.extend(nodes.map(lower));
+    list
 }
 
 fn has_error(node: Node<'_>) -> bool {
