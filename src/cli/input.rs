@@ -34,6 +34,19 @@ pub struct InputFile {
     pub task: Option<String>,
 }
 
+/// A program file that was read.
+#[derive(Clone, Debug)]
+pub struct Listing {
+    /// Its path, joined with `/`.
+    pub path: String,
+    /// Its path below the input, with `/`.
+    pub relative: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// The paths of the modules that it lists.
+    pub modules: Vec<String>,
+}
+
 /// A file or folder that could not be read.
 #[derive(Clone, Debug)]
 pub struct Unreadable {
@@ -48,6 +61,8 @@ pub struct Unreadable {
 pub struct Input {
     /// The files; their ids count from 0 in this order.
     pub files: Vec<InputFile>,
+    /// The program files that stand for some of them.
+    pub listings: Vec<Listing>,
     /// What could not be read beside them.
     pub unreadable: Vec<Unreadable>,
 }
@@ -111,8 +126,14 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
         }
     }
     let mut seen = BTreeSet::new();
+    found.retain(|file| seen.insert(shown(&file.path)));
+    tell_apart(&mut found);
     for file in found {
-        if !seen.insert(shown(&file.path)) {
+        if let Some(modules) = file.modules {
+            if let Ok(bytes) = bytes_of(&file.path) {
+                let (path, relative) = (shown(&file.path), file.relative);
+                input.listings.push(Listing { path, relative, bytes, modules });
+            }
             continue;
         }
         match bytes_of(&file.path) {
@@ -143,6 +164,8 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
 struct Found {
     path: PathBuf,
     relative: String,
+    /// Of a program file: the paths of its modules.
+    modules: Option<Vec<String>>,
 }
 
 fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
@@ -153,15 +176,19 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
         walk(path, 0, &mut files, unreadable);
         let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =
             files.into_iter().partition(|file| has_extension(file, &[PROGRAM]));
-        for program in &programs {
-            modules.extend(listed(program).unwrap_or_default().into_iter().filter(|m| m.is_file()));
+        let mut listings = Vec::new();
+        for program in programs {
+            let of_program = listed(&program).unwrap_or_default();
+            listings.push(found_listing(path, program, &of_program));
+            modules.extend(of_program.into_iter().filter(|module| module.is_file()));
         }
         modules.sort_by_key(|file| shown(file));
         modules.dedup_by_key(|file| shown(file));
         if modules.is_empty() {
             return Err(InputError::NoRapid { path: shown(path) });
         }
-        return Ok(modules.into_iter().map(|file| found_below(path, file)).collect());
+        let modules = modules.into_iter().map(|file| found_below(path, file));
+        return Ok(modules.chain(listings).collect());
     }
     if has_extension(path, &[PROGRAM]) {
         return program(path, unreadable);
@@ -171,7 +198,30 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
 
 fn found_below(root: &Path, path: PathBuf) -> Found {
     let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
-    Found { path, relative }
+    Found { path, relative, modules: None }
+}
+
+fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
+    let modules = modules.iter().map(|module| shown(module)).collect();
+    Found { modules: Some(modules), ..found_below(root, path) }
+}
+
+/// Where two files would go to the same place below `--out`, all of them go below the deepest
+/// folder that they share.
+fn tell_apart(found: &mut [Found]) {
+    let mut places = BTreeSet::new();
+    if found.iter().all(|file| places.insert(file.relative.clone())) {
+        return;
+    }
+    let absolute: Vec<PathBuf> = found
+        .iter()
+        .map(|file| fs::canonicalize(&file.path).unwrap_or_else(|_| file.path.clone()))
+        .collect();
+    let mut shared = absolute[0].parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    while !absolute.iter().all(|path| path.starts_with(&shared)) && shared.pop() {}
+    for (file, absolute) in found.iter_mut().zip(&absolute) {
+        file.relative = below(absolute.strip_prefix(&shared).unwrap_or(absolute));
+    }
 }
 
 /// A path without anything that would lead out of a folder.
@@ -193,6 +243,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
         listed(path).map_err(|reason| InputError::Unreadable { path: shown(path), reason })?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();
+    let listing = found_listing(folder, path.to_path_buf(), &modules);
     for module in modules {
         if module.is_file() {
             files.push(found_below(folder, module));
@@ -204,6 +255,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
     if files.is_empty() {
         return Err(InputError::EmptyProgram { path: shown(path) });
     }
+    files.push(listing);
     Ok(files)
 }
 
@@ -328,6 +380,16 @@ mod tests {
         let input = read(&[folder.path().join("cell.pgf")]).unwrap();
         assert_eq!(relatives(input.files.iter()), ["Main.mod", "sub/Lib.mod"]);
         assert_eq!(input.unreadable.len(), 1);
+        assert_eq!(input.listings[0].relative, "cell.pgf");
+        assert_eq!(input.listings[0].bytes, list.as_bytes());
+    }
+
+    #[test]
+    fn files_of_one_name_keep_their_folders() {
+        let folder = folder(&[("x/a.mod", ""), ("y/deep/a.mod", "")]);
+        let paths = ["x/a.mod", "y/deep/a.mod"].map(|path| folder.path().join(path));
+        let input = read(&paths).unwrap();
+        assert_eq!(relatives(input.files.iter()), ["x/a.mod", "y/deep/a.mod"]);
     }
 
     #[test]

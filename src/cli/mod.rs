@@ -2,6 +2,7 @@
 
 pub mod common;
 pub mod input;
+pub mod listing;
 pub mod optimize;
 pub mod output;
 pub mod parse;
