@@ -45,6 +45,19 @@ pub struct Place {
     pub folder: String,
 }
 
+/// A program file that was read.
+#[derive(Clone, Debug)]
+pub struct Listing {
+    /// Its path, joined with `/`.
+    pub path: String,
+    /// Its path below the input, with `/`.
+    pub relative: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// The paths of the modules that it lists.
+    pub modules: Vec<String>,
+}
+
 /// A file or folder that could not be read.
 #[derive(Clone, Debug)]
 pub struct Unreadable {
@@ -59,6 +72,8 @@ pub struct Unreadable {
 pub struct Input {
     /// The files; their ids count from 0 in this order.
     pub files: Vec<InputFile>,
+    /// The program files that stand for some of them.
+    pub listings: Vec<Listing>,
     /// What could not be read beside them.
     pub unreadable: Vec<Unreadable>,
     /// The controller backups that the files are of, with their folders.
@@ -115,6 +130,15 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
             }
         }
     }
+    tell_apart(&mut found);
+    let (listings, found): (Vec<Found>, Vec<Found>) =
+        found.into_iter().partition(|file| file.modules.is_some());
+    for file in listings {
+        if let (Some(modules), Ok(bytes)) = (file.modules, bytes_of(&file.path)) {
+            let (path, relative) = (shown(&file.path), file.relative);
+            input.listings.push(Listing { path, relative, bytes, modules });
+        }
+    }
     let sources: Vec<Result<SourceFile, String>> = found
         .par_iter()
         .map(|file| Ok(SourceFile::new(FileId(0), shown(&file.path), bytes_of(&file.path)?)))
@@ -162,6 +186,8 @@ struct Found {
     path: PathBuf,
     relative: String,
     named: bool,
+    /// Of a program file: the paths of its modules.
+    modules: Option<Vec<String>>,
 }
 
 fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
@@ -172,15 +198,19 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
         walk(path, 0, &mut files, unreadable);
         let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =
             files.into_iter().partition(|file| has_extension(file, &[PROGRAM]));
-        for program in &programs {
-            modules.extend(listed(program).unwrap_or_default().into_iter().filter(|m| m.is_file()));
+        let mut listings = Vec::new();
+        for program in programs {
+            let of_program = listed(&program).unwrap_or_default();
+            listings.push(found_listing(path, program, &of_program));
+            modules.extend(of_program.into_iter().filter(|module| module.is_file()));
         }
         modules.sort_by_key(|file| shown(file));
         modules.dedup_by_key(|file| shown(file));
         if modules.is_empty() {
             return Err(InputError::NoRapid { path: shown(path) });
         }
-        return Ok(modules.into_iter().map(|file| found_below(path, file, false)).collect());
+        let modules = modules.into_iter().map(|file| found_below(path, file, false));
+        return Ok(modules.chain(listings).collect());
     }
     if has_extension(path, &[PROGRAM]) {
         return program(path, unreadable);
@@ -190,7 +220,30 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
 
 fn found_below(root: &Path, path: PathBuf, named: bool) -> Found {
     let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
-    Found { path, relative, named }
+    Found { path, relative, named, modules: None }
+}
+
+fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
+    let modules = modules.iter().map(|module| shown(module)).collect();
+    Found { modules: Some(modules), ..found_below(root, path, true) }
+}
+
+/// Where two files would go to the same place below `--out`, all of them go below the deepest
+/// folder that they share.
+fn tell_apart(found: &mut [Found]) {
+    let mut places = BTreeSet::new();
+    if found.iter().all(|file| places.insert(file.relative.clone())) {
+        return;
+    }
+    let absolute: Vec<PathBuf> = found
+        .iter()
+        .map(|file| fs::canonicalize(&file.path).unwrap_or_else(|_| file.path.clone()))
+        .collect();
+    let mut shared = absolute[0].parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    while !absolute.iter().all(|path| path.starts_with(&shared)) && shared.pop() {}
+    for (file, absolute) in found.iter_mut().zip(&absolute) {
+        file.relative = below(absolute.strip_prefix(&shared).unwrap_or(absolute));
+    }
 }
 
 /// A path without anything that would lead out of a folder.
@@ -212,6 +265,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
         listed(path).map_err(|reason| InputError::Unreadable { path: shown(path), reason })?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();
+    let listing = found_listing(folder, path.to_path_buf(), &modules);
     for module in modules {
         if module.is_file() {
             files.push(found_below(folder, module, true));
@@ -223,6 +277,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
     if files.is_empty() {
         return Err(InputError::EmptyProgram { path: shown(path) });
     }
+    files.push(listing);
     Ok(files)
 }
 
@@ -345,6 +400,16 @@ mod tests {
         let input = read(&[folder.path().join("cell.pgf")]).unwrap();
         assert_eq!(relatives(input.files.iter()), ["Main.mod", "sub/Lib.mod"]);
         assert!(input.unreadable[0].path.ends_with("gone & lost.mod"));
+        assert_eq!(input.listings[0].relative, "cell.pgf");
+        assert_eq!(input.listings[0].bytes, list.as_bytes());
+    }
+
+    #[test]
+    fn files_of_one_name_keep_their_folders() {
+        let folder = folder(&[("x/a.mod", ""), ("y/deep/a.mod", "")]);
+        let paths = ["x/a.mod", "y/deep/a.mod"].map(|path| folder.path().join(path));
+        let input = read(&paths).unwrap();
+        assert_eq!(relatives(input.files.iter()), ["x/a.mod", "y/deep/a.mod"]);
     }
 
     #[test]

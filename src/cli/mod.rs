@@ -4,6 +4,7 @@ pub mod backup;
 pub mod choice;
 pub mod common;
 pub mod input;
+pub mod listing;
 pub mod optimize;
 pub mod output;
 pub mod parse;

@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::output;
+use super::{listing, output};
 use crate::optimize::corridor::Ceilings;
 use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
@@ -108,6 +108,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bar.finish_and_clear();
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
+        listing::add(&mut result, &job.input, &job.files);
         result
     };
     for text in &result.notes {
@@ -248,12 +249,29 @@ fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
     }
 }
 
+/// Path and bytes of the file of the input that an output stands for.
+fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+    match (file.kind, file.input) {
+        (OutputKind::New, _) => None,
+        (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
+        (_, None) => {
+            let listing = job.input.listings.iter().find(|l| l.relative == file.path)?;
+            Some((&listing.path, &listing.bytes))
+        }
+    }
+}
+
 /// Where an output lies in the user's own tree.
 fn place(job: &Job, file: &OutputFile) -> PathBuf {
-    if let Some(source) = file.input.and_then(|i| job.files.get(i)) {
-        return PathBuf::from(&source.file.path);
+    if let Some((path, _)) = original(job, file) {
+        return PathBuf::from(path);
     }
-    // New files go where the others' relative paths start.
+    let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    // A new file lies beside one of the same folder, others where the relative paths start.
+    let beside = job.files.iter().find(|s| folder(&s.relative) == folder(&file.path));
+    if let (Some(source), Some(name)) = (beside, Path::new(&file.path).file_name()) {
+        return folder(&source.file.path).join(name);
+    }
     let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
     PathBuf::from(root.unwrap_or_default()).join(&file.path)
 }
@@ -261,11 +279,10 @@ fn place(job: &Job, file: &OutputFile) -> PathBuf {
 fn diff(job: &Job, result: &Retrofit) -> String {
     let mut text = String::new();
     for file in &result.outputs {
-        let before = match (file.kind, file.input) {
-            (OutputKind::Unchanged, _) => continue,
-            (OutputKind::Changed, Some(i)) => job.files[i].file.bytes.as_slice(),
-            _ => &[],
-        };
+        if file.kind == OutputKind::Unchanged {
+            continue;
+        }
+        let before = original(job, file).map_or([].as_slice(), |(_, bytes)| bytes);
         let charset = charset(&file.bytes);
         let (old, new) = (charset.decode(before), charset.decode(&file.bytes));
         let from = if file.kind == OutputKind::New {

@@ -42,7 +42,7 @@ impl Executor<'_> {
             match self.statement(stmt) {
                 Flow::Next => {}
                 Flow::Jump(label) => match find_label(block, &label) {
-                    Some(at) if at < index && never_leaves(&block[at..index - 1]) => {
+                    Some(at) if at < index && is_endless(stmt, &block[at..index - 1]) => {
                         self.unresolved(stmt.span, ENDLESS);
                     }
                     Some(at) => index = at,
@@ -267,7 +267,12 @@ fn find_label(block: &Block, label: &Ident) -> Option<usize> {
     block.iter().position(|stmt| matches!(&stmt.kind, StmtKind::Label(l) if l.key == label.key))
 }
 
-/// Whether nothing in these statements can jump over the `GOTO` that leads back to them.
+/// Whether a `GOTO` leads back to these statements each time.
+fn is_endless(stmt: &Stmt, body: &[Stmt]) -> bool {
+    matches!(stmt.kind, StmtKind::Goto(_)) && never_leaves(body)
+}
+
+/// Whether nothing in these statements can jump out of them.
 fn never_leaves(block: &[Stmt]) -> bool {
     block.iter().all(|stmt| match &stmt.kind {
         StmtKind::Goto(_)
