@@ -198,6 +198,200 @@ fn unusable_input_names_the_way_out() {
     snapshots().bind(|| insta::assert_snapshot!("messages", said));
 }
 
+/// A program with these declarations and statements of `main`, two of them movements.
+fn program(declarations: &str, statements: &str) -> String {
+    format!(
+        "MODULE M\n\
+         PERS tooldata tP:=[TRUE,[[58,0,172],[1,0,0,0]],[3,[30,0,80],[1,0,0,0],0,0,0]];\n\
+         CONST jointtarget jA:=[[0,-12,14,20,95,-136],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+         CONST jointtarget jB:=[[40,10,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+         {declarations}\n\
+         PROC main()\n\
+         MoveAbsJ jA,v1000,fine,tP;\n\
+         {statements}\n\
+         MoveAbsJ jB,v1000,fine,tP;\n\
+         ENDPROC\n\
+         ENDMODULE\n"
+    )
+}
+
+const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
+
+/// What `command` prints on standard error, without what is assumed, and its exit code.
+fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
+    let output = joulepath(&[args, &ROBOT].concat());
+    let message = text(&output.stderr).replace(folder.to_str().unwrap(), "[folder]");
+    let lines = message.lines().filter(|line| !line.starts_with("note: assumed"));
+    (lines.map(|line| format!("{line}\n")).collect(), output.status.code())
+}
+
+/// The same for the program of one file.
+fn said_of(declarations: &str, statements: &str, args: &[&str]) -> (String, Option<i32>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program(declarations, statements)).unwrap();
+    said(folder.path(), &[&["optimize", path.to_str().unwrap()], args].concat())
+}
+
+#[test]
+fn the_time_asked_for_has_bounds() {
+    let cases: [&[&str]; 6] = [
+        &["--takt", "1e9"],
+        &["--takt", "0.1"],
+        &["--takt", "-1"],
+        &["--time-factor", "1e6"],
+        &["--time-factor", "0.1"],
+        &["--time-factor", "1.5"],
+    ];
+    let mut all = String::new();
+    for args in cases {
+        let (said, code) = said_of("", "", args);
+        all.push_str(&format!("{args:?}: {}\n{said}\n", code.unwrap()));
+    }
+    snapshots().bind(|| insta::assert_snapshot!("time", all));
+}
+
+#[test]
+fn what_a_message_tells_to_give_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "WaitTime 0.5;")).unwrap();
+    let path = path.to_str().unwrap();
+    for flag in ["--takt", "--time-factor"] {
+        let (message, _) = said(folder.path(), &["optimize", path, flag, "0.1"]);
+        let (_, advice) = message.split_once(&format!("give {flag} ")).unwrap();
+        let least = advice.split(' ').next().unwrap();
+        let args = ["optimize", path, flag, least, "--format", "json"];
+        let result = json(&[&args[..], &ROBOT].concat());
+        let cycle = number(&result, "/optimized/cycle_s");
+        assert!(cycle < number(&result, "/original/cycle_s"), "{flag} {least}: {cycle} s");
+        if flag == "--takt" {
+            assert!(cycle <= least.parse::<f64>().unwrap() + 1e-6, "{least}: {cycle} s");
+        }
+    }
+}
+
+#[test]
+fn slower_than_pays_has_a_note() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "")).unwrap();
+    let path = path.to_str().unwrap();
+    let args = ["optimize", path, "--time-factor", "2", "--format", "json", "--quiet"];
+    let result = json(&[&args[..], &ROBOT].concat());
+    assert!(number(&result, "/optimized/energy_j") > number(&result, "/original/energy_j"));
+    let note = result["notes"][0].as_str().unwrap();
+    assert!(note.contains("more energy than before"), "{note}");
+}
+
+#[test]
+fn odd_statements_have_their_true_reason() {
+    let clash = "CONST num nX:=1;\nPROC rB()\nENDPROC\nPROC rB()\nENDPROC\nVAR num nX:=2;";
+    let heavy = "PERS tooldata tH:=[TRUE,[[0,0,90],[1,0,0,0]],[1E30,[0,0,9],[1,0,0,0],0,0,0]];";
+    let endless = "PROC rEndless()\nrEndless;\nENDPROC";
+    let cases = [
+        ("", "WaitTime 1E400;", &[][..]),
+        ("", "WaitTime -3;", &[]),
+        ("", "WaitUntil diOn=1;", &["--input", "diNo=2", "--input", "DiOther=1"]),
+        (clash, "rB;\nWaitTime nX;\nMoveAbsJ jB,[nX,5,5,5],fine,tP;", &[]),
+        (heavy, "MoveAbsJ jB,v1000,fine,tH;", &[]),
+        (endless, "rEndless;", &[]),
+        ("", "again:\nMoveAbsJ jB,v1000,fine,tP;\nMoveAbsJ jA,v1000,fine,tP;\nGOTO again;", &[]),
+        ("", "IF jpAt(jpFrom1) THEN\njpRun1 tP;\nENDIF", &[]),
+    ];
+    let mut all = String::new();
+    for (declarations, statements, args) in cases {
+        let (said, code) = said_of(declarations, statements, args);
+        all.push_str(&format!("{statements}\n-> {}\n{said}\n", code.unwrap()));
+    }
+    snapshots().bind(|| insta::assert_snapshot!("odd", all));
+}
+
+#[test]
+fn an_unknown_call_is_the_reason_for_what_it_may_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "rElsewhere tP;\nMoveAbsJ jA,v1000,fine,tP;")).unwrap();
+    let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
+    let result = json(&[&args[..], &ROBOT].concat());
+    let last = result["segments"].as_array().unwrap().last().unwrap();
+    let reason = last["reason"].as_str().unwrap();
+    assert_eq!(
+        reason,
+        "not-constant: it uses tP, which rElsewhere may change: rElsewhere is in no file given"
+    );
+}
+
+#[test]
+fn two_entries_are_one_too_many() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.mod", "b.mod"] {
+        fs::write(folder.path().join(name), program("", "")).unwrap();
+    }
+    let (message, code) = said(folder.path(), &["optimize", folder.path().to_str().unwrap()]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("[folder]/a.mod:6 and in [folder]/b.mod:6"), "{message}");
+    fs::write(folder.path().join("a.mod"), "\r\n").unwrap();
+    let empty = folder.path().join("a.mod");
+    let (message, _) = said(folder.path(), &["optimize", empty.to_str().unwrap()]);
+    assert!(message.contains("is empty"), "{message}");
+}
+
+#[test]
+fn a_load_gripped_while_waiting_is_held() {
+    let part = "PERS loaddata lPart:=[6,[0,0,60],[1,0,0,0],0,0,0];";
+    let energy = |statements: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("m.mod");
+        fs::write(&path, program(part, statements)).unwrap();
+        let args = ["simulate", path.to_str().unwrap(), "--format", "json"];
+        number(&json(&[&args[..], &ROBOT].concat()), "/energy/idle_j")
+    };
+    let loaded = energy("MoveAbsJ jB,v1000,fine,tP;\nGripLoad lPart;\nWaitTime 20;");
+    let empty = energy("MoveAbsJ jB,v1000,fine,tP;\nWaitTime 20;\nGripLoad lPart;");
+    assert!(loaded > empty + 10.0, "{loaded} {empty}");
+}
+
+#[test]
+fn the_list_of_modules_names_the_new_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = "<?xml version=\"1.0\"?>\r\n<Program>\r\n\t<Module>m.mod</Module>\r\n</Program>\r\n";
+    fs::write(folder.path().join("cell.pgf"), list).unwrap();
+    fs::write(folder.path().join("m.mod"), program("", "")).unwrap();
+    let path = folder.path().join("cell.pgf");
+    let out = folder.path().join("out");
+    let args = ["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    assert_eq!(said(folder.path(), &args).1, Some(0));
+    let entry = "\r\n\t<Module>Joulepath.mod</Module>";
+    let expected = list.replace("m.mod</Module>", &format!("m.mod</Module>{entry}"));
+    assert_eq!(text(&fs::read(out.join("cell.pgf")).unwrap()), expected);
+    // What was written is a whole program.
+    let (message, code) =
+        said(folder.path(), &["simulate", out.join("cell.pgf").to_str().unwrap()]);
+    assert_eq!((message.as_str(), code), ("", Some(0)));
+    let args = ["optimize", path.to_str().unwrap(), "--in-place"];
+    assert_eq!(said(folder.path(), &args).1, Some(0));
+    assert_eq!(text(&fs::read(&path).unwrap()), expected);
+    assert_eq!(text(&fs::read(folder.path().join("cell.pgf.bak")).unwrap()), list);
+}
+
+#[test]
+fn files_of_one_name_do_not_collide() {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = ["x", "y"].map(|name| folder.path().join(name).join("m.mod"));
+    for path in &paths {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+    }
+    fs::write(&paths[0], program("", "")).unwrap();
+    fs::write(&paths[1], "MODULE other\nENDMODULE\n").unwrap();
+    let [x, y] = [&paths[0], &paths[1]].map(|path| path.to_str().unwrap());
+    let out = folder.path().join("out");
+    let args = ["optimize", x, y, "--out", out.to_str().unwrap()];
+    assert_eq!(said(folder.path(), &args).1, Some(0));
+    assert_eq!(fs::read(out.join("y/m.mod")).unwrap(), fs::read(y).unwrap());
+    assert!(out.join("x/Joulepath.mod").is_file());
+}
+
 #[test]
 fn text_diff_and_module_read_well() {
     let folder = tempfile::tempdir().unwrap();

@@ -182,6 +182,7 @@ fn small(path: &str) -> Small {
         original: figures(&before),
         optimized: figures(&after),
         potential_j: 25.0,
+        notes: Vec::new(),
         segments,
         verification: Verification {
             passed: true,

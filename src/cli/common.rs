@@ -1,18 +1,20 @@
 //! Options that several commands share.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
+use super::choice;
 use super::input::{self, Input};
 use crate::config::{self, Config};
-use crate::motion::Options;
+use crate::motion::timeline::What;
+use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
 use crate::robot::{self, Model};
-use crate::text::{FileId, SourceFile};
+use crate::text::{FileId, SourceFile, is_encoded_module};
 
 /// Options of commands that run a program.
 #[derive(Debug, Args)]
@@ -73,12 +75,36 @@ pub struct Job {
     pub entry: String,
     /// For simulations.
     pub options: Options,
+    /// The inputs of the options as the user writes them.
+    pub inputs: Vec<String>,
 }
 
 impl Job {
     /// The files alone, for reports.
     pub fn sources(&self) -> Vec<SourceFile> {
         self.files.iter().map(|source| source.file.clone()).collect()
+    }
+
+    /// Notes on inputs for which a simulated cycle does not wait.
+    pub fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
+        let waited: BTreeSet<&str> = simulation
+            .events
+            .iter()
+            .filter_map(|event| match &event.what {
+                What::Wait(wait) => wait.wait.signal.as_deref(),
+                _ => None,
+            })
+            .collect();
+        let is_waited = |name: &str| waited.iter().any(|signal| signal.to_lowercase() == name);
+        let unused = self.inputs.iter().filter(|name| !is_waited(&name.to_lowercase()));
+        unused
+            .map(|name| {
+                let known = waited.iter().copied();
+                let meant = robot::nearest(name, known)
+                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                format!("the cycle does not wait for the input {name}: its time is not used{meant}")
+            })
+            .collect()
     }
 }
 
@@ -91,6 +117,14 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     for unreadable in &input.unreadable {
         note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
     }
+    let choice = choice::choose(&input)?;
+    for text in &choice.notes {
+        note(args.quiet, text);
+    }
+    for file in choice.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
+        let path = &file.source.path;
+        note(args.quiet, &format!("'{path}' is an encoded module: what it declares is not known"));
+    }
     let (config, folder) = configuration(args)?;
     let name = match (&args.robot, &config.robot) {
         (Some(name), _) => name.clone(),
@@ -98,13 +132,26 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             let beside = folder.join(name);
             if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() }
         }
-        (None, None) => bail!(
-            "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
+        (None, None) => match choice.task.and_then(|task| task.robot.as_deref()) {
+            Some(name) => name.to_owned(),
+            None => bail!(
+                "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
              --robot FILE.toml, or robot = \"…\" in {}",
-            config::FILE_NAME
-        ),
+                config::FILE_NAME
+            ),
+        },
     };
-    let model = robot::load(&name)?;
+    let of_backup = args.robot.is_none() && config.robot.is_none();
+    let model = robot::load(&name).map_err(|error| {
+        if of_backup {
+            anyhow::anyhow!("the robot of the backup is a {name}: {error}; name yours with --robot")
+        } else {
+            error.into()
+        }
+    })?;
+    if of_backup {
+        note(args.quiet, &format!("the robot is {}, as the backup says ({name})", model.name));
+    }
     if model.dof != 6 {
         bail!(
             "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
@@ -112,31 +159,34 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             model.dof
         );
     }
-    let entry =
-        args.entry.clone().or_else(|| config.entry.clone()).unwrap_or_else(|| "main".into());
-    let mut inputs: BTreeMap<String, f64> =
-        config.inputs.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect();
+    let of_task = choice.task.and_then(|task| task.entry.clone());
+    let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
+    let entry = entry.unwrap_or_else(|| "main".into());
+    let mut times: Vec<(String, f64)> =
+        config.inputs.iter().map(|(name, t)| (name.clone(), *t)).collect();
     for text in &args.inputs {
         let (name, seconds) = input_time(text)?;
-        inputs.insert(name, seconds);
+        times.retain(|(known, _)| known.to_lowercase() != name.to_lowercase());
+        times.push((name, seconds));
     }
-    if let Some((name, t)) = inputs.iter().find(|(_, t)| !(t.is_finite() && **t >= 0.0)) {
+    if let Some((name, t)) = times.iter().find(|(_, t)| !(t.is_finite() && *t >= 0.0)) {
         bail!("the input {name} comes after {t} s; give a time of 0 or more");
     }
-    let start = args.start.as_deref().map(start_position).transpose()?;
-    let files: Vec<Source> = input
-        .program()
+    let options = Options {
+        start: args.start.as_deref().map(start_position).transpose()?,
+        inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
+    };
+    let files: Vec<Source> = choice
+        .files
+        .iter()
         .enumerate()
         .map(|(i, file)| Source {
-            file: SourceFile::new(
-                FileId(i as u32),
-                file.source.path.clone(),
-                file.source.bytes.clone(),
-            ),
+            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
             relative: file.relative.clone(),
         })
         .collect();
-    Ok(Job { input, files, model, config, entry, options: Options { start, inputs } })
+    let inputs = times.into_iter().map(|(name, _)| name).collect();
+    Ok(Job { input, files, model, config, entry, options, inputs })
 }
 
 fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
@@ -166,7 +216,7 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
     let (name, seconds) = text.split_once('=').with_context(wrong)?;
     let seconds = seconds.trim().trim_end_matches('s').trim();
     let seconds: f64 = seconds.parse().map_err(|_| anyhow::anyhow!(wrong()))?;
-    Ok((name.trim().to_lowercase(), seconds))
+    Ok((name.trim().to_owned(), seconds))
 }
 
 fn start_position(text: &str) -> anyhow::Result<[f64; 6]> {

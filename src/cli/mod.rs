@@ -1,12 +1,16 @@
 //! The command line.
 
+pub mod backup;
+pub mod choice;
 pub mod common;
 pub mod input;
+pub mod listing;
 pub mod optimize;
 pub mod output;
 pub mod parse;
 pub mod robots;
 pub mod simulate;
+pub mod system_parameters;
 
 use std::process::ExitCode;
 

@@ -1,5 +1,6 @@
 //! `joulepath optimize`: the main job.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,8 +11,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::output;
+use super::{listing, output};
 use crate::optimize::corridor::Ceilings;
+use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, retrofit};
@@ -48,15 +50,20 @@ pub struct OptimizeArgs {
     objective: ObjectiveArg,
 
     /// Time for the cycle, s; otherwise no run takes longer than before.
-    #[arg(long, value_name = "SECONDS", conflicts_with = "time_factor")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        conflicts_with = "time_factor",
+        allow_negative_numbers = true
+    )]
     takt: Option<f64>,
 
-    /// Each run takes this many times as long as before.
-    #[arg(long, value_name = "X")]
+    /// Each run takes this many times as long as before, at most 10.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     time_factor: Option<f64>,
 
     /// Least time between two points of a stream, s.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     spacing: Option<f64>,
 
     /// Let lines and arcs be faster than programmed.
@@ -99,13 +106,19 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
             bar.set_position(done as u64);
         });
         bar.finish_and_clear();
-        result?
+        let mut result = result?;
+        result.notes.extend(job.unused_inputs(&result.before.0));
+        listing::add(&mut result, &job.input, &job.files);
+        result
     };
+    for text in &result.notes {
+        common::note(args.program.quiet, text);
+    }
     let sources = job.sources();
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, &result)?);
+        written.extend(write_folder(folder, &job, &result)?);
     }
     if args.in_place {
         written.extend(write_in_place(&job, &result)?);
@@ -151,6 +164,9 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     let takt = args.takt.or(if args.time_factor.is_some() { None } else { job.config.takt_s });
     let budget = match (takt, args.time_factor) {
         (Some(takt), _) => Budget::Takt(positive(takt, "--takt")?),
+        (None, Some(factor)) if factor > SLOWEST => {
+            bail!("--time-factor {factor}: give at most {SLOWEST}; slower travel saves nothing")
+        }
         (None, Some(factor)) => Budget::Factor(positive(factor, "--time-factor")?),
         (None, None) => Budget::AsBefore,
     };
@@ -183,11 +199,11 @@ fn progress(quiet: bool) -> ProgressBar {
 }
 
 /// The complete program below a folder.
-fn write_folder(folder: &Path, result: &Retrofit) -> anyhow::Result<Vec<String>> {
+fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
     let mut written = Vec::new();
     for file in &result.outputs {
         let path = folder.join(&file.path);
-        output::write(&path, &file.bytes)?;
+        output::write(&path, &stored(job, file))?;
         written.push(path.display().to_string());
     }
     Ok(written)
@@ -219,18 +235,43 @@ fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
                 .with_context(|| format!("cannot write '{}'", copy.display()))?;
             written.push(copy.display().to_string());
         }
-        output::write(path, &file.bytes)?;
+        output::write(path, &stored(job, file))?;
         written.push(path.display().to_string());
     }
     Ok(written)
 }
 
+/// The bytes of an output in the encoding of the file that it stands for.
+fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
+    match file.input.and_then(|i| job.files.get(i)) {
+        Some(source) => source.file.stored(&file.bytes),
+        None => Cow::Borrowed(&file.bytes),
+    }
+}
+
+/// Path and bytes of the file of the input that an output stands for.
+fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+    match (file.kind, file.input) {
+        (OutputKind::New, _) => None,
+        (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
+        (_, None) => {
+            let listing = job.input.listings.iter().find(|l| l.relative == file.path)?;
+            Some((&listing.path, &listing.bytes))
+        }
+    }
+}
+
 /// Where an output lies in the user's own tree.
 fn place(job: &Job, file: &OutputFile) -> PathBuf {
-    if let Some(source) = file.input.and_then(|i| job.files.get(i)) {
-        return PathBuf::from(&source.file.path);
+    if let Some((path, _)) = original(job, file) {
+        return PathBuf::from(path);
     }
-    // New files go where the others' relative paths start.
+    let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    // A new file lies beside one of the same folder, others where the relative paths start.
+    let beside = job.files.iter().find(|s| folder(&s.relative) == folder(&file.path));
+    if let (Some(source), Some(name)) = (beside, Path::new(&file.path).file_name()) {
+        return folder(&source.file.path).join(name);
+    }
     let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
     PathBuf::from(root.unwrap_or_default()).join(&file.path)
 }
@@ -238,11 +279,10 @@ fn place(job: &Job, file: &OutputFile) -> PathBuf {
 fn diff(job: &Job, result: &Retrofit) -> String {
     let mut text = String::new();
     for file in &result.outputs {
-        let before = match (file.kind, file.input) {
-            (OutputKind::Unchanged, _) => continue,
-            (OutputKind::Changed, Some(i)) => job.files[i].file.bytes.as_slice(),
-            _ => &[],
-        };
+        if file.kind == OutputKind::Unchanged {
+            continue;
+        }
+        let before = original(job, file).map_or([].as_slice(), |(_, bytes)| bytes);
         let charset = charset(&file.bytes);
         let (old, new) = (charset.decode(before), charset.decode(&file.bytes));
         let from = if file.kind == OutputKind::New {

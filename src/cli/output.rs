@@ -16,8 +16,14 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     };
     let failed =
         || format!("cannot write '{}'; check the folder and its permissions", path.display());
-    std::fs::create_dir_all(folder).with_context(failed)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder).with_context(failed)?;
+    let closed = || {
+        format!(
+            "cannot write into the folder '{}'; name another one or check its permissions",
+            folder.display()
+        )
+    };
+    std::fs::create_dir_all(folder).with_context(closed)?;
+    let mut file = tempfile::NamedTempFile::new_in(folder).with_context(closed)?;
     file.write_all(bytes).with_context(failed)?;
     // A temporary file is private; what stands for a program is not.
     #[cfg(unix)]

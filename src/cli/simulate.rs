@@ -44,11 +44,16 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
         let samples = trajectory(&job.model, &simulation);
         output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;
     }
+    let notes = job.unused_inputs(&simulation);
+    for text in &notes {
+        common::note(args.program.quiet, text);
+    }
     let mut out = std::io::stdout().lock();
     match args.program.format {
         Format::Json => {
+            let (model, entry) = (&job.model, &job.entry);
             let value =
-                report::json::simulation(&job.model, &job.entry, places, &simulation, &account);
+                report::json::simulation(model, entry, places, &simulation, &account, &notes);
             serde_json::to_writer_pretty(&mut out, &value)?;
             writeln!(out)?;
         }

@@ -8,5 +8,5 @@ pub mod names;
 pub mod stream_module;
 
 pub use brake_note::{BrakeDwell, brake_note};
-pub use names::Names;
+pub use names::{Names, missing_streams};
 pub use stream_module::{EmitError, Emitted, EmittedStream, Site, can_guard, emit, end_of_line};

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
+use crate::ir::hir::{Block, Expr, ExprKind, StmtKind};
 use crate::ir::program::Program;
+use crate::text::Span;
 
 /// The names of a streams module.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -40,6 +42,58 @@ impl Names {
             same_target: format!("{prefix}SameTarget"),
             prefix,
         }
+    }
+}
+
+/// A guard of a program whose module of streams is not among the files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingStreams {
+    /// The function that it calls.
+    pub function: String,
+    /// Where.
+    pub span: Span,
+    /// The file that declares it.
+    pub module: String,
+}
+
+/// The first guard that calls a function of a module of streams that the program does not have.
+pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
+    program.modules.iter().enumerate().find_map(|(m, module)| {
+        let mut blocks = module.routines.iter().flat_map(|routine| routine.blocks());
+        blocks.find_map(|block| guard(program, m, block))
+    })
+}
+
+fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStreams> {
+    block.iter().find_map(|stmt| {
+        if let StmtKind::If { branches, .. } = &stmt.kind
+            && let Some(ExprKind::Call(name, _)) = branches.first().map(|(c, _)| &first(c).kind)
+            && let Some(round) = round_of(&name.key)
+            && program.resolve(module, &name.key).is_none()
+        {
+            return Some(MissingStreams {
+                function: name.text.clone(),
+                span: name.span,
+                module: format!("{}.mod", module_name(round)),
+            });
+        }
+        stmt.kind.blocks().into_iter().find_map(|inner| guard(program, module, inner))
+    })
+}
+
+/// The first part of a conjunction.
+fn first(condition: &Expr) -> &Expr {
+    match &condition.kind {
+        ExprKind::Binary(_, left, _) => first(left),
+        _ => condition,
+    }
+}
+
+/// The round in which a lower-case name is that of [`Names::at`].
+fn round_of(key: &str) -> Option<usize> {
+    match key.strip_prefix("jp")?.strip_suffix("at")? {
+        "" => Some(1),
+        round => round.strip_suffix('_')?.parse().ok(),
     }
 }
 

@@ -20,15 +20,11 @@ pub struct Account {
 /// The energy of every event.
 pub fn account(model: &Model, simulation: &Simulation) -> Account {
     let mut total = EnergyParts::default();
-    let mut load = Load::none();
     let mut events = Vec::with_capacity(simulation.events.len());
     for event in &simulation.events {
         let parts = match &event.what {
-            What::Run(run) => {
-                load = run.load.clone();
-                run_energy(model, run)
-            }
-            What::Wait(wait) => vec![at_rest(model, &load, &wait.q, event.duration)],
+            What::Run(run) => run_energy(model, run),
+            What::Wait(wait) => vec![at_rest(model, &wait.load, &wait.q, event.duration)],
             What::Output(..) | What::Left(_) => vec![EnergyParts::default()],
         };
         for part in &parts {

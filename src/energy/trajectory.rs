@@ -34,13 +34,11 @@ pub struct Sample {
 /// Samples of the cycle, at most 2 ms apart and at every event.
 pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
     let mut sampler = Sampler { model, data: Data::new(), rows: Vec::new() };
-    let mut load = Load::none();
     let mut tool = nalgebra::Isometry3::identity();
     let mut rest: Option<Joints> = None;
     for event in &simulation.events {
         match &event.what {
             What::Run(run) => {
-                load = run.load.clone();
                 for (i, record) in run.moves.iter().enumerate() {
                     tool = run.legs[i].tool;
                     let settling = if i + 1 == run.moves.len() { run.settling } else { 0.0 };
@@ -60,7 +58,7 @@ pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
                                 run.at(t)
                             };
                         let at = event.t_start + t;
-                        sampler.push(at, state, &load, &tool, Some(record.movement.span));
+                        sampler.push(at, state, &run.load, &tool, Some(record.movement.span));
                     }
                 }
                 rest = Some(run.end);
@@ -69,7 +67,7 @@ pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
                 for t in dense(&[0.0, event.duration]) {
                     let state = JointState::rest(wait.q);
                     let span = Some(wait.wait.span);
-                    sampler.push(event.t_start + t, state, &load, &tool, span);
+                    sampler.push(event.t_start + t, state, &wait.load, &tool, span);
                 }
                 rest = Some(wait.q);
             }
@@ -78,7 +76,7 @@ pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
     }
     if sampler.rows.is_empty() {
         let q = rest.unwrap_or([0.0; 6]);
-        sampler.push(0.0, JointState::rest(q), &load, &tool, None);
+        sampler.push(0.0, JointState::rest(q), &Load::none(), &tool, None);
     }
     sampler.rows
 }

@@ -9,6 +9,9 @@ const MM: f64 = 1e-3;
 /// A quaternion whose norm is farther from 1 is not one: the controller refuses it.
 const NORM_TOLERANCE: f64 = 0.01;
 
+/// No robot carries more, kg.
+const HEAVIEST: f64 = 1e4;
+
 type Converted<T> = Result<T, String>;
 
 /// Numbers of a list of exactly `N`.
@@ -28,6 +31,7 @@ pub(super) fn nums<const N: usize>(datum: &Datum, what: &str) -> Converted<[f64;
 pub(super) fn num(datum: &Datum, what: &str) -> Converted<f64> {
     match datum {
         Datum::Num(x) if x.is_finite() => Ok(*x),
+        Datum::Num(_) => Err(format!("{what} is out of the range of numbers")),
         Datum::Unknown(u) => Err(u.reason.clone()),
         Datum::Signal(name) => Err(format!("'{name}' is not declared in the files given")),
         _ => Err(format!("{what} is not a number")),
@@ -132,6 +136,9 @@ pub(super) fn load(datum: &Datum) -> Converted<LoadData> {
     let mass = num(mass, "the mass of the load")?;
     if mass < 0.0 {
         return Err("the mass of the load is negative".into());
+    }
+    if mass > HEAVIEST {
+        return Err(format!("the mass of the load is {mass:e} kg, more than any robot carries"));
     }
     let axes = orient(axes, "axes of the load")?;
     Ok(LoadData {

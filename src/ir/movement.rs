@@ -104,6 +104,9 @@ pub struct Settings {
     pub displacement: Option<Isometry3<f64>>,
     /// `GripLoad`, in the tool's frame.
     pub grip_load: Option<LoadData>,
+    /// `SingArea` other than `\Off`, as written: lines and arcs may turn the tool otherwise than
+    /// programmed.
+    pub sing_area: Option<Arc<str>>,
     /// Settings in force that this compiler does not model, by instruction name.
     pub other: Vec<Arc<str>>,
 }
@@ -120,6 +123,7 @@ impl Default for Settings {
             conf_linear: true,
             displacement: None,
             grip_load: None,
+            sing_area: None,
             other: Vec::new(),
         }
     }
@@ -203,6 +207,10 @@ pub struct Wait {
     pub duration: Option<f64>,
     /// The input that it waits for.
     pub signal: Option<Arc<str>>,
+    /// For what it waits, in words, where neither is known.
+    pub other: Option<String>,
+    /// `GripLoad` in force, in the tool's frame.
+    pub grip_load: Option<LoadData>,
 }
 
 /// A change of an output.

@@ -1,12 +1,15 @@
 //! The modules of a task and its symbols.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::sync::Arc;
 
 use super::hir::{
-    ArgKind, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Module, ParamMode, Routine,
-    RoutineKind, Scope, StmtKind, TypeDefKind,
+    ArgKind, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode,
+    Routine, RoutineKind, Scope, StmtKind, TypeDefKind,
 };
 use super::{instructions, layout};
+use crate::text::Span;
 
 /// A data object at module level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,6 +36,28 @@ pub enum Symbol {
     Data(DataId),
     /// A routine.
     Routine(RoutineId),
+    /// More than one declaration: a [`Clash`].
+    Ambiguous,
+}
+
+/// A name that is declared more than once in one scope.
+#[derive(Clone, Debug)]
+pub struct Clash {
+    /// As the first declaration writes it.
+    pub name: Ident,
+    /// The module in which it is local; `None` for global names.
+    pub module: Option<usize>,
+    /// The name in each of the declarations.
+    pub spans: Vec<Span>,
+}
+
+/// Who may change data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Writer {
+    /// A statement of the program.
+    Program,
+    /// Only a call, by this name, of a routine that is not in the program.
+    UnknownCall(Arc<str>),
 }
 
 /// The modules of one task with their symbol tables.
@@ -40,29 +65,45 @@ pub enum Symbol {
 pub struct Program {
     /// The modules, in the order of the input.
     pub modules: Vec<Module>,
+    /// Names declared more than once.
+    pub clashes: Vec<Clash>,
     global: BTreeMap<String, Symbol>,
     local: Vec<BTreeMap<String, Symbol>>,
-    written: BTreeSet<DataId>,
+    written: BTreeMap<DataId, Writer>,
 }
 
 impl Program {
-    /// Builds the symbol tables; where a global name occurs twice, the first one wins.
+    /// Builds the symbol tables; a name that is declared twice stands for nothing.
     pub fn new(modules: Vec<Module>) -> Program {
-        let mut global = BTreeMap::new();
-        let mut local = vec![BTreeMap::new(); modules.len()];
+        let mut declared: BTreeMap<(Option<usize>, &str), Vec<(Symbol, &Ident)>> = BTreeMap::new();
         for (m, module) in modules.iter().enumerate() {
-            for (index, data) in module.data.iter().enumerate() {
-                let symbol = Symbol::Data(DataId { module: m, index });
-                let table = if data.scope == Scope::Local { &mut local[m] } else { &mut global };
-                table.entry(data.name.key.clone()).or_insert(symbol);
-            }
-            for (index, routine) in module.routines.iter().enumerate() {
-                let symbol = Symbol::Routine(RoutineId { module: m, index });
-                let table = if routine.scope == Scope::Local { &mut local[m] } else { &mut global };
-                table.entry(routine.name.key.clone()).or_insert(symbol);
+            let data = module.data.iter().enumerate().map(|(index, data)| {
+                (data.scope, Symbol::Data(DataId { module: m, index }), &data.name)
+            });
+            let routines = module.routines.iter().enumerate().map(|(index, routine)| {
+                (routine.scope, Symbol::Routine(RoutineId { module: m, index }), &routine.name)
+            });
+            for (scope, symbol, name) in data.chain(routines) {
+                let table = (scope == Scope::Local).then_some(m);
+                declared.entry((table, &name.key)).or_default().push((symbol, name));
             }
         }
-        let mut program = Program { modules, global, local, written: BTreeSet::new() };
+        let mut global = BTreeMap::new();
+        let mut local = vec![BTreeMap::new(); modules.len()];
+        let mut clashes = Vec::new();
+        for ((module, key), list) in declared {
+            let symbol = match list.as_slice() {
+                [(symbol, _)] => *symbol,
+                _ => {
+                    let spans = list.iter().map(|(_, name)| name.span).collect();
+                    clashes.push(Clash { name: list[0].1.clone(), module, spans });
+                    Symbol::Ambiguous
+                }
+            };
+            let table = module.map_or(&mut global, |m| &mut local[m]);
+            table.insert(key.to_owned(), symbol);
+        }
+        let mut program = Program { modules, clashes, global, local, written: BTreeMap::new() };
         program.written = program.find_written();
         program
     }
@@ -89,7 +130,18 @@ impl Program {
 
     /// True if some statement of the program may change this data.
     pub fn is_written(&self, id: DataId) -> bool {
-        self.written.contains(&id)
+        self.written.contains_key(&id)
+    }
+
+    /// Who may change this data.
+    pub fn writer(&self, id: DataId) -> Option<&Writer> {
+        self.written.get(&id)
+    }
+
+    /// The declarations of a global name, if there is more than one.
+    pub fn clash(&self, name: &str) -> Option<&Clash> {
+        let key = name.to_lowercase();
+        self.clashes.iter().find(|clash| clash.module.is_none() && clash.name.key == key)
     }
 
     /// The routine that starts the program: a procedure with this global name.
@@ -122,11 +174,11 @@ impl Program {
     }
 
     /// Module data that some assignment, or an argument that is written through, names.
-    fn find_written(&self) -> BTreeSet<DataId> {
+    fn find_written(&self) -> BTreeMap<DataId, Writer> {
         let mut found = Written::default();
         // A parameter found written makes its callers' arguments written: repeat until stable.
         loop {
-            let before = (found.data.len(), found.params.len());
+            found.changed = false;
             for (module, body) in self.modules.iter().enumerate() {
                 for (index, routine) in body.routines.iter().enumerate() {
                     let scope = RoutineScope { program: self, id: RoutineId { module, index } };
@@ -135,7 +187,7 @@ impl Program {
                     }
                 }
             }
-            if before == (found.data.len(), found.params.len()) {
+            if !found.changed {
                 return found.data;
             }
         }
@@ -144,9 +196,28 @@ impl Program {
 
 #[derive(Default)]
 struct Written {
-    data: BTreeSet<DataId>,
+    data: BTreeMap<DataId, Writer>,
     /// Parameters by reference, by index.
-    params: BTreeSet<(RoutineId, usize)>,
+    params: BTreeMap<(RoutineId, usize), Writer>,
+    changed: bool,
+}
+
+/// Adds a writer; a statement of the program says more than a call that is not known. True if
+/// that is news.
+fn add<K: Ord>(written: &mut BTreeMap<K, Writer>, key: K, writer: &Writer) -> bool {
+    match written.entry(key) {
+        Entry::Vacant(place) => {
+            place.insert(writer.clone());
+            true
+        }
+        Entry::Occupied(mut known)
+            if *writer == Writer::Program && *known.get() != Writer::Program =>
+        {
+            known.insert(Writer::Program);
+            true
+        }
+        Entry::Occupied(_) => false,
+    }
 }
 
 struct RoutineScope<'a> {
@@ -158,9 +229,11 @@ impl RoutineScope<'_> {
     fn find(&self, block: &Block, found: &mut Written) {
         for stmt in block {
             match &stmt.kind {
-                StmtKind::Assign { target, .. } => self.target(target, found),
+                StmtKind::Assign { target, .. } => self.target(target, &Writer::Program, found),
                 StmtKind::Call(call) => self.call(call, found),
-                StmtKind::Connect { interrupt, .. } => self.target(interrupt, found),
+                StmtKind::Connect { interrupt, .. } => {
+                    self.target(interrupt, &Writer::Program, found);
+                }
                 _ => {}
             }
             for inner in stmt.kind.blocks() {
@@ -174,13 +247,13 @@ impl RoutineScope<'_> {
             Callee::Name(name) => self.program.resolve(self.id.module, &name.key),
             Callee::Late(_) => None,
         };
-        let harmless = match &call.callee {
-            Callee::Name(name) => callee.is_none() && !instructions::may_write(&name.key),
-            Callee::Late(_) => false,
+        // What a routine that is no routine of the program does to its arguments.
+        let outside = match (&call.callee, callee) {
+            (Callee::Name(name), None) if !instructions::may_write(&name.key) => return,
+            (Callee::Name(name), None) if instructions::is_writing(&name.key) => Writer::Program,
+            (Callee::Name(name), _) => Writer::UnknownCall(name.text.as_str().into()),
+            (Callee::Late(_), _) => Writer::UnknownCall("%…%".into()),
         };
-        if harmless {
-            return;
-        }
         let mut position = 0;
         for arg in &call.args {
             let (expr, name) = match &arg.kind {
@@ -190,7 +263,7 @@ impl RoutineScope<'_> {
                 }
                 ArgKind::Optional(_, None) | ArgKind::Conditional(..) => continue,
             };
-            let writes = match callee {
+            let writer = match callee {
                 Some(Symbol::Routine(id)) => {
                     let params = &self.program.routine(id).params;
                     let index = if let Some(key) = name {
@@ -199,33 +272,35 @@ impl RoutineScope<'_> {
                         let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
                         required.map(|(i, _)| i).nth(position)
                     };
-                    index.is_some_and(|index| found.params.contains(&(id, index)))
+                    index.and_then(|index| found.params.get(&(id, index)).cloned())
                 }
-                _ => true,
+                _ => Some(outside.clone()),
             };
-            if writes {
-                self.target(expr, found);
+            if let Some(writer) = writer {
+                self.target(expr, &writer, found);
             }
             position += usize::from(name.is_none());
         }
     }
 
-    fn target(&self, expr: &Expr, found: &mut Written) {
+    fn target(&self, expr: &Expr, writer: &Writer, found: &mut Written) {
         match &expr.kind {
             ExprKind::Ref(name) => {
                 let routine = self.program.routine(self.id);
                 if let Some(index) = routine.params.iter().position(|p| p.name.key == name.key) {
                     if routine.params[index].mode != ParamMode::In {
-                        found.params.insert((self.id, index));
+                        found.changed |= add(&mut found.params, (self.id, index), writer);
                     }
                 } else if !routine.data.iter().any(|d| d.name.key == name.key)
                     && let Some(Symbol::Data(id)) = self.program.resolve(self.id.module, &name.key)
                     && self.program.data(id).kind != DataKind::Const
                 {
-                    found.data.insert(id);
+                    found.changed |= add(&mut found.data, id, writer);
                 }
             }
-            ExprKind::Field(base, _) | ExprKind::Index(base, _) => self.target(base, found),
+            ExprKind::Field(base, _) | ExprKind::Index(base, _) => {
+                self.target(base, writer, found);
+            }
             _ => {}
         }
     }

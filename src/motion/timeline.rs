@@ -103,6 +103,8 @@ pub struct WaitRecord {
     pub basis: WaitBasis,
     /// Where the robot stands, rad.
     pub q: Joints,
+    /// Tool and payload that it holds.
+    pub load: Load,
     /// False if it may stand elsewhere.
     pub position_known: bool,
 }

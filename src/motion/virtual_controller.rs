@@ -14,7 +14,7 @@ use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord,
 use crate::dynamics::Load;
 use crate::ir::exec::{Machine, Note, execute};
 use crate::ir::instructions::MoveForm;
-use crate::ir::movement::{LoadData, Movement, Output, Target, Unresolved, Wait};
+use crate::ir::movement::{LoadData, Movement, Output, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
 use crate::kinematics::{Conf, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
@@ -45,6 +45,7 @@ pub fn simulate(
         q: options.start.unwrap_or([0.0; DOF]),
         certain: true,
         moved: false,
+        tool: None,
         time: 0.0,
         events: Vec::new(),
         pending: Vec::new(),
@@ -78,6 +79,8 @@ struct VirtualController<'a> {
     /// False after something that may have moved the robot elsewhere.
     certain: bool,
     moved: bool,
+    /// Tool of the last movement.
+    tool: Option<Tool>,
     time: f64,
     events: Vec<Event>,
     pending: Vec<Pending>,
@@ -112,6 +115,7 @@ impl Machine for VirtualController<'_> {
         match self.leg(&movement) {
             Ok(leg) => {
                 self.q = leg.end;
+                self.tool = Some(movement.tool.clone());
                 let fine = leg.zone.fine;
                 self.pending.push(Pending { movement, leg });
                 if fine {
@@ -140,21 +144,28 @@ impl Machine for VirtualController<'_> {
             (Some(duration), _) => (duration, WaitBasis::Stated),
             (None, Some(at)) => ((at - begin).max(0.0), WaitBasis::Input),
             (None, None) => {
-                let what = wait.signal.as_deref().unwrap_or("a condition");
-                self.note(
-                    wait.span,
-                    &format!(
-                        "waits for {what}, at a time that is not known: taken as 0 s \
-                         (--input {what}=SECONDS states it)"
+                let what = match (&wait.signal, &wait.other) {
+                    (Some(signal), _) => format!(
+                        "{signal}, at a time that is not known: taken as 0 s \
+                         (--input {signal}=SECONDS states it)"
                     ),
-                );
+                    (None, Some(other)) => format!("{other}: taken as 0 s"),
+                    (None, None) => {
+                        "a condition, at a time that is not known: taken as 0 s".to_owned()
+                    }
+                };
+                self.note(wait.span, &format!("waits for {what}"));
                 (0.0, WaitBasis::Unknown)
             }
         };
         if let Some(signal) = &wait.signal {
             self.waited.insert(signal.to_lowercase(), begin + duration);
         }
-        let record = WaitRecord { wait, basis, q: self.q, position_known: self.certain };
+        let load = self
+            .tool
+            .as_ref()
+            .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
+        let record = WaitRecord { wait, basis, q: self.q, load, position_known: self.certain };
         self.push(duration, What::Wait(record));
     }
 
@@ -431,11 +442,16 @@ pub fn effective_load(movement: &Movement) -> Load {
     if let Some(total) = &movement.total_load {
         return load(total, &Isometry3::identity());
     }
-    let tool = load(&movement.tool.load, &Isometry3::identity());
-    match &movement.settings.grip_load {
+    gripped(&movement.tool, movement.settings.grip_load.as_ref())
+}
+
+/// A tool with what `GripLoad` says that it holds.
+fn gripped(tool: &Tool, grip: Option<&LoadData>) -> Load {
+    let alone = load(&tool.load, &Isometry3::identity());
+    match grip {
         // GripLoad's load is given in the tool's frame.
-        Some(grip) => tool.with(&load(grip, &movement.tool.frame)),
-        None => tool,
+        Some(grip) => alone.with(&load(grip, &tool.frame)),
+        None => alone,
     }
 }
 

@@ -4,11 +4,10 @@
 //! the holding power, plus the time that engaging and releasing take.
 
 use super::reason::Reason;
-use crate::dynamics::Load;
 use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
-use crate::path::joint_path::Joints;
+use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
 use crate::text::Span;
 
@@ -23,7 +22,7 @@ pub struct Dwell {
     pub duration: f64,
     /// Where the robot stands, rad.
     pub q: Joints,
-    /// Holding power by joint, W.
+    /// Mean holding power by joint, W.
     pub holding_w: Joints,
     /// s; `None` where nothing is to be held or no brake is known.
     pub break_even_s: Option<f64>,
@@ -33,18 +32,24 @@ pub struct Dwell {
     pub reason: Reason,
 }
 
+impl Dwell {
+    /// Takes a wait into the mean holding power.
+    fn hold(&mut self, holding_w: &Joints, duration: f64) {
+        let all = self.duration + duration;
+        let share = if all > 0.0 { duration / all } else { 1.0 };
+        for (mean, new) in self.holding_w.iter_mut().zip(holding_w) {
+            *mean += share * (new - *mean);
+        }
+    }
+}
+
 /// The dwells of a cycle, in order.
 pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
     let mut dwells: Vec<Dwell> = Vec::new();
-    let mut load = Load::none();
     let mut open = false;
     for (index, event) in simulation.events.iter().enumerate() {
         match &event.what {
-            What::Run(run) => {
-                load = run.load.clone();
-                open = false;
-            }
-            What::Left(_) => open = false,
+            What::Run(_) | What::Left(_) => open = false,
             What::Output(..) => {}
             What::Wait(wait) => {
                 if !open {
@@ -53,7 +58,7 @@ pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
                         span: wait.wait.span,
                         duration: 0.0,
                         q: wait.q,
-                        holding_w: holding_w(model, &load, &wait.q),
+                        holding_w: [0.0; DOF],
                         break_even_s: None,
                         potential_j: 0.0,
                         reason: Reason::UnknownDwell,
@@ -69,6 +74,8 @@ pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
                     if event.duration > longest {
                         dwell.span = wait.wait.span;
                     }
+                    let holding = holding_w(model, &wait.load, &wait.q);
+                    dwell.hold(&holding, event.duration);
                     dwell.events.push(index);
                     dwell.duration += event.duration;
                     if wait.basis != WaitBasis::Unknown {

@@ -37,6 +37,8 @@ pub enum Reason {
     NoMotion,
     /// Nothing is saved in the time that there is.
     NoSaving,
+    /// The time asked for is below the possible, s.
+    TooShort(f64),
     /// No stream within the limits was found.
     NoStream(String),
     /// More variants than a program should carry.
@@ -72,6 +74,7 @@ impl Reason {
             Reason::SharpCorner => "sharp-corner",
             Reason::NoMotion => "no-motion",
             Reason::NoSaving => "no-saving",
+            Reason::TooShort(_) => "too-short",
             Reason::NoStream(_) => "no-stream",
             Reason::TooManyVariants(_) => "too-many-variants",
             Reason::Verification(_) => "verification",
@@ -131,6 +134,7 @@ impl std::fmt::Display for Reason {
             }
             Reason::NoMotion => f.write_str("the robot is there already"),
             Reason::NoSaving => f.write_str("no energy is saved in the time that there is"),
+            Reason::TooShort(least) => write!(f, "it takes at least {least:.3} s"),
             Reason::TooManyVariants(n) => write!(f, "it runs in {n} different ways"),
             Reason::ShortDwell(break_even) if break_even.is_infinite() => {
                 f.write_str("nothing is to be held, or no brake is known")

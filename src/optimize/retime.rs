@@ -6,7 +6,7 @@
 
 use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
 use super::reason::Reason;
@@ -148,7 +148,12 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
-        Goal::Exactly(time) => work.least_energy(time, f64::INFINITY),
+        Goal::Exactly(time) => {
+            work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
+                Reason::NoSaving => work.within(time),
+                other => Err(other),
+            })
+        }
         Goal::Fastest => work.least_time(),
     }
 }
@@ -156,6 +161,21 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
 /// The least time of a run as a stream, s; `None` where there is no stream.
 pub fn fastest(task: &Task<'_>) -> Option<f64> {
     Work::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
+}
+
+/// A run is made slower by this factor at most.
+pub const SLOWEST: f64 = 10.0;
+
+/// The time, s, beyond which a run takes more motion energy again since the motors hold the arm up
+/// for longer; at most [`SLOWEST`] times as long as before. `None` where there is no stream. Base
+/// power does not count: the rest of a takt has to be waited for anyway.
+pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
+    let work = Work::new(task).ok()?;
+    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let fast = fastest_profile(&grid, &limits).ok()?;
+    let longest = SLOWEST * task.run.duration();
+    let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
+    Some(optimum.profile.duration() + task.run.settling)
 }
 
 struct Work<'a> {
@@ -295,6 +315,16 @@ impl<'a> Work<'a> {
             }
         }
         Err(problem)
+    }
+
+    /// Least time, where the time is too short for more.
+    fn within(&self, time: f64) -> Result<Retiming, Reason> {
+        let retiming = self.least_time()?;
+        if retiming.duration_s <= time + quantum() {
+            Ok(retiming)
+        } else {
+            Err(Reason::TooShort(retiming.duration_s))
+        }
     }
 
     /// The smallest tolerance on the path, m.

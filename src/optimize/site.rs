@@ -181,6 +181,9 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
             Dependence::Persistent(name) => {
                 format!("it uses PERS {name}, whose stored value can differ from the source")
             }
+            Dependence::Exposed(name, call) => {
+                format!("it uses {name}, which {call} may change: {call} is in no file given")
+            }
             Dependence::Input(name) => format!("it is computed from the signal {name}"),
             Dependence::RobotState => "it is computed from where the robot stands".to_owned(),
         };
@@ -198,7 +201,13 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
     if let Some(name) = movement.other_arguments.first() {
         return Err(Reason::Argument(name.to_string()));
     }
-    settings_allow(&movement.settings)
+    let settings = &movement.settings;
+    match &settings.sing_area {
+        Some(option) if matches!(movement.form, MoveForm::Linear | MoveForm::Circular) => {
+            Err(Reason::Setting(option.to_string()))
+        }
+        _ => settings_allow(settings),
+    }
 }
 
 fn settings_allow(settings: &Settings) -> Result<(), Reason> {

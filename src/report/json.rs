@@ -44,6 +44,7 @@ pub fn simulation(
     places: Places<'_>,
     simulation: &Simulation,
     account: &Account,
+    notes: &[String],
 ) -> Value {
     let known = model.has_dynamics();
     let mut moves = Vec::new();
@@ -88,6 +89,7 @@ pub fn simulation(
         "energy": Parts::new(&account.total, known),
         "moves": moves,
         "waits": waits,
+        "notes": notes,
         "unresolved": unresolved(places, simulation),
         "assumed": assumed(model, simulation),
     })
@@ -187,6 +189,7 @@ pub fn retrofit(
         },
         "files": retrofit.outputs.iter().map(file).collect::<Vec<Value>>(),
         "outputs": outputs,
+        "notes": retrofit.notes,
         "unresolved": unresolved(places, &retrofit.before.0),
         "assumed": assumed(model, &retrofit.before.0),
     })

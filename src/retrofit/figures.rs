@@ -132,6 +132,8 @@ pub struct Retrofit {
     pub verification: Verification,
     /// The complete program.
     pub outputs: Vec<OutputFile>,
+    /// What else is to be known.
+    pub notes: Vec<String>,
     /// The original cycle.
     pub before: (Simulation, Account),
     /// The cycle of the emitted program.

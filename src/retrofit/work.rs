@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::figures::{Figures, Retrofit, Verification};
-use super::{outputs, segments, verify};
+use super::{notes, outputs, segments, verify};
 use crate::emit::{self, Names};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
@@ -15,7 +15,7 @@ use crate::motion::{Options, Simulation, simulate};
 use crate::optimize::corridor::Ceilings;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Goal, Retiming, Task, fastest, retime};
+use crate::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest, retime, thriftiest};
 use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::Model;
 use crate::syntax::{self, SyntaxError};
@@ -46,7 +46,8 @@ pub enum Budget {
     AsBefore,
     /// The cycle takes this long, s.
     Takt(f64),
-    /// Each run takes this many times as long as before.
+    /// Each run takes this many times as long as before, at most
+    /// [`SLOWEST`](crate::optimize::retime::SLOWEST).
     Factor(f64),
 }
 
@@ -76,6 +77,42 @@ pub enum RetrofitError {
          program with --entry"
     )]
     NoEntry {
+        /// The name.
+        entry: String,
+    },
+    /// More than one routine of that name.
+    #[error(
+        "the entry routine '{entry}' is declared more than once, in {first} and in {second}: name \
+         the files of one program only, or another routine with --entry"
+    )]
+    TwoEntries {
+        /// The name.
+        entry: String,
+        /// File and line of the first.
+        first: String,
+        /// File and line of the second.
+        second: String,
+    },
+    /// The program calls streams that are not there.
+    #[error(
+        "{path}:{line} calls {function} of a module of streams that was not given: the program is \
+         optimised already; give '{module}' too (name the folder), or start from the original"
+    )]
+    NoStreams {
+        /// File.
+        path: String,
+        /// From 1.
+        line: u32,
+        /// What is called.
+        function: String,
+        /// The file of the streams.
+        module: String,
+    },
+    /// Nothing to read.
+    #[error("'{path}' is empty: it has no procedure '{entry}' to start the program with")]
+    Empty {
+        /// The file.
+        path: String,
         /// The name.
         entry: String,
     },
@@ -121,6 +158,17 @@ pub enum RetrofitError {
         /// Not to be changed, s.
         fixed: f64,
     },
+    /// A factor below the possible for every run.
+    #[error(
+        "a time factor of {factor} is below the possible: no run takes less than {least:.3} times \
+         as long as before with this robot; give --time-factor {least:.3} or more"
+    )]
+    Factor {
+        /// Asked for.
+        factor: f64,
+        /// Possible for some run.
+        least: f64,
+    },
     /// The emission failed.
     #[error("{0}")]
     Emit(#[from] emit::EmitError),
@@ -146,12 +194,37 @@ pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId
         modules.extend(file_modules);
     }
     let program = Program::new(modules);
+    if let Some(clash) = program.clash(entry) {
+        let place = |i: usize| {
+            let span = clash.spans[i];
+            let file = &files[span.file.0 as usize].file;
+            format!("{}:{}", file.path, file.position(span.start).line)
+        };
+        return Err(RetrofitError::TwoEntries {
+            entry: entry.to_owned(),
+            first: place(0),
+            second: place(1),
+        });
+    }
+    if let Some(missing) = emit::missing_streams(&program) {
+        let file = &files[missing.span.file.0 as usize].file;
+        return Err(RetrofitError::NoStreams {
+            path: file.path.clone(),
+            line: file.position(missing.span.start).line,
+            function: missing.function,
+            module: missing.module,
+        });
+    }
     // A broken module may hide its entry: then its error is the way out.
     let Some(id) = program.entry(entry) else {
         let broken = errors.iter().position(|list| !list.is_empty());
-        return Err(match broken {
-            Some(i) => broken_entry(&files[i], &errors[i][0], entry),
-            None => RetrofitError::NoEntry { entry: entry.to_owned() },
+        let blank = |source: &Source| source.file.bytes.iter().all(u8::is_ascii_whitespace);
+        return Err(match (broken, files) {
+            (Some(i), _) => broken_entry(&files[i], &errors[i][0], entry),
+            (None, [source]) if blank(source) => {
+                RetrofitError::Empty { path: source.file.path.clone(), entry: entry.to_owned() }
+            }
+            (None, _) => RetrofitError::NoEntry { entry: entry.to_owned() },
         });
     };
     let file = program.modules[id.module].span.file.0 as usize;
@@ -188,8 +261,11 @@ pub(super) struct Way {
     /// Index of the variant.
     pub(super) variant: usize,
     /// Its stream, or why there is none.
-    pub(super) outcome: Result<Retiming, Reason>,
+    pub(super) outcome: Outcome,
 }
+
+/// A stream, or why there is none.
+type Outcome = Result<Retiming, Reason>;
 
 /// Retrofits a program. `progress` is told how many of how many pieces are done.
 ///
@@ -241,11 +317,15 @@ pub fn retrofit(
     );
     outputs::add_brake_note(&mut checked.0, files, model, &dwells);
     let potential_j = dwells.iter().map(|dwell| dwell.potential_j).sum();
+    let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
+    let notes =
+        notes::notes(files, model, settings, &simulation, &segments, (&original, &optimized));
     Ok(Retrofit {
-        original: figures(&simulation, &before),
-        optimized: figures(&after_simulation, &after),
+        original,
+        optimized,
         potential_j,
         segments,
+        notes,
         verification,
         outputs: checked.0,
         before: (simulation, before),
@@ -339,7 +419,7 @@ fn retime_all(
         .collect();
     let goals = goals(settings, simulation, sites, &ways, &tasks)?;
     let done = Arc::new(std::sync::atomic::AtomicUsize::new(0));
-    let outcomes: Vec<(usize, Result<Retiming, Reason>)> = tasks
+    let outcomes: Vec<(usize, Outcome)> = tasks
         .par_iter()
         .zip(&goals)
         .map(|((i, task), goal)| {
@@ -349,10 +429,28 @@ fn retime_all(
             (*i, outcome)
         })
         .collect();
+    if let Budget::Factor(factor) = settings.budget {
+        let share = |(outcome, task): (&Outcome, &Task<'_>)| match outcome {
+            Err(Reason::TooShort(least)) => Some(least / task.run.duration()),
+            _ => None,
+        };
+        let pairs = outcomes.iter().zip(&tasks).map(|((_, outcome), (_, task))| (outcome, task));
+        // Where some run can do it, the others stay with that as their reason.
+        let shares: Option<Vec<f64>> = pairs.map(share).collect();
+        let least = shares.and_then(|list| list.into_iter().reduce(f64::min));
+        if let Some(least) = least {
+            return Err(RetrofitError::Factor { factor, least: rounded_up(least) });
+        }
+    }
     for (i, outcome) in outcomes {
         ways[i].outcome = outcome;
     }
     Ok(ways)
+}
+
+/// Up to the next figure with three decimals: what a message tells to give has to do.
+fn rounded_up(x: f64) -> f64 {
+    (x * 1e3).ceil() / 1e3
 }
 
 /// The goal of each task: its share of the time.
@@ -380,29 +478,30 @@ fn goals(
                 tasks.iter().zip(&least).map(|((i, _), t)| executions(*i) * t).sum();
             let fixed = simulation.cycle_s - movable;
             if takt < fixed + shortest {
-                return Err(RetrofitError::Takt { takt, least: fixed + shortest, fixed });
+                let least = rounded_up(fixed + shortest);
+                return Err(RetrofitError::Takt { takt, least, fixed });
             }
-            // One factor for all, but nobody below the least: found by bisection.
+            let most: Vec<f64> = tasks
+                .par_iter()
+                .zip(&least)
+                .map(|((_, task), least)| thriftiest(task).unwrap_or(before(task)).max(*least))
+                .collect();
+            // One factor for all, but nobody below the least or slower than pays: found by
+            // bisection.
+            let time =
+                |i: usize, factor: f64| (factor * before(&tasks[i].1)).clamp(least[i], most[i]);
             let total = |factor: f64| -> f64 {
-                tasks
-                    .iter()
-                    .zip(&least)
-                    .map(|((i, t), least)| executions(*i) * (factor * before(t)).max(*least))
-                    .sum()
+                (0..tasks.len()).map(|i| executions(tasks[i].0) * time(i, factor)).sum()
             };
-            let (mut low, mut high) = (0.0, 1.0);
-            while total(high) < takt - fixed && movable > 0.0 {
-                high *= 2.0;
+            let (mut low, mut high) = (0.0, SLOWEST);
+            if total(high) <= takt - fixed {
+                low = high;
             }
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
                 if total(middle) < takt - fixed { low = middle } else { high = middle }
             }
-            tasks
-                .iter()
-                .zip(&least)
-                .map(|((_, t), least)| Goal::Exactly((low * before(t)).max(*least)))
-                .collect()
+            (0..tasks.len()).map(|i| Goal::Exactly(time(i, low))).collect()
         }
     })
 }

@@ -32,6 +32,7 @@ pub use link::Link;
 pub use load::{from_toml, load};
 pub use model::Model;
 pub use motors::Motors;
+pub use names::nearest;
 pub use provenance::{Origin, Provenance};
 
 /// The largest number of joints a model may have.

@@ -60,7 +60,7 @@ impl Name {
 }
 
 /// The name among `known` that is nearest to `text`, if one is near.
-pub(super) fn nearest<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let asked = compact(text);
     let (distance, name) = known
         .map(|name| (edit_distance(&asked, &compact(name)), name))

@@ -6,6 +6,7 @@ use super::super::hir::{Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, Param
 use super::super::predefined;
 use super::super::program::{RoutineId, Symbol};
 use super::super::value::{Datum, Dependence, Origin, Value};
+use super::eval::declared_twice;
 use super::flow::Flow;
 use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
 use crate::text::Span;
@@ -30,6 +31,11 @@ impl Executor<'_> {
                 Flow::Return(_) => Flow::Next,
                 other => other,
             },
+            Some(Symbol::Ambiguous) => {
+                self.forget(&call.args, &text);
+                self.opaque(stmt.span, &declared_twice(&text));
+                Flow::Next
+            }
             _ => self.instruction(stmt, &key, &text, &call.args),
         }
     }
@@ -37,8 +43,14 @@ impl Executor<'_> {
     /// Binds the arguments and runs the routine.
     pub(super) fn call_routine(&mut self, id: RoutineId, args: &[Arg], at: Span) -> Flow {
         if self.frames.len() >= MAX_CALL_DEPTH {
-            self.unresolved(at, "calls are nested too deeply; the call was passed over");
-            return Flow::Next;
+            self.unresolved(
+                at,
+                format!(
+                    "calls are nested more than {MAX_CALL_DEPTH} deep, as if a routine called \
+                     itself without an end: the cycle is shown up to here"
+                ),
+            );
+            return Flow::Exit;
         }
         let program = self.program;
         let params = &program.routine(id).params;
@@ -110,7 +122,7 @@ impl Executor<'_> {
                 self.program.resolve_global(&name.key) == Some(Symbol::Data(id))
                     && !self.program.is_written(id)
             }
-            Some(Symbol::Routine(_)) => false,
+            Some(Symbol::Routine(_) | Symbol::Ambiguous) => false,
             None => value.origin.is_constant() && predefined::lookup(&name.key).is_some(),
         };
         known.then(|| name.text.as_str().into())
@@ -126,6 +138,10 @@ impl Executor<'_> {
         let program = self.program;
         let routine = program.routine(id);
         let cells = self.cells.len();
+        let mut given = Origin::default();
+        for (_, cell) in &names {
+            given.join(&self.cells[*cell].value.origin);
+        }
         self.frames.push(Frame {
             module: id.module,
             routine: routine.name.text.as_str().into(),
@@ -150,6 +166,11 @@ impl Executor<'_> {
         self.cells.truncate(cells.max(self.kept_cells));
         match flow {
             Flow::Next | Flow::Resume => Flow::Return(None),
+            // A function's value depends on its arguments, which only it knows by name.
+            Flow::Return(Some(mut value)) => {
+                value.origin.join(&given);
+                Flow::Return(Some(value))
+            }
             other => other,
         }
     }

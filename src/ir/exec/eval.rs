@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::super::functions;
 use super::super::hir::{BinaryOp, Data, DataKind, Expr, ExprKind, Ident, UnaryOp};
 use super::super::predefined;
-use super::super::program::{DataId, Symbol};
+use super::super::program::{DataId, Symbol, Writer};
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::{Cell, CellId, Executor};
 
@@ -109,6 +110,7 @@ impl Executor<'_> {
                 Some(Symbol::Routine(_)) => {
                     Value::unknown(format!("'{}' is a routine", name.text), name.span)
                 }
+                Some(Symbol::Ambiguous) => Value::unknown(declared_twice(&name.text), name.span),
                 _ => predefined::lookup(&name.key).unwrap_or_else(|| {
                     Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
                 }),
@@ -124,7 +126,7 @@ impl Executor<'_> {
         }
         match self.program.resolve(frame.module, &name.key)? {
             Symbol::Data(id) => Some(self.global(id)),
-            Symbol::Routine(_) => None,
+            Symbol::Routine(_) | Symbol::Ambiguous => None,
         }
     }
 
@@ -152,16 +154,16 @@ impl Executor<'_> {
         self.frame_mut().names = names;
         self.frame_mut().module = module;
         let name: Arc<str> = data.name.text.as_str().into();
-        let written = program.is_written(id);
         let trusted = matches!(&*value.type_key, "tooldata" | "wobjdata" | "loaddata");
-        let reading = match data.kind {
-            DataKind::Const => value.origin.clone(),
-            DataKind::Var if !written => value.origin.clone(),
-            DataKind::Var => Origin::of(Dependence::Variable(name)),
-            DataKind::Pers if trusted && !written => {
-                Origin::of(Dependence::TrustedPersistent(name))
+        let reading = match (data.kind, program.writer(id)) {
+            (DataKind::Const, _) | (DataKind::Var, None) => value.origin.clone(),
+            (DataKind::Pers, None) if trusted => Origin::of(Dependence::TrustedPersistent(name)),
+            (DataKind::Pers, _) if !trusted => Origin::of(Dependence::Persistent(name)),
+            (_, Some(Writer::UnknownCall(call))) => {
+                Origin::of(Dependence::Exposed(name, call.clone()))
             }
-            DataKind::Pers => Origin::of(Dependence::Persistent(name)),
+            (DataKind::Var, _) => Origin::of(Dependence::Variable(name)),
+            (DataKind::Pers, _) => Origin::of(Dependence::Persistent(name)),
         };
         self.cells[cell] =
             Cell { value, reading, read_only: data.kind == DataKind::Const, alias: None };
@@ -258,7 +260,11 @@ impl Executor<'_> {
             match &base.kind {
                 ExprKind::Ref(name) => {
                     let Some(cell) = self.cell_of(name) else {
-                        self.unresolved(name.span, format!("'{}' is not declared", name.text));
+                        let reason = match self.program.resolve(self.frame().module, &name.key) {
+                            Some(Symbol::Ambiguous) => declared_twice(&name.text),
+                            _ => format!("'{}' is not declared", name.text),
+                        };
+                        self.unresolved(name.span, reason);
                         return;
                     };
                     if self.cells[cell].read_only {
@@ -340,6 +346,11 @@ impl Executor<'_> {
     }
 }
 
+/// Why a name stands for nothing.
+pub(super) fn declared_twice(name: &str) -> String {
+    format!("'{name}' is declared more than once")
+}
+
 enum Step<'e> {
     Field(&'e Ident),
     Index(&'e Expr),
@@ -396,6 +407,9 @@ fn binary(op: BinaryOp, left: &Datum, right: &Datum, expr: &Expr) -> Datum {
         }
         (BinaryOp::Mul | BinaryOp::Div, Datum::List(items), Datum::Num(_)) => {
             Datum::List(items.iter().map(|item| binary(op, item, right, expr)).collect())
+        }
+        (BinaryOp::Mul, Datum::List(_), Datum::List(_)) => {
+            functions::product(left, right).unwrap_or_else(wrong)
         }
         _ => wrong(),
     }

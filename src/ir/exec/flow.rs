@@ -6,6 +6,9 @@ use super::super::value::{Datum, Dependence, Origin, Value};
 use super::{Cell, Executor, MAX_PASSES, MAX_STATEMENTS};
 use crate::text::Span;
 
+/// The note on a loop without an end.
+const ENDLESS: &str = "an endless loop: simulated for one pass";
+
 /// How a statement list ended.
 pub(super) enum Flow {
     /// At its end.
@@ -39,6 +42,9 @@ impl Executor<'_> {
             match self.statement(stmt) {
                 Flow::Next => {}
                 Flow::Jump(label) => match find_label(block, &label) {
+                    Some(at) if at < index && is_endless(stmt, &block[at..index - 1]) => {
+                        self.unresolved(stmt.span, ENDLESS);
+                    }
                     Some(at) => index = at,
                     None => return Flow::Jump(label),
                 },
@@ -50,11 +56,8 @@ impl Executor<'_> {
 
     fn statement(&mut self, stmt: &Stmt) -> Flow {
         self.statements += 1;
-        if self.machine.is_full() {
-            return Flow::Exit;
-        }
-        if self.statements > MAX_STATEMENTS {
-            self.unresolved(stmt.span, "the program does not end; it was stopped here");
+        if self.machine.is_full() || self.statements > MAX_STATEMENTS {
+            self.unresolved(stmt.span, "the program does not end: the cycle is shown up to here");
             return Flow::Exit;
         }
         match &stmt.kind {
@@ -194,7 +197,7 @@ impl Executor<'_> {
             match self.condition(condition) {
                 Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
                 Condition::Known(true) if is_always_true(condition) => {
-                    self.unresolved(stmt.span, "an endless loop: simulated for one pass");
+                    self.unresolved(stmt.span, ENDLESS);
                     return self.block(body);
                 }
                 Condition::Known(true) => {}
@@ -207,6 +210,8 @@ impl Executor<'_> {
                         routine: self.frame().routine.clone(),
                         duration: None,
                         signal,
+                        other: None,
+                        grip_load: self.settings.grip_load,
                     });
                     return Flow::Next;
                 }
@@ -260,6 +265,23 @@ impl Executor<'_> {
 
 fn find_label(block: &Block, label: &Ident) -> Option<usize> {
     block.iter().position(|stmt| matches!(&stmt.kind, StmtKind::Label(l) if l.key == label.key))
+}
+
+/// Whether a `GOTO` leads back to these statements each time.
+fn is_endless(stmt: &Stmt, body: &[Stmt]) -> bool {
+    matches!(stmt.kind, StmtKind::Goto(_)) && never_leaves(body)
+}
+
+/// Whether nothing in these statements can jump out of them.
+fn never_leaves(block: &[Stmt]) -> bool {
+    block.iter().all(|stmt| match &stmt.kind {
+        StmtKind::Goto(_)
+        | StmtKind::Return(_)
+        | StmtKind::Raise(_)
+        | StmtKind::Exit
+        | StmtKind::Broken => false,
+        kind => kind.blocks().into_iter().all(|inner| never_leaves(inner)),
+    })
 }
 
 fn is_always_true(condition: &Expr) -> bool {

@@ -47,6 +47,16 @@ impl<'e> Arguments<'e> {
     }
 }
 
+/// How long a wait lasts.
+enum Length {
+    /// s.
+    Stated(f64),
+    /// Until an input comes, or a condition holds that names none.
+    Until(Option<Arc<str>>),
+    /// For something else, in words.
+    Unknown(String),
+}
+
 impl Executor<'_> {
     pub(super) fn instruction(&mut self, stmt: &Stmt, key: &str, text: &str, args: &[Arg]) -> Flow {
         let arguments = Arguments::new(args);
@@ -60,6 +70,14 @@ impl Executor<'_> {
                 self.wait_signal(stmt, text, &arguments);
             }
             "waituntil" => self.wait_until(stmt, text, &arguments),
+            "pdispon" if arguments.has_option("exep") => self.displace(text, &arguments),
+            _ if instructions::is_waiting(key) => {
+                if instructions::is_writing(key) {
+                    self.forget(args, text);
+                }
+                // The program does not tell for how long.
+                self.wait_until(stmt, text, &Arguments::new(&[]));
+            }
             "setdo" | "setgo" | "setao" | "set" | "reset" | "pulsedo" | "invertdo" => {
                 self.output(stmt, key, text, &arguments);
             }
@@ -73,7 +91,8 @@ impl Executor<'_> {
             "velset" | "accset" | "confj" | "confl" | "gripload" | "pdispset" | "pdispoff" => {
                 self.setting(key, text, &arguments);
             }
-            "waitrob" | "singarea" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
+            "singarea" => self.sing_area(text, &arguments),
+            "waitrob" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
             "eoffsset" | "eoffson" | "softact" | "pdispon" | "pathacclim" | "worldacclim"
             | "speedrefresh" | "corrcon" | "speedlimaxis" | "egmreset" | "tuneservo" => {
                 self.unmodelled(key, text, &arguments);
@@ -96,7 +115,7 @@ impl Executor<'_> {
     }
 
     /// Data that an instruction may have written are no longer known.
-    fn forget(&mut self, args: &[Arg], text: &str) {
+    pub(super) fn forget(&mut self, args: &[Arg], text: &str) {
         for arg in args {
             let (ArgKind::Positional(expr)
             | ArgKind::Named(_, expr)
@@ -115,13 +134,24 @@ impl Executor<'_> {
     }
 
     fn wait_time(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
-        let duration = arguments.positional.first().and_then(|expr| {
-            let value = self.eval(expr);
-            value.datum.num()
-        });
-        let duration = duration.filter(|d| d.is_finite()).map(|d| d.max(0.0));
+        let datum = arguments.positional.first().map(|expr| self.eval(expr).datum);
         // `WaitTime 0` and `WaitTime \InPos, 0` only wait for standstill.
-        self.wait(stmt, text, duration, None);
+        let length = match datum {
+            Some(Datum::Num(time)) if time < 0.0 => {
+                self.unresolved(
+                    stmt.span,
+                    "waits for a negative time, which is an error on the controller: taken as 0 s",
+                );
+                Length::Stated(0.0)
+            }
+            Some(Datum::Num(time)) if time.is_finite() => Length::Stated(time),
+            Some(Datum::Num(_)) => Length::Unknown("a time that is out of range".into()),
+            Some(Datum::Unknown(why)) => {
+                Length::Unknown(format!("a time that is not known ({})", why.reason))
+            }
+            _ => Length::Unknown("a time that is not known".into()),
+        };
+        self.wait(stmt, text, length);
     }
 
     fn wait_signal(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
@@ -133,7 +163,7 @@ impl Executor<'_> {
                 self.signals.insert(signal.to_lowercase(), level);
             }
         }
-        self.wait(stmt, text, None, signal);
+        self.wait(stmt, text, Length::Until(signal));
     }
 
     fn wait_until(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
@@ -145,11 +175,11 @@ impl Executor<'_> {
             let input =
                 value.origin.iter().any(|d| matches!(d, super::super::value::Dependence::Input(_)));
             if value.datum == Datum::Bool(true) && !input {
-                return self.wait(stmt, text, Some(0.0), None);
+                return self.wait(stmt, text, Length::Stated(0.0));
             }
             self.learn(condition);
         }
-        self.wait(stmt, text, None, signal);
+        self.wait(stmt, text, Length::Until(signal));
     }
 
     /// After the wait the equalities of its condition hold.
@@ -173,14 +203,21 @@ impl Executor<'_> {
         }
     }
 
-    fn wait(&mut self, stmt: &Stmt, text: &str, duration: Option<f64>, signal: Option<Arc<str>>) {
+    fn wait(&mut self, stmt: &Stmt, text: &str, length: Length) {
         let routine = self.frame().routine.clone();
+        let (duration, signal, other) = match length {
+            Length::Stated(duration) => (Some(duration), None, None),
+            Length::Until(signal) => (None, signal, None),
+            Length::Unknown(what) => (None, None, Some(what)),
+        };
         self.machine.waits(Wait {
             instruction: text.into(),
             span: stmt.span,
             routine,
             duration,
             signal,
+            other,
+            grip_load: self.settings.grip_load,
         });
     }
 
@@ -268,7 +305,11 @@ impl Executor<'_> {
                     settings.grip_load = Some(load);
                     false
                 }
-                _ => true,
+                Some(Err(why)) => {
+                    self.blame(arguments.positional[0], &why);
+                    true
+                }
+                None => true,
             },
             "pdispset" => match values.first().map(|v| convert::pose(&v.datum, "the displacement"))
             {
@@ -287,6 +328,16 @@ impl Executor<'_> {
         if unknown {
             settings.other.push(text.into());
         }
+        self.settings = Arc::new(settings);
+    }
+
+    fn sing_area(&mut self, text: &str, arguments: &Arguments<'_>) {
+        let mut settings = Settings::clone(&self.settings);
+        settings.sing_area = arguments
+            .optional
+            .iter()
+            .find(|(key, _, _)| *key != "off")
+            .map(|(_, option, _)| format!("{text}\\{option}").into());
         self.settings = Arc::new(settings);
     }
 

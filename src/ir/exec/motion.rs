@@ -4,6 +4,7 @@ use super::super::convert;
 use super::super::hir::{Arg, ArgKind, Expr, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{LocalValue, Movement, Target, Unresolved, Zone};
+use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
 use super::instruction::Arguments;
@@ -36,11 +37,11 @@ impl Executor<'_> {
         arguments: &Arguments<'_>,
         args: &[Arg],
     ) {
-        self.check_external(signature, stmt);
         let movement = self.resolve(stmt, text, signature, arguments);
         let movement = movement.map_err(|reason| {
             self.unresolved(stmt.span, reason.clone());
-            Unresolved { span: stmt.span, reason, moves: true }
+            // The robot's own axes stand while an external one moves.
+            Unresolved { span: stmt.span, reason, moves: signature.form != MoveForm::ExternalJoint }
         });
         if !signature.plain {
             self.forget_targets(args);
@@ -63,12 +64,6 @@ impl Executor<'_> {
         }
     }
 
-    fn check_external(&mut self, signature: MoveSignature, stmt: &Stmt) {
-        if signature.form == MoveForm::ExternalJoint {
-            self.unresolved(stmt.span, "external axes are not simulated");
-        }
-    }
-
     fn resolve(
         &mut self,
         stmt: &Stmt,
@@ -76,6 +71,9 @@ impl Executor<'_> {
         signature: MoveSignature,
         arguments: &Arguments<'_>,
     ) -> Result<Movement, String> {
+        if signature.form == MoveForm::ExternalJoint {
+            return Err("external axes are not simulated".into());
+        }
         let mut origin = Origin::default();
         let mut positional = arguments.positional.iter().copied().skip(signature.before);
         let mut take = |name: &str, what: &str| {
@@ -106,7 +104,6 @@ impl Executor<'_> {
         let target_value = self.argument(target, &mut origin);
         let target = match signature.form {
             MoveForm::AbsJ => Target::Joints(convert::jointtarget(&target_value.datum)?),
-            MoveForm::ExternalJoint => return Err("external axes are not simulated".into()),
             _ => Target::Pose(convert::robtarget(&target_value.datum)?),
         };
         let speed_value = self.argument(speed, &mut origin);
@@ -124,7 +121,9 @@ impl Executor<'_> {
             super::super::hir::ExprKind::Ref(name) => name.text.as_str(),
             _ => "tool",
         };
-        let tool = convert::tool(&tool_value.datum, tool_name)?;
+        let named = tool;
+        let tool =
+            convert::tool(&tool_value.datum, tool_name).map_err(|why| self.blame(named, &why))?;
         let wobj = match arguments.option_value("wobj") {
             Some(expr) => self.argument(expr, &mut origin),
             None => super::super::predefined::lookup("wobj0")
@@ -212,6 +211,20 @@ impl Executor<'_> {
             _ => None,
         };
         origin.iter().filter_map(local).collect()
+    }
+
+    /// Why an argument can't be used, with the name of the data; their declaration gets a note.
+    pub(super) fn blame(&mut self, argument: &Expr, why: &str) -> String {
+        let super::super::hir::ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
+        let why = format!("'{}': {why}", name.text);
+        let frame = self.frame();
+        if !frame.names.iter().any(|(key, _)| *key == name.key)
+            && let Some(Symbol::Data(id)) = self.program.resolve(frame.module, &name.key)
+        {
+            let data = self.program.data(id);
+            self.unresolved(data.name.span, format!("{} {why}", data.type_name.text));
+        }
+        why
     }
 
     fn zone_options(

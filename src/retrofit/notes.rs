@@ -1,0 +1,79 @@
+//! What a user should know of a retrofit besides its figures.
+
+use super::figures::{Figures, Segment, SegmentKind};
+use super::work::{Budget, Objective, Settings, Source};
+use crate::energy::account::at_rest;
+use crate::motion::Simulation;
+use crate::motion::timeline::What;
+use crate::robot::Model;
+
+/// Differences of energy below this are rounding, J.
+const ROUNDING_J: f64 = 1e-3;
+/// Rest of a takt that is worth a note, share of it.
+const UNUSED: f64 = 0.01;
+
+/// The notes on the time that was asked for.
+pub(super) fn notes(
+    files: &[Source],
+    model: &Model,
+    settings: &Settings,
+    simulation: &Simulation,
+    segments: &[Segment],
+    (original, optimized): (&Figures, &Figures),
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    if settings.objective == Objective::Time || settings.budget == Budget::AsBefore {
+        return notes;
+    }
+    if let Budget::Takt(takt) = settings.budget
+        && takt - optimized.cycle_s > UNUSED * takt
+    {
+        notes.push(format!(
+            "the cycle takes {:.3} s of the takt of {takt} s: slower travel would save nothing \
+             more, or is not possible, and the rest of the takt is waited for",
+            optimized.cycle_s
+        ));
+    }
+    let dearer: Vec<String> = segments
+        .iter()
+        .filter(|segment| segment.kind == SegmentKind::Timing && segment.rewritten)
+        .filter(|segment| segment.energy_after_j > segment.energy_before_j + ROUNDING_J)
+        .map(|segment| {
+            let file = &files[segment.span.file.0 as usize].file;
+            format!("{}:{}", file.path, file.position(segment.span.start).line)
+        })
+        .collect();
+    if dearer.is_empty() {
+        return notes;
+    }
+    let mut note = format!(
+        "in the time asked for, {} of the rewritten runs take more energy than before, base load \
+         included ({}); the cycle takes {:.1} J instead of {:.1} J",
+        dearer.len(),
+        dearer.join(", "),
+        optimized.energy_j,
+        original.energy_j,
+    );
+    if let Budget::Takt(takt) = settings.budget
+        && takt >= original.cycle_s
+    {
+        let rest = |cycle_s: f64| resting_j(model, simulation, takt - cycle_s);
+        note.push_str(&format!(
+            "; with the rest of the takt waited for, {:.1} J instead of {:.1} J",
+            optimized.energy_j + rest(optimized.cycle_s),
+            original.energy_j + rest(original.cycle_s),
+        ));
+    }
+    notes.push(note);
+    notes
+}
+
+/// Energy of standing at the end of the cycle for some time, J.
+fn resting_j(model: &Model, simulation: &Simulation, duration: f64) -> f64 {
+    let end = simulation.events.iter().rev().find_map(|event| match &event.what {
+        What::Run(run) => Some((&run.load, &run.end)),
+        What::Wait(wait) => Some((&wait.load, &wait.q)),
+        What::Output(..) | What::Left(_) => None,
+    });
+    end.map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
+}
