@@ -139,20 +139,24 @@ impl Corridor {
         eased
     }
 
-    /// The value at a pose of something given at each place, searched on the whole path.
-    pub fn interpolate(&self, pose: &Isometry3<f64>, values: &[f64]) -> f64 {
+    /// The value at a pose of something given at each place, searched near the place `from`, which
+    /// is moved on.
+    pub fn interpolate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> f64 {
         const STRIDE: usize = 8;
+        const AHEAD: usize = 32 * STRIDE;
         let square = |place: &Place| {
-            let turn = METRES_PER_RADIAN * pose.rotation.angle_to(&place.pose.rotation);
+            let turn = METRES_PER_RADIAN * turn(pose, &place.pose);
             (pose.translation.vector - place.pose.translation.vector).norm_squared() + turn * turn
         };
         let nearest = |range: &mut dyn Iterator<Item = usize>| {
             let pairs = range.map(|i| (square(&self.places[i]), i));
             pairs.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a }).1
         };
-        let coarse = nearest(&mut (0..self.places.len()).step_by(STRIDE));
         let last = self.places.len() - 1;
+        let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
+        let coarse = nearest(&mut window.step_by(STRIDE));
         let i = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
+        *from = i;
         // Between the nearest place and its neighbour on the side of the pose.
         let here = self.places[i].pose.translation.vector;
         let from = pose.translation.vector - here;
@@ -173,7 +177,7 @@ impl Corridor {
     fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
         let place = &self.places[i].pose;
         let from = pose.translation.vector - place.translation.vector;
-        let turn = METRES_PER_RADIAN * pose.rotation.angle_to(&place.rotation);
+        let turn = METRES_PER_RADIAN * turn(pose, place);
         let aside = |k: usize| {
             let along = self.places[k].pose.translation.vector - place.translation.vector;
             let square = along.norm_squared();
@@ -190,6 +194,12 @@ impl Corridor {
         }
         Vector3::new(straight, turn, 0.0).norm()
     }
+}
+
+/// The angle between two orientations, rad, where it is small; a chord of it where it is large,
+/// which orders them the same without the cost of the arc.
+fn turn(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    (8.0 * (1.0 - a.rotation.coords.dot(&b.rotation.coords).abs()).max(0.0)).sqrt()
 }
 
 /// Which programmed speeds are ceilings.

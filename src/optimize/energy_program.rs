@@ -58,7 +58,7 @@ const ACCEPTED: f64 = 1e-9;
 /// Relative slowness over the fastest profile below which the programs have no interior.
 const NO_INTERIOR: f64 = 1e-5;
 /// Share of the energy by which the tangents may overestimate it at the end.
-const CONVERGED: f64 = 1e-4;
+const CONVERGED: f64 = 1e-3;
 /// Programs with tangents.
 const MAX_TANGENTS: usize = 8;
 /// Longest time of the uniformly slowed start, over that of the fastest profile.
@@ -78,6 +78,48 @@ pub fn minimize_energy(
     fastest: &Profile,
     duration: f64,
 ) -> EnergyOutcome {
+    let bound = energy_bound(grid, limits, model, fastest, duration);
+    minimize_energy_from(grid, limits, model, fastest, duration, bound.as_ref())
+}
+
+/// What the relaxation says of a problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnergyBound {
+    /// No profile on the grid gets below this in the time, J.
+    pub lower_bound: f64,
+    /// ṡ² at the nodes of the relaxed optimum, which a profile need not reach.
+    pub b: Vec<f64>,
+}
+
+/// A lower bound of the energy; arguments as of [`minimize_energy`]. None if the time is too
+/// short or the solver fails.
+pub fn energy_bound(
+    grid: &PathGrid,
+    limits: &PathLimits,
+    model: &EnergyModel,
+    fastest: &Profile,
+    duration: f64,
+) -> Option<EnergyBound> {
+    // Without room between the fastest and the given time the programs have no interior.
+    if duration.is_nan() || duration < fastest.duration() * (1.0 + NO_INTERIOR) {
+        return None;
+    }
+    let start = slowed(grid, limits, fastest, best_pace(grid, model, fastest, duration))?;
+    let relaxed = Programs::new(grid, limits, model, &start, duration).solve(Root::Relaxed)?;
+    let lower_bound = path_constant(grid) + relaxed.bound.max(0.0);
+    Some(EnergyBound { lower_bound, b: relaxed.b })
+}
+
+/// As [`minimize_energy`], with the relaxation of this problem or of one on the same nodes with
+/// wider limits.
+pub fn minimize_energy_from(
+    grid: &PathGrid,
+    limits: &PathLimits,
+    model: &EnergyModel,
+    fastest: &Profile,
+    duration: f64,
+    relaxed: Option<&EnergyBound>,
+) -> EnergyOutcome {
     let too_short = EnergyOutcome::TooShort { fastest: fastest.duration() };
     if duration.is_nan() || duration < fastest.duration() {
         return too_short;
@@ -96,7 +138,7 @@ pub fn minimize_energy(
         best: EnergyOptimum {
             energy: evaluate(grid, &start, model),
             profile: start,
-            lower_bound: constant,
+            lower_bound: relaxed.map_or(constant, |r| r.lower_bound),
             marginal: 0.0,
         },
     };
@@ -104,11 +146,7 @@ pub fn minimize_energy(
         return EnergyOutcome::Kept(search.best);
     }
     let mut programs = Programs::new(grid, limits, model, &search.best.profile, duration);
-    let mut tangent = search.best.profile.b().to_vec();
-    if let Some(relaxed) = programs.solve(Root::Relaxed) {
-        search.best.lower_bound = constant + relaxed.bound.max(0.0);
-        tangent = relaxed.b;
-    }
+    let mut tangent = relaxed.map_or_else(|| search.best.profile.b().to_vec(), |r| r.b.clone());
     let mut converged = false;
     for _ in 0..MAX_TANGENTS {
         let Some(step) = programs.solve(Root::Tangent(&tangent)) else {

@@ -14,8 +14,9 @@ pub trait Plant {
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// A speed that has a ceiling, such as that of the tool, over the ceiling.
-    fn speed_share(&self, _q: &Joints, _qd: &Joints) -> f64 {
+    /// A speed that has a ceiling, such as that of the tool, over the ceiling. `place` says where
+    /// on its path the robot was a moment ago, and then where it is: a path may cross itself.
+    fn speed_share(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> f64 {
         0.0
     }
 
@@ -49,6 +50,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     let (dry, limit) = (plant.dry_friction(), plant.torque_limit());
     let mut out = Realised::default();
     let sum = &mut out.energy;
+    let mut place = 0;
     for piece in stream.pieces() {
         let step = piece.length / STEPS as f64;
         for i in 0..=STEPS {
@@ -62,7 +64,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
             sum.time += seconds;
             sum.base += seconds * model.base_w;
             sum.drive += seconds * model.braked(&power);
-            out.worst_share = out.worst_share.max(plant.speed_share(&q, &qd));
+            out.worst_share = out.worst_share.max(plant.speed_share(&q, &qd, &mut place));
             for j in 0..DOF {
                 sum.mechanical += seconds * smooth[j] * qd[j];
                 sum.friction += seconds * dry[j] * qd[j].abs();

@@ -6,7 +6,7 @@
 
 use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
-use super::energy_program::minimize_energy;
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
 use super::reason::Reason;
@@ -209,17 +209,19 @@ impl<'a> Work<'a> {
     /// Least energy in a time, settling included.
     fn least_energy(&self, time: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
+        let bound = self.bound(budget);
         let mut margins = self.first_margins();
         let mut problem = None;
         for _ in 0..ATTEMPTS {
             let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
-            let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget)
-                .into_optimum()
-                .ok_or(Reason::NoSaving)?;
+            let optimum =
+                minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound.as_ref())
+                    .into_optimum()
+                    .ok_or(Reason::NoSaving)?;
             match self.realise(&optimum.profile, budget, &margins) {
                 Ok(attempt) if attempt.check.holds() => {
-                    let bound = self.lower_bound(budget);
+                    let bound = bound.map(|bound| bound.lower_bound);
                     return Ok(self.retiming(attempt.stream, attempt.check, bound));
                 }
                 Ok(attempt) => {
@@ -236,12 +238,11 @@ impl<'a> Work<'a> {
         Err(Reason::NoStream(problem.unwrap_or_default()))
     }
 
-    /// A bound on the motion energy of the path in this time at the full limits, J.
-    fn lower_bound(&self, budget: f64) -> Option<f64> {
+    /// A bound on the motion energy of the path in this time at the full limits.
+    fn bound(&self, budget: f64) -> Option<EnergyBound> {
         let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        let outcome = minimize_energy(&grid, &limits, &self.model, &fast, budget);
-        outcome.into_optimum().map(|optimum| optimum.lower_bound)
+        energy_bound(&grid, &limits, &self.model, &fast, budget)
     }
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
@@ -439,11 +440,11 @@ impl Plant for RobotPlant<'_> {
         motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
     }
 
-    fn speed_share(&self, q: &Joints, qd: &Joints) -> f64 {
+    fn speed_share(&self, q: &Joints, qd: &Joints, place: &mut usize) -> f64 {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
         let pose = fk(task.model, q) * tool;
-        let ceiling = self.work.corridor.interpolate(&pose, &self.ceilings);
+        let ceiling = self.work.corridor.interpolate(&pose, &self.ceilings, place);
         let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
         rate.fixed_rows::<3>(0).norm() / (self.margins.speed * ceiling)
     }

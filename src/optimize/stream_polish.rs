@@ -1,8 +1,8 @@
 //! Lower energy for a stream at its own intervals, within all limits: the realised motion counts.
 //!
 //! Sequential quadratic programming on the points. The copper loss is a sum of squares of torques
-//! that are linearised in the points (Gauss–Newton), as is the power that may be braked away,
-//! which has an epigraph per place. Joint limits are linear rows and hold exactly; torque and
+//! that are linearised in the points (Gauss–Newton). The loss of a power that is braked away is
+//! rounded where the power changes its sign. Joint limits are linear rows and hold exactly; torque and
 //! tool speed are linearised rows with one common slack that is priced. A distance from the path
 //! is priced too: one of the tolerance costs the share `DEVIATION_PRICE` of the energy.
 
@@ -58,9 +58,11 @@ const CONVERGED: f64 = 3e-4;
 /// Room that the programs keep to the limits.
 const MARGIN: f64 = 1e-3;
 /// Share of its limit from which a row is part of a program.
-const NEAR: f64 = 0.6;
+const NEAR: f64 = 0.75;
 /// Rounds in which rows are added to a program.
 const MAX_ROUNDS: usize = 6;
+/// Gap of the programs: a step is judged by what it does, not by what it promises.
+const ROUGH_GAP: f64 = 1e-4;
 /// Unit of the variables, rad.
 const UNIT: f64 = 0.01;
 /// Price of a step of one unit in every variable at the begin, in energies; and its bounds.
@@ -78,8 +80,26 @@ const TIGHTEST: f64 = 1e-7;
 const NEAREST_STEPS: usize = 6;
 /// Speed below which a path has no direction.
 const SLOWEST: f64 = 1e-6;
-/// Simpson's rule on a piece.
+/// Share of the peak power about which the loss of braking is rounded.
+const ROUND_POWER: f64 = 0.02;
+/// Peak power below which a stream is taken to need no rounding finer, W.
+const LEAST_POWER: f64 = 1.0;
+/// Simpson's rule on a piece: share of its length and weight.
 const SIMPSON: [(f64, f64); 3] = [(0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0)];
+/// The same with places between, at which limits are looked at.
+const DENSE: [(f64, f64); 9] = [
+    (0.0, 1.0 / 6.0),
+    (0.125, 0.0),
+    (0.25, 0.0),
+    (0.375, 0.0),
+    (0.5, 4.0 / 6.0),
+    (0.625, 0.0),
+    (0.75, 0.0),
+    (0.875, 0.0),
+    (1.0, 1.0 / 6.0),
+];
+/// Parts of a proposed step that are tried.
+const PARTS: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
 /// Lowers the energy of `stream`, which starts and ends as `reference` and keeps `limits`.
 ///
@@ -96,7 +116,9 @@ pub fn polish_stream(
     let points = Points::new(reference, stream.intervals().to_vec())?;
     let rows = points.limit_rows(limits);
     let unit = realise(stream, plant, model).energy.total().abs().max(f64::MIN_POSITIVE);
-    let polish = Polish { reference, plant, model, corridor, points, rows, unit };
+    let round_power = ROUND_POWER * peak_power(stream, plant).max(LEAST_POWER);
+    let polish =
+        Polish { reference, plant, model, corridor, points, limits, rows, unit, round_power };
     let mut best = polish.judge(stream.clone());
     let mut damping = DAMPING;
     let mut status = PolishStatus::Stopped;
@@ -109,32 +131,26 @@ pub fn polish_stream(
             status = PolishStatus::Converged;
             break;
         };
-        let variables: Vec<f64> = polish
-            .points
-            .variables(&best.stream)
-            .iter()
-            .zip(&step.change)
-            .map(|(x, change)| x + change)
-            .collect();
-        let next = polish.judge(polish.points.stream(&variables)?);
-        let kept = limits.worst_ratio(&next.stream) <= limits.worst_ratio(&best.stream).max(1.0);
+        let Some((part, next)) = polish.along(&best, &step)? else {
+            if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
+                damping *= DAMPING_STEP;
+                continue;
+            }
+            status = PolishStatus::Converged;
+            break;
+        };
         let fall = best.merit - next.merit;
-        if kept && fall > 0.0 {
-            if fall > 0.5 * step.predicted {
-                damping = (damping / DAMPING_STEP).max(DAMPING_RANGE.0);
-            }
-            best = next;
-            if fall < CONVERGED {
-                status = PolishStatus::Converged;
-                break;
-            }
-            model = polish.model(&best);
-        } else if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
+        if part < 1.0 {
             damping *= DAMPING_STEP;
-        } else {
+        } else if fall > 0.5 * step.predicted {
+            damping = (damping / DAMPING_STEP).max(DAMPING_RANGE.0);
+        }
+        best = next;
+        if fall < CONVERGED {
             status = PolishStatus::Converged;
             break;
         }
+        model = polish.model(&best);
     }
     Ok(polish.polished(best, status))
 }
@@ -158,8 +174,11 @@ struct Polish<'a, P> {
     model: &'a EnergyModel,
     corridor: &'a Corridor,
     points: Points,
+    limits: &'a StreamLimits,
     rows: Vec<LimitRow>,
     unit: f64,
+    /// Power about which the loss of braking is rounded, W.
+    round_power: f64,
 }
 
 /// Torque, speed share and their derivatives at one place: `by[kind][i]` holds the change of
@@ -168,12 +187,13 @@ struct Linearised {
     torque: Joints,
     speed: f64,
     torque_by: [[Joints; DOF]; 3],
-    speed_by: [[f64; DOF]; 3],
+    /// Zero for q̈, and where the speed is far from its ceiling.
+    speed_by: [[f64; DOF]; 2],
 }
 
 impl<P: Plant> Polish<'_, P> {
     fn polished(&self, best: Judged, status: PolishStatus) -> Polished {
-        let places = places(&best.stream);
+        let places = places(&best.stream, &SIMPSON);
         Polished {
             status,
             realised: best.realised,
@@ -185,13 +205,30 @@ impl<P: Plant> Polish<'_, P> {
     fn judge(&self, stream: Stream) -> Judged {
         let realised = realise(&stream, self.plant, self.model);
         let price = self.deviation_price();
-        let places = places(&stream);
+        let places = places(&stream, &SIMPSON);
         let distance: f64 =
             places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
         let merit = realised.energy.total() / self.unit
             + VIOLATION_PRICE * violation(&realised)
             + price * distance;
         Judged { stream, realised, merit }
+    }
+
+    /// The largest tried part of a step that lowers the merit, and the stream there. The joint
+    /// limits are convex: what keeps them at both ends keeps them between.
+    fn along(&self, best: &Judged, step: &Proposal) -> Result<Option<(f64, Judged)>, StreamError> {
+        let from = self.points.variables(&best.stream);
+        for part in PARTS {
+            let variables: Vec<f64> =
+                from.iter().zip(&step.change).map(|(x, change)| x + part * change).collect();
+            let next = self.judge(self.points.stream(&variables)?);
+            let kept = self.limits.worst_ratio(&next.stream)
+                <= self.limits.worst_ratio(&best.stream).max(1.0);
+            if kept && next.merit < best.merit {
+                return Ok(Some((part, next)));
+            }
+        }
+        Ok(None)
     }
 
     /// Price of ∫ distance² dt, in energies.
@@ -222,26 +259,33 @@ impl<P: Plant> Polish<'_, P> {
         (offset, along)
     }
 
-    /// Torque, speed share and their derivatives at a place.
-    fn linearise(&self, place: &Place) -> Linearised {
-        let here = self.plant.torque(&place.q, &place.qd, &place.qdd);
-        let mut out = Linearised {
+    /// Torque and speed share at a place; `near` as for the plant.
+    fn shares(&self, place: &Place, near: &mut usize) -> Linearised {
+        Linearised {
             torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
-            speed: self.plant.speed_share(&place.q, &place.qd),
+            speed: self.plant.speed_share(&place.q, &place.qd, near),
             torque_by: Default::default(),
             speed_by: Default::default(),
-        };
+        }
+    }
+
+    /// Adds the derivatives.
+    fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
+        let here = self.plant.torque(&place.q, &place.qd, &place.qdd);
+        let capped = lin.speed > NEAR;
         for (kind, step) in DIFFERENCES.into_iter().enumerate() {
             for joint in self.points.joints.iter().copied() {
                 let mut state = [place.q, place.qd, place.qdd];
                 state[kind][joint] += step;
                 let [q, qd, qdd] = state;
                 let next = self.plant.torque(&q, &qd, &qdd);
-                out.torque_by[kind][joint] = std::array::from_fn(|j| (next[j] - here[j]) / step);
-                out.speed_by[kind][joint] = (self.plant.speed_share(&q, &qd) - out.speed) / step;
+                lin.torque_by[kind][joint] = std::array::from_fn(|j| (next[j] - here[j]) / step);
+                if capped && kind < 2 {
+                    let next = self.plant.speed_share(&q, &qd, &mut near.clone());
+                    lin.speed_by[kind][joint] = (next - lin.speed) / step;
+                }
             }
         }
-        out
     }
 
     /// The quadratic model of merit and limits around `best`.
@@ -251,12 +295,18 @@ impl<P: Plant> Polish<'_, P> {
         let mut model = Quadratic {
             matrix: Banded::zeros(size, width),
             gradient: vec![0.0; size],
-            brakes: Vec::new(),
             shares: Vec::new(),
-            now: VIOLATION_PRICE * violation(&best.realised),
+            broken: VIOLATION_PRICE * violation(&best.realised),
         };
-        for place in places(&best.stream) {
-            self.add_place(&place, &mut model);
+        let mut near = 0;
+        let limit = self.plant.torque_limit();
+        for place in places(&best.stream, &DENSE) {
+            let mut lin = self.shares(&place, &mut near);
+            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
+            if place.seconds > 0.0 || loaded || lin.speed > NEAR {
+                self.linearise(&place, near, &mut lin);
+                self.add_place(&place, &lin, &mut model);
+            }
         }
         model
     }
@@ -266,7 +316,7 @@ impl<P: Plant> Polish<'_, P> {
         let size = self.points.size();
         let variables = self.points.variables(&best.stream);
         let slack = size;
-        let mut program = ConeProgram::new(size + 1 + model.brakes.len());
+        let mut program = ConeProgram::new(size + 1);
         for (i, j, value) in model.matrix.entries() {
             program.curve(i, j, SCALE * value);
         }
@@ -277,12 +327,6 @@ impl<P: Plant> Polish<'_, P> {
         program.minimize(&Affine::over(&model.gradient).times(SCALE));
         program.minimize(&Affine::default().plus(Some(slack), SCALE * VIOLATION_PRICE));
         program.at_most_zero(Affine::default().plus(Some(slack), -1.0));
-        for (i, (power, lost)) in model.brakes.iter().enumerate() {
-            let braked = Some(size + 1 + i);
-            program.minimize(&Affine::default().plus(braked, SCALE * lost));
-            program.at_most_zero(Affine::default().plus(braked, -1.0));
-            program.at_most_zero(power.clone().times(-1.0).plus(braked, -1.0));
-        }
         for share in &model.shares {
             program.at_most_zero(share.clone().shift(-(1.0 - MARGIN)).plus(Some(slack), -1.0));
         }
@@ -299,7 +343,7 @@ impl<P: Plant> Polish<'_, P> {
                 }
                 program.at_most_zero(affine);
             }
-            let solution = program.solve();
+            let solution = program.solve_to(ROUGH_GAP);
             if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
                 return None;
             }
@@ -313,7 +357,7 @@ impl<P: Plant> Polish<'_, P> {
             }
             if !added {
                 let damped: f64 = solution.x[..size].iter().map(|x| 0.5 * price * x * x).sum();
-                let predicted = model.now - (solution.objective / SCALE - damped);
+                let predicted = model.broken - (solution.objective / SCALE - damped);
                 return Some(Proposal { change, predicted });
             }
         }
@@ -321,8 +365,7 @@ impl<P: Plant> Polish<'_, P> {
     }
 
     /// Adds the costs and limits at a place to the model.
-    fn add_place(&self, place: &Place, model: &mut Quadratic) {
-        let lin = self.linearise(place);
+    fn add_place(&self, place: &Place, lin: &Linearised, model: &mut Quadratic) {
         let weights = self.points.knots.weights(place.piece, place.tau);
         let mut columns = Vec::new();
         for (k, i) in weights.support.clone().enumerate() {
@@ -367,7 +410,7 @@ impl<P: Plant> Polish<'_, P> {
                 model.matrix.add(i, j, curve);
             }
         }
-        self.add_brakes(place, &lin, &columns, model);
+        self.add_brakes(place, lin, &columns, model);
         let limit = self.plant.torque_limit();
         for j in 0..DOF {
             let share = lin.torque[j] / limit[j];
@@ -389,7 +432,8 @@ impl<P: Plant> Polish<'_, P> {
         }
     }
 
-    /// Adds the powers at a place that may be braked away.
+    /// Adds the loss of the powers at a place that are braked away: (√(p² + ε²) − p) / 2 for
+    /// each power p, with its slope and curvature.
     fn add_brakes(
         &self,
         place: &Place,
@@ -401,22 +445,32 @@ impl<P: Plant> Polish<'_, P> {
         if lost <= 0.0 {
             return;
         }
-        let groups: Vec<Vec<usize>> = match self.model.sharing {
-            Sharing::Bus => vec![self.points.joints.clone()],
-            Sharing::PerJoint => self.points.joints.iter().map(|j| vec![*j]).collect(),
-        };
-        for group in groups {
-            let now: f64 = group.iter().map(|j| lin.torque[*j] * place.qd[*j]).sum();
-            model.now += lost * (-now).max(0.0);
-            let mut power = Affine::constant(now);
-            for column in columns {
-                let mut by: f64 = group.iter().map(|j| place.qd[*j] * column.torque[*j]).sum();
-                if group.contains(&column.joint) {
-                    by += column.w1 * lin.torque[column.joint];
+        let round = self.round_power;
+        let powers: Joints = std::array::from_fn(|j| lin.torque[j] * place.qd[j]);
+        let mut add = |group: &[usize]| {
+            let now: f64 = group.iter().map(|j| powers[*j]).sum();
+            let root = now.hypot(round);
+            let slope = 0.5 * lost * (now / root - 1.0);
+            let curvature = 0.5 * lost * (round / root).powi(2) / root;
+            let by: Vec<f64> = columns
+                .iter()
+                .map(|column| {
+                    let force: f64 = group.iter().map(|j| place.qd[*j] * column.torque[*j]).sum();
+                    let own = group.contains(&column.joint);
+                    force + if own { column.w1 * lin.torque[column.joint] } else { 0.0 }
+                })
+                .collect();
+            for (n, a) in columns.iter().enumerate() {
+                model.gradient[a.index] += slope * by[n];
+                for (m, b) in columns[..=n].iter().enumerate() {
+                    let (i, j) = (a.index.max(b.index), a.index.min(b.index));
+                    model.matrix.add(i, j, curvature * by[n] * by[m]);
                 }
-                power.add(Some(column.index), by);
             }
-            model.brakes.push((power, lost));
+        };
+        match self.model.sharing {
+            Sharing::Bus => add(&self.points.joints),
+            Sharing::PerJoint => self.points.joints.iter().for_each(|j| add(&[*j])),
         }
     }
 }
@@ -434,10 +488,11 @@ struct Place {
 }
 
 /// The places at which a stream is judged and linearised.
-fn places(stream: &Stream) -> Vec<Place> {
+fn places(stream: &Stream, rule: &[(f64, f64)]) -> Vec<Place> {
     let pieces = stream.pieces().enumerate();
     let of = |(index, piece): (usize, Piece)| {
-        SIMPSON.map(|(share, weight)| {
+        let rule = rule.iter();
+        rule.map(move |(share, weight)| {
             let tau = share * piece.length;
             let (q, qd, qdd) = piece.at(tau);
             let seconds = weight * piece.length;
@@ -458,16 +513,23 @@ struct Column {
     speed: f64,
 }
 
-/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is braked away and broken.
+/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is broken.
 struct Quadratic {
     matrix: Banded,
     gradient: Vec<f64>,
-    /// Powers that are lost where they are negative, W, and energies lost per W.
-    brakes: Vec<(Affine, f64)>,
     /// Shares of limits.
     shares: Vec<Affine>,
-    /// The braked and the broken part at x = 0.
-    now: f64,
+    /// By how much the limits are broken at x = 0, priced.
+    broken: f64,
+}
+
+/// The largest power of a joint, W.
+fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
+    let power = |place: &Place| {
+        let torque = plant.full_torque(&place.q, &place.qd, &place.qdd);
+        (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
+    };
+    places(stream, &SIMPSON).iter().map(power).fold(0.0, f64::max)
 }
 
 /// By how much the limits are broken, with the room that is kept to them.

@@ -280,7 +280,7 @@ impl Plant for Flywheel {
         [1e3; DOF]
     }
 
-    fn speed_share(&self, _q: &Joints, qd: &Joints) -> f64 {
+    fn speed_share(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> f64 {
         qd[0].abs() / self.ceiling
     }
 }
