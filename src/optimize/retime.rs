@@ -6,7 +6,7 @@
 
 use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
 use super::reason::Reason;
@@ -21,7 +21,7 @@ use crate::energy::{EnergyParts, account};
 use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
 use crate::kinematics::{fk, jacobian};
 use crate::motion::sampling::{self, Loaded, SpeedCap};
-use crate::motion::stream::Stream;
+use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::motion::timing::grid::PathGrid;
@@ -95,6 +95,10 @@ const BOUND_ROUNDING: f64 = 1e-5;
 const FIRST_SPACING: f64 = 0.1;
 /// Corridor of the polishing at first, share of the tolerance of the path.
 const FIRST_CORRIDOR: f64 = 0.3;
+/// Share of the reach of the zones that two points may use up.
+const ZONE_SHARE: f64 = 0.95;
+/// The share that is asked for where they would not keep that: they are placed by other rules too.
+const CLOSER: f64 = 0.6;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
@@ -140,6 +144,8 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         }
         Goal::Exactly(time) => work.least_energy(time).or_else(|reason| match reason {
             Reason::NoSaving => work.within(time),
+            // Near the least time there may be no other stream.
+            Reason::NoStream(_) if time < task.run.duration() => work.within(time).or(Err(reason)),
             other => Err(other),
         }),
         Goal::Fastest => work.least_time(),
@@ -335,13 +341,19 @@ impl<'a> Work<'a> {
     ) -> Result<Attempt, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
         let reference = self.reference(profile)?;
-        let spacing = Spacing {
+        let mut spacing = Spacing {
             shortest: self.task.spacing_s,
+            longest: f64::INFINITY,
             tolerance: margins.spacing,
             lever: self.lever,
         };
-        let intervals =
-            rounded_intervals(&adaptive_intervals(&reference, duration, &spacing), duration);
+        let mut intervals = adaptive_intervals(&reference, duration, &spacing);
+        let reach = self.zone_time(&reference, duration);
+        if intervals.iter().any(|interval| *interval > ZONE_SHARE * reach) {
+            spacing.longest = CLOSER * reach;
+            intervals = adaptive_intervals(&reference, duration, &spacing);
+        }
+        let intervals = rounded_intervals(&intervals, duration);
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
             .map_err(|error| failed(&error.to_string()))?;
         let fitted = match fit {
@@ -375,6 +387,19 @@ impl<'a> Work<'a> {
             &self.task.run.end,
         );
         Ok(Attempt { stream, check })
+    }
+
+    /// Time in which the TCP goes no farther than the zones of two points reach, s.
+    fn zone_time(&self, reference: &Reference, duration: f64) -> f64 {
+        let tool = &self.task.run.legs[0].tool;
+        let tcp = |t: f64| (fk(self.task.model, &reference.at(t).0) * tool).translation.vector;
+        let n = (reference.duration() / REFERENCE_STEP).ceil().max(1.0) as usize;
+        let step = reference.duration() / n as f64;
+        let farthest = (0..n)
+            .map(|i| (tcp((i + 1) as f64 * step) - tcp(i as f64 * step)).norm())
+            .fold(0.0, f64::max);
+        let speed = farthest / step * (reference.duration() / duration);
+        2.0 * LARGEST_ZONE / speed
     }
 
     fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
