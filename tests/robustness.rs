@@ -8,27 +8,17 @@ mod support;
 use joulepath::ir;
 use joulepath::syntax::{self, MAX_DEPTH, Parse};
 use joulepath::text::FileId;
-use support::{Random, check_tree, fixtures};
+use support::{Random, check_tree, check_work, fixtures, mutate, token_ranges};
 
 /// Mutations of each fixture.
 const MUTATIONS: usize = 60;
-/// Most looks at a token per token: constant, whatever the input.
-const STEPS_PER_TOKEN: u64 = 8;
 
 fn check(bytes: &[u8]) -> Parse {
     let parse = syntax::parse(bytes);
     check_tree(&parse, bytes);
-    let tokens = parse.tree.tokens().len() as u64;
-    assert!(parse.steps <= STEPS_PER_TOKEN * (tokens + 1), "{} for {tokens}", parse.steps);
+    check_work(&parse);
     let _ = ir::lower(FileId(0), &parse, bytes);
     parse
-}
-
-/// The ranges of the tokens of some bytes.
-fn ranges(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
-    let parse = syntax::parse(bytes);
-    let range = |token: syntax::Token<'_>| token.range().start as usize..token.range().end as usize;
-    parse.tree.root().all_tokens().map(range).collect()
 }
 
 #[test]
@@ -36,7 +26,7 @@ fn mutated_programs_are_read_without_loss() {
     let mut random = Random(7);
     let mut read = 0;
     for (_, source) in fixtures("ok").into_iter().chain(fixtures("err")) {
-        let tokens = ranges(&source);
+        let tokens = token_ranges(&source);
         for _ in 0..MUTATIONS {
             let mut bytes = source.clone();
             for _ in 0..=random.below(3) {
@@ -47,47 +37,6 @@ fn mutated_programs_are_read_without_loss() {
         }
     }
     assert!(read > 5_000, "{read} mutations");
-}
-
-/// Deletes, doubles or swaps tokens of the original, or damages bytes.
-fn mutate(bytes: &mut Vec<u8>, tokens: &[std::ops::Range<usize>], random: &mut Random) {
-    let clip = |range: &std::ops::Range<usize>, length: usize| {
-        range.start.min(length)..range.end.min(length)
-    };
-    let mut token = || match tokens.len() {
-        0 => 0..0,
-        count => clip(&tokens[random.below(count)], bytes.len()),
-    };
-    let (one, two) = (token(), token());
-    let at = random.below(bytes.len() + 1);
-    match random.below(7) {
-        0 => {
-            bytes.drain(one);
-        }
-        1 => {
-            let copy = bytes[one.clone()].to_vec();
-            bytes.splice(one.end..one.end, copy);
-        }
-        2 => {
-            let (first, second) = if one.start < two.start { (one, two) } else { (two, one) };
-            if first.end <= second.start {
-                let moved = bytes[first.clone()].to_vec();
-                let other = bytes.splice(second, moved).collect::<Vec<u8>>();
-                bytes.splice(first, other);
-            }
-        }
-        3 => {
-            let noise = (0..=random.below(8)).map(|_| random.below(256) as u8);
-            let noise: Vec<u8> = noise.collect();
-            bytes.splice(at..at, noise);
-        }
-        4 if at < bytes.len() => bytes[at] = random.below(256) as u8,
-        5 => bytes.truncate(at),
-        _ => {
-            let end = (at + random.below(20)).min(bytes.len());
-            bytes.drain(at..end);
-        }
-    }
 }
 
 #[test]
@@ -237,6 +186,22 @@ fn work_is_linear() {
         "UNDO\n",
         "module text\n",
         "text\n",
+        "a b THEN ",
+        "a b DO\n",
+        "Proc(a\n",
+        "Proc((a)\n",
+        "x y; z\n",
+        "PROC a(\nnum ",
+        "LOCAL a (",
+        "LOCAL LOCAL ",
+        "num a := [\n",
+        "IF a\nb;\nENDIF\n",
+        "IF ! THEN\n",
+        "IF a != 1 THEN\n",
+        "WHILE ! DO\n",
+        "END\n",
+        "CASE CASE\n",
+        "TEST a\n1:\n",
     ];
     for piece in pieces {
         for around in ["", "MODULE a\n", "MODULE a PROC b() ", "MODULE a PROC b()\nx := "] {
@@ -248,10 +213,15 @@ fn work_is_linear() {
 
 #[test]
 fn long_lines_and_large_files_are_read() {
-    let list = format!("x := [{}1];", "1, ".repeat(1_000_000));
+    let list = format!("x := [{}1];", "1, ".repeat(3_400_000));
     assert_eq!(check(&program(&list)).errors, []);
-    let string = format!("x := \"{}\";", "a".repeat(5_000_000));
+    let string = format!("x := \"{}\";", "a".repeat(10_000_000));
     assert_eq!(check(&program(&string)).errors, []);
-    let text = "MoveL p10, v100, z10, tool0 \\WObj:=wobj0;\n".repeat(100_000);
-    assert_eq!(check(&program(&text)).errors, []);
+    let text = "MoveL p10, v100, z10, tool0 \\WObj:=wobj0;\n".repeat(1_200_000);
+    let bytes = program(&text);
+    assert!(bytes.len() > 50_000_000, "{}", bytes.len());
+    let parse = syntax::parse(&bytes);
+    check_work(&parse);
+    assert_eq!(parse.errors, []);
+    assert_eq!(parse.tree.root().range().end as usize, bytes.len());
 }

@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
+use super::choice;
 use super::input::{self, Input};
 use crate::config::{self, Config};
 use crate::motion::timeline::What;
 use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
 use crate::robot::{self, Model};
-use crate::text::{FileId, SourceFile};
+use crate::text::{FileId, SourceFile, is_encoded_module};
 
 /// Options of commands that run a program.
 #[derive(Debug, Args)]
@@ -116,6 +117,14 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     for unreadable in &input.unreadable {
         note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
     }
+    let choice = choice::choose(&input)?;
+    for text in &choice.notes {
+        note(args.quiet, text);
+    }
+    for file in choice.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
+        let path = &file.source.path;
+        note(args.quiet, &format!("'{path}' is an encoded module: what it declares is not known"));
+    }
     let (config, folder) = configuration(args)?;
     let name = match (&args.robot, &config.robot) {
         (Some(name), _) => name.clone(),
@@ -123,13 +132,26 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             let beside = folder.join(name);
             if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() }
         }
-        (None, None) => bail!(
-            "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
+        (None, None) => match choice.task.and_then(|task| task.robot.as_deref()) {
+            Some(name) => name.to_owned(),
+            None => bail!(
+                "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
              --robot FILE.toml, or robot = \"…\" in {}",
-            config::FILE_NAME
-        ),
+                config::FILE_NAME
+            ),
+        },
     };
-    let model = robot::load(&name)?;
+    let of_backup = args.robot.is_none() && config.robot.is_none();
+    let model = robot::load(&name).map_err(|error| {
+        if of_backup {
+            anyhow::anyhow!("the robot of the backup is a {name}: {error}; name yours with --robot")
+        } else {
+            error.into()
+        }
+    })?;
+    if of_backup {
+        note(args.quiet, &format!("the robot is {}, as the backup says ({name})", model.name));
+    }
     if model.dof != 6 {
         bail!(
             "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
@@ -137,8 +159,9 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             model.dof
         );
     }
-    let entry =
-        args.entry.clone().or_else(|| config.entry.clone()).unwrap_or_else(|| "main".into());
+    let of_task = choice.task.and_then(|task| task.entry.clone());
+    let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
+    let entry = entry.unwrap_or_else(|| "main".into());
     let mut times: Vec<(String, f64)> =
         config.inputs.iter().map(|(name, t)| (name.clone(), *t)).collect();
     for text in &args.inputs {
@@ -153,15 +176,12 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         start: args.start.as_deref().map(start_position).transpose()?,
         inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
     };
-    let files: Vec<Source> = input
-        .program()
+    let files: Vec<Source> = choice
+        .files
+        .iter()
         .enumerate()
         .map(|(i, file)| Source {
-            file: SourceFile::new(
-                FileId(i as u32),
-                file.source.path.clone(),
-                file.source.bytes.clone(),
-            ),
+            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
             relative: file.relative.clone(),
         })
         .collect();

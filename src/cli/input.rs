@@ -8,8 +8,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use rayon::prelude::*;
 use thiserror::Error;
 
+use super::backup::{self, Backup};
 use crate::text::{FileId, SourceFile};
 
 /// Extensions of files with RAPID text, in lower case.
@@ -20,8 +22,6 @@ const PROGRAM: &str = "pgf";
 const SOUGHT: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
 /// Deepest folder that is searched.
 const MAX_FOLDERS: usize = 32;
-/// The task that moves the first robot, in the folders of a backup.
-const FIRST_TASK: &str = "TASK1";
 
 /// A file that was read.
 #[derive(Clone, Debug)]
@@ -30,8 +30,19 @@ pub struct InputFile {
     pub source: SourceFile,
     /// Its path below the input, with `/`: where it goes below `--out`.
     pub relative: String,
-    /// Its task (`TASK1` …) if it belongs to a controller backup.
-    pub task: Option<String>,
+    /// Its place in a controller backup, if it is one of a task's modules.
+    pub place: Option<Place>,
+    /// Whether the command line names it, or a program file that lists it.
+    pub named: bool,
+}
+
+/// A place in a controller backup.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Index of the backup in [`Input::backups`].
+    pub backup: usize,
+    /// The task's folder, `TASK1` ….
+    pub folder: String,
 }
 
 /// A program file that was read.
@@ -65,6 +76,8 @@ pub struct Input {
     pub listings: Vec<Listing>,
     /// What could not be read beside them.
     pub unreadable: Vec<Unreadable>,
+    /// The controller backups that the files are of, with their folders.
+    pub backups: Vec<(PathBuf, Backup)>,
 }
 
 /// Why nothing was read.
@@ -98,15 +111,6 @@ pub enum InputError {
     },
 }
 
-impl Input {
-    /// The files that make up the program of the robot: all of them, or of a
-    /// controller backup those of its first motion task.
-    pub fn program(&self) -> impl Iterator<Item = &InputFile> {
-        let first = self.files.iter().any(|file| file.task.as_deref() == Some(FIRST_TASK));
-        self.files.iter().filter(move |file| !first || file.task.as_deref() == Some(FIRST_TASK))
-    }
-}
-
 /// Reads what `paths` name. A file named twice is read once.
 ///
 /// # Errors
@@ -116,32 +120,37 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     let mut first_error = None;
     let mut input = Input::default();
     let mut found: Vec<Found> = Vec::new();
+    let mut seen = BTreeSet::new();
     for path in paths {
         match find(path, &mut input.unreadable) {
-            Ok(files) => found.extend(files),
+            Ok(files) => found.extend(files.into_iter().filter(|f| seen.insert(shown(&f.path)))),
             Err(error) => {
                 input.unreadable.push(Unreadable { path: shown(path), reason: error.to_string() });
                 first_error.get_or_insert(error);
             }
         }
     }
-    let mut seen = BTreeSet::new();
-    found.retain(|file| seen.insert(shown(&file.path)));
     tell_apart(&mut found);
-    for file in found {
-        if let Some(modules) = file.modules {
-            if let Ok(bytes) = bytes_of(&file.path) {
-                let (path, relative) = (shown(&file.path), file.relative);
-                input.listings.push(Listing { path, relative, bytes, modules });
-            }
-            continue;
+    let (listings, found): (Vec<Found>, Vec<Found>) =
+        found.into_iter().partition(|file| file.modules.is_some());
+    for file in listings {
+        if let (Some(modules), Ok(bytes)) = (file.modules, bytes_of(&file.path)) {
+            let (path, relative) = (shown(&file.path), file.relative);
+            input.listings.push(Listing { path, relative, bytes, modules });
         }
-        match bytes_of(&file.path) {
-            Ok(bytes) => {
+    }
+    let sources: Vec<Result<SourceFile, String>> = found
+        .par_iter()
+        .map(|file| Ok(SourceFile::new(FileId(0), shown(&file.path), bytes_of(&file.path)?)))
+        .collect();
+    for (file, source) in found.into_iter().zip(sources) {
+        match source {
+            Ok(source) => {
                 let id = FileId(input.files.len() as u32);
-                let source = SourceFile::new(id, shown(&file.path), bytes);
-                let task = task_of(&source.path);
-                input.files.push(InputFile { source, relative: file.relative, task });
+                let place = place(&file.path, &mut input.backups);
+                let source = SourceFile { id, ..source };
+                let Found { relative, named, .. } = file;
+                input.files.push(InputFile { source, relative, place, named });
             }
             Err(reason) => {
                 let path = shown(&file.path);
@@ -160,10 +169,23 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     }
 }
 
+/// The place of a file in one of the backups, which is read with its first file.
+fn place(path: &Path, backups: &mut Vec<(PathBuf, Backup)>) -> Option<Place> {
+    let (root, folder) = backup::place(&fs::canonicalize(path).ok()?)?;
+    let known = backups.iter().position(|(known, _)| *known == root);
+    let backup = known.unwrap_or_else(|| {
+        let backup = backup::read(&root);
+        backups.push((root, backup));
+        backups.len() - 1
+    });
+    Some(Place { backup, folder })
+}
+
 /// A file to be read.
 struct Found {
     path: PathBuf,
     relative: String,
+    named: bool,
     /// Of a program file: the paths of its modules.
     modules: Option<Vec<String>>,
 }
@@ -187,23 +209,23 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
         if modules.is_empty() {
             return Err(InputError::NoRapid { path: shown(path) });
         }
-        let modules = modules.into_iter().map(|file| found_below(path, file));
+        let modules = modules.into_iter().map(|file| found_below(path, file, false));
         return Ok(modules.chain(listings).collect());
     }
     if has_extension(path, &[PROGRAM]) {
         return program(path, unreadable);
     }
-    Ok(vec![found_below(path.parent().unwrap_or(Path::new("")), path.to_path_buf())])
+    Ok(vec![found_below(path.parent().unwrap_or(Path::new("")), path.to_path_buf(), true)])
 }
 
-fn found_below(root: &Path, path: PathBuf) -> Found {
+fn found_below(root: &Path, path: PathBuf, named: bool) -> Found {
     let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
-    Found { path, relative, modules: None }
+    Found { path, relative, named, modules: None }
 }
 
 fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
     let modules = modules.iter().map(|module| shown(module)).collect();
-    Found { modules: Some(modules), ..found_below(root, path) }
+    Found { modules: Some(modules), ..found_below(root, path, true) }
 }
 
 /// Where two files would go to the same place below `--out`, all of them go below the deepest
@@ -246,7 +268,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
     let listing = found_listing(folder, path.to_path_buf(), &modules);
     for module in modules {
         if module.is_file() {
-            files.push(found_below(folder, module));
+            files.push(found_below(folder, module, true));
         } else {
             let reason = format!("listed in '{}' but not there", shown(path));
             unreadable.push(Unreadable { path: shown(&module), reason });
@@ -268,11 +290,24 @@ fn listed(path: &Path) -> Result<Vec<PathBuf>, String> {
     for part in text.split("<Module>").skip(1) {
         let name = part.split("</Module>").next().unwrap_or_default().trim();
         if !name.is_empty() {
-            // Controllers write the separators of their own file system.
-            modules.push(folder.join(name.replace('\\', "/")));
+            modules.push(below_in_any_case(folder, &unescaped(name)));
         }
     }
     Ok(modules)
+}
+
+/// A path of a controller, whose file system has its own separators and knows no case.
+fn below_in_any_case(folder: &Path, path: &str) -> PathBuf {
+    let parts = path.split(['/', '\\']).filter(|part| !part.is_empty());
+    parts.fold(folder.to_path_buf(), |folder, part| {
+        backup::child(&folder, part).unwrap_or_else(|| folder.join(part))
+    })
+}
+
+/// XML text without its escapes.
+fn unescaped(text: &str) -> String {
+    let escapes = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
+    escapes.iter().fold(text.to_owned(), |text, (escape, sign)| text.replace(escape, sign))
 }
 
 /// Collects the files with RAPID below a folder. Links to folders are not
@@ -310,21 +345,6 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
         return Err("larger than 4 GiB".to_owned());
     }
     Ok(bytes)
-}
-
-/// `TASK1` of `…/RAPID/TASK1/PROGMOD/a.mod` and of `…/SYSMOD/…`.
-fn task_of(path: &str) -> Option<String> {
-    let parts: Vec<&str> = path.split('/').collect();
-    parts.windows(3).find_map(|window| {
-        let task = window[1].to_ascii_uppercase();
-        let number = task.strip_prefix("TASK")?;
-        let folder = window[2].to_ascii_uppercase();
-        let of_backup = window[0].eq_ignore_ascii_case("RAPID")
-            && !number.is_empty()
-            && number.bytes().all(|digit| digit.is_ascii_digit())
-            && (folder == "PROGMOD" || folder == "SYSMOD");
-        of_backup.then_some(task)
-    })
 }
 
 /// A path as it is shown, with `/`.
@@ -373,13 +393,13 @@ mod tests {
 
     #[test]
     fn a_program_stands_for_its_modules() {
-        let list = "<?xml version=\"1.0\"?>\r\n<Program>\r\n  <Module>Main.mod</Module>\r\n  \
-                    <Module>sub\\Lib.mod</Module>\r\n  <Module>gone.mod</Module>\r\n</Program>\r\n";
+        let list = "<?xml version=\"1.0\"?>\r\n<Program>\r\n  <Module>MAIN.MOD</Module>\r\n  \
+                    <Module>sub\\Lib.mod</Module>\r\n  <Module>gone &amp; lost.mod</Module>\r\n</Program>\r\n";
         let folder =
             folder(&[("cell.pgf", list), ("Main.mod", ""), ("sub/Lib.mod", ""), ("other.mod", "")]);
         let input = read(&[folder.path().join("cell.pgf")]).unwrap();
         assert_eq!(relatives(input.files.iter()), ["Main.mod", "sub/Lib.mod"]);
-        assert_eq!(input.unreadable.len(), 1);
+        assert!(input.unreadable[0].path.ends_with("gone & lost.mod"));
         assert_eq!(input.listings[0].relative, "cell.pgf");
         assert_eq!(input.listings[0].bytes, list.as_bytes());
     }
@@ -390,23 +410,6 @@ mod tests {
         let paths = ["x/a.mod", "y/deep/a.mod"].map(|path| folder.path().join(path));
         let input = read(&paths).unwrap();
         assert_eq!(relatives(input.files.iter()), ["x/a.mod", "y/deep/a.mod"]);
-    }
-
-    #[test]
-    fn the_program_of_a_backup_is_its_first_task() {
-        let folder = folder(&[
-            ("BACKINFO/backinfo.txt", ""),
-            ("HOME/copy.mod", ""),
-            ("RAPID/TASK1/PROGMOD/Main.mod", ""),
-            ("RAPID/TASK1/SYSMOD/user.sys", ""),
-            ("RAPID/TASK2/PROGMOD/Watch.mod", ""),
-        ]);
-        let input = read(&[folder.path().to_path_buf()]).unwrap();
-        assert_eq!(input.files.len(), 4);
-        assert_eq!(
-            relatives(input.program()),
-            ["RAPID/TASK1/PROGMOD/Main.mod", "RAPID/TASK1/SYSMOD/user.sys"]
-        );
     }
 
     #[test]

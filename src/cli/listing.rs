@@ -3,17 +3,18 @@
 use std::path::Path;
 
 use super::input::{Input, Listing};
-use crate::retrofit::{OutputFile, OutputKind, Retrofit};
+use crate::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 
 const BEGIN: &[u8] = b"<Module>";
 const END: &[u8] = b"</Module>";
 
 /// Adds the program files to the outputs, with the new module in those that list its neighbours.
-pub fn add(result: &mut Retrofit, input: &Input) {
+pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
     let new = result.outputs.iter().find(|file| file.kind == OutputKind::New && is_module(file));
     let new = new.map(|file| file.path.clone());
     for listing in &input.listings {
-        if !listing.modules.iter().any(|path| input.program().any(|f| f.source.path == *path)) {
+        let is_ours = |path: &String| files.iter().any(|source| source.file.path == *path);
+        if !listing.modules.iter().any(is_ours) {
             continue;
         }
         let mut output = OutputFile {

@@ -1,5 +1,7 @@
 //! The command line.
 
+pub mod backup;
+pub mod choice;
 pub mod common;
 pub mod input;
 pub mod listing;
@@ -8,6 +10,7 @@ pub mod output;
 pub mod parse;
 pub mod robots;
 pub mod simulate;
+pub mod system_parameters;
 
 use std::process::ExitCode;
 

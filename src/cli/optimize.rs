@@ -1,5 +1,6 @@
 //! `joulepath optimize`: the main job.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -107,7 +108,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bar.finish_and_clear();
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
-        listing::add(&mut result, &job.input);
+        listing::add(&mut result, &job.input, &job.files);
         result
     };
     for text in &result.notes {
@@ -117,7 +118,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, &result)?);
+        written.extend(write_folder(folder, &job, &result)?);
     }
     if args.in_place {
         written.extend(write_in_place(&job, &result)?);
@@ -198,11 +199,11 @@ fn progress(quiet: bool) -> ProgressBar {
 }
 
 /// The complete program below a folder.
-fn write_folder(folder: &Path, result: &Retrofit) -> anyhow::Result<Vec<String>> {
+fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
     let mut written = Vec::new();
     for file in &result.outputs {
         let path = folder.join(&file.path);
-        output::write(&path, &file.bytes)?;
+        output::write(&path, &stored(job, file))?;
         written.push(path.display().to_string());
     }
     Ok(written)
@@ -234,10 +235,18 @@ fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
                 .with_context(|| format!("cannot write '{}'", copy.display()))?;
             written.push(copy.display().to_string());
         }
-        output::write(path, &file.bytes)?;
+        output::write(path, &stored(job, file))?;
         written.push(path.display().to_string());
     }
     Ok(written)
+}
+
+/// The bytes of an output in the encoding of the file that it stands for.
+fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
+    match file.input.and_then(|i| job.files.get(i)) {
+        Some(source) => source.file.stored(&file.bytes),
+        None => Cow::Borrowed(&file.bytes),
+    }
 }
 
 /// Path and bytes of the file of the input that an output stands for.

@@ -8,7 +8,8 @@ use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::input::{self, InputFile};
+use super::backup::Backup;
+use super::input::{self, InputFile, Place};
 use crate::diagnostics::{self, Diagnostic, Label, Paint};
 use crate::ir::is_movement;
 use crate::syntax::{self, NodeKind, Parse, SyntaxError, ast};
@@ -16,7 +17,10 @@ use crate::text::{self, FileId, SourceFile, Span};
 
 /// Parse RAPID and report its syntax errors.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: joulepath parse backup/RAPID --format json")]
+#[command(after_help = "Movements are the calls of instructions of the Move, Trigg and \
+    Search families, wherever they stand: also in handlers and in routines that nothing \
+    calls, not in comments and strings.\n\n\
+    Example: joulepath parse backup/RAPID --format json")]
 pub struct ParseArgs {
     /// Module files, folders, .pgf programs or controller backups.
     #[arg(required = true)]
@@ -50,35 +54,43 @@ pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
     for unreadable in &input.unreadable {
         writeln!(notes, "note: skipped '{}': {}", unreadable.path, unreadable.reason)?;
     }
-    let parses: Vec<Parse> =
-        input.files.par_iter().map(|file| syntax::parse(&file.source.bytes)).collect();
-    let files: Vec<FileReport> =
-        input.files.par_iter().zip(&parses).map(|(file, parse)| report(file, parse)).collect();
+    let ansi = args.format == ParseFormat::Text && std::io::stdout().is_terminal();
+    let paint = if ansi { Paint::Ansi } else { Paint::Plain };
+    // A tree is dropped with its file, so that a large folder needs no more than its largest files.
+    let (files, texts): (Vec<FileReport>, Vec<String>) = input
+        .files
+        .par_iter()
+        .map(|file| {
+            let parse = syntax::parse(&file.source.bytes);
+            let tree = if args.tree { tree(file, &parse) } else { String::new() };
+            let text = match args.format {
+                ParseFormat::Json => tree,
+                ParseFormat::Text => tree + &errors(file, &parse, paint),
+            };
+            (report(file, &parse, &input.backups), text)
+        })
+        .unzip();
     let totals = totals(&files);
     let failed = totals.errors > 0;
+    let backups: Vec<BackupReport<'_>> = input
+        .backups
+        .iter()
+        .map(|(path, backup)| BackupReport { path: path.to_string_lossy().into_owned(), backup })
+        .collect();
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     match args.format {
         ParseFormat::Json => {
-            let trees = args.tree.then(|| {
-                let pairs = input.files.iter().zip(&parses);
-                pairs.map(|(file, parse)| tree(file, parse)).collect()
-            });
-            serde_json::to_writer(&mut out, &Report { files, totals, trees })?;
+            let trees = args.tree.then_some(texts);
+            serde_json::to_writer(&mut out, &Report { files, totals, backups, trees })?;
             writeln!(out)?;
         }
         ParseFormat::Text => {
-            let ansi = std::io::stdout().is_terminal();
-            let paint = if ansi { Paint::Ansi } else { Paint::Plain };
-            for ((file, parse), report) in input.files.iter().zip(&parses).zip(&files) {
-                if args.tree {
-                    write!(out, "{}", tree(file, parse))?;
-                }
-                for error in &parse.errors {
-                    let diagnostic = diagnostic(error, file.source.id);
-                    writeln!(out, "{}\n", diagnostics::full(&diagnostic, &file.source, paint))?;
-                }
-                writeln!(out, "{}", summary(report))?;
+            for (text, report) in texts.iter().zip(&files) {
+                writeln!(out, "{text}{}", summary(report))?;
+            }
+            for BackupReport { path, backup } in &backups {
+                writeln!(out, "{path}: {}", backup.summary())?;
             }
             if files.len() > 1 {
                 writeln!(out, "{}", totals_line(&totals))?;
@@ -90,16 +102,29 @@ pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
 }
 
 #[derive(Serialize)]
-struct Report {
+struct Report<'a> {
     files: Vec<FileReport>,
     totals: Totals,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    backups: Vec<BackupReport<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     trees: Option<Vec<String>>,
+}
+
+/// A controller backup that files are of.
+#[derive(Serialize)]
+struct BackupReport<'a> {
+    path: String,
+    #[serde(flatten)]
+    backup: &'a Backup,
 }
 
 #[derive(Serialize)]
 struct FileReport {
     path: String,
+    /// Name of the task, of a backup's module.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    task: Option<String>,
     bytes: usize,
     lines: u32,
     encoding: &'static str,
@@ -135,7 +160,7 @@ struct Totals {
     lossless: usize,
 }
 
-fn report(file: &InputFile, parse: &Parse) -> FileReport {
+fn report(file: &InputFile, parse: &Parse, backups: &[(PathBuf, Backup)]) -> FileReport {
     let source = &file.source;
     let mut routines = 0;
     let mut statements = 0;
@@ -155,12 +180,14 @@ fn report(file: &InputFile, parse: &Parse) -> FileReport {
         let count = parse.tolerances.iter().filter(|used| used.tolerance == tolerance).count();
         (count > 0).then(|| ToleranceReport { name: tolerance.production(), count })
     });
+    let task = |place: &Place| backups[place.backup].1.task_name(&place.folder).to_owned();
     FileReport {
         path: source.path.clone(),
-        bytes: source.bytes.len(),
+        task: file.place.as_ref().map(task),
+        bytes: source.stored(&source.bytes).len(),
         lines: source.lines.count(),
-        encoding: source.charset.name(),
-        bom: source.charset.bom,
+        encoding: source.encoding(),
+        bom: source.charset.bom || source.utf16.is_some(),
         encoded: text::is_encoded_module(&source.bytes),
         lossless: is_lossless(parse, &source.bytes),
         errors: errors.collect(),
@@ -202,6 +229,15 @@ fn totals(files: &[FileReport]) -> Totals {
 
 fn tree(file: &InputFile, parse: &Parse) -> String {
     syntax::dump(&parse.tree, &file.source.bytes).to_string()
+}
+
+/// The errors of a file with their source, an empty line after each.
+fn errors(file: &InputFile, parse: &Parse, paint: Paint) -> String {
+    let shown = parse.errors.iter().map(|error| {
+        let diagnostic = diagnostic(error, file.source.id);
+        format!("{}\n\n", diagnostics::full(&diagnostic, &file.source, paint))
+    });
+    shown.collect()
 }
 
 fn diagnostic(error: &SyntaxError, file: FileId) -> Diagnostic {

@@ -4,17 +4,41 @@
 //! that the parser could not understand becomes `Broken`, a `<SMT>`-like
 //! placeholder `Placeholder`.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use crate::text::Span;
 
-/// An identifier: RAPID compares them without case.
+/// An identifier and where it stands; its text is shared by all its uses in a file.
 #[derive(Clone, Debug)]
 pub struct Ident {
+    name: Arc<Name>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The text of an identifier: RAPID compares them without case.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Name {
     /// As written.
     pub text: String,
     /// Lower case, for comparison.
     pub key: String,
-    /// Where it stands.
-    pub span: Span,
+}
+
+impl Ident {
+    /// A use of a name.
+    pub fn new(name: Arc<Name>, span: Span) -> Ident {
+        Ident { name, span }
+    }
+}
+
+impl Deref for Ident {
+    type Target = Name;
+
+    fn deref(&self) -> &Name {
+        &self.name
+    }
 }
 
 /// One `MODULE … ENDMODULE`.

@@ -232,6 +232,7 @@ const HARMLESS: &[&str] = &[
     "waittestandset",
     "waittime",
     "waituntil",
+    "waitwobj",
     "worldacclim",
     "write",
     "writeanybin",
@@ -259,6 +260,28 @@ const HARMLESS: &[&str] = &[
     "syncmoveresume",
     "indreset",
 ];
+
+/// Instructions that wait for somebody or something outside the program.
+const WAITING: &[&str] = &[
+    "rmqreadwait",
+    "rmqsendwait",
+    "socketaccept",
+    "socketreceive",
+    "tpreaddnum",
+    "tpreadfk",
+    "tpreadnum",
+    "uimsgbox",
+    "waitsensor",
+    "waitsync",
+    "waitsynctask",
+    "waittestandset",
+    "waitwobj",
+];
+
+/// True if the instruction waits, for how long is not in the program.
+pub fn is_waiting(key: &str) -> bool {
+    WAITING.contains(&key)
+}
 
 /// True if the instruction is one of RAPID's own and leaves its arguments unchanged.
 pub fn is_harmless(key: &str) -> bool {

@@ -3,9 +3,14 @@
 //! Lowering evaluates nothing and drops nothing that runs: what has a syntax
 //! error becomes `Broken`, so that nobody takes half a statement for a whole.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::hir::{
     Arg, ArgKind, BinaryOp, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module,
-    Param, ParamMode, Routine, RoutineKind, Scope, Stmt, StmtKind, TypeDef, TypeDefKind, UnaryOp,
+    Name, Param, ParamMode, Routine, RoutineKind, Scope, Stmt, StmtKind, TypeDef, TypeDefKind,
+    UnaryOp,
 };
 use crate::syntax::{Node, NodeKind, Parse, Token, TokenKind, ast};
 use crate::text::{self, Charset, FileId, Span};
@@ -14,7 +19,8 @@ use crate::text::{self, Charset, FileId, Span};
 /// a module with an empty name.
 #[must_use]
 pub fn lower(file: FileId, parse: &Parse, bytes: &[u8]) -> Vec<Module> {
-    let lowering = Lowering { file, bytes, charset: text::charset(bytes) };
+    let charset = text::charset(bytes);
+    let lowering = Lowering { file, bytes, charset, names: RefCell::default() };
     let root = parse.tree.root();
     let mut modules: Vec<Module> =
         root.children().filter_map(ast::Module::cast).map(|node| lowering.module(node)).collect();
@@ -32,9 +38,11 @@ struct Lowering<'a> {
     file: FileId,
     bytes: &'a [u8],
     charset: Charset,
+    /// The names met so far, by their bytes.
+    names: RefCell<HashMap<&'a [u8], Arc<Name>>>,
 }
 
-impl Lowering<'_> {
+impl<'a> Lowering<'a> {
     fn span(&self, node: Node<'_>) -> Span {
         let range = node.range();
         Span { file: self.file, start: range.start, end: range.end }
@@ -42,9 +50,16 @@ impl Lowering<'_> {
 
     // --- names ---
 
+    fn name(&self, bytes: &'a [u8]) -> Arc<Name> {
+        let new = || {
+            let text = self.charset.decode(bytes).into_owned();
+            Arc::new(Name { key: text.to_lowercase(), text })
+        };
+        self.names.borrow_mut().entry(bytes).or_insert_with(new).clone()
+    }
+
     fn ident(&self, node: Node<'_>) -> Ident {
-        let text = self.charset.decode(node.text(self.bytes)).into_owned();
-        Ident { key: text.to_lowercase(), text, span: self.span(node) }
+        Ident::new(self.name(node.text(self.bytes)), self.span(node))
     }
 
     /// The name, or an empty one where `around` lacks it.
@@ -52,8 +67,7 @@ impl Lowering<'_> {
         node.map_or_else(
             || {
                 let start = self.span(around).start;
-                let span = Span { file: self.file, start, end: start };
-                Ident { text: String::new(), key: String::new(), span }
+                Ident::new(self.name(&[]), Span { file: self.file, start, end: start })
             },
             |node| self.ident(node),
         )
@@ -248,7 +262,7 @@ impl Lowering<'_> {
                     Some(late) => Callee::Late(self.expr(late.children().next()?)),
                     None => Callee::Name(self.ident(call.name()?)),
                 };
-                let args = call.arguments().map(|argument| self.arg(argument)).collect();
+                let args = exact(call.arguments(), call.arguments().count(), |arg| self.arg(arg));
                 StmtKind::Call(Call { callee, args })
             }
             NodeKind::GotoStatement => StmtKind::Goto(name()?),
@@ -360,11 +374,13 @@ impl Lowering<'_> {
                 ExprKind::Index(base, children.map(|index| self.expr(index)).collect())
             }),
             NodeKind::FunctionCall => children.next().map(|name| {
-                let args = children.map(|argument| self.arg(argument)).collect();
+                let count = node.children().count() - 1;
+                let args = exact(children, count, |argument| self.arg(argument));
                 ExprKind::Call(self.ident(name), args)
             }),
             NodeKind::Aggregate => {
-                Some(ExprKind::Aggregate(children.map(|part| self.expr(part)).collect()))
+                let count = node.children().count();
+                Some(ExprKind::Aggregate(exact(children, count, |part| self.expr(part))))
             }
             NodeKind::UnaryExpression => unary_op(node)
                 .zip(children.next())
@@ -419,6 +435,18 @@ fn scope(keyword: Option<TokenKind>) -> Scope {
         Some(TokenKind::Task) => Scope::Task,
         _ => Scope::Global,
     }
+}
+
+/// Lowers the nodes of a list of known length: a vector that grows takes up to twice the memory,
+/// which is most of the time of a large file.
+fn exact<'t, T>(
+    nodes: impl Iterator<Item = Node<'t>>,
+    count: usize,
+    lower: impl FnMut(Node<'t>) -> T,
+) -> Vec<T> {
+    let mut list = Vec::with_capacity(count);
+    list.extend(nodes.map(lower));
+    list
 }
 
 fn has_error(node: Node<'_>) -> bool {

@@ -2,6 +2,8 @@
 
 mod convert;
 pub mod exec;
+mod functions;
+pub mod graph;
 pub mod hir;
 pub mod instructions;
 pub mod layout;

@@ -32,16 +32,33 @@ impl Banded {
             .filter(|(_, _, value)| *value != 0.0)
     }
 
-    /// x with A x = right, by A = L Lᵀ. None if A is not positive definite.
-    pub(super) fn solve(mut self, mut right: Vec<f64>) -> Option<Vec<f64>> {
+    /// A · x.
+    pub(super) fn times(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.size];
         for i in 0..self.size {
             for j in i.saturating_sub(self.width)..=i {
-                let mut sum = self.entries[self.index(i, j)];
-                for k in i.saturating_sub(self.width)..j {
-                    if k + self.width >= j {
-                        sum -= self.entries[self.index(i, k)] * self.entries[self.index(j, k)];
-                    }
+                let value = self.entries[self.index(i, j)];
+                out[i] += value * x[j];
+                if j < i {
+                    out[j] += value * x[i];
                 }
+            }
+        }
+        out
+    }
+
+    /// The columns `from` … `to` of row i, from i − `width` to i.
+    fn row(&self, i: usize, from: usize, to: usize) -> &[f64] {
+        &self.entries[self.index(i, from)..self.index(i, to)]
+    }
+
+    /// L with A = L Lᵀ. None if A is not positive definite.
+    pub(super) fn factor(mut self) -> Option<Cholesky> {
+        for i in 0..self.size {
+            let first = i.saturating_sub(self.width);
+            for j in first..=i {
+                let product = self.row(i, first, j).iter().zip(self.row(j, first, j));
+                let sum = self.entries[self.index(i, j)] - product.map(|(a, b)| a * b).sum::<f64>();
                 let at = self.index(i, j);
                 self.entries[at] = if i > j {
                     sum / self.entries[self.index(j, j)]
@@ -52,21 +69,35 @@ impl Banded {
                 };
             }
         }
-        for i in 0..self.size {
-            let mut sum = right[i];
-            for k in i.saturating_sub(self.width)..i {
-                sum -= self.entries[self.index(i, k)] * right[k];
-            }
-            right[i] = sum / self.entries[self.index(i, i)];
+        Some(Cholesky { lower: self })
+    }
+}
+
+/// The Cholesky factor of a band matrix.
+pub(super) struct Cholesky {
+    lower: Banded,
+}
+
+impl Cholesky {
+    /// x with L Lᵀ x = right.
+    pub(super) fn solve(&self, mut right: Vec<f64>) -> Vec<f64> {
+        let Banded { size, width, .. } = self.lower;
+        for i in 0..size {
+            let first = i.saturating_sub(width);
+            let row = self.lower.row(i, first, i + 1);
+            let known: f64 = row.iter().zip(&right[first..i]).map(|(a, x)| a * x).sum();
+            right[i] = (right[i] - known) / row[i - first];
         }
-        for i in (0..self.size).rev() {
-            let mut sum = right[i];
-            for k in i + 1..self.size.min(i + self.width + 1) {
-                sum -= self.entries[self.index(k, i)] * right[k];
+        for i in (0..size).rev() {
+            let first = i.saturating_sub(width);
+            let row = self.lower.row(i, first, i + 1);
+            right[i] /= row[i - first];
+            let x = right[i];
+            for (right, a) in right[first..i].iter_mut().zip(row) {
+                *right -= a * x;
             }
-            right[i] = sum / self.entries[self.index(i, i)];
         }
-        Some(right)
+        right
     }
 }
 
@@ -91,8 +122,12 @@ mod tests {
             }
         }
         let x: Vec<f64> = (0..SIZE).map(|i| (i as f64).sin()).collect();
-        let right = dense.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
-        for (got, wanted) in matrix.solve(right).unwrap().iter().zip(&x) {
+        let right: Vec<f64> =
+            dense.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+        for (got, wanted) in matrix.times(&x).iter().zip(&right) {
+            assert!((got - wanted).abs() < 1e-12);
+        }
+        for (got, wanted) in matrix.factor().unwrap().solve(right).iter().zip(&x) {
             assert!((got - wanted).abs() < 1e-12);
         }
     }
@@ -103,6 +138,6 @@ mod tests {
         matrix.add(0, 0, 1.0);
         matrix.add(1, 0, 2.0);
         matrix.add(1, 1, 1.0);
-        assert_eq!(matrix.solve(vec![1.0, 1.0]), None);
+        assert!(matrix.factor().is_none());
     }
 }

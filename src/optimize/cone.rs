@@ -29,11 +29,6 @@ impl Affine {
         Affine { terms: Vec::new(), constant }
     }
 
-    /// Σ coefficients · x.
-    pub(super) fn over(coefficients: &[f64]) -> Affine {
-        Affine { terms: coefficients.iter().copied().enumerate().collect(), constant: 0.0 }
-    }
-
     /// Adds coefficient · x[variable]; nothing for a variable that was eliminated at 0.
     pub(super) fn add(&mut self, variable: Option<usize>, coefficient: f64) -> &mut Affine {
         if let Some(index) = variable.filter(|_| coefficient != 0.0) {
@@ -169,11 +164,6 @@ impl ConeProgram {
 
     /// Solves the program.
     pub(super) fn solve(self) -> ConeSolution {
-        self.solve_to(GAP)
-    }
-
-    /// Solves the program to a relative and absolute gap.
-    pub(super) fn solve_to(self, gap: f64) -> ConeSolution {
         let columns = self.linear.len();
         let quadratic = self.quadratic.matrix(columns, columns);
         let (mut matrix, mut right) = (Triplets::default(), Vec::new());
@@ -194,8 +184,8 @@ impl ConeProgram {
         let settings = DefaultSettings {
             verbose: false,
             max_iter: MAX_ITERATIONS,
-            tol_gap_abs: gap,
-            tol_gap_rel: gap,
+            tol_gap_abs: GAP,
+            tol_gap_rel: GAP,
             tol_feas: RESIDUAL,
             iterative_refinement_reltol: REFINEMENT,
             iterative_refinement_abstol: REFINEMENT,

@@ -1,6 +1,6 @@
 //! Where a realised motion may be and how fast: the programmed path with its tolerances.
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Vector4};
 
 use crate::ir::movement::Movement;
 use crate::kinematics::fk;
@@ -139,13 +139,13 @@ impl Corridor {
         eased
     }
 
-    /// The value at a pose of something given at each place, searched near the place `from`, which
-    /// is moved on.
-    pub fn interpolate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> f64 {
+    /// The distance of a pose over what is allowed there, and the value there of something given
+    /// at each place. The place is searched near `from`, which is moved on.
+    pub fn locate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> (f64, f64) {
         const STRIDE: usize = 8;
         const AHEAD: usize = 32 * STRIDE;
         let square = |place: &Place| {
-            let turn = METRES_PER_RADIAN * turn(pose, &place.pose);
+            let turn = METRES_PER_RADIAN * turn(&pose.rotation.coords, &place.pose.rotation.coords);
             (pose.translation.vector - place.pose.translation.vector).norm_squared() + turn * turn
         };
         let nearest = |range: &mut dyn Iterator<Item = usize>| {
@@ -157,49 +157,49 @@ impl Corridor {
         let coarse = nearest(&mut window.step_by(STRIDE));
         let i = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
         *from = i;
+        let distance = self.distance(pose, i) / self.places[i].tolerance;
         // Between the nearest place and its neighbour on the side of the pose.
         let here = self.places[i].pose.translation.vector;
-        let from = pose.translation.vector - here;
+        let offset = pose.translation.vector - here;
         for k in [i + 1, i.wrapping_sub(1)] {
             if k > last {
                 continue;
             }
             let along = self.places[k].pose.translation.vector - here;
-            let share = from.dot(&along) / along.norm_squared();
+            let share = offset.dot(&along) / along.norm_squared();
             if share > 0.0 {
-                return values[i] + (values[k] - values[i]) * share.min(1.0);
+                return (distance, values[i] + (values[k] - values[i]) * share.min(1.0));
             }
         }
-        values[i]
+        (distance, values[i])
     }
 
     /// Distance of a pose from the stretch before and after a place.
     fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
         let place = &self.places[i].pose;
         let from = pose.translation.vector - place.translation.vector;
-        let turn = METRES_PER_RADIAN * turn(pose, place);
+        let rotation = place.rotation.coords;
         let aside = |k: usize| {
-            let along = self.places[k].pose.translation.vector - place.translation.vector;
+            let next = &self.places[k].pose;
+            let along = next.translation.vector - place.translation.vector;
             let square = along.norm_squared();
             let share =
                 if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
-            (from - along * share).norm()
+            let sign = if rotation.dot(&next.rotation.coords) < 0.0 { -1.0 } else { 1.0 };
+            let between = rotation.lerp(&(sign * next.rotation.coords), share).normalize();
+            let turn = METRES_PER_RADIAN * turn(&pose.rotation.coords, &between);
+            (from - along * share).norm().hypot(turn)
         };
-        let mut straight = from.norm();
-        if i > 0 {
-            straight = straight.min(aside(i - 1));
-        }
-        if i + 1 < self.places.len() {
-            straight = straight.min(aside(i + 1));
-        }
-        Vector3::new(straight, turn, 0.0).norm()
+        let last = self.places.len() - 1;
+        let neighbours = [i.saturating_sub(1), (i + 1).min(last)];
+        neighbours.map(aside).into_iter().fold(f64::INFINITY, f64::min)
     }
 }
 
 /// The angle between two orientations, rad, where it is small; a chord of it where it is large,
 /// which orders them the same without the cost of the arc.
-fn turn(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-    (8.0 * (1.0 - a.rotation.coords.dot(&b.rotation.coords).abs()).max(0.0)).sqrt()
+fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
+    (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
 }
 
 /// Which programmed speeds are ceilings.

@@ -1,6 +1,7 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
 mod banded;
+mod banded_program;
 pub mod check;
 mod cone;
 pub mod corridor;

@@ -14,10 +14,11 @@ pub trait Plant {
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// A speed that has a ceiling, such as that of the tool, over the ceiling. `place` says where
-    /// on its path the robot was a moment ago, and then where it is: a path may cross itself.
-    fn speed_share(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> f64 {
-        0.0
+    /// What else has a limit, over that limit: the speed of the tool and its distance from the
+    /// path. `place` says where on its path the robot was a moment ago, and then where it is: a
+    /// path may cross itself.
+    fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> [f64; 2] {
+        [0.0; 2]
     }
 
     /// Torques with dry friction, Nm; none at rest.
@@ -32,6 +33,8 @@ fn direction(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
+/// Room that is kept to the limits.
+pub(super) const ROOM: f64 = 1e-3;
 /// Steps on a piece at which it is judged; even, for Simpson's rule.
 const STEPS: usize = 8;
 
@@ -41,8 +44,10 @@ pub struct Realised {
     /// Energies. Friction is the dry part; the viscous part is with the mechanical one, from
     /// which a plant does not tell it.
     pub energy: EnergyParts,
-    /// The largest share of a torque limit or of the speed ceiling.
+    /// The largest share of a torque limit or of a limit of the path.
     pub worst_share: f64,
+    /// Sum over the samples of what shares exceed 1 − [`ROOM`] by.
+    pub excess: f64,
 }
 
 /// Plays a stream on a plant, by Simpson's rule on each piece.
@@ -64,12 +69,16 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
             sum.time += seconds;
             sum.base += seconds * model.base_w;
             sum.drive += seconds * model.braked(&power);
-            out.worst_share = out.worst_share.max(plant.speed_share(&q, &qd, &mut place));
+            let path = plant.path_shares(&q, &qd, &mut place);
+            let loads = (0..DOF).map(|j| torque[j].abs() / limit[j]);
+            for share in path.into_iter().chain(loads) {
+                out.worst_share = out.worst_share.max(share);
+                out.excess += (share - (1.0 - ROOM)).max(0.0);
+            }
             for j in 0..DOF {
                 sum.mechanical += seconds * smooth[j] * qd[j];
                 sum.friction += seconds * dry[j] * qd[j].abs();
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
-                out.worst_share = out.worst_share.max(torque[j].abs() / limit[j]);
             }
         }
     }

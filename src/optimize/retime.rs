@@ -93,12 +93,17 @@ const FIRST_REACH: f64 = 0.006;
 const BOUND_ROUNDING: f64 = 1e-5;
 /// Placing of the points at first, share of the tolerance of the path.
 const FIRST_SPACING: f64 = 0.1;
-/// Corridor of the polishing at first, share of the tolerance of the path.
-const FIRST_CORRIDOR: f64 = 0.3;
 /// Share of the reach of the zones that two points may use up.
 const ZONE_SHARE: f64 = 0.95;
 /// The share that is asked for where they would not keep that: they are placed by other rules too.
 const CLOSER: f64 = 0.6;
+/// Share of the allowed distance from the path that the polishing may use at first.
+const FIRST_DISTANCE: f64 = 0.95;
+/// Distance from the path that costs the polishing a share of the energy, in units of the
+/// tolerance of the path.
+const CORRIDOR: f64 = 0.3;
+/// Share of a limit beyond which an attempt is begun anew instead of polished on.
+const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
@@ -116,14 +121,22 @@ struct Margins {
     reach: f64,
     /// Tolerance of the points' placing, m.
     spacing: f64,
-    /// Distance from the path that costs the polishing a share of the energy, m.
-    corridor: f64,
+    /// Share of the allowed distance from the path that the polishing may use.
+    distance: f64,
 }
 
 /// A realised stream with its faults.
 struct Attempt {
     stream: Stream,
     check: Check,
+    /// What more polishing may begin with.
+    intended: Intended,
+}
+
+/// A motion on the path and a stream near it.
+struct Intended {
+    reference: Reference,
+    stream: Stream,
 }
 
 /// The stream of a run.
@@ -134,20 +147,21 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     let work = Work::new(task)?;
     match goal {
         Goal::Within(time) => {
-            let retiming = work.least_energy(time)?;
-            let saved = task.energy_before.energy_j() - retiming.energy.energy_j();
-            if saved > WORTHWHILE * task.energy_before.motion_energy_j().abs() {
-                Ok(retiming)
-            } else {
-                Err(Reason::NoSaving)
-            }
+            let before = task.energy_before.motion_energy_j();
+            let retiming = work.least_energy(time, before - WORTHWHILE * before.abs())?;
+            let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
+            if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
-        Goal::Exactly(time) => work.least_energy(time).or_else(|reason| match reason {
-            Reason::NoSaving => work.within(time),
-            // Near the least time there may be no other stream.
-            Reason::NoStream(_) if time < task.run.duration() => work.within(time).or(Err(reason)),
-            other => Err(other),
-        }),
+        Goal::Exactly(time) => {
+            work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
+                Reason::NoSaving => work.within(time),
+                // Near the least time there may be no other stream.
+                Reason::NoStream(_) if time < task.run.duration() => {
+                    work.within(time).or(Err(reason))
+                }
+                other => Err(other),
+            })
+        }
         Goal::Fastest => work.least_time(),
     }
 }
@@ -212,27 +226,41 @@ impl<'a> Work<'a> {
         Ok(Work { task, path, corridor, limits, model, lever: levers(robot, task.run) })
     }
 
-    /// Least energy in a time, settling included.
-    fn least_energy(&self, time: f64) -> Result<Retiming, Reason> {
+    /// Least energy in a time, settling included, if that takes less than `worth` (J, motion).
+    fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
         let mut margins = self.first_margins();
         let mut problem = None;
+        let mut begun: Option<Intended> = None;
+        let mut worst = NEARLY;
         for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(&margins)?;
-            let fast = fastest_profile(&grid, &limits)?;
-            let optimum =
-                minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound.as_ref())
-                    .into_optimum()
-                    .ok_or(Reason::NoSaving)?;
-            match self.realise(&optimum.profile, budget, &margins) {
+            let intended = match begun.take() {
+                Some(intended) => Ok(intended),
+                None => self.least_energy_program(budget, &margins, bound.as_ref()),
+            };
+            let outcome = intended.and_then(|intended| self.realise(intended, &margins));
+            match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);
-                    return Ok(self.retiming(attempt.stream, attempt.check, bound));
+                    let retiming = self.retiming(attempt.stream, attempt.check, bound);
+                    let saves = retiming.energy.motion_energy_j() < worth;
+                    return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
                 }
                 Ok(attempt) => {
-                    margins.tighten(&attempt.check);
+                    // Tighter margins do not make it cheaper.
+                    if self.moving(&attempt.stream).motion_energy_j() >= worth {
+                        return Err(Reason::NoSaving);
+                    }
                     problem = Some(describe(&attempt.check));
+                    if attempt.check.worst() < worst {
+                        worst = attempt.check.worst();
+                        margins.tighten_a_little(&attempt.check);
+                        begun = Some(attempt.intended);
+                    } else {
+                        worst = NEARLY;
+                        margins.tighten(&attempt.check);
+                    }
                 }
                 Err(Reason::NoStream(why)) => {
                     margins.load *= FIRST_MARGIN;
@@ -242,6 +270,21 @@ impl<'a> Work<'a> {
             }
         }
         Err(Reason::NoStream(problem.unwrap_or_default()))
+    }
+
+    /// The convex program's answer and a stream fitted to it.
+    fn least_energy_program(
+        &self,
+        budget: f64,
+        margins: &Margins,
+        bound: Option<&EnergyBound>,
+    ) -> Result<Intended, Reason> {
+        let (grid, limits) = self.grid(margins)?;
+        let fast = fastest_profile(&grid, &limits)?;
+        let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
+            .into_optimum()
+            .ok_or(Reason::NoSaving)?;
+        self.intend(&optimum.profile, budget, margins)
     }
 
     /// A bound on the motion energy of the path in this time at the full limits.
@@ -262,7 +305,8 @@ impl<'a> Work<'a> {
             let mut best: Option<Attempt> = None;
             for share in RAMP_SHARES {
                 let budget = round_up(fast.duration() + share * ramp);
-                match self.realise(&fast, budget, &margins) {
+                let intended = self.intend(&fast, budget, &margins);
+                match intended.and_then(|intended| self.realise(intended, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
                         return Ok(self.retiming(attempt.stream, attempt.check, None));
                     }
@@ -291,16 +335,20 @@ impl<'a> Work<'a> {
         }
     }
 
-    fn first_margins(&self) -> Margins {
+    /// The smallest tolerance on the path, m.
+    fn tolerance(&self) -> f64 {
         let line =
             self.task.run.legs.iter().any(|leg| !matches!(leg.kind, crate::path::LegKind::Joint));
-        let tolerance = if line { LINE_TOLERANCE } else { JOINT_TOLERANCE };
+        if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
+    }
+
+    fn first_margins(&self) -> Margins {
         Margins {
             load: FIRST_MARGIN,
             speed: FIRST_SPEED_MARGIN,
             reach: FIRST_REACH,
-            spacing: FIRST_SPACING * tolerance,
-            corridor: FIRST_CORRIDOR * tolerance,
+            spacing: FIRST_SPACING * self.tolerance(),
+            distance: FIRST_DISTANCE,
         }
     }
 
@@ -332,13 +380,13 @@ impl<'a> Work<'a> {
         Ok((grid, limits))
     }
 
-    /// A stream of this duration for a profile, rounded as it will be emitted.
-    fn realise(
+    /// A stream of this duration fitted to a profile.
+    fn intend(
         &self,
         profile: &Profile,
         duration: f64,
         margins: &Margins,
-    ) -> Result<Attempt, Reason> {
+    ) -> Result<Intended, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
         let reference = self.reference(profile)?;
         let mut spacing = Spacing {
@@ -356,37 +404,39 @@ impl<'a> Work<'a> {
         let intervals = rounded_intervals(&intervals, duration);
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
             .map_err(|error| failed(&error.to_string()))?;
-        let fitted = match fit {
-            StreamFit::Fitted(fitted) => fitted.stream,
+        match fit {
+            StreamFit::Fitted(fitted) => Ok(Intended { reference, stream: fitted.stream }),
             StreamFit::TooFast { .. } => {
-                return Err(failed("speed, acceleration and jerk leave no stream in this time"));
+                Err(failed("speed, acceleration and jerk leave no stream in this time"))
             }
-            StreamFit::Failed => return Err(failed("the solver found no stream")),
+            StreamFit::Failed => Err(failed("the solver found no stream")),
+        }
+    }
+
+    /// The stream polished, rounded as it will be emitted and checked.
+    fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
+        let Intended { reference, stream } = intended;
+        let plant = RobotPlant {
+            work: self,
+            margins,
+            ceilings: self.corridor.eased(margins.reach, EASING),
         };
-        let polished = polish_stream(
-            &fitted,
-            &reference,
-            &RobotPlant {
-                work: self,
-                margins,
-                ceilings: self.corridor.eased(margins.reach, EASING),
-            },
-            &self.limits,
-            &self.model,
-            &PolishCorridor { tolerance: margins.corridor, lever: self.lever },
-        )
-        .map_err(|error| failed(&error.to_string()))?;
-        let stream = rounded_points(&polished.stream)?;
+        let corridor = PolishCorridor { tolerance: CORRIDOR * self.tolerance(), lever: self.lever };
+        let polished =
+            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
+                .map_err(|error| Reason::NoStream(error.to_string()))?;
+        let rounded = rounded_points(&polished.stream)?;
         let tool = self.task.run.legs[0].tool;
         let check = check(
             self.task.model,
             &self.task.run.load,
             &tool,
-            &stream,
+            &rounded,
             &self.corridor,
             &self.task.run.end,
         );
-        Ok(Attempt { stream, check })
+        let intended = Intended { reference, stream: polished.stream };
+        Ok(Attempt { stream: rounded, check, intended })
     }
 
     /// Time in which the TCP goes no farther than the zones of two points reach, s.
@@ -416,11 +466,16 @@ impl<'a> Work<'a> {
         Reference::new(times, q, qd).map_err(|error| Reason::NoStream(error.to_string()))
     }
 
+    /// Energy of a stream's motion, settling not included.
+    fn moving(&self, stream: &Stream) -> EnergyParts {
+        let motion = TimedMotion::Stream(stream.clone());
+        motion_energy(self.task.model, &self.task.run.load, &motion, 0.0, stream.duration())
+    }
+
     fn retiming(&self, stream: Stream, check: Check, bound: Option<f64>) -> Retiming {
         let task = self.task;
         let duration = stream.duration();
-        let motion = TimedMotion::Stream(stream.clone());
-        let moving = motion_energy(task.model, &task.run.load, &motion, 0.0, duration);
+        let moving = self.moving(&stream);
         let energy = moving
             + account::base(task.model, duration)
             + account::at_rest(task.model, &task.run.load, &task.run.end, task.run.settling);
@@ -465,13 +520,14 @@ impl Plant for RobotPlant<'_> {
         motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
     }
 
-    fn speed_share(&self, q: &Joints, qd: &Joints, place: &mut usize) -> f64 {
+    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> [f64; 2] {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
         let pose = fk(task.model, q) * tool;
-        let ceiling = self.work.corridor.interpolate(&pose, &self.ceilings, place);
+        let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
         let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
-        rate.fixed_rows::<3>(0).norm() / (self.margins.speed * ceiling)
+        let speed = rate.fixed_rows::<3>(0).norm();
+        [speed / (self.margins.speed * ceiling), distance / self.margins.distance]
     }
 }
 
@@ -481,10 +537,10 @@ const REFERENCE_STEP: f64 = 0.005;
 impl Margins {
     /// The limits themselves.
     fn none() -> Margins {
-        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, corridor: 0.0 }
+        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0 }
     }
 
-    /// Tighter where an attempt failed.
+    /// Tighter for another attempt from the begin.
     fn tighten(&mut self, check: &Check) {
         let load = check.torque.max(check.acceleration);
         if load > 1.0 {
@@ -497,9 +553,17 @@ impl Margins {
             self.reach *= 2.0;
         }
         if check.deviation > 1.0 {
-            self.corridor *= 0.4 / check.deviation.min(2.0);
+            self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
             self.spacing *= 0.7;
         }
+    }
+
+    /// Tighter for more polishing of a stream that nearly holds.
+    fn tighten_a_little(&mut self, check: &Check) {
+        let over = |share: f64| share.max(1.0);
+        self.load /= over(check.torque);
+        self.speed /= over(check.tcp_speed);
+        self.distance /= over(check.deviation);
     }
 }
 

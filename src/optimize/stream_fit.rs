@@ -68,9 +68,10 @@ pub fn fit_stream(
     let points = Points::new(reference, intervals)?;
     let fit = Fit { reference, points, lever };
     let (matrix, right) = fit.normal_equations();
-    let Some(free) = matrix.clone().solve(right) else {
+    let Some(factor) = matrix.clone().factor() else {
         return Ok(StreamFit::Failed);
     };
+    let free = factor.solve(right);
     let unlimited = fit.points.stream(&free)?;
     if limits.worst_ratio(&unlimited) <= 1.0 {
         return Ok(StreamFit::Fitted(fit.measured(unlimited)));

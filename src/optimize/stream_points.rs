@@ -15,6 +15,13 @@ pub(super) struct LimitRow {
 }
 
 impl LimitRow {
+    fn add(&mut self, index: usize, weight: f64) {
+        match self.terms.iter_mut().find(|(i, _)| *i == index) {
+            Some((_, sum)) => *sum += weight,
+            None => self.terms.push((index, weight)),
+        }
+    }
+
     pub(super) fn value(&self, points: &[f64]) -> f64 {
         self.constant + self.terms.iter().map(|(i, weight)| weight * points[*i]).sum::<f64>()
     }
@@ -77,7 +84,7 @@ impl Points {
                     for (i, weight) in terms {
                         let weight = sign * weight / limit[*j];
                         match self.variable(*i, m) {
-                            Some(index) => row.terms.push((index, weight)),
+                            Some(index) => row.add(index, weight),
                             None => row.constant += weight * self.fixed(*i, m),
                         }
                     }

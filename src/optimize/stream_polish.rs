@@ -2,14 +2,14 @@
 //!
 //! Sequential quadratic programming on the points. The copper loss is a sum of squares of torques
 //! that are linearised in the points (Gauss–Newton). The loss of a power that is braked away is
-//! rounded where the power changes its sign. Joint limits are linear rows and hold exactly; torque and
-//! tool speed are linearised rows with one common slack that is priced. A distance from the path
+//! rounded where the power changes its sign. Joint limits are linear rows and hold exactly; torque
+//! and the limits of the path are linearised rows with slacks that are priced. A distance from the path
 //! is priced too: one of the tolerance costs the share `DEVIATION_PRICE` of the energy.
 
 use super::banded::Banded;
-use super::cone::{Affine, ConeProgram, ConeStatus};
+use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{Plant, Realised, realise};
+use super::plant::{Plant, ROOM, Realised, realise};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -49,20 +49,16 @@ pub struct Corridor {
 
 /// Share of the energy that a mean distance of the tolerance costs.
 const DEVIATION_PRICE: f64 = 0.02;
-/// Energies that the full violation of a limit costs.
-const VIOLATION_PRICE: f64 = 20.0;
+/// Energies that the full violation of a limit at one place costs.
+const VIOLATION_PRICE: f64 = 5.0;
 /// Steps.
-const MAX_STEPS: usize = 10;
+const MAX_STEPS: usize = 25;
 /// Relative fall of the merit at which the steps end.
 const CONVERGED: f64 = 3e-4;
-/// Room that the programs keep to the limits.
-const MARGIN: f64 = 1e-3;
 /// Share of its limit from which a row is part of a program.
 const NEAR: f64 = 0.75;
-/// Rounds in which rows are added to a program.
-const MAX_ROUNDS: usize = 6;
 /// Gap of the programs: a step is judged by what it does, not by what it promises.
-const ROUGH_GAP: f64 = 1e-4;
+const ROUGH_GAP: f64 = 1e-5;
 /// Unit of the variables, rad.
 const UNIT: f64 = 0.01;
 /// Price of a step of one unit in every variable at the begin, in energies; and its bounds.
@@ -70,8 +66,6 @@ const DAMPING: f64 = 1e-3;
 const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 /// Factor on the damping after a good or a bad step.
 const DAMPING_STEP: f64 = 5.0;
-/// The programs' objective per energy: their accuracy is absolute.
-const SCALE: f64 = 100.0;
 /// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
 const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Smallest tolerance that is taken literally.
@@ -181,14 +175,14 @@ struct Polish<'a, P> {
     round_power: f64,
 }
 
-/// Torque, speed share and their derivatives at one place: `by[kind][i]` holds the change of
+/// Torque, shares of the limits of the path and their derivatives at one place: `by[kind][i]` holds the change of
 /// them per change of q, q̇ or q̈ of joint i.
 struct Linearised {
     torque: Joints,
-    speed: f64,
+    path: [f64; 2],
     torque_by: [[Joints; DOF]; 3],
-    /// Zero for q̈, and where the speed is far from its ceiling.
-    speed_by: [[f64; DOF]; 2],
+    /// Of each share of the path, by q and q̇; zero where both are far from their limits.
+    path_by: [[[f64; DOF]; 2]; 2],
 }
 
 impl<P: Plant> Polish<'_, P> {
@@ -209,7 +203,7 @@ impl<P: Plant> Polish<'_, P> {
         let distance: f64 =
             places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
         let merit = realised.energy.total() / self.unit
-            + VIOLATION_PRICE * violation(&realised)
+            + VIOLATION_PRICE * realised.excess
             + price * distance;
         Judged { stream, realised, merit }
     }
@@ -259,20 +253,20 @@ impl<P: Plant> Polish<'_, P> {
         (offset, along)
     }
 
-    /// Torque and speed share at a place; `near` as for the plant.
+    /// Torque and shares at a place; `near` as for the plant.
     fn shares(&self, place: &Place, near: &mut usize) -> Linearised {
         Linearised {
             torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
-            speed: self.plant.speed_share(&place.q, &place.qd, near),
+            path: self.plant.path_shares(&place.q, &place.qd, near),
             torque_by: Default::default(),
-            speed_by: Default::default(),
+            path_by: Default::default(),
         }
     }
 
     /// Adds the derivatives.
     fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
         let here = self.plant.torque(&place.q, &place.qd, &place.qdd);
-        let capped = lin.speed > NEAR;
+        let capped = lin.path.iter().any(|share| *share > NEAR);
         for (kind, step) in DIFFERENCES.into_iter().enumerate() {
             for joint in self.points.joints.iter().copied() {
                 let mut state = [place.q, place.qd, place.qdd];
@@ -281,8 +275,10 @@ impl<P: Plant> Polish<'_, P> {
                 let next = self.plant.torque(&q, &qd, &qdd);
                 lin.torque_by[kind][joint] = std::array::from_fn(|j| (next[j] - here[j]) / step);
                 if capped && kind < 2 {
-                    let next = self.plant.speed_share(&q, &qd, &mut near.clone());
-                    lin.speed_by[kind][joint] = (next - lin.speed) / step;
+                    let next = self.plant.path_shares(&q, &qd, &mut near.clone());
+                    for (limit, next) in next.iter().enumerate() {
+                        lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
+                    }
                 }
             }
         }
@@ -291,19 +287,20 @@ impl<P: Plant> Polish<'_, P> {
     /// The quadratic model of merit and limits around `best`.
     fn model(&self, best: &Judged) -> Quadratic {
         let size = self.points.size();
-        let width = (3 * self.points.joints.len() - 1).min(size);
+        // A jerk touches four points.
+        let width = (3 * self.points.joints.len()).min(size);
         let mut model = Quadratic {
             matrix: Banded::zeros(size, width),
             gradient: vec![0.0; size],
             shares: Vec::new(),
-            broken: VIOLATION_PRICE * violation(&best.realised),
+            broken: VIOLATION_PRICE * best.realised.excess,
         };
         let mut near = 0;
         let limit = self.plant.torque_limit();
         for place in places(&best.stream, &DENSE) {
             let mut lin = self.shares(&place, &mut near);
             let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
-            if place.seconds > 0.0 || loaded || lin.speed > NEAR {
+            if place.seconds > 0.0 || loaded || lin.path.iter().any(|share| *share > NEAR) {
                 self.linearise(&place, near, &mut lin);
                 self.add_place(&place, &lin, &mut model);
             }
@@ -315,53 +312,23 @@ impl<P: Plant> Polish<'_, P> {
     fn step(&self, best: &Judged, model: &Quadratic, damping: f64) -> Option<Proposal> {
         let size = self.points.size();
         let variables = self.points.variables(&best.stream);
-        let slack = size;
-        let mut program = ConeProgram::new(size + 1);
-        for (i, j, value) in model.matrix.entries() {
-            program.curve(i, j, SCALE * value);
-        }
+        let mut matrix = model.matrix.clone();
         let price = 2.0 * damping / size as f64;
         for i in 0..size {
-            program.curve(i, i, SCALE * price);
+            matrix.add(i, i, price);
         }
-        program.minimize(&Affine::over(&model.gradient).times(SCALE));
-        program.minimize(&Affine::default().plus(Some(slack), SCALE * VIOLATION_PRICE));
-        program.at_most_zero(Affine::default().plus(Some(slack), -1.0));
-        for share in &model.shares {
-            program.at_most_zero(share.clone().shift(-(1.0 - MARGIN)).plus(Some(slack), -1.0));
-        }
-        let mut active: Vec<bool> =
-            self.rows.iter().map(|row| row.value(&variables) > NEAR).collect();
-        // Rows that a step would break are added until it breaks none.
-        for _ in 0..MAX_ROUNDS {
-            let mut program = program.clone();
-            for (row, _) in self.rows.iter().zip(&active).filter(|(_, active)| **active) {
-                let value = row.value(&variables);
-                let mut affine = Affine::constant((value - (1.0 - MARGIN)).min(0.0));
-                for (index, weight) in &row.terms {
-                    affine.add(Some(*index), UNIT * weight);
-                }
-                program.at_most_zero(affine);
-            }
-            let solution = program.solve_to(ROUGH_GAP);
-            if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
-                return None;
-            }
-            let change: Vec<f64> = solution.x[..size].iter().map(|x| UNIT * x).collect();
-            let next: Vec<f64> = variables.iter().zip(&change).map(|(x, d)| x + d).collect();
-            let mut added = false;
-            for (row, active) in self.rows.iter().zip(&mut active) {
-                let broken = !*active && row.value(&next) > 1.0 - MARGIN;
-                *active |= broken;
-                added |= broken;
-            }
-            if !added {
-                let damped: f64 = solution.x[..size].iter().map(|x| 0.5 * price * x * x).sum();
-                let predicted = model.broken - (solution.objective / SCALE - damped);
-                return Some(Proposal { change, predicted });
-            }
-        }
-        None
+        // What is at its limit already has to stay there only.
+        let kept = self.rows.iter().filter(|row| !row.terms.is_empty()).map(|row| Row {
+            terms: row.terms.iter().map(|(i, weight)| (*i, UNIT * weight)).collect(),
+            bound: (1.0 - ROOM - row.value(&variables)).max(0.0),
+            price: f64::INFINITY,
+        });
+        let rows = kept.chain(model.shares.iter().cloned()).collect();
+        let program = BandedProgram { matrix, gradient: model.gradient.clone(), rows };
+        let Optimum { x, cost } = program.solve(ROUGH_GAP)?;
+        let damped: f64 = x.iter().map(|x| 0.5 * price * x * x).sum();
+        let predicted = model.broken - (cost - damped);
+        Some(Proposal { change: x.iter().map(|x| UNIT * x).collect(), predicted })
     }
 
     /// Adds the costs and limits at a place to the model.
@@ -379,8 +346,8 @@ impl<P: Plant> Polish<'_, P> {
                             + w1 * lin.torque_by[1][*joint][j]
                             + w2 * lin.torque_by[2][*joint][j]
                     });
-                    let speed = w * lin.speed_by[0][*joint] + w1 * lin.speed_by[1][*joint];
-                    columns.push(Column { index, joint: *joint, w, w1, torque, speed });
+                    let path = lin.path_by.map(|by| w * by[0][*joint] + w1 * by[1][*joint]);
+                    columns.push(Column { index, joint: *joint, w, w1, torque, path });
                 }
             }
         }
@@ -416,19 +383,12 @@ impl<P: Plant> Polish<'_, P> {
             let share = lin.torque[j] / limit[j];
             if share.abs() > NEAR {
                 let sign = share.signum();
-                let mut row = Affine::constant(share.abs());
-                for column in &columns {
-                    row.add(Some(column.index), sign * column.torque[j] / limit[j]);
-                }
-                model.shares.push(row);
+                let weights = columns.iter().map(|c| (c.index, sign * c.torque[j] / limit[j]));
+                model.add_share(share.abs(), weights);
             }
         }
-        if lin.speed > NEAR {
-            let mut row = Affine::constant(lin.speed);
-            for column in &columns {
-                row.add(Some(column.index), column.speed);
-            }
-            model.shares.push(row);
+        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
+            model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
         }
     }
 
@@ -510,7 +470,7 @@ struct Column {
     w: f64,
     w1: f64,
     torque: Joints,
-    speed: f64,
+    path: [f64; 2],
 }
 
 /// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is broken.
@@ -518,9 +478,17 @@ struct Quadratic {
     matrix: Banded,
     gradient: Vec<f64>,
     /// Shares of limits.
-    shares: Vec<Affine>,
+    shares: Vec<Row>,
     /// By how much the limits are broken at x = 0, priced.
     broken: f64,
+}
+
+impl Quadratic {
+    /// A share of a limit and how the variables change it.
+    fn add_share(&mut self, share: f64, weights: impl Iterator<Item = (usize, f64)>) {
+        let terms = weights.collect();
+        self.shares.push(Row { terms, bound: 1.0 - ROOM - share, price: VIOLATION_PRICE });
+    }
 }
 
 /// The largest power of a joint, W.
@@ -530,11 +498,6 @@ fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
         (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
     };
     places(stream, &SIMPSON).iter().map(power).fold(0.0, f64::max)
-}
-
-/// By how much the limits are broken, with the room that is kept to them.
-fn violation(realised: &Realised) -> f64 {
-    (realised.worst_share - (1.0 - MARGIN)).max(0.0)
 }
 
 fn norm(vector: &Joints) -> f64 {

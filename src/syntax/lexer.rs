@@ -4,13 +4,14 @@
 //! are ASCII, and bytes from 0x80 are letters, except for the wide spaces that
 //! editors leave in gaps. Only the width of a letter depends on the encoding.
 
+use memchr::{memchr2, memchr3};
 use nom::branch::alt;
-use nom::bytes::complete::{tag, take_till, take_while, take_while1};
+use nom::bytes::complete::{tag, take_while1};
 use nom::character::complete::{digit0, digit1, one_of};
 use nom::combinator::{opt, recognize};
 use nom::{IResult, Parser};
 
-use super::token::{TokenKind, Tokens};
+use super::token::{KEYWORDS, TokenKind, Tokens};
 
 /// Bytes per token in ordinary programs, for the first allocation.
 const BYTES_PER_TOKEN: usize = 3;
@@ -26,6 +27,101 @@ enum High {
 
 type Lexed<'a> = IResult<&'a [u8], &'a [u8], ()>;
 
+/// What a byte begins.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Class {
+    /// ASCII space or control character.
+    Space,
+    /// ASCII letter or `_`.
+    Letter,
+    Digit,
+    /// A token of this byte alone, see `SINGLES`.
+    Single,
+    /// A byte from 0x80.
+    High,
+    /// What follows decides.
+    Other,
+}
+
+/// The class of each byte.
+const CLASSES: [Class; 256] = {
+    let mut classes = [Class::High; 256];
+    let mut byte = 0;
+    while byte < 128 {
+        classes[byte] = class(byte as u8);
+        byte += 1;
+    }
+    classes
+};
+
+const fn class(byte: u8) -> Class {
+    match byte {
+        0..=b' ' | 0x7F => Class::Space,
+        b'a'..=b'z' | b'A'..=b'Z' | b'_' => Class::Letter,
+        b'0'..=b'9' => Class::Digit,
+        b'.' | b'!' | b'"' | b'%' | b'<' | b'>' | b':' => Class::Other,
+        _ => Class::Single,
+    }
+}
+
+/// The token that each byte of the class `Single` is.
+const SINGLES: [TokenKind; 256] = {
+    let mut kinds = [TokenKind::Unknown; 256];
+    let singles = [
+        (b';', TokenKind::Semicolon),
+        (b',', TokenKind::Comma),
+        (b'(', TokenKind::LeftParen),
+        (b')', TokenKind::RightParen),
+        (b'[', TokenKind::LeftBracket),
+        (b']', TokenKind::RightBracket),
+        (b'{', TokenKind::LeftBrace),
+        (b'}', TokenKind::RightBrace),
+        (b'\\', TokenKind::Backslash),
+        (b'?', TokenKind::Question),
+        (b'|', TokenKind::Bar),
+        (b'+', TokenKind::Plus),
+        (b'-', TokenKind::Minus),
+        (b'*', TokenKind::Star),
+        (b'/', TokenKind::Slash),
+        (b'=', TokenKind::Equal),
+    ];
+    let mut index = 0;
+    while index < singles.len() {
+        kinds[singles[index].0 as usize] = singles[index].1;
+        index += 1;
+    }
+    kinds
+};
+
+/// Bytes that go on with white space, a word or the digits of a number.
+const SPACE: [bool; 256] = table(Class::Space, Class::Space);
+const WORD: [bool; 256] = table(Class::Letter, Class::Digit);
+const DIGIT: [bool; 256] = table(Class::Digit, Class::Digit);
+
+const fn table(one: Class, other: Class) -> [bool; 256] {
+    let mut table = [false; 256];
+    let mut byte = 0;
+    while byte < 128 {
+        let class = CLASSES[byte] as u8;
+        table[byte] = class == one as u8 || class == other as u8;
+        byte += 1;
+    }
+    table
+}
+
+/// The lengths of the keywords that begin with a byte, one bit each.
+const KEYWORD_LENGTHS: [u16; 256] = {
+    let mut lengths = [0; 256];
+    let mut index = 0;
+    while index < KEYWORDS.len() {
+        let word = KEYWORDS[index].0.as_bytes();
+        lengths[word[0] as usize] |= 1 << word.len();
+        lengths[word[0].to_ascii_lowercase() as usize] |= 1 << word.len();
+        index += 1;
+    }
+    lengths
+};
+
 /// Splits bytes into tokens; tokens beyond 4 GiB are left to the caller.
 #[must_use]
 pub fn tokenize(bytes: &[u8]) -> Tokens {
@@ -37,70 +133,104 @@ pub fn tokenize(bytes: &[u8]) -> Tokens {
     }
     let high = if std::str::from_utf8(bytes).is_ok() { High::Utf8 } else { High::Legacy };
     let mut at = 0;
-    while at < bytes.len() {
-        let (kind, length) = token(&bytes[at..], high);
-        debug_assert!(length > 0, "a token has at least one byte");
-        at += length.max(1);
+    while let Some(&first) = bytes.get(at) {
+        let (kind, end) = match CLASSES[first as usize] {
+            Class::Single => (SINGLES[first as usize], at + 1),
+            Class::Digit => (TokenKind::Number, number_end(bytes, at)),
+            Class::Letter => {
+                let end = word_end(bytes, at, high);
+                (word_kind(&bytes[at..end]), end)
+            }
+            Class::Space => (TokenKind::Whitespace, gap_end(bytes, at, high)),
+            Class::High => beyond_ascii(bytes, at, high),
+            Class::Other => {
+                let (kind, length) = other(&bytes[at..]);
+                (kind, at + length)
+            }
+        };
+        debug_assert!(end > at, "a token has at least one byte");
+        at = end.max(at + 1);
         tokens.push(kind, at as u32);
     }
     tokens
 }
 
-/// Kind and length of the first token of non-empty input.
-fn token(input: &[u8], high: High) -> (TokenKind, usize) {
-    let next = input.get(1).copied().unwrap_or(0);
-    let one = |kind| (kind, 1);
-    match input[0] {
-        0..=b' ' | 0x7F => (TokenKind::Whitespace, gap(input, high)),
-        0x80.. => match wide_space(input, high) {
-            Some(_) => (TokenKind::Whitespace, gap(input, high)),
-            None => (TokenKind::Identifier, word(input, high)),
-        },
-        b'a'..=b'z' | b'A'..=b'Z' => {
-            let length = word(input, high);
-            (TokenKind::keyword(&input[..length]).unwrap_or(TokenKind::Identifier), length)
+/// First position from `at` on whose byte is not in the table.
+#[inline]
+fn skip(bytes: &[u8], mut at: usize, table: &[bool; 256]) -> usize {
+    while let Some(&byte) = bytes.get(at) {
+        if !table[byte as usize] {
+            break;
         }
-        b'_' => (TokenKind::Identifier, word(input, high)),
-        b'0'..=b'9' => (TokenKind::Number, length(number, input)),
+        at += 1;
+    }
+    at
+}
+
+/// Keyword or identifier. Most words are neither as long as the keywords with
+/// their first letter nor made of letters only.
+fn word_kind(word: &[u8]) -> TokenKind {
+    let lengths = word.first().map_or(0, |first| KEYWORD_LENGTHS[*first as usize]);
+    if word.len() < 16 && lengths & (1 << word.len()) != 0 {
+        TokenKind::keyword(word).unwrap_or(TokenKind::Identifier)
+    } else {
+        TokenKind::Identifier
+    }
+}
+
+/// Kind and length of a token whose first byte does not tell its kind.
+fn other(input: &[u8]) -> (TokenKind, usize) {
+    let next = input.get(1).copied().unwrap_or(0);
+    match input[0] {
         b'.' if next.is_ascii_digit() => (TokenKind::Number, length(number, input)),
-        b'!' => (TokenKind::Comment, length(comment, input)),
+        b'.' => (TokenKind::Dot, 1),
+        b'!' => (TokenKind::Comment, line_end(input)),
         b'"' => string(input),
         b'%' if input.starts_with(b"%%%") => (TokenKind::HeaderMark, 3),
+        b'%' => (TokenKind::Percent, 1),
         b'<' => match (next, length(placeholder, input)) {
             (b'>', _) => (TokenKind::NotEqual, 2),
             (b'=', _) => (TokenKind::LessEqual, 2),
-            (_, 1) => one(TokenKind::Less),
+            (_, 1) => (TokenKind::Less, 1),
             (_, length) => (TokenKind::Placeholder, length),
         },
         b'>' if next == b'=' => (TokenKind::GreaterEqual, 2),
+        b'>' => (TokenKind::Greater, 1),
         b':' if next == b'=' => (TokenKind::Assign, 2),
-        b';' => one(TokenKind::Semicolon),
-        b',' => one(TokenKind::Comma),
-        b':' => one(TokenKind::Colon),
-        b'.' => one(TokenKind::Dot),
-        b'(' => one(TokenKind::LeftParen),
-        b')' => one(TokenKind::RightParen),
-        b'[' => one(TokenKind::LeftBracket),
-        b']' => one(TokenKind::RightBracket),
-        b'{' => one(TokenKind::LeftBrace),
-        b'}' => one(TokenKind::RightBrace),
-        b'\\' => one(TokenKind::Backslash),
-        b'?' => one(TokenKind::Question),
-        b'|' => one(TokenKind::Bar),
-        b'%' => one(TokenKind::Percent),
-        b'+' => one(TokenKind::Plus),
-        b'-' => one(TokenKind::Minus),
-        b'*' => one(TokenKind::Star),
-        b'/' => one(TokenKind::Slash),
-        b'=' => one(TokenKind::Equal),
-        b'>' => one(TokenKind::Greater),
-        b'#' | b'$' | b'&' | b'\'' | b'@' | b'^' | b'`' | b'~' => one(TokenKind::Unknown),
+        b':' => (TokenKind::Colon, 1),
+        _ => (TokenKind::Unknown, 1),
+    }
+}
+
+/// Kind and end of the token at `at`, which starts with a byte from 0x80.
+fn beyond_ascii(bytes: &[u8], at: usize, high: High) -> (TokenKind, usize) {
+    let input = &bytes[at..];
+    if wide_space(input, high).is_some() {
+        (TokenKind::Whitespace, gap_end(bytes, at, high))
+    } else if is_punctuation(input, high) {
+        (TokenKind::Unknown, at + letter(input, high))
+    } else {
+        (TokenKind::Identifier, word_end(bytes, at, high))
     }
 }
 
 /// Bytes that a recogniser takes from the front, at least one.
 fn length<'a>(recogniser: impl Fn(&'a [u8]) -> Lexed<'a>, input: &'a [u8]) -> usize {
     recogniser(input).map_or(1, |(_, taken)| taken.len().max(1))
+}
+
+/// End of the number at `at`, which starts with a digit. Most have no base.
+fn number_end(bytes: &[u8], at: usize) -> usize {
+    let mut end = skip(bytes, at + 1, &DIGIT);
+    if bytes.get(end) == Some(&b'.') {
+        end = skip(bytes, end + 1, &DIGIT);
+    }
+    match bytes.get(end..).unwrap_or_default() {
+        [b'E' | b'e', b'0'..=b'9', ..] => skip(bytes, end + 2, &DIGIT),
+        [b'E' | b'e', b'+' | b'-', b'0'..=b'9', ..] => skip(bytes, end + 3, &DIGIT),
+        [byte, ..] if byte.is_ascii_alphabetic() => at + length(number, &bytes[at..]),
+        _ => end,
+    }
 }
 
 /// `0xFF`, `0b01`, `0o17`, `12`, `1.`, `.5`, `1.5E-3`.
@@ -116,11 +246,6 @@ fn number(input: &[u8]) -> Lexed<'_> {
     alt((based, recognize((mantissa, opt(exponent))))).parse(input)
 }
 
-/// `! …` up to the line end.
-fn comment(input: &[u8]) -> Lexed<'_> {
-    take_till(is_line_end).parse(input)
-}
-
 /// `<SMT>` and its like.
 fn placeholder(input: &[u8]) -> Lexed<'_> {
     let name = alt((
@@ -131,12 +256,17 @@ fn placeholder(input: &[u8]) -> Lexed<'_> {
     recognize((tag("<"), name, tag(">"))).parse(input)
 }
 
+/// Bytes before the first line end.
+fn line_end(input: &[u8]) -> usize {
+    memchr2(b'\n', b'\r', input).unwrap_or(input.len())
+}
+
 /// `"…"` with `""` for a quotation mark; a line end is not part of a string.
 fn string(input: &[u8]) -> (TokenKind, usize) {
-    let part = |input| -> Lexed<'_> { take_till(|b| b == b'"' || is_line_end(b)).parse(input) };
     let mut at = 1;
     loop {
-        at += part(&input[at..]).map_or(0, |(_, taken)| taken.len());
+        let rest = input.get(at..).unwrap_or_default();
+        at += memchr3(b'"', b'\n', b'\r', rest).unwrap_or(rest.len());
         match (input.get(at), input.get(at + 1)) {
             (Some(b'"'), Some(b'"')) => at += 2,
             (Some(b'"'), _) => return (TokenKind::String, at + 1),
@@ -145,36 +275,31 @@ fn string(input: &[u8]) -> (TokenKind, usize) {
     }
 }
 
-fn is_line_end(byte: u8) -> bool {
-    byte == b'\n' || byte == b'\r'
-}
-
-/// Bytes of white space at the front, wide spaces included.
-fn gap(input: &[u8], high: High) -> usize {
-    let narrow = |input| -> Lexed<'_> { take_while(|b| matches!(b, 0..=b' ' | 0x7F)).parse(input) };
-    let mut at = 0;
+/// End of the white space at `at`, wide spaces included.
+fn gap_end(bytes: &[u8], mut at: usize, high: High) -> usize {
     loop {
-        at += narrow(&input[at..]).map_or(0, |(_, taken)| taken.len());
-        match wide_space(&input[at..], high) {
-            Some(length) => at += length,
-            None => return at,
+        at = skip(bytes, at, &SPACE);
+        match bytes.get(at) {
+            Some(0x80..) => match wide_space(&bytes[at..], high) {
+                Some(length) => at += length,
+                None => return at,
+            },
+            _ => return at,
         }
     }
 }
 
-/// Bytes of an identifier at the front, at least one.
-fn word(input: &[u8], high: High) -> usize {
-    let narrow = |input| -> Lexed<'_> {
-        take_while(|b: u8| b.is_ascii_alphanumeric() || b == b'_').parse(input)
-    };
-    let mut at = 0;
+/// End of the word at `at`.
+fn word_end(bytes: &[u8], mut at: usize, high: High) -> usize {
     loop {
-        at += narrow(&input[at..]).map_or(0, |(_, taken)| taken.len());
-        match input.get(at) {
-            Some(0x80..) if wide_space(&input[at..], high).is_none() => {
-                at += letter(&input[at..], high);
+        at = skip(bytes, at, &WORD);
+        match bytes.get(at..) {
+            Some(rest @ [0x80..=0xFF, ..])
+                if wide_space(rest, high).is_none() && !is_punctuation(rest, high) =>
+            {
+                at += letter(rest, high);
             }
-            _ => return at.max(1),
+            _ => return at,
         }
     }
 }
@@ -188,6 +313,13 @@ fn letter(input: &[u8], high: High) -> usize {
         _ => 1,
     };
     width.min(input.len())
+}
+
+/// Whether a dash or a typographic quotation mark is at the front (U+2010 to
+/// U+2027), which text processors make of RAPID's own characters. In other
+/// encodings than UTF-8 its bytes may be letters.
+fn is_punctuation(input: &[u8], high: High) -> bool {
+    high == High::Utf8 && matches!(input, [0xE2, 0x80, 0x90..=0xA7, ..])
 }
 
 /// Bytes of the space from 0x80 at the front, if one is there: byte order

@@ -136,10 +136,10 @@ macro_rules! keywords {
 
         #[expect(non_upper_case_globals, reason = "named as the kinds they stand for")]
         mod packed {
-            $(pub(super) const $kind: u128 = super::pack($word.as_bytes());)*
+            $(pub(super) const $kind: u64 = super::pack($word.as_bytes());)*
         }
 
-        fn by_packed(word: u128) -> Option<TokenKind> {
+        fn by_packed(word: u64) -> Option<TokenKind> {
             match word {
                 $(packed::$kind => Some(TokenKind::$kind),)*
                 _ => None,
@@ -207,12 +207,12 @@ keywords! {
 /// Letters of the longest keywords (`ENDMODULE`, `ENDRECORD`).
 const LONGEST_KEYWORD: usize = 9;
 
-/// A word of up to 16 ASCII letters as one number, case removed.
-const fn pack(word: &[u8]) -> u128 {
+/// A word of up to 12 ASCII letters as one number, case removed.
+const fn pack(word: &[u8]) -> u64 {
     let mut packed = 0;
     let mut i = 0;
     while i < word.len() {
-        packed = packed << 8 | (word[i] & 0xDF) as u128;
+        packed = packed << 5 | (word[i] & 0x1F) as u64;
         i += 1;
     }
     packed
@@ -222,8 +222,8 @@ impl TokenKind {
     /// The keyword that an identifier is, in whatever case it is written.
     #[must_use]
     pub fn keyword(word: &[u8]) -> Option<TokenKind> {
-        // The letters only: `_` and digits would collide with letters once
-        // their case bit is gone.
+        // The letters only: `_` and digits would collide with letters, of which
+        // five bits are left.
         if !(2..=LONGEST_KEYWORD).contains(&word.len()) || !word.iter().all(u8::is_ascii_alphabetic)
         {
             return None;

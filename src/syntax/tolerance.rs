@@ -55,6 +55,10 @@ tolerances! {
     ComponentOfCall = "component_of_call",
     /// `|\b`: the backslash repeated before an alternative parameter.
     BackslashInAlternative = "backslash_in_alternative",
+    /// `REF num a`: a parameter whose mode is one of built-in routines only.
+    ReferenceParameter = "reference_parameter",
+    /// `num a{3}`: a parameter with a size where `*` should stand.
+    ParameterWithSize = "parameter_with_size",
     /// `DEFAULT` elsewhere than last in its `TEST`.
     DefaultNotLast = "default_not_last",
     /// Handlers in another order than `BACKWARD`, `ERROR`, `UNDO`.

@@ -1,15 +1,10 @@
-//! What a file's bytes mean: detection of its encoding, and decoding.
-//!
-//! Controllers write ISO 8859-1 or UTF-8, people whatever their editor was set
-//! to. UTF-8 is certain when the bytes are valid UTF-8; the legacy encodings
-//! are told apart by the statistics of `chardetng`, which cannot be certain.
-//! Where its guess cannot decode the file or is not of a kind seen in RAPID,
-//! windows-1252 is taken: it gives every byte a character and loses none.
+//! What a file's bytes mean: its encoding, and decoding.
 
 use std::borrow::Cow;
 
-use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
-use encoding_rs::{BIG5, EUC_KR, Encoding, GB18030, GBK, SHIFT_JIS, UTF_8, WINDOWS_1252};
+use encoding_rs::{Encoding, GB18030, GBK, SHIFT_JIS, UTF_8, WINDOWS_1252};
+
+use super::detect;
 
 /// The byte order mark of UTF-8.
 const BOM: &[u8] = b"\xEF\xBB\xBF";
@@ -43,16 +38,14 @@ pub fn is_encoded_module(bytes: &[u8]) -> bool {
 #[must_use]
 pub fn charset(bytes: &[u8]) -> Charset {
     let bom = bytes.starts_with(BOM);
-    if bom || is_encoded_module(bytes) || std::str::from_utf8(bytes).is_ok() {
-        let encoding = if is_encoded_module(bytes) { WINDOWS_1252 } else { UTF_8 };
-        return Charset { encoding, bom };
-    }
-    let mut detector = EncodingDetector::new(Iso2022JpDetection::Deny);
-    detector.feed(bytes, true);
-    let guess = detector.guess(None, Utf8Detection::Deny);
-    let plausible = guess.is_single_byte() || [GBK, BIG5, SHIFT_JIS, EUC_KR].contains(&guess);
-    let decodes = guess.decode_without_bom_handling_and_without_replacement(bytes).is_some();
-    Charset { encoding: if plausible && decodes { guess } else { WINDOWS_1252 }, bom: false }
+    let encoding = if is_encoded_module(bytes) {
+        WINDOWS_1252
+    } else if bom || std::str::from_utf8(bytes).is_ok() {
+        UTF_8
+    } else {
+        detect::legacy(bytes)
+    };
+    Charset { encoding, bom }
 }
 
 /// Decodes a whole file in the encoding that it seems to have.
@@ -129,24 +122,62 @@ impl Charset {
 mod tests {
     use super::*;
 
-    fn name(text: &str, encoding: &'static Encoding) -> &'static str {
-        let (bytes, _, lossy) = encoding.encode(text);
-        assert!(!lossy);
+    /// What a file of RAPID with these comments is taken for.
+    fn detected(comments: &[&str], encoding: &'static Encoding) -> &'static str {
+        let lines =
+            comments.iter().map(|text| format!("  ! {text}\r\n  MoveL p10,v100,z10,tool0;"));
+        let text = lines.collect::<Vec<_>>().join("\r\n");
+        let (bytes, _, lossy) = encoding.encode(&text);
+        assert!(!lossy, "{text}");
         let decoded = decode(&bytes);
-        assert_eq!(decoded.text, text);
+        if decoded.encoding == encoding.name() {
+            assert_eq!(decoded.text, text);
+        }
         decoded.encoding
     }
 
     #[test]
-    fn each_encoding_is_recognised() {
-        assert_eq!(name("MODULE a\n! plain\nENDMODULE", UTF_8), "UTF-8");
-        assert_eq!(name("! Größe der Palette °", UTF_8), "UTF-8");
-        assert_eq!(
-            name("! Größe der Palette, Öffnung für Prüfung 5°", WINDOWS_1252),
-            "windows-1252"
-        );
-        assert_eq!(name("! posición de recogida del tercer año", WINDOWS_1252), "windows-1252");
-        assert_eq!(name("! 机器人回到原点位置，等待信号", GBK), "GBK");
+    fn each_encoding_is_recognised_by_its_language() {
+        use encoding_rs::{WINDOWS_1250, WINDOWS_1251};
+        let table: [(&'static Encoding, &[&str]); 11] = [
+            (UTF_8, &["plain"]),
+            (UTF_8, &["Größe der Palette °"]),
+            (WINDOWS_1252, &["Größe der Palette, Öffnung für Prüfung 5°"]),
+            (WINDOWS_1252, &["posición de recogida del tercer año"]),
+            (WINDOWS_1252, &["kør til hjemmeposition", "åbn griberen"]),
+            (WINDOWS_1252, &["±5 mm", "Ø12", "20 µm", "90°"]),
+            (WINDOWS_1250, &["výměna nástroje, počkej na signál", "otevři chapadlo a odjeď"]),
+            (WINDOWS_1250, &["otwórz chwytak i odjedź nad część", "błąd: brak części w gnieździe"]),
+            (WINDOWS_1251, &["Возврат в исходное положение"]),
+            (WINDOWS_1251, &["СБРОС ОШИБКИ"]),
+            (GBK, &["等待"]),
+        ];
+        for (encoding, comments) in table {
+            assert_eq!(detected(comments, encoding), encoding.name(), "{comments:?}");
+        }
+        assert_eq!(detected(&["机器人回到原点位置，等待信号", "打开夹爪"], GBK), "GBK");
+    }
+
+    #[test]
+    fn one_odd_byte_is_no_evidence() {
+        for byte in 0x80..=0xFF {
+            let bytes = [b"MODULE a\n! x ".as_slice(), &[byte], b" y\nENDMODULE\n"].concat();
+            assert_eq!(charset(&bytes).name(), "windows-1252", "{byte:#x}");
+        }
+    }
+
+    #[test]
+    fn damage_does_not_change_the_encoding() {
+        let comments =
+            ["机器人回到原点位置", "等待信号", "打开夹爪", "抓取工件", "安全位置", "回原点"];
+        let text = comments.map(|comment| format!("! {comment}\n")).concat();
+        let mut bytes = GBK.encode(&text).0.into_owned();
+        // A comment that was cut in the middle of a character.
+        bytes.extend_from_slice(&[b'!', b' ', 0xB5, b'\n']);
+        assert_eq!(charset(&bytes).name(), "GBK");
+        let mut bytes = text.into_bytes();
+        bytes[10] = b'x';
+        assert_eq!(charset(&bytes).name(), "UTF-8");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::encoding::{self, Charset};
 use super::lines::{LineIndex, Position};
-use super::{FileId, Span};
+use super::{FileId, Span, Utf16};
 
 /// A source file: its bytes are never changed.
 #[derive(Clone, Debug)]
@@ -13,21 +13,42 @@ pub struct SourceFile {
     pub id: FileId,
     /// Its path as given by the user, with `/`.
     pub path: String,
-    /// Its bytes.
+    /// Its bytes; of UTF-16 its text as UTF-8.
     pub bytes: Vec<u8>,
-    /// Its encoding, detected.
+    /// The encoding of `bytes`, detected.
     pub charset: Charset,
     /// Its lines.
     pub lines: LineIndex,
+    /// Whether the file is UTF-16.
+    pub utf16: Option<Utf16>,
 }
 
 impl SourceFile {
     /// Takes the bytes of a file; at most 4 GiB of them can be addressed.
     #[must_use]
     pub fn new(id: FileId, path: String, bytes: Vec<u8>) -> SourceFile {
+        let (utf16, bytes) = match Utf16::read(&bytes) {
+            Some((kind, text)) => (Some(kind), text.into_bytes()),
+            None => (None, bytes),
+        };
         let charset = encoding::charset(&bytes);
         let lines = LineIndex::with_charset(&bytes, charset);
-        SourceFile { id, path, bytes, charset, lines }
+        SourceFile { id, path, bytes, charset, lines, utf16 }
+    }
+
+    /// Name of the file's encoding in the WHATWG list.
+    #[must_use]
+    pub fn encoding(&self) -> &'static str {
+        self.utf16.map_or_else(|| self.charset.name(), Utf16::name)
+    }
+
+    /// What to write into a file of this encoding for `bytes`, which are like its own.
+    #[must_use]
+    pub fn stored<'b>(&self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
+        match self.utf16 {
+            Some(kind) => Cow::Owned(kind.write(bytes)),
+            None => Cow::Borrowed(bytes),
+        }
     }
 
     /// Line and column of a byte.
@@ -46,5 +67,32 @@ impl SourceFile {
     #[must_use]
     pub fn text(&self, span: Span) -> Cow<'_, str> {
         self.charset.decode(self.slice(span))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(bytes: &[u8]) -> SourceFile {
+        SourceFile::new(FileId(0), "a.mod".into(), bytes.to_vec())
+    }
+
+    #[test]
+    fn utf16_is_read_as_utf8_and_written_back() {
+        let text = "MODULE a\r\n! Größe 🙂\r\nENDMODULE";
+        let units: Vec<u16> = std::iter::once(0xFEFF).chain(text.encode_utf16()).collect();
+        let little: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+        let big: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+        for (bytes, name) in [(little, "UTF-16LE"), (big, "UTF-16BE")] {
+            let file = file(&bytes);
+            assert_eq!((file.encoding(), file.lines.count()), (name, 3));
+            assert_eq!(file.bytes, text.as_bytes());
+            assert_eq!(file.stored(&file.bytes), bytes);
+            // Damaged, it stays as it is.
+            let cut = &bytes[..bytes.len() - 1];
+            assert_eq!(self::file(cut).stored(cut), cut);
+            assert_eq!(self::file(cut).bytes, cut);
+        }
     }
 }

@@ -8,6 +8,7 @@
 
 mod earley;
 mod ebnf;
+mod generate;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -16,8 +17,10 @@ use std::path::Path;
 
 use earley::Grammar;
 use ebnf::Ebnf;
+use generate::{Generator, spaced};
 use joulepath::syntax::{self, KEYWORDS, NodeKind, Parse, TokenKind, Tolerance};
-use support::{Random, fixtures};
+use proptest::prelude::*;
+use support::{Random, check_tree, fixtures};
 
 /// The parts of the grammar of programs; the lexical part is apart.
 const PARTS: [&str; 6] = ["modules", "data", "routines", "statements", "arguments", "expressions"];
@@ -351,4 +354,46 @@ fn lexical_match(terminal: &Ebnf, unit: &[u8]) -> bool {
         Ebnf::Words(words) if words.starts_with("a whole file") => false,
         other => panic!("{other:?} stands for no text"),
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn generated_programs_are_read_as_they_were_made(
+        tape in proptest::collection::vec(any::<u8>(), 0..2_000),
+        gaps in proptest::collection::vec(any::<u8>(), 1..50),
+    ) {
+        let productions = productions();
+        let tokens = Generator::new(&productions).tokens("module", &tape);
+        let source = spaced(&tokens, &gaps);
+        let parse = syntax::parse(&source);
+        let shown = String::from_utf8_lossy(&source);
+        prop_assert!(strict(&parse), "{:?} {:?}\n{shown}", parse.errors, parse.tolerances);
+        check_tree(&parse, &source);
+        let read: Vec<String> = parse
+            .tree
+            .root()
+            .all_tokens()
+            .filter(|token| !token.kind().is_trivia())
+            .map(|token| String::from_utf8_lossy(token.text(&source)).into_owned())
+            .collect();
+        prop_assert_eq!(&read, &tokens);
+        // Printed with other gaps it is the same tree.
+        let printed = read.join(" ").into_bytes();
+        prop_assert_eq!(shape(&syntax::parse(&printed)), shape(&parse));
+    }
+}
+
+/// The tree without its gaps: each node with the number of tokens and of nodes
+/// in it.
+fn shape(parse: &Parse) -> Vec<(NodeKind, usize, usize)> {
+    let significant = |node: syntax::Node<'_>| {
+        node.all_tokens().filter(|token| !token.kind().is_trivia()).count()
+    };
+    parse
+        .tree
+        .nodes()
+        .map(|node| (node.kind(), significant(node), node.subtree().count()))
+        .collect()
 }

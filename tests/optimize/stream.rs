@@ -280,8 +280,8 @@ impl Plant for Flywheel {
         [1e3; DOF]
     }
 
-    fn speed_share(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> f64 {
-        qd[0].abs() / self.ceiling
+    fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> [f64; 2] {
+        [qd[0].abs() / self.ceiling, 0.0]
     }
 }
 

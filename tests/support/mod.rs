@@ -6,16 +6,22 @@
     reason = "each test uses its part of this module; an expectation would fail in the others"
 )]
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use joulepath::syntax::{Element, Parse};
+use joulepath::syntax::{self, Element, Parse};
+
+/// Most looks at a token per token: constant, whatever the input.
+const STEPS_PER_TOKEN: u64 = 8;
 
 /// The inputs of a folder of `fixtures/syntax`: file names and bytes, sorted.
 pub(crate) fn fixtures(folder: &str) -> Vec<(String, Vec<u8>)> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(fixture_folder(folder))
         .unwrap()
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension != "snap"))
+        .filter(|path| {
+            path.extension().is_some_and(|extension| extension != "snap" && extension != "new")
+        })
         .collect();
     paths.sort();
     let read = |path: PathBuf| {
@@ -63,6 +69,12 @@ pub(crate) fn check_tree(parse: &Parse, bytes: &[u8]) {
     }
 }
 
+/// The work of the parser grows with the number of tokens only.
+pub(crate) fn check_work(parse: &Parse) {
+    let tokens = parse.tree.tokens().len() as u64;
+    assert!(parse.steps <= STEPS_PER_TOKEN * (tokens + 1), "{} for {tokens}", parse.steps);
+}
+
 /// Splitmix64 (Steele, Lea, Flood 2014): repeatable, and good enough to choose
 /// mutations.
 pub(crate) struct Random(pub(crate) u64);
@@ -75,5 +87,51 @@ impl Random {
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         ((z ^ (z >> 31)) % limit as u64) as usize
+    }
+}
+
+/// The ranges of the tokens of some bytes.
+pub(crate) fn token_ranges(bytes: &[u8]) -> Vec<Range<usize>> {
+    let parse = syntax::parse(bytes);
+    let range = |token: syntax::Token<'_>| token.range().start as usize..token.range().end as usize;
+    parse.tree.root().all_tokens().map(range).collect()
+}
+
+/// Deletes, doubles or swaps tokens of the original, or damages bytes.
+pub(crate) fn mutate(bytes: &mut Vec<u8>, tokens: &[Range<usize>], random: &mut Random) {
+    let clip = |range: &Range<usize>, length: usize| range.start.min(length)..range.end.min(length);
+    let mut token = || match tokens.len() {
+        0 => 0..0,
+        count => clip(&tokens[random.below(count)], bytes.len()),
+    };
+    let (one, two) = (token(), token());
+    let at = random.below(bytes.len() + 1);
+    match random.below(7) {
+        0 => {
+            bytes.drain(one);
+        }
+        1 => {
+            let copy = bytes[one.clone()].to_vec();
+            bytes.splice(one.end..one.end, copy);
+        }
+        2 => {
+            let (first, second) = if one.start < two.start { (one, two) } else { (two, one) };
+            if first.end <= second.start {
+                let moved = bytes[first.clone()].to_vec();
+                let other = bytes.splice(second, moved).collect::<Vec<u8>>();
+                bytes.splice(first, other);
+            }
+        }
+        3 => {
+            let noise = (0..=random.below(8)).map(|_| random.below(256) as u8);
+            let noise: Vec<u8> = noise.collect();
+            bytes.splice(at..at, noise);
+        }
+        4 if at < bytes.len() => bytes[at] = random.below(256) as u8,
+        5 => bytes.truncate(at),
+        _ => {
+            let end = (at + random.below(20)).min(bytes.len());
+            bytes.drain(at..end);
+        }
     }
 }

@@ -138,6 +138,10 @@ impl Executor<'_> {
         let program = self.program;
         let routine = program.routine(id);
         let cells = self.cells.len();
+        let mut given = Origin::default();
+        for (_, cell) in &names {
+            given.join(&self.cells[*cell].value.origin);
+        }
         self.frames.push(Frame {
             module: id.module,
             routine: routine.name.text.as_str().into(),
@@ -162,6 +166,11 @@ impl Executor<'_> {
         self.cells.truncate(cells.max(self.kept_cells));
         match flow {
             Flow::Next | Flow::Resume => Flow::Return(None),
+            // A function's value depends on its arguments, which only it knows by name.
+            Flow::Return(Some(mut value)) => {
+                value.origin.join(&given);
+                Flow::Return(Some(value))
+            }
             other => other,
         }
     }

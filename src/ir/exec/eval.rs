@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::super::functions;
 use super::super::hir::{BinaryOp, Data, DataKind, Expr, ExprKind, Ident, UnaryOp};
 use super::super::predefined;
 use super::super::program::{DataId, Symbol, Writer};
@@ -406,6 +407,9 @@ fn binary(op: BinaryOp, left: &Datum, right: &Datum, expr: &Expr) -> Datum {
         }
         (BinaryOp::Mul | BinaryOp::Div, Datum::List(items), Datum::Num(_)) => {
             Datum::List(items.iter().map(|item| binary(op, item, right, expr)).collect())
+        }
+        (BinaryOp::Mul, Datum::List(_), Datum::List(_)) => {
+            functions::product(left, right).unwrap_or_else(wrong)
         }
         _ => wrong(),
     }

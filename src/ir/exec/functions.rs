@@ -1,8 +1,6 @@
 //! RAPID's own functions, and calls of the program's.
 
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-
-use super::super::convert;
+use super::super::functions::{self, Given};
 use super::super::hir::{Arg, ArgKind, Expr, Ident};
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
@@ -35,25 +33,17 @@ impl Executor<'_> {
         }
         let mut origin = Origin::default();
         let mut values = Vec::new();
-        let mut turn = [0.0; 3];
+        let mut options: Vec<(&str, Option<Value>)> = Vec::new();
         for arg in args {
             match &arg.kind {
                 ArgKind::Positional(inner) | ArgKind::Named(_, inner) => {
-                    let value = self.eval(inner);
-                    origin.join(&value.origin);
-                    values.push(value);
+                    values.push(self.eval(inner));
                 }
-                ArgKind::Optional(option, Some(inner)) => {
-                    let value = self.eval(inner);
-                    origin.join(&value.origin);
-                    let axis = ["rx", "ry", "rz"].iter().position(|r| *r == option.key);
-                    match (axis, value.datum.num()) {
-                        (Some(axis), Some(x)) => turn[axis] = x,
-                        // `Sin(x \…)` and the like have no other option that changes a value.
-                        _ => values.push(value),
-                    }
+                ArgKind::Optional(option, inner) => {
+                    let value = inner.as_ref().map(|inner| self.eval(inner));
+                    options.push((&option.key, value));
                 }
-                ArgKind::Optional(_, None) | ArgKind::Conditional(..) => {}
+                ArgKind::Conditional(..) => {}
             }
         }
         if matches!(
@@ -63,34 +53,32 @@ impl Executor<'_> {
         {
             return self.level(value);
         }
-        for value in &mut values {
-            if matches!(value.datum, Datum::Signal(_)) {
-                let Datum::Signal(signal) = &value.datum else { continue };
-                value.datum = Datum::unknown(
-                    format!("'{signal}' is not declared in the files given"),
-                    expr.span,
-                );
+        for value in values.iter_mut().chain(options.iter_mut().filter_map(|(_, v)| v.as_mut())) {
+            origin.join(&value.origin);
+            if let Datum::Signal(signal) = &value.datum {
+                let reason = format!("'{signal}' is not declared in the files given");
+                value.datum = Datum::unknown(reason, expr.span);
             }
         }
-        if let Some(unknown) = values.iter().find_map(|v| v.datum.first_unknown()) {
+        let all = values.iter().chain(options.iter().filter_map(|(_, value)| value.as_ref()));
+        if let Some(unknown) = all.into_iter().find_map(|v| v.datum.first_unknown()) {
             let datum = Datum::Unknown(unknown.clone());
             return Value { datum, type_key: "".into(), origin };
         }
-        let data: Vec<&Datum> = values.iter().map(|v| &v.datum).collect();
-        let known = numeric(&name.key, &data)
-            .map(|datum| (datum, "num"))
-            .or_else(|| geometric(&name.key, &data, turn))
-            .or_else(|| textual(&name.key, &data));
-        if let Some((datum, type_key)) = known {
-            return Value { datum, type_key: type_key.into(), origin };
-        }
-        let robot = ["crobt", "cpos", "ctool", "cwobj", "calcrobt", "calcjointt"];
-        let reason = if robot.contains(&name.key.as_str()) {
-            format!("{} depends on where the robot is", name.text)
-        } else {
-            format!("the function '{}' is not known", name.text)
+        let Some(function) = functions::lookup(&name.key) else {
+            return Value::unknown(not_known(name), expr.span);
         };
-        Value::unknown(reason, expr.span)
+        let given = Given {
+            args: values.iter().map(|value| &value.datum).collect(),
+            options: options.iter().map(|(k, v)| (*k, v.as_ref().map(|v| &v.datum))).collect(),
+        };
+        match function(&given) {
+            Some((datum, type_key)) => Value { datum, type_key: type_key.into(), origin },
+            None => Value::unknown(
+                format!("'{}' has no value for these arguments", name.text),
+                expr.span,
+            ),
+        }
     }
 
     fn present(&mut self, args: &[Arg]) -> Value {
@@ -116,98 +104,13 @@ impl Executor<'_> {
     }
 }
 
-/// Functions from numbers to a number; angles in degrees, as in RAPID.
-fn numeric(name: &str, args: &[&Datum]) -> Option<Datum> {
-    let x = |i: usize| args.get(i).and_then(|d| d.num());
-    let value = match name {
-        "abs" | "absdnum" => x(0)?.abs(),
-        "sin" => x(0)?.to_radians().sin(),
-        "cos" => x(0)?.to_radians().cos(),
-        "tan" => x(0)?.to_radians().tan(),
-        "asin" => x(0)?.asin().to_degrees(),
-        "acos" => x(0)?.acos().to_degrees(),
-        "atan" => x(0)?.atan().to_degrees(),
-        "atan2" => x(0)?.atan2(x(1)?).to_degrees(),
-        "sqrt" => x(0)?.sqrt(),
-        "pow" => x(0)?.powf(x(1)?),
-        "exp" => x(0)?.exp(),
-        "round" | "trunc" => {
-            let scale = 10_f64.powf(x(1).unwrap_or(0.0));
-            let scaled = x(0)? * scale;
-            (if name == "round" { scaled.round() } else { scaled.trunc() }) / scale
+/// Why a function has no value here.
+fn not_known(name: &Ident) -> String {
+    match name.key.as_str() {
+        "crobt" | "cpos" | "ctool" | "cwobj" => {
+            format!("{} depends on where the robot is", name.text)
         }
-        "numtodnum" | "dnumtonum" => x(0)?,
-        "dim" => {
-            let mut datum = *args.first()?;
-            for _ in 1..x(1)? as usize {
-                let Datum::List(items) = datum else { return None };
-                datum = items.first()?;
-            }
-            let Datum::List(items) = datum else { return None };
-            items.len() as f64
-        }
-        "distance" => (vector(args.first()?)? - vector(args.get(1)?)?).norm(),
-        "vectmagn" => vector(args.first()?)?.norm(),
-        "dotprod" => vector(args.first()?)?.dot(&vector(args.get(1)?)?),
-        "strlen" => match args.first()? {
-            Datum::Text(text) => text.chars().count() as f64,
-            _ => return None,
-        },
-        _ => return None,
-    };
-    value.is_finite().then_some(Datum::Num(value))
-}
-
-/// Functions of poses and targets.
-fn geometric(name: &str, args: &[&Datum], turn: [f64; 3]) -> Option<(Datum, &'static str)> {
-    let x = |i: usize| args.get(i).and_then(|d| d.num());
-    let pose = |i: usize| args.get(i).and_then(|d| convert::pose(d, "the pose").ok());
-    Some(match name {
-        "offs" => (convert::offs(args.first()?, [x(1)?, x(2)?, x(3)?]).ok()?, "robtarget"),
-        "reltool" => {
-            (convert::rel_tool(args.first()?, [x(1)?, x(2)?, x(3)?], turn).ok()?, "robtarget")
-        }
-        "posemult" => (convert::pose_datum(&(pose(0)? * pose(1)?)), "pose"),
-        "poseinv" => (convert::pose_datum(&pose(0)?.inverse()), "pose"),
-        "posevect" => {
-            let point = pose(0)? * nalgebra::Point3::from(vector(args.get(1)?)? * 1e-3);
-            (list(&(point.coords * 1e3)), "pos")
-        }
-        "orientzyx" => {
-            let [z, y, x] = [x(0)?, x(1)?, x(2)?].map(f64::to_radians);
-            let rotation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), z)
-                * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), y)
-                * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), x);
-            let pose = Isometry3::from_parts(Vector3::zeros().into(), rotation);
-            let Datum::List(mut parts) = convert::pose_datum(&pose) else { return None };
-            (parts.pop()?, "orient")
-        }
-        _ => return None,
-    })
-}
-
-/// Functions that make strings.
-fn textual(name: &str, args: &[&Datum]) -> Option<(Datum, &'static str)> {
-    let text = match (name, args.first()?) {
-        ("numtostr" | "dnumtostr", Datum::Num(x)) => {
-            let decimals = args.get(1).and_then(|d| d.num()).unwrap_or(0.0).clamp(0.0, 15.0);
-            format!("{x:.*}", decimals as usize)
-        }
-        ("valtostr", Datum::Num(x)) => format!("{x}"),
-        ("strpart", Datum::Text(text)) => {
-            let from = args.get(1)?.num()?.max(1.0) as usize - 1;
-            let length = args.get(2)?.num()?.max(0.0) as usize;
-            text.chars().skip(from).take(length).collect()
-        }
-        _ => return None,
-    };
-    Some((Datum::Text(text.as_str().into()), "string"))
-}
-
-fn vector(datum: &Datum) -> Option<Vector3<f64>> {
-    convert::nums::<3>(datum, "the vector").ok().map(Vector3::from)
-}
-
-fn list(v: &Vector3<f64>) -> Datum {
-    Datum::List(v.iter().copied().map(Datum::Num).collect())
+        "calcrobt" | "calcjointt" => format!("{} needs the robot's kinematics", name.text),
+        _ => format!("the function '{}' is not known", name.text),
+    }
 }

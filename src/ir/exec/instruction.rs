@@ -70,6 +70,14 @@ impl Executor<'_> {
                 self.wait_signal(stmt, text, &arguments);
             }
             "waituntil" => self.wait_until(stmt, text, &arguments),
+            "pdispon" if arguments.has_option("exep") => self.displace(text, &arguments),
+            _ if instructions::is_waiting(key) => {
+                if instructions::is_writing(key) {
+                    self.forget(args, text);
+                }
+                // The program does not tell for how long.
+                self.wait_until(stmt, text, &Arguments::new(&[]));
+            }
             "setdo" | "setgo" | "setao" | "set" | "reset" | "pulsedo" | "invertdo" => {
                 self.output(stmt, key, text, &arguments);
             }

@@ -7,11 +7,15 @@
 //! such decision is recorded.
 
 mod call;
+mod constant;
+mod displacement;
 mod eval;
 mod flow;
 mod functions;
 mod instruction;
 mod motion;
+
+pub use constant::{evaluate, value_of};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -61,18 +65,7 @@ const MAX_PASSES: u32 = 100_000;
 
 /// Runs the routine on the machine.
 pub fn execute(program: &Program, entry: RoutineId, machine: &mut dyn Machine) -> Execution {
-    let mut executor = Executor {
-        program,
-        machine,
-        cells: Vec::new(),
-        globals: BTreeMap::new(),
-        kept_cells: 0,
-        frames: Vec::new(),
-        signals: BTreeMap::new(),
-        settings: Arc::new(Settings::default()),
-        statements: 0,
-        execution: Execution::default(),
-    };
+    let mut executor = Executor::new(program, machine);
     executor.run(entry);
     executor.execution
 }
@@ -116,7 +109,22 @@ struct Executor<'a> {
     execution: Execution,
 }
 
-impl Executor<'_> {
+impl<'a> Executor<'a> {
+    fn new(program: &'a Program, machine: &'a mut dyn Machine) -> Executor<'a> {
+        Executor {
+            program,
+            machine,
+            cells: Vec::new(),
+            globals: BTreeMap::new(),
+            kept_cells: 0,
+            frames: Vec::new(),
+            signals: BTreeMap::new(),
+            settings: Arc::new(Settings::default()),
+            statements: 0,
+            execution: Execution::default(),
+        }
+    }
+
     fn run(&mut self, entry: RoutineId) {
         let program = self.program;
         for clash in &program.clashes {
@@ -159,3 +167,6 @@ impl Executor<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -37,11 +37,11 @@ impl Executor<'_> {
         arguments: &Arguments<'_>,
         args: &[Arg],
     ) {
-        self.check_external(signature, stmt);
         let movement = self.resolve(stmt, text, signature, arguments);
         let movement = movement.map_err(|reason| {
             self.unresolved(stmt.span, reason.clone());
-            Unresolved { span: stmt.span, reason, moves: true }
+            // The robot's own axes stand while an external one moves.
+            Unresolved { span: stmt.span, reason, moves: signature.form != MoveForm::ExternalJoint }
         });
         if !signature.plain {
             self.forget_targets(args);
@@ -64,12 +64,6 @@ impl Executor<'_> {
         }
     }
 
-    fn check_external(&mut self, signature: MoveSignature, stmt: &Stmt) {
-        if signature.form == MoveForm::ExternalJoint {
-            self.unresolved(stmt.span, "external axes are not simulated");
-        }
-    }
-
     fn resolve(
         &mut self,
         stmt: &Stmt,
@@ -77,6 +71,9 @@ impl Executor<'_> {
         signature: MoveSignature,
         arguments: &Arguments<'_>,
     ) -> Result<Movement, String> {
+        if signature.form == MoveForm::ExternalJoint {
+            return Err("external axes are not simulated".into());
+        }
         let mut origin = Origin::default();
         let mut positional = arguments.positional.iter().copied().skip(signature.before);
         let mut take = |name: &str, what: &str| {
@@ -107,7 +104,6 @@ impl Executor<'_> {
         let target_value = self.argument(target, &mut origin);
         let target = match signature.form {
             MoveForm::AbsJ => Target::Joints(convert::jointtarget(&target_value.datum)?),
-            MoveForm::ExternalJoint => return Err("external axes are not simulated".into()),
             _ => Target::Pose(convert::robtarget(&target_value.datum)?),
         };
         let speed_value = self.argument(speed, &mut origin);

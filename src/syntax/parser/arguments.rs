@@ -1,8 +1,8 @@
 //! Arguments: `grammar/arguments.ebnf`.
 
-use super::Parser;
 use super::expressions::Height;
 use super::recovery::ends_block;
+use super::{Parentheses, Parser};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
@@ -93,28 +93,47 @@ impl Parser<'_> {
     /// parentheses hold all its arguments, `Proc(a, b);`, or belong to the
     /// first of them, `Proc (a + b) * c, d;`.
     pub(super) fn parentheses_hold_arguments(&mut self) -> bool {
-        let mut depth = 0_u32;
+        if self.position >= self.parentheses.end {
+            self.scan_parentheses();
+        }
+        let found = self.parentheses.found.binary_search_by_key(&self.position, |one| one.0);
+        found.is_ok_and(|index| self.parentheses.found[index].1)
+    }
+
+    /// Looks ahead from the `(` at hand to the one that closes it, or to the end
+    /// of the statement, and notes all brackets on the way: a broken program
+    /// would have the same tokens looked at for each of them.
+    fn scan_parentheses(&mut self) {
+        let mut found = std::mem::take(&mut self.parentheses.found);
+        found.clear();
+        let mut open: Vec<usize> = Vec::new();
         let mut index = self.position;
         let mut before = TokenKind::EndOfFile;
         loop {
             let kind = self.tokens.kind(index);
             match kind {
-                TokenKind::LeftParen | TokenKind::LeftBracket | TokenKind::LeftBrace => depth += 1,
+                TokenKind::LeftParen | TokenKind::LeftBracket | TokenKind::LeftBrace => {
+                    open.push(found.len());
+                    found.push((index, false));
+                }
                 TokenKind::RightParen | TokenKind::RightBracket | TokenKind::RightBrace => {
-                    depth = depth.saturating_sub(1);
-                    if depth == 0 {
-                        return before == TokenKind::LeftParen;
+                    if let Some(opener) = open.pop() {
+                        found[opener].1 |= before == TokenKind::LeftParen;
                     }
                 }
-                TokenKind::Comma | TokenKind::Backslash | TokenKind::Assign if depth == 1 => {
-                    return true;
+                TokenKind::Comma | TokenKind::Backslash | TokenKind::Assign => {
+                    if let Some(opener) = open.last() {
+                        found[*opener].1 = true;
+                    }
                 }
-                TokenKind::Semicolon => return false,
-                _ if ends_block(kind) => return false,
                 _ => {}
+            }
+            if open.is_empty() || kind == TokenKind::Semicolon || ends_block(kind) {
+                break;
             }
             before = kind;
             index = self.after(index);
         }
+        self.parentheses = Parentheses { found, end: index };
     }
 }

@@ -71,6 +71,7 @@ impl Parser<'_> {
         self.eat_scope();
         self.open(TokenKind::EndRecord, self.position);
         self.bump();
+        self.skip_doubled(TokenKind::Record);
         self.name();
         if self.at(TokenKind::Semicolon) {
             self.tolerate(Tolerance::EmptyStatement, self.position);
@@ -83,6 +84,11 @@ impl Parser<'_> {
                 TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
                 TokenKind::Identifier if self.misspelt_closer() > 0 => break,
                 TokenKind::Identifier => self.record_component(),
+                TokenKind::Local | TokenKind::Task if self.next() == TokenKind::Identifier => {
+                    self.error_unexpected("a component or ENDRECORD");
+                    self.leaf(NodeKind::Error);
+                    self.record_component();
+                }
                 kind if ends_block(kind) || kind.is_keyword() => break,
                 _ => {
                     self.error_expected("a component or ENDRECORD");

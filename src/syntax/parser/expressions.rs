@@ -66,7 +66,31 @@ impl Parser<'_> {
 
     /// An expression; `expected` is what a message says is missing.
     pub(super) fn expression_or(&mut self, expected: &str) -> Height {
-        self.binary(Level::Or, expected)
+        if self.lone_operand() { 1 } else { self.binary(Level::Or, expected) }
+    }
+
+    /// Reads an expression of one token, which most are, if the token behind it
+    /// shows that it is one.
+    fn lone_operand(&mut self) -> bool {
+        let kind = match self.current() {
+            TokenKind::Number => NodeKind::NumberLiteral,
+            TokenKind::String => NodeKind::StringLiteral,
+            TokenKind::True | TokenKind::False => NodeKind::BoolLiteral,
+            TokenKind::Identifier => NodeKind::Reference,
+            _ => return false,
+        };
+        let alone = matches!(
+            self.tokens.kind(self.position + 1),
+            TokenKind::Comma
+                | TokenKind::Semicolon
+                | TokenKind::Backslash
+                | TokenKind::RightParen
+                | TokenKind::RightBracket
+        );
+        if alone {
+            self.leaf(kind);
+        }
+        alone
     }
 
     fn binary(&mut self, least: Level, expected: &str) -> Height {

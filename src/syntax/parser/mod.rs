@@ -6,6 +6,7 @@
 //! looks like a new statement, whichever comes first.
 
 mod arguments;
+mod blocks;
 mod data;
 mod expressions;
 mod modules;
@@ -20,8 +21,8 @@ use super::tolerance::{Tolerance, Tolerated};
 use super::tree::{Builder, Mark};
 use super::{MAX_DEPTH, Parse, lexer};
 
-/// Tokens per node in ordinary programs, for the first allocation.
-const TOKENS_PER_NODE: usize = 2;
+/// Nodes for eight tokens in ordinary programs, for the first allocation.
+const NODES_FOR_EIGHT: usize = 5;
 /// Longest excerpt of the source in a message, in characters.
 const EXCERPT: usize = 24;
 
@@ -32,13 +33,16 @@ pub(super) fn parse(bytes: &[u8]) -> Parse {
         tokens: &tokens,
         position: 0,
         end: 0,
-        builder: Builder::with_capacity(tokens.len() / TOKENS_PER_NODE),
+        builder: Builder::with_capacity(tokens.len() / 8 * NODES_FOR_EIGHT),
         errors: Vec::new(),
         tolerances: Vec::new(),
         quiet: false,
         depth: 0,
         depth_reported: false,
         cut_off_reported: false,
+        split_if: None,
+        parentheses: Parentheses::default(),
+        line: Line::default(),
         open: Vec::new(),
         steps: 0,
     };
@@ -75,9 +79,41 @@ struct Parser<'a> {
     depth_reported: bool,
     /// Whether the end of the file was already reported as too early.
     cut_off_reported: bool,
+    /// The last compact IF whose statement is on a line of its own: its `THEN`
+    /// may be missing.
+    split_if: Option<SplitIf>,
+    /// Brackets that were looked at ahead.
+    parentheses: Parentheses,
+    /// The last answer to where a line starts.
+    line: Line,
     /// Block statements and routines that are not closed yet, outermost first.
     open: Vec<Open>,
     steps: u64,
+}
+
+/// A compact IF over two lines.
+#[derive(Clone, Copy)]
+struct SplitIf {
+    /// The token of its `IF`.
+    opener: usize,
+    /// The first token of its statement.
+    statement: usize,
+}
+
+/// Brackets of a statement, looked at ahead.
+#[derive(Default)]
+struct Parentheses {
+    /// The token of each opening bracket, and whether it holds a list.
+    found: Vec<(usize, bool)>,
+    /// The token at which the look ahead ended.
+    end: usize,
+}
+
+/// A token and the first token of its line.
+#[derive(Clone, Copy, Default)]
+struct Line {
+    token: usize,
+    first: usize,
 }
 
 /// Something that waits for its closing keyword.
@@ -247,6 +283,12 @@ impl<'a> Parser<'a> {
             let message = format!("expected {expected}, found {}", self.found());
             self.error_at(self.position, message);
         }
+    }
+
+    /// The end of the token before one, trivia left out.
+    fn end_before(&self, token: usize) -> u32 {
+        let before = (0..token).rev().find(|&before| !self.tokens.kind(before).is_trivia());
+        before.map_or(0, |before| self.tokens.range(before).end)
     }
 
     /// Reports something that is missing behind the last token.

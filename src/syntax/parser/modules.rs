@@ -25,6 +25,14 @@ struct Progress {
     orphaned: bool,
 }
 
+/// What was on a line that was skipped.
+struct Skipped {
+    /// Whether it ended with `;`.
+    ended: bool,
+    /// Whether it had a `:=`.
+    value: bool,
+}
+
 impl Progress {
     fn new() -> Progress {
         Progress { part: Part::Types, orphaned: false }
@@ -243,6 +251,11 @@ impl Parser<'_> {
     fn item(&mut self, progress: &mut Progress) {
         let start = self.position;
         self.depth_reported = false;
+        let scope = self.current();
+        if matches!(scope, TokenKind::Local | TokenKind::Task) && self.next() == scope {
+            self.error_at(start, format!("{} is doubled", scope.describe()));
+            self.leaf(NodeKind::Error);
+        }
         let scoped = matches!(self.current(), TokenKind::Local | TokenKind::Task);
         let kind = if scoped { self.next() } else { self.current() };
         match kind {
@@ -264,12 +277,24 @@ impl Parser<'_> {
                 self.leaf(NodeKind::EmptyStatement);
             }
             TokenKind::Placeholder if !scoped => self.leaf(NodeKind::Placeholder),
+            _ if scoped && self.lacks_routine_keyword() => self.orphans(progress),
             _ if scoped || starts_data(kind) => {
                 self.in_order(progress, Part::Data, start);
                 self.data_declaration();
             }
             _ => self.orphans(progress),
         }
+    }
+
+    /// At `LOCAL name (` or `LOCAL type name (`: the header of a routine.
+    fn lacks_routine_keyword(&mut self) -> bool {
+        let mut token = self.after(self.position);
+        for _ in 0..2 {
+            if self.tokens.kind(token) == TokenKind::Identifier {
+                token = self.after(token);
+            }
+        }
+        self.tokens.kind(token) == TokenKind::LeftParen
     }
 
     fn in_order(&mut self, progress: &mut Progress, part: Part, token: usize) {
@@ -291,54 +316,74 @@ impl Parser<'_> {
             let message = format!("{} without its beginning", kind.describe());
             self.error_at(self.position, message);
             self.bump();
+            if kind == TokenKind::Error && self.at(TokenKind::LeftParen) {
+                self.rest_of_header();
+            }
             self.finish(mark, NodeKind::Error);
-            progress.orphaned &= !closes_routine(kind);
+            progress.orphaned &= !closes_routine(kind) && kind != TokenKind::EndRecord;
             return;
         }
         self.error_unexpected("a data declaration, PROC, FUNC, TRAP or ENDMODULE");
         if progress.orphaned {
             self.orphan_block();
         } else {
-            // A misspelt declaration ends with `;` on its line, a misspelt
-            // routine header does not.
-            let ended = self.recover_line() == Some(TokenKind::Semicolon);
-            progress.orphaned = !ended;
+            // A misspelt declaration has a value or ends with `;` on its line, a
+            // misspelt routine header does not.
+            let line = self.recover_line();
+            if !line.ended {
+                if line.value {
+                    self.recover();
+                } else {
+                    self.rest_of_parameters();
+                }
+            }
+            progress.orphaned = !line.ended && !line.value;
             if starts_statement(self.current()) && !starts_data(self.current()) {
                 self.orphan_block();
             }
         }
-        if closes_routine(self.current()) {
+        if closes_routine(self.current()) || self.at(TokenKind::EndRecord) {
             self.bump();
             progress.orphaned = false;
         }
         self.finish(mark, NodeKind::Error);
     }
 
+    /// Statements of a routine, or components of a record, whose header was not
+    /// recognised.
     fn orphan_block(&mut self) {
         if starts_statement(self.current()) {
+            self.open(TokenKind::EndRecord, self.position);
             self.block();
+            for _ in 0..self.misspelt_closer() {
+                self.bump();
+            }
+            self.open.pop();
         } else {
             self.bump();
             self.recover();
         }
     }
 
-    /// Skips to the end of the line and gives the last token skipped.
-    fn recover_line(&mut self) -> Option<TokenKind> {
+    /// Skips to the end of the line.
+    fn recover_line(&mut self) -> Skipped {
         let mark = self.mark();
-        let mut last = None;
+        let start = self.position;
+        let mut skipped = Skipped { ended: false, value: false };
         while !self.at(TokenKind::EndOfFile)
-            && (last.is_none() || !self.first_on_line(self.position))
+            && (self.position == start || !self.first_on_line(self.position))
         {
-            if last.is_some() && ends_block(self.current()) {
+            let kind = self.current();
+            if self.position > start && ends_block(kind) {
                 break;
             }
-            last = Some(self.current());
+            skipped.ended = kind == TokenKind::Semicolon;
+            skipped.value |= kind == TokenKind::Assign;
             self.bump();
         }
-        if last.is_some() {
+        if self.position > start {
             self.finish(mark, NodeKind::Error);
         }
-        last
+        skipped
     }
 }

@@ -1,6 +1,7 @@
 //! Getting on after an error.
 
-use super::{Open, Parser};
+use super::blocks::closes_block;
+use super::{Line, Parser};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 
@@ -33,9 +34,14 @@ impl Parser<'_> {
     pub(super) fn first_of_line(&mut self, token: usize) -> usize {
         let mut first = token;
         while first > 0 && !self.first_on_line(first) {
+            if first == self.line.token {
+                first = self.line.first;
+                break;
+            }
             first -= 1;
             self.steps += 1;
         }
+        self.line = Line { token, first };
         first
     }
 
@@ -67,7 +73,9 @@ impl Parser<'_> {
             )
     }
 
-    /// Skips the rest of a statement that has an error, with its `;`.
+    /// Skips the rest of a statement that has an error, with its `;`. Behind a
+    /// `THEN` or `DO` the statement was the header of a block, whose keyword is
+    /// missing or misspelt: the block is read with it.
     pub(super) fn recover(&mut self) {
         let mark = self.mark();
         let start = self.position;
@@ -77,6 +85,15 @@ impl Parser<'_> {
                 TokenKind::EndOfFile => break,
                 TokenKind::Semicolon => {
                     self.bump();
+                    self.skip_leftovers();
+                    break;
+                }
+                TokenKind::Then | TokenKind::Do if !self.first_on_line(self.position) => {
+                    let inside = self.depth > 0 && !self.lacks_elseif();
+                    self.bump();
+                    if inside {
+                        self.headless_block(kind);
+                    }
                     break;
                 }
                 _ if ends_block(kind) => break,
@@ -91,12 +108,40 @@ impl Parser<'_> {
         }
     }
 
+    /// Behind a keyword: reports and skips the same keyword again.
+    pub(super) fn skip_doubled(&mut self, keyword: TokenKind) {
+        if self.at(keyword) && !self.first_on_line(self.position) {
+            self.error_at(self.position, format!("{} is doubled", keyword.describe()));
+            self.leaf(NodeKind::Error);
+        }
+    }
+
+    /// Behind the `;` of a statement that has an error: what is left on the
+    /// line without a `;` of its own belongs to the same mistake.
+    fn skip_leftovers(&mut self) {
+        let mut end = self.position;
+        while !self.first_on_line(end) {
+            let kind = self.tokens.kind(end);
+            if kind == TokenKind::Semicolon || kind.is_keyword() || kind == TokenKind::EndOfFile {
+                return;
+            }
+            end = self.after(end);
+        }
+        while self.position < end {
+            self.bump();
+        }
+    }
+
     fn ended_by_unclosed_string(&self) -> bool {
         self.end > 0 && self.tokens.kind(self.end - 1) == TokenKind::UnclosedString
     }
 
     /// The end of a simple statement or declaration: its `;`, or recovery.
     pub(super) fn end_statement(&mut self, expected: &str) {
+        if self.at(TokenKind::Semicolon) && self.quiet {
+            self.recover();
+            return;
+        }
         if self.eat(TokenKind::Semicolon) {
             return;
         }
@@ -105,6 +150,7 @@ impl Parser<'_> {
             if ends_block(self.current()) || new_line && self.looks_like_start() {
                 let message = format!("expected ';', found {}", self.found());
                 self.error_before(message);
+                self.headless_branches();
                 return;
             }
             self.error_expected(expected);
@@ -143,125 +189,6 @@ impl Parser<'_> {
         }
         ended
     }
-
-    // --- closing keywords ---
-
-    pub(super) fn open(&mut self, closer: TokenKind, opener: usize) {
-        self.open.push(Open { closer, opener });
-    }
-
-    fn is_awaited(&self, closer: TokenKind) -> bool {
-        self.open.iter().any(|open| open.closer == closer)
-    }
-
-    /// Reads the keyword that closes the innermost open block.
-    pub(super) fn close(&mut self) {
-        let Some(Open { closer, opener }) = self.open.pop() else { return };
-        self.quiet = false;
-        if self.eat(closer) {
-            return;
-        }
-        let wrong = self.current();
-        let misspelt = self.misspelling(closer);
-        if misspelt > 0 {
-            let message = format!("expected {}, found {}", closer.describe(), self.found());
-            self.close_error(message, opener, false);
-            let mark = self.mark();
-            for _ in 0..misspelt {
-                self.bump();
-            }
-            self.eat(TokenKind::Semicolon);
-            self.finish(mark, NodeKind::Error);
-        } else if closes_block(wrong) && self.is_mistyped(closer, opener) {
-            let message = format!("expected {}, found {}", closer.describe(), wrong.describe());
-            self.close_error(message, opener, false);
-            self.leaf(NodeKind::Error);
-        } else {
-            let message = format!("expected {} before {}", closer.describe(), self.found());
-            self.close_error(message, opener, true);
-        }
-    }
-
-    fn close_error(&mut self, message: String, opener: usize, before: bool) {
-        let keyword = self.tokens.kind(opener).describe();
-        let related = self.related(opener, format!("this {keyword} is not closed"));
-        let range = self.tokens.range(self.position);
-        let end = if before { range.start } else { range.end };
-        self.push_error(range.start, end, message, Some(related));
-    }
-
-    /// Whether a misspelling of the keyword that closes the innermost block
-    /// stands alone on this line: the number of its tokens, or 0.
-    pub(super) fn misspelt_closer(&mut self) -> usize {
-        match self.open.last() {
-            Some(open) if self.at(TokenKind::Identifier) => self.misspelling(open.closer),
-            _ => 0,
-        }
-    }
-
-    /// `ENIDF` or `END IF` for `ENDIF`, alone on its line: the number of its
-    /// tokens, or 0.
-    fn misspelling(&mut self, closer: TokenKind) -> usize {
-        let word = self.text(self.position);
-        if !self.at(TokenKind::Identifier)
-            || !word.first().is_some_and(|letter| letter.eq_ignore_ascii_case(&b'E'))
-            || !self.first_on_line(self.position)
-        {
-            return 0;
-        }
-        let second = self.after(self.position);
-        let wanted = closer.describe().as_bytes();
-        if word.eq_ignore_ascii_case(b"END") {
-            let rest = wanted.get(word.len()..).unwrap_or_default();
-            return if self.text(second).eq_ignore_ascii_case(rest) { 2 } else { 0 };
-        }
-        let alone = self.tokens.kind(second) == TokenKind::EndOfFile || self.first_on_line(second);
-        usize::from(alone && is_near(word, wanted))
-    }
-
-    /// Whether the closing keyword at hand is the wrong one for the innermost
-    /// block, rather than the right one for a block around it.
-    fn is_mistyped(&mut self, wanted: TokenKind, opener: usize) -> bool {
-        let found = self.current();
-        let owner = self.open.iter().rev().find(|open| open.closer == found).copied();
-        match owner {
-            None => {
-                let next = self.next();
-                next != wanted || closes_routine(wanted)
-            }
-            Some(owner) => {
-                let column = self.indentation(self.position);
-                column.is_some()
-                    && column == self.indentation(opener)
-                    && column != self.indentation(owner.opener)
-            }
-        }
-    }
-
-    /// At a keyword that ends a block: whether no open block wants it, so that
-    /// it can only be left over.
-    pub(super) fn is_stray(&mut self) -> bool {
-        let kind = self.current();
-        let Some(Open { closer, .. }) = self.open.last().copied() else { return true };
-        match kind {
-            TokenKind::Else | TokenKind::ElseIf => !self.is_awaited(TokenKind::EndIf),
-            TokenKind::Case | TokenKind::Default => !self.is_awaited(TokenKind::EndTest),
-            TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest => {
-                !self.is_awaited(kind) && (closes_routine(closer) || self.next() == closer)
-            }
-            TokenKind::EndRecord | TokenKind::Then | TokenKind::Do => true,
-            _ => false,
-        }
-    }
-}
-
-/// Keywords that close a block statement or a routine.
-fn closes_block(kind: TokenKind) -> bool {
-    closes_routine(kind)
-        || matches!(
-            kind,
-            TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest
-        )
 }
 
 pub(super) fn closes_routine(kind: TokenKind) -> bool {
@@ -338,23 +265,4 @@ fn continues(kind: TokenKind) -> bool {
             | TokenKind::And
             | TokenKind::Or
     )
-}
-
-/// Whether a word differs from a keyword by one letter that is wrong, missing
-/// or too much, or by two neighbours exchanged.
-fn is_near(word: &[u8], keyword: &[u8]) -> bool {
-    let word = word.to_ascii_uppercase();
-    let same = word.iter().zip(keyword).take_while(|(a, b)| a == b).count();
-    let (a, b) = (&word[same..], &keyword[same..]);
-    match (a, b) {
-        ([first, second, a @ ..], [third, fourth, b @ ..])
-            if (first, second) == (fourth, third) && a == b =>
-        {
-            true
-        }
-        ([_, a @ ..], [_, b @ ..]) if a == b => true,
-        ([_, rest @ ..], _) if rest == b => true,
-        (_, [_, rest @ ..]) => rest == a,
-        _ => false,
-    }
 }

@@ -11,6 +11,7 @@ impl Parser<'_> {
     pub(super) fn routine(&mut self, keyword: TokenKind) {
         let mark = self.mark();
         self.depth_reported = false;
+        self.split_if = None;
         self.eat_scope();
         let (closer, kind) = match keyword {
             TokenKind::Func => (TokenKind::EndFunc, NodeKind::FuncDeclaration),
@@ -19,6 +20,7 @@ impl Parser<'_> {
         };
         self.open(closer, self.position);
         self.bump();
+        self.skip_doubled(keyword);
         if keyword == TokenKind::Func {
             self.type_name();
         }
@@ -32,7 +34,7 @@ impl Parser<'_> {
             (_, false) => self.error_expected("'('"),
         }
         if self.quiet {
-            self.rest_of_header();
+            self.rest_of_parameters();
         }
         self.routine_data();
         self.block();
@@ -49,6 +51,36 @@ impl Parser<'_> {
                 self.tolerate(Tolerance::ScopeInRoutine, self.position);
             }
             self.data_declaration();
+        }
+    }
+
+    /// Skips what is left of the parameters of a routine, which may stand on
+    /// several lines: up to a `)` at the end of a line, without one to the end
+    /// of the line.
+    pub(super) fn rest_of_parameters(&mut self) {
+        if self.end > 0 && self.tokens.kind(self.end - 1) == TokenKind::RightParen {
+            self.rest_of_header();
+            return;
+        }
+        let mark = self.mark();
+        let start = self.position;
+        let mut index = start;
+        while !ends_block(self.tokens.kind(index))
+            && !matches!(self.tokens.kind(index), TokenKind::Semicolon | TokenKind::Assign)
+        {
+            let closes = self.tokens.kind(index) == TokenKind::RightParen;
+            index = self.after(index);
+            if closes && self.first_on_line(index) {
+                while self.position < index {
+                    self.bump();
+                }
+                break;
+            }
+        }
+        if self.position > start {
+            self.finish(mark, NodeKind::Error);
+        } else {
+            self.rest_of_header();
         }
     }
 
@@ -111,13 +143,17 @@ impl Parser<'_> {
 
     /// `[VAR|PERS|INOUT] type name {*}`
     fn parameter(&mut self) {
+        let referenced = self.at_reference_mode();
         let typed = matches!(self.next(), TokenKind::Identifier | TokenKind::Placeholder);
         if self.at(TokenKind::Placeholder) && !typed {
             self.leaf(NodeKind::Placeholder);
             return;
         }
         let mark = self.mark();
-        if matches!(self.current(), TokenKind::Var | TokenKind::Pers | TokenKind::InOut) {
+        if referenced {
+            self.tolerate(Tolerance::ReferenceParameter, self.position);
+            self.bump();
+        } else if matches!(self.current(), TokenKind::Var | TokenKind::Pers | TokenKind::InOut) {
             self.bump();
         }
         self.type_name();
@@ -128,15 +164,32 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Parameter);
     }
 
-    /// `{*, *}`
+    /// Whether a parameter starts here whose mode is `REF`, which is no keyword.
+    fn at_reference_mode(&mut self) -> bool {
+        if !self.at(TokenKind::Identifier) || !self.text(self.position).eq_ignore_ascii_case(b"REF")
+        {
+            return false;
+        }
+        let after = self.after(self.position);
+        let name = self.after(after);
+        self.tokens.kind(after) == TokenKind::Identifier
+            && self.tokens.kind(name) == TokenKind::Identifier
+    }
+
+    /// `{*, *}`; tolerated, `{2, 3}`
     fn open_dimensions(&mut self) {
         let mark = self.mark();
         self.bump();
         loop {
-            if self.at(TokenKind::Placeholder) {
-                self.leaf(NodeKind::Placeholder);
-            } else {
-                self.expect(TokenKind::Star);
+            match self.current() {
+                TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+                TokenKind::Number | TokenKind::Identifier => {
+                    self.tolerate(Tolerance::ParameterWithSize, self.position);
+                    self.expression();
+                }
+                _ => {
+                    self.expect(TokenKind::Star);
+                }
             }
             if !self.eat(TokenKind::Comma) {
                 break;

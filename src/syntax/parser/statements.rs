@@ -1,10 +1,11 @@
 //! Statements: `grammar/statements.ebnf`.
 
-use super::Parser;
 use super::recovery::{ends_block, starts_data, starts_statement};
+use super::{Parser, SplitIf};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
+use crate::syntax::tree::Mark;
 
 impl Parser<'_> {
     /// Statements up to a keyword that ends them.
@@ -41,48 +42,6 @@ impl Parser<'_> {
     pub(super) fn at_routine(&mut self) -> bool {
         self.at(TokenKind::Local)
             && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
-    }
-
-    /// A keyword that ends a block that nothing began. A left-over `ELSE` takes
-    /// its statements and its `ENDIF` with it: they are the same mistake.
-    fn stray(&mut self) {
-        let mark = self.mark();
-        let kind = self.current();
-        let position = self.position;
-        let message = match kind {
-            TokenKind::Else | TokenKind::ElseIf => {
-                format!("{} without an IF … THEN before it", kind.describe())
-            }
-            TokenKind::EndIf => "ENDIF without an IF … THEN before it".to_owned(),
-            TokenKind::Case | TokenKind::Default => {
-                format!("{} outside TEST … ENDTEST", kind.describe())
-            }
-            _ => format!("{} without its beginning", kind.describe()),
-        };
-        self.error_at(position, message);
-        let branches = match kind {
-            TokenKind::Else | TokenKind::ElseIf => self.deeper(|parser| {
-                parser.open(TokenKind::EndIf, position);
-                parser.else_branches();
-                parser.close_stray(TokenKind::EndIf);
-            }),
-            TokenKind::Case | TokenKind::Default => self.deeper(|parser| {
-                parser.open(TokenKind::EndTest, position);
-                parser.cases();
-                parser.close_stray(TokenKind::EndTest);
-            }),
-            _ => None,
-        };
-        if branches.is_none() {
-            self.bump();
-        }
-        self.finish(mark, NodeKind::Error);
-    }
-
-    /// Closes what a left-over branch began, silently.
-    fn close_stray(&mut self, closer: TokenKind) {
-        self.open.pop();
-        self.eat(closer);
     }
 
     /// One statement or data declaration; reads at least one token.
@@ -125,52 +84,6 @@ impl Parser<'_> {
                 self.finish(mark, NodeKind::Error);
             }
         }
-    }
-
-    /// Skips a statement that is nested too deeply, with the statements in it.
-    fn skip_nested(&mut self) {
-        let mark = self.mark();
-        let mut open = 0_u32;
-        // Whether the last condition was that of an IF, whose THEN opens.
-        let mut after_if = false;
-        loop {
-            let kind = self.current();
-            match kind {
-                TokenKind::EndOfFile
-                | TokenKind::Proc
-                | TokenKind::Func
-                | TokenKind::Trap
-                | TokenKind::Module
-                | TokenKind::EndModule
-                | TokenKind::EndProc
-                | TokenKind::EndFunc
-                | TokenKind::EndTrap => break,
-                TokenKind::For | TokenKind::While | TokenKind::Test => open += 1,
-                TokenKind::If => after_if = true,
-                TokenKind::ElseIf => after_if = false,
-                TokenKind::Then if after_if => {
-                    after_if = false;
-                    open += 1;
-                }
-                TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest => {
-                    if open == 0 {
-                        break;
-                    }
-                    open -= 1;
-                    if open == 0 {
-                        self.bump();
-                        break;
-                    }
-                }
-                TokenKind::Semicolon if open == 0 => {
-                    self.bump();
-                    break;
-                }
-                _ => {}
-            }
-            self.bump();
-        }
-        self.finish(mark, NodeKind::Error);
     }
 
     /// A statement that starts with a name: label, assignment or call.
@@ -277,9 +190,20 @@ impl Parser<'_> {
         let mark = self.mark();
         let opener = self.position;
         self.bump();
+        if self.commented_condition(TokenKind::Then) {
+            self.if_block(mark, opener);
+            return;
+        }
         self.expression();
         let broken = self.quiet || self.then_follows();
+        if !broken && self.commented_condition(TokenKind::Then) {
+            self.if_block(mark, opener);
+            return;
+        }
         if !broken && starts_statement(self.current()) {
+            if self.first_on_line(self.position) {
+                self.split_if = Some(SplitIf { opener, statement: self.position });
+            }
             self.statement();
             self.finish(mark, NodeKind::CompactIf);
             return;
@@ -288,14 +212,19 @@ impl Parser<'_> {
             self.error_expected(if broken { "an operator or THEN" } else { "THEN or a statement" });
         }
         if self.end_header(TokenKind::Then) {
-            self.open(TokenKind::EndIf, opener);
-            self.block();
-            self.else_branches();
-            self.close();
-            self.finish(mark, NodeKind::IfStatement);
+            self.if_block(mark, opener);
         } else {
             self.finish(mark, NodeKind::CompactIf);
         }
+    }
+
+    /// What follows the `THEN` of the IF that began at `mark`.
+    fn if_block(&mut self, mark: Mark, opener: usize) {
+        self.open(TokenKind::EndIf, opener);
+        self.block();
+        self.else_branches();
+        self.close();
+        self.finish(mark, NodeKind::IfStatement);
     }
 
     /// Behind the condition of an IF, not at THEN: whether a THEN follows on
@@ -319,7 +248,7 @@ impl Parser<'_> {
     }
 
     /// `ELSEIF … THEN …`, `ELSE …`
-    fn else_branches(&mut self) {
+    pub(super) fn else_branches(&mut self) {
         let mut after_else = false;
         loop {
             let mark = self.mark();
@@ -377,8 +306,12 @@ impl Parser<'_> {
         let mark = self.mark();
         self.open(TokenKind::EndWhile, self.position);
         self.bump();
-        self.expression();
-        self.end_header(TokenKind::Do);
+        if !self.commented_condition(TokenKind::Do) {
+            self.expression();
+            if !self.commented_condition(TokenKind::Do) {
+                self.end_header(TokenKind::Do);
+            }
+        }
         self.block();
         self.close();
         self.finish(mark, NodeKind::WhileStatement);
@@ -399,6 +332,9 @@ impl Parser<'_> {
             self.error_expected("CASE");
             let rest = self.mark();
             let start = self.position;
+            if !starts_statement(self.current()) && !ends_block(self.current()) {
+                self.bump();
+            }
             while !self.first_on_line(self.position) && !ends_block(self.current()) {
                 self.bump();
             }
@@ -415,7 +351,7 @@ impl Parser<'_> {
     }
 
     /// `CASE …:`, `DEFAULT:`
-    fn cases(&mut self) {
+    pub(super) fn cases(&mut self) {
         let mut after_default = false;
         loop {
             let mark = self.mark();
@@ -438,6 +374,7 @@ impl Parser<'_> {
                     }
                     after_default = true;
                     self.bump();
+                    self.skip_doubled(TokenKind::Default);
                     self.end_header(TokenKind::Colon);
                     self.block();
                     self.finish(mark, NodeKind::DefaultBranch);

@@ -1,0 +1,63 @@
+//! Values that the program has by itself, whatever has run before.
+
+use super::super::hir::{Expr, ExprKind, Ident};
+use super::super::movement::{Movement, Output, Unresolved, Wait};
+use super::super::program::{DataId, Program};
+use super::super::value::{Datum, Dependence, Value};
+use super::{Executor, Frame, Machine};
+
+/// The value of an expression that stands in a module. What depends on a variable that the
+/// program writes, on an input or on the robot is unknown, with the reason.
+pub fn evaluate(program: &Program, module: usize, expr: &Expr) -> Value {
+    let mut nowhere = Nowhere;
+    let mut executor = Executor::new(program, &mut nowhere);
+    let routine = "".into();
+    executor.frames.push(Frame { module, routine, names: Vec::new(), present: Vec::new() });
+    let value = executor.eval(expr);
+    let mut value = executor.level(value);
+    if let Some(reason) = value.origin.iter().find_map(changes)
+        && value.datum.first_unknown().is_none()
+    {
+        value.datum = Datum::unknown(reason, expr.span);
+    }
+    value
+}
+
+/// The value of data at module level; see [`evaluate`].
+pub fn value_of(program: &Program, id: DataId) -> Value {
+    let name: Ident = program.data(id).name.clone();
+    let span = name.span;
+    evaluate(program, id.module, &Expr { kind: ExprKind::Ref(name), span })
+}
+
+/// Why a value that depends on this may be another one each time.
+fn changes(dependence: &Dependence) -> Option<String> {
+    match dependence {
+        // Local data are those of functions that were called with values of the expression.
+        Dependence::Persistent(_) | Dependence::TrustedPersistent(_) | Dependence::Local(_) => None,
+        Dependence::Variable(name) => Some(format!("'{name}' is written by the program")),
+        Dependence::Exposed(name, call) => {
+            Some(format!("'{name}' may be written by '{call}', which is not in the files given"))
+        }
+        Dependence::Input(name) => Some(format!("'{name}' is not declared in the files given")),
+        Dependence::RobotState => Some("it depends on where the robot is".to_owned()),
+    }
+}
+
+/// A machine that does nothing and knows nothing.
+struct Nowhere;
+
+impl Machine for Nowhere {
+    fn moves(&mut self, _: Result<Movement, Unresolved>) {}
+    fn waits(&mut self, _: Wait) {}
+    fn sets(&mut self, _: Output) {}
+    fn joints(&mut self) -> Option<[f64; 6]> {
+        None
+    }
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,36 @@
+//! Program displacement from two points.
+
+use std::sync::Arc;
+
+use nalgebra::Isometry3;
+
+use super::super::convert;
+use super::super::movement::Settings;
+use super::Executor;
+use super::instruction::Arguments;
+
+impl Executor<'_> {
+    /// `PDispOn [\Rot] \ExeP:=there, programmed, tool`: what is programmed at the one point runs
+    /// at the other. Without `\ExeP` that is where the robot stands, which is not modelled.
+    pub(super) fn displace(&mut self, text: &str, arguments: &Arguments<'_>) {
+        let mut target = |expr| {
+            let value = self.eval(expr);
+            convert::robtarget(&value.datum).ok().map(|target| target.pose)
+        };
+        let there = arguments.option_value("exep").and_then(&mut target);
+        let programmed = arguments.positional.first().copied().and_then(&mut target);
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        match there.zip(programmed) {
+            Some((there, programmed)) if arguments.has_option("rot") => {
+                settings.displacement = Some(there * programmed.inverse());
+            }
+            Some((there, programmed)) => {
+                let shift = there.translation.vector - programmed.translation.vector;
+                settings.displacement = Some(Isometry3::translation(shift.x, shift.y, shift.z));
+            }
+            None => settings.other.push(text.into()),
+        }
+        self.settings = Arc::new(settings);
+    }
+}

@@ -1,0 +1,115 @@
+//! What a machine is told.
+
+use super::*;
+use crate::ir::lower;
+use crate::ir::movement::Target;
+use crate::syntax;
+use crate::text::FileId;
+
+/// A line for each thing that it is told.
+#[derive(Default)]
+struct Recorder(Vec<String>);
+
+impl Machine for Recorder {
+    fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+        self.0.push(match movement {
+            Ok(movement) => {
+                let place = match &movement.target {
+                    Target::Joints(q) => q[0].to_degrees(),
+                    Target::Pose(target) => {
+                        let shift = movement.settings.displacement.unwrap_or_default();
+                        (shift * target.pose).translation.x * 1e3
+                    }
+                };
+                let other = movement.settings.other.join(" ");
+                format!("{} {:.1} {other}", movement.instruction, place).trim_end().to_owned()
+            }
+            Err(unresolved) => format!("{} ({})", unresolved.reason, unresolved.moves),
+        });
+    }
+    fn waits(&mut self, wait: Wait) {
+        self.0.push(format!("{} {:?}", wait.instruction, wait.duration));
+    }
+    fn sets(&mut self, output: Output) {
+        self.0.push(format!("{} {}={}", output.instruction, output.signal, output.value));
+    }
+    fn joints(&mut self) -> Option<[f64; 6]> {
+        None
+    }
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
+const DATA: &str = "
+    CONST robtarget p10:=[[100,0,300],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST robtarget p20:=[[150,0,300],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST robtarget pTurned:=[[150,0,300],[0,0,0,1],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST jointtarget j10:=[[30,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    VAR bool bFlag;
+    VAR num nKey;";
+
+/// What a machine is told by these statements.
+fn told(statements: &str) -> Vec<String> {
+    let text = format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\nENDMODULE");
+    let parse = syntax::parse(text.as_bytes());
+    assert!(parse.errors.is_empty(), "{statements}: {:?}", parse.errors);
+    let program = Program::new(lower(FileId(0), &parse, text.as_bytes()));
+    let mut recorder = Recorder::default();
+    execute(&program, program.entry("main").expect("main"), &mut recorder);
+    recorder.0
+}
+
+#[test]
+fn every_family_of_movements_is_resolved() {
+    let target = "p10, v100, z10, tool0";
+    for statement in [
+        format!("MoveJ {target};"),
+        format!("MoveL \\Conc, {target} \\WObj:=wobj0 \\Corr;"),
+        "MoveC p20, p10, v100, z10, tool0;".to_owned(),
+        "MoveLDO p10, v100, z10, tool0, doGlue, 1;".to_owned(),
+        "TriggL p10, v100, trGlue \\T2:=trGlue, z10, tool0;".to_owned(),
+        "TriggC p20, p10, v100, trGlue, z10, tool0;".to_owned(),
+        "TriggJ p10, v100, trGlue, z10, tool0;".to_owned(),
+        "TriggLIOs p10, v100 \\TriggData1:=trGlue, z10, tool0;".to_owned(),
+        "MoveLSync p10, v100, z10, tool0, \"rGlue\";".to_owned(),
+        "SearchL \\Stop, diTouch, pFound, p10, v100, tool0;".to_owned(),
+        "SearchC diTouch, pFound, p20, p10, v100, tool0;".to_owned(),
+        "MoveL Tool:=tool0, ToPoint:=p10, Speed:=v100, Zone:=z10;".to_owned(),
+    ] {
+        let told = told(&statement);
+        assert!(told.len() == 1 && told[0].ends_with(" 100.0"), "{statement}: {told:?}");
+    }
+    assert_eq!(told("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
+}
+
+#[test]
+fn external_axes_leave_the_robot_where_it_stands() {
+    let reason = "external axes are not simulated (false)";
+    assert_eq!(told("MoveExtJ j10, vrot10, fine;"), [reason]);
+    assert_eq!(told("SearchExtJ diTouch, j10, j10, vrot10;"), [reason]);
+}
+
+#[test]
+fn displacements_are_worked_out_from_two_points() {
+    let moved = |on: &str| told(&format!("{on}; MoveJ p10, v100, fine, tool0; PDispOff;"));
+    assert_eq!(moved("PDispOn \\ExeP:=p20, p10, tool0"), ["MoveJ 150.0"]);
+    assert_eq!(moved("PDispOn \\Rot \\ExeP:=pTurned, p20, tool0"), ["MoveJ 200.0"]);
+    assert_eq!(moved("PDispOn p10, tool0"), ["MoveJ 100.0 PDispOn"]);
+    assert_eq!(moved("PDispSet [[7,0,0],[1,0,0,0]]"), ["MoveJ 107.0"]);
+}
+
+#[test]
+fn waits_for_others_are_waits() {
+    for wait in
+        ["WaitSyncTask sync1, taskList", "TPReadFK nKey, \"x\", \"\", \"\", \"\", \"\", \"a\""]
+    {
+        let name = wait.split(' ').next().expect("a name");
+        assert_eq!(told(&format!("{wait};")), [format!("{name} None")]);
+    }
+    assert_eq!(told("WaitTime \\InPos, 0.5;"), ["WaitTime Some(0.5)"]);
+    assert_eq!(
+        told("nKey:=1; TPReadFK nKey, \"\", \"\", \"\", \"\", \"\", \"\"; WaitTime nKey;").len(),
+        2
+    );
+}

@@ -1,0 +1,344 @@
+//! Convex quadratic programs whose matrix and rows touch neighbouring variables only.
+//!
+//! A primal-dual interior point method with Mehrotra's predictor and corrector (Nocedal and
+//! Wright, Numerical Optimization, 2006, algorithm 16.4). A row adds its outer product to the
+//! matrix of the linear system, which so stays banded: an iteration takes time linear in the
+//! number of variables, where a general sparse solver spends most of it on bookkeeping.
+
+use super::banded::Banded;
+
+/// min ½ xᵀ H x + gᵀ x + Σ price · (what a row is broken by) subject to the rows.
+pub(super) struct BandedProgram {
+    /// H, positive definite, with a band that holds the terms of each row.
+    pub(super) matrix: Banded,
+    /// g.
+    pub(super) gradient: Vec<f64>,
+    /// The rows.
+    pub(super) rows: Vec<Row>,
+}
+
+/// Σ weight · x[index] ≤ bound.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Row {
+    /// Indices and weights, each index once.
+    pub(super) terms: Vec<(usize, f64)>,
+    /// The bound.
+    pub(super) bound: f64,
+    /// What breaking the row by one costs; infinite for a row that has to be kept.
+    pub(super) price: f64,
+}
+
+impl Row {
+    fn value(&self, x: &[f64]) -> f64 {
+        self.terms.iter().map(|(i, weight)| weight * x[*i]).sum()
+    }
+}
+
+/// An optimum within the gap that was asked for.
+pub(super) struct Optimum {
+    pub(super) x: Vec<f64>,
+    /// The whole objective.
+    pub(super) cost: f64,
+}
+
+/// Iterations before the method gives up; usual are 8 to 20.
+const MAX_ITERATIONS: usize = 60;
+/// Share of the way to the boundary that a step goes.
+const TO_BOUNDARY: f64 = 0.995;
+/// Least room and multiplier at the begin.
+const BEGIN: f64 = 1e-2;
+/// Residual of the rows and of the gradient at the end, relative to their size.
+const RESIDUAL: f64 = 1e-7;
+
+/// Room w ≥ 0 of a row, what it is broken by s ≥ 0, and their multipliers λ and price − λ.
+#[derive(Clone, Copy)]
+struct State {
+    w: f64,
+    s: f64,
+    lambda: f64,
+}
+
+impl BandedProgram {
+    /// Solves the program to a gap relative to 1 + |objective|. None if it does not get there.
+    pub(super) fn solve(&self, gap: f64) -> Option<Optimum> {
+        let mut x = vec![0.0; self.gradient.len()];
+        let mut states: Vec<State> = self.rows.iter().map(State::first).collect();
+        let pairs: usize = self.rows.iter().map(|row| if row.is_soft() { 2 } else { 1 }).sum();
+        for _ in 0..MAX_ITERATIONS {
+            let curved = self.matrix.times(&x);
+            let mut dual: Vec<f64> =
+                curved.iter().zip(&self.gradient).map(|(h, g)| h + g).collect();
+            for (row, state) in self.rows.iter().zip(&states) {
+                for (i, weight) in &row.terms {
+                    dual[*i] += weight * state.lambda;
+                }
+            }
+            let primal: Vec<f64> = self
+                .rows
+                .iter()
+                .zip(&states)
+                .map(|(row, state)| row.value(&x) - state.s + state.w - row.bound)
+                .collect();
+            let complement: f64 =
+                self.rows.iter().zip(&states).map(|(row, state)| state.complement(row)).sum();
+            let cost = self.cost(&x, &curved, &states);
+            let size = 1.0 + cost.abs();
+            if complement <= gap * size
+                && primal.iter().all(|r| r.abs() <= RESIDUAL)
+                && dual.iter().all(|r| r.abs() <= RESIDUAL * size)
+            {
+                return Some(Optimum { x, cost });
+            }
+            let mut matrix = self.matrix.clone();
+            for (row, state) in self.rows.iter().zip(&states) {
+                let weight = 1.0 / state.give(row);
+                for (n, (i, a)) in row.terms.iter().enumerate() {
+                    for (j, b) in &row.terms[..=n] {
+                        matrix.add(*i.max(j), *i.min(j), weight * a * b);
+                    }
+                }
+            }
+            let factor = matrix.factor()?;
+            // The direction for the complements c_w = λ w … and c_s = (price − λ) s … wanted.
+            let direction = |aims: &[(f64, f64)]| {
+                let shifts: Vec<f64> = self
+                    .rows
+                    .iter()
+                    .zip(&states)
+                    .zip(aims.iter().zip(&primal))
+                    .map(|((row, state), ((c_w, c_s), primal))| {
+                        let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
+                        (primal + soft - c_w / state.lambda) / state.give(row)
+                    })
+                    .collect();
+                let mut right: Vec<f64> = dual.iter().map(|r| -r).collect();
+                for (row, shift) in self.rows.iter().zip(&shifts) {
+                    for (i, weight) in &row.terms {
+                        right[*i] -= weight * shift;
+                    }
+                }
+                let dx = factor.solve(right);
+                let changes: Vec<State> = self
+                    .rows
+                    .iter()
+                    .zip(&states)
+                    .zip(aims.iter().zip(&shifts))
+                    .map(|((row, state), ((c_w, c_s), shift))| {
+                        let lambda = row.value(&dx) / state.give(row) + shift;
+                        let w = (-c_w - state.w * lambda) / state.lambda;
+                        let soft = row.is_soft();
+                        let s = if soft { (state.s * lambda - c_s) / state.mu(row) } else { 0.0 };
+                        State { w, s, lambda }
+                    })
+                    .collect();
+                (dx, changes)
+            };
+            let aims: Vec<(f64, f64)> = self
+                .rows
+                .iter()
+                .zip(&states)
+                .map(|(row, state)| (state.lambda * state.w, state.broken(row)))
+                .collect();
+            let (mut dx, mut changes) = direction(&aims);
+            if pairs > 0 {
+                let reach = self.reach(&states, &changes);
+                let ahead: f64 = self
+                    .rows
+                    .iter()
+                    .zip(states.iter().zip(&changes))
+                    .map(|(row, (state, change))| state.moved(change, reach).complement(row))
+                    .sum();
+                let mean = complement / pairs as f64;
+                let aim = mean * (ahead / complement).powi(3);
+                let aims: Vec<(f64, f64)> = aims
+                    .iter()
+                    .zip(&changes)
+                    .map(|((c_w, c_s), d)| (c_w + d.w * d.lambda - aim, c_s - d.s * d.lambda - aim))
+                    .collect();
+                (dx, changes) = direction(&aims);
+            }
+            let step = (TO_BOUNDARY * self.reach(&states, &changes)).min(1.0);
+            for (x, d) in x.iter_mut().zip(&dx) {
+                *x += step * d;
+            }
+            for (state, change) in states.iter_mut().zip(&changes) {
+                *state = state.moved(change, step);
+            }
+        }
+        None
+    }
+
+    fn cost(&self, x: &[f64], curved: &[f64], states: &[State]) -> f64 {
+        let smooth: f64 =
+            x.iter().zip(curved).zip(&self.gradient).map(|((x, h), g)| x * (0.5 * h + g)).sum();
+        let soft = self.rows.iter().zip(states).filter(|(row, _)| row.is_soft());
+        smooth + soft.map(|(row, state)| row.price * state.s).sum::<f64>()
+    }
+
+    /// The largest step, up to a bit over 1, that keeps everything positive.
+    fn reach(&self, states: &[State], changes: &[State]) -> f64 {
+        let mut reach: f64 = 1.0 / TO_BOUNDARY;
+        for (row, (state, change)) in self.rows.iter().zip(states.iter().zip(changes)) {
+            let mut bound = |value: f64, change: f64| {
+                if change < 0.0 {
+                    reach = reach.min(-value / change);
+                }
+            };
+            bound(state.w, change.w);
+            bound(state.lambda, change.lambda);
+            if row.is_soft() {
+                bound(state.s, change.s);
+                bound(state.mu(row), -change.lambda);
+            }
+        }
+        reach
+    }
+}
+
+impl Row {
+    fn is_soft(&self) -> bool {
+        self.price.is_finite()
+    }
+}
+
+impl State {
+    /// At x = 0.
+    fn first(row: &Row) -> State {
+        let s = if row.is_soft() { (-row.bound).max(0.0) + BEGIN } else { 0.0 };
+        let w = (row.bound + s).max(BEGIN);
+        State { w, s, lambda: (BEGIN / w).min(0.5 * row.price) }
+    }
+
+    /// The multiplier of s.
+    fn mu(&self, row: &Row) -> f64 {
+        row.price - self.lambda
+    }
+
+    fn broken(&self, row: &Row) -> f64 {
+        if row.is_soft() { self.mu(row) * self.s } else { 0.0 }
+    }
+
+    fn complement(&self, row: &Row) -> f64 {
+        self.lambda * self.w + self.broken(row)
+    }
+
+    /// How far a row gives way per multiplier.
+    fn give(&self, row: &Row) -> f64 {
+        let soft = if row.is_soft() { self.s / self.mu(row) } else { 0.0 };
+        soft + self.w / self.lambda
+    }
+
+    fn moved(&self, change: &State, step: f64) -> State {
+        State {
+            w: self.w + step * change.w,
+            s: self.s + step * change.s,
+            lambda: self.lambda + step * change.lambda,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+    use super::super::cone::{Affine, ConeProgram, ConeStatus};
+    use super::*;
+
+    const WIDTH: usize = 4;
+    /// The other solver stops at 1e-6 of the objective.
+    const AGREEMENT: f64 = 1e-5;
+
+    /// The same numbers in each run, between −1 and 1.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (self.0 >> 33) as f64 / f64::from(1u32 << 30) - 1.0
+        }
+    }
+
+    fn random(seed: u64, size: usize) -> BandedProgram {
+        let mut numbers = Numbers(seed);
+        let mut matrix = Banded::zeros(size, WIDTH);
+        // Sums of outer products of neighbours, and a small diagonal.
+        for i in 0..size {
+            let v: Vec<f64> = (i..size.min(i + WIDTH + 1)).map(|_| numbers.next()).collect();
+            for (n, a) in v.iter().enumerate() {
+                for (m, b) in v[..=n].iter().enumerate() {
+                    matrix.add(i + n, i + m, a * b);
+                }
+            }
+            matrix.add(i, i, 1e-3);
+        }
+        let gradient = (0..size).map(|_| numbers.next()).collect();
+        let rows = (0..3 * size)
+            .map(|k| {
+                let first = k / 3;
+                let terms = (first..size.min(first + WIDTH)).map(|i| (i, numbers.next())).collect();
+                let soft = k % 2 == 0;
+                // Kept rows leave x = 0 some room, others are broken there now and then.
+                let bound = if soft { numbers.next() } else { 0.1 + numbers.next().abs() };
+                Row { terms, bound, price: if soft { 0.7 } else { f64::INFINITY } }
+            })
+            .collect();
+        BandedProgram { matrix, gradient, rows }
+    }
+
+    fn by_cones(program: &BandedProgram) -> f64 {
+        let size = program.gradient.len();
+        let mut cones = ConeProgram::new(size + program.rows.len());
+        for (i, j, value) in program.matrix.entries() {
+            cones.curve(i, j, value);
+        }
+        for (i, slope) in program.gradient.iter().enumerate() {
+            cones.minimize(&Affine::default().plus(Some(i), *slope));
+        }
+        for (k, row) in program.rows.iter().enumerate() {
+            let mut affine = Affine::constant(-row.bound);
+            for (i, weight) in &row.terms {
+                affine.add(Some(*i), *weight);
+            }
+            if row.is_soft() {
+                let slack = Some(size + k);
+                cones.minimize(&Affine::default().plus(slack, row.price));
+                cones.at_most_zero(Affine::default().plus(slack, -1.0));
+                affine.add(slack, -1.0);
+            }
+            cones.at_most_zero(affine);
+        }
+        let solution = cones.solve();
+        assert_eq!(solution.status, ConeStatus::Solved);
+        solution.objective
+    }
+
+    #[test]
+    fn another_solver_finds_the_same_cost() {
+        for seed in 0..40 {
+            let program = random(seed, 5 + 3 * seed as usize);
+            let optimum = program.solve(1e-8).unwrap();
+            let other = by_cones(&program);
+            let difference = (optimum.cost - other).abs();
+            assert!(difference < AGREEMENT * (1.0 + other.abs()), "{seed}: {difference:e}");
+            for row in program.rows.iter().filter(|row| !row.is_soft()) {
+                assert!(row.value(&optimum.x) <= row.bound + 10.0 * RESIDUAL);
+            }
+        }
+    }
+
+    #[test]
+    fn without_rows_it_is_a_linear_system() {
+        let program = BandedProgram { rows: Vec::new(), ..random(3, 20) };
+        let x = program.solve(1e-8).unwrap().x;
+        for (h, g) in program.matrix.times(&x).iter().zip(&program.gradient) {
+            assert!((h + g).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn rows_that_contradict_each_other_have_no_optimum() {
+        let row = |sign: f64| Row { terms: vec![(0, sign)], bound: -1.0, price: f64::INFINITY };
+        let program = BandedProgram { rows: vec![row(1.0), row(-1.0)], ..random(3, 4) };
+        assert!(program.solve(1e-8).is_none());
+    }
+}
