@@ -14,11 +14,11 @@ use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
+use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
 use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
 use crate::kinematics::{fk, jacobian};
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
@@ -252,7 +252,7 @@ impl<'a> Work<'a> {
                     if self.moving(&attempt.stream).motion_energy_j() >= worth {
                         return Err(Reason::NoSaving);
                     }
-                    problem = Some(describe(&attempt.check));
+                    problem = Some(attempt.check.fault());
                     if attempt.check.worst() < worst {
                         worst = attempt.check.worst();
                         margins.tighten_a_little(&attempt.check);
@@ -311,7 +311,7 @@ impl<'a> Work<'a> {
                         return Ok(self.retiming(attempt.stream, attempt.check, None));
                     }
                     Ok(attempt) => {
-                        problem = Reason::NoStream(describe(&attempt.check));
+                        problem = Reason::NoStream(attempt.check.fault());
                         best = Some(attempt);
                     }
                     Err(reason) => problem = reason,
@@ -425,7 +425,8 @@ impl<'a> Work<'a> {
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let rounded = rounded_points(&polished.stream)?;
+        let rounded = rounded_points(&polished.stream)
+            .map_err(|error| Reason::NoStream(error.to_string()))?;
         let tool = self.task.run.legs[0].tool;
         let check = check(
             self.task.model,
@@ -567,22 +568,6 @@ impl Margins {
     }
 }
 
-fn describe(check: &Check) -> String {
-    let figures = [
-        ("joint speed", check.velocity),
-        ("joint acceleration", check.acceleration),
-        ("jerk", check.jerk),
-        ("torque", check.torque),
-        ("TCP speed", check.tcp_speed),
-        ("distance from the path", check.deviation),
-    ];
-    let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
-    if check.worst() <= 1.0 {
-        return "a joint would leave its range".to_owned();
-    }
-    format!("{} would be {:.1} % of what is allowed", worst.0, 100.0 * worst.1)
-}
-
 fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)
         .into_profile()
@@ -605,43 +590,3 @@ fn levers(model: &Model, run: &Run) -> Joints {
 
 /// A joint whose axis passes the TCP still turns the tool, m/rad.
 const MIN_LEVER: f64 = 0.1;
-
-fn quantum() -> f64 {
-    1.0 / 10_f64.powf(TIME_DECIMALS as f64)
-}
-
-/// At least half a step below `t`: what rounding the figures of one stream does to the time of
-/// the next movement must not add up to a longer cycle.
-fn round_down(t: f64) -> f64 {
-    (t / quantum() - 0.5).floor() * quantum()
-}
-
-fn round_up(t: f64) -> f64 {
-    (t / quantum()).ceil() * quantum()
-}
-
-/// The stream with points as the emitted text will say them.
-fn rounded_points(stream: &Stream) -> Result<Stream, Reason> {
-    let points = stream.points().iter().map(|q| q.map(joint_as_emitted)).collect();
-    Stream::new(*stream.start(), points, stream.intervals().to_vec())
-        .map_err(|error| Reason::NoStream(error.to_string()))
-}
-
-/// Intervals as they will be emitted, with the same sum.
-fn rounded_intervals(intervals: &[f64], duration: f64) -> Vec<f64> {
-    let total = (duration / quantum()).round() as i64;
-    let mut ticks: Vec<i64> = Vec::with_capacity(intervals.len());
-    let mut exact = 0.0;
-    let mut used = 0;
-    for interval in intervals {
-        exact += interval / quantum();
-        let tick = exact.round() as i64 - used;
-        ticks.push(tick);
-        used += tick;
-    }
-    if let Some(last) = ticks.last_mut() {
-        *last += total - used;
-    }
-    let scale = 1.0 / quantum();
-    ticks.into_iter().map(|t| t as f64 / scale).collect()
-}
