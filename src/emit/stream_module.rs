@@ -249,7 +249,9 @@ fn guard(
     context.insert("branches", branches);
     let head = tera.render("guard", &context)?;
     let head = head.strip_suffix('\n').unwrap_or(&head).replace('\n', end_of_line);
-    let tail = format!("{end_of_line}{indent}ENDIF");
+    let after = file.bytes.get(span.end as usize);
+    let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
+    let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },
         text: text.into_bytes(),

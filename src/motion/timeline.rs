@@ -14,6 +14,8 @@ pub struct Simulation {
     pub events: Vec<Event>,
     /// s.
     pub cycle_s: f64,
+    /// The first event of a loop that never ends; one pass of it is in the events.
+    pub repeats_from: Option<usize>,
     /// What could not be simulated.
     pub unresolved: Vec<Note>,
     /// What was assumed about the program.
