@@ -312,8 +312,11 @@ fn odd_statements_have_their_true_reason() {
 fn an_unknown_call_is_the_reason_for_what_it_may_change() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
-    let statements = "MoveAbsJ jB,v500,fine,tP;\nrElsewhere tP;\nMoveAbsJ jA,v500,fine,tP;";
-    fs::write(&path, program("", statements)).unwrap();
+    let target = "PERS jointtarget jP:=[[40,10,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];";
+    // A tool that it is handed is taken to stay: nothing in the program writes it.
+    let statements = "MoveAbsJ jB,v500,fine,tP;\nrElsewhere jP,tP;\nMoveAbsJ jA,v500,fine,tP;\n\
+                      MoveAbsJ jP,v500,fine,tP;";
+    fs::write(&path, program(target, statements)).unwrap();
     let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
     let result = json(&[&args[..], &ROBOT].concat());
     let segments = result["segments"].as_array().unwrap();
@@ -336,6 +339,67 @@ fn streams_without_indentation_and_over_long_ways_hold() {
     for segment in &result["segments"].as_array().unwrap()[1..] {
         assert_eq!(segment["rewritten"], true, "{segment}");
     }
+}
+
+/// First line of each timing segment, and whether it is a stream.
+fn streams(declarations: &str, statements: &str) -> Vec<(u64, bool)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program(declarations, statements)).unwrap();
+    let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
+    let result = json(&[&args[..], &ROBOT].concat());
+    assert_eq!(result["verification"]["passed"], true);
+    let segments = result["segments"].as_array().unwrap().iter();
+    let timing = segments.filter(|segment| segment["kind"] == "timing");
+    timing.map(|s| (s["line_first"].as_u64().unwrap(), s["rewritten"] == true)).collect()
+}
+
+#[test]
+fn statements_may_stand_close_together() {
+    let close = "MoveAbsJ jB,v500,fine,tP;SetDO doA,1;MoveAbsJ jA,v500,fine,tP;";
+    assert_eq!(streams("", close), [(7, false), (8, true), (8, true), (9, true)]);
+}
+
+#[test]
+fn what_flies_on_into_the_next_pass_of_a_loop_stays() {
+    // The last movement of the loop and the first one are one path from the second pass on.
+    let flies = |zone: &str| {
+        format!(
+            "MoveAbsJ jB,v500,fine,tP;\nWHILE TRUE DO\nMoveAbsJ jA,v500,fine,tP;\n\
+             MoveAbsJ jB,v500,{zone},tP;\nENDWHILE"
+        )
+    };
+    assert_eq!(
+        streams("", &flies("z50")),
+        [(7, false), (8, true), (10, false), (11, false), (13, false)]
+    );
+    assert_eq!(
+        streams("", &flies("fine")),
+        [(7, false), (8, true), (10, true), (11, true), (13, false)]
+    );
+}
+
+#[test]
+fn a_path_through_two_routines_costs_only_itself() {
+    let helper = "PROC rGo()\nMoveAbsJ jB,v500,fine,tP;\nMoveAbsJ jA,v500,z20,tP;\nENDPROC";
+    let calls = "rGo;\nrGo;\nMoveAbsJ jA,v500,fine,tP;\nMoveAbsJ jB,v500,fine,tP;\n\
+                 MoveAbsJ jA,v500,fine,tP;";
+    let streams = streams(helper, calls);
+    let of = |line: u64| streams.iter().find(|(first, _)| *first == line).unwrap().1;
+    assert!(of(14) && of(15) && of(16), "{streams:?}");
+}
+
+#[test]
+fn the_program_itself_is_no_output_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    let source = program("", "MoveAbsJ jB,v500,fine,tP;\nMoveAbsJ jA,v500,fine,tP;");
+    fs::write(&path, &source).unwrap();
+    let out = folder.path().to_str().unwrap();
+    let (said, code) = said(folder.path(), &["optimize", path.to_str().unwrap(), "--out", out]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("--in-place"), "{said}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), source);
 }
 
 #[test]

@@ -6,9 +6,9 @@ use super::super::convert;
 use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
 use super::super::instructions;
 use super::super::movement::{Output, Settings, Wait};
-use super::super::value::{Datum, Value};
-use super::Executor;
+use super::super::value::{Datum, Dependence, Value};
 use super::flow::{Flow, number_text};
+use super::{Cell, Executor};
 
 /// The arguments of an instruction, by position and by name.
 pub(super) struct Arguments<'e> {
@@ -106,7 +106,12 @@ impl Executor<'_> {
                 self.forget(args, &format!("is written by {text}"));
             }
             _ => {
-                self.forget(args, &format!("may be changed by {text}, which is in no file given"));
+                let reads = |cell: &Cell| {
+                    let mut origin = cell.reading.iter();
+                    origin.any(|d| matches!(d, Dependence::TrustedPersistent(_)))
+                };
+                let how = format!("may be changed by {text}, which is in no file given");
+                self.forget_if(args, &how, |cell| !reads(cell));
                 self.opaque(
                     stmt.span,
                     &format!("'{text}' is neither in the program nor an instruction that is known"),
@@ -118,6 +123,10 @@ impl Executor<'_> {
 
     /// Data that a call may have written are no longer known.
     pub(super) fn forget(&mut self, args: &[Arg], how: &str) {
+        self.forget_if(args, how, |_| true);
+    }
+
+    fn forget_if(&mut self, args: &[Arg], how: &str, may_change: impl Fn(&Cell) -> bool) {
         for arg in args {
             let (ArgKind::Positional(expr)
             | ArgKind::Named(_, expr)
@@ -128,6 +137,7 @@ impl Executor<'_> {
             if let ExprKind::Ref(name) = &expr.kind
                 && let Some(cell) = self.cell_of(name)
                 && !self.cells[cell].read_only
+                && may_change(&self.cells[cell])
             {
                 let reason = format!("'{}' {how}", name.text);
                 self.cells[cell].value.datum = Datum::unknown(reason, arg.span);
