@@ -10,6 +10,7 @@ mod fk;
 mod inverse;
 mod jacobian;
 mod limits;
+mod numeric;
 mod select;
 mod singularity;
 

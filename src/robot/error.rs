@@ -7,17 +7,15 @@ use thiserror::Error;
 pub enum RobotError {
     /// The catalogue has no such robot.
     #[error(
-        "unknown robot \"{name}\"{}; known robots: {}; or give a robot TOML file",
-        .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?")),
-        .known.join(", ")
+        "unknown robot \"{name}\"{}; joulepath robots list shows the known ones; \
+         or give a robot TOML or URDF file",
+        .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?"))
     )]
     Unknown {
         /// As asked for.
         name: String,
         /// The nearest name of the catalogue, if one is near.
         suggestion: Option<String>,
-        /// Every name of the catalogue.
-        known: Vec<String>,
     },
     /// The name fits several robots.
     #[error("\"{name}\" fits several robots: {}; name one of them in full", .candidates.join(", "))]
@@ -36,7 +34,7 @@ pub enum RobotError {
         source: std::io::Error,
     },
     /// The file's kind is not supported.
-    #[error("{path} is not a robot TOML file; give a file that ends in .toml")]
+    #[error("{path} is no robot file; give a Robot TOML that ends in .toml or a URDF in .urdf")]
     Format {
         /// Path as given.
         path: String,

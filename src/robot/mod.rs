@@ -18,7 +18,9 @@ mod load;
 mod model;
 mod motors;
 mod names;
+mod ortho_parallel;
 mod provenance;
+mod readiness;
 mod tree;
 
 pub use catalogue::{find, names};
@@ -34,6 +36,7 @@ pub use model::Model;
 pub use motors::Motors;
 pub use names::nearest;
 pub use provenance::{Origin, Provenance};
+pub use readiness::lacking;
 
 /// The largest number of joints a model may have.
 pub const MAX_DOF: usize = 7;

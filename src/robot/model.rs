@@ -111,7 +111,7 @@ impl Model {
             None => Standstill::none(dof),
         };
         let controller = match robot.table("controller")? {
-            Some(table) => Controller::read(table, &mut origins)?,
+            Some(table) => Controller::read(table, dof, &mut origins)?,
             None => Controller::default(),
         };
         origins.extend(robot.finish()?);
