@@ -132,6 +132,32 @@ fn a_small_robot_from_its_text() {
 }
 
 #[test]
+fn base_arm_loads_and_effects() {
+    let text = "extends = \"irb 1600-10/1.45\"\nname = \"hung\"\n\
+                [kinematics.base]\norigin = [1, 0, 2]\nrpy = [3.141592653589793, 0, 0]\n\
+                [[arm_load]]\njoint = 3\nmass = 4\ncom = [0.1, 0, 0.2]\ninertia = [0, 0, 0, 0, 0, 0]\n\
+                [effects.stribeck]\nvelocity = [0.01, 0.02]\njoint = 2\n";
+    let hung = from_toml("hung.toml", text).unwrap();
+    assert!((hung.kinematics.up() + nalgebra::Vector3::z()).norm() < 1e-12);
+    let expected = [("joint".to_owned(), vec![2.0]), ("velocity".to_owned(), vec![0.01, 0.02])];
+    assert_eq!(
+        (hung.effects[0].id.as_str(), hung.effects[0].values.as_slice()),
+        ("stribeck", &expected[..])
+    );
+    let upright = irb1600();
+    let (a, b) = (&hung.links[2], &upright.links[2]);
+    assert_eq!(a.mass, b.mass + 4.0);
+    // Hanging, gravity pulls the other way: without the arm load it would be exactly so.
+    let q = [0.2, 0.4, -0.3, 0.1, 0.5, 0.0];
+    let mut lighter = hung.clone();
+    lighter.links.clone_from(&upright.links);
+    let tau = |model: &Model| gravity(model, &mut Data::new(), &Load::none(), &q);
+    for (hanging, standing) in tau(&lighter).iter().zip(tau(&upright)) {
+        assert!((hanging + standing).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn an_overlay_replaces_numbers_with_their_origin() {
     let text = "extends = \"irb 1600-10/1.45\"\nname = \"ours\"\n[limits]\n\
                 torque = [900, 900, 500, 90, 80, 50]\ntorque_source = \"our tuning\"\n";

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::system_parameters::{Entry, section};
+use crate::robot::system_parameters::{Entry, section};
 use crate::text;
 
 /// The folder of modules that all tasks share.

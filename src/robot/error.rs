@@ -39,6 +39,22 @@ pub enum RobotError {
         /// Path as given.
         path: String,
     },
+    /// A URDF that no model can be made of.
+    #[error("{place}: {message}")]
+    Urdf {
+        /// `file:line` of the element.
+        place: String,
+        /// What is wrong with it and the way out.
+        message: String,
+    },
+    /// A controller's configuration that tells no robot.
+    #[error("{place}: {message}")]
+    Configuration {
+        /// `file`, or `file:line`.
+        place: String,
+        /// What is wrong with it and the way out.
+        message: String,
+    },
     /// Not TOML.
     #[error("{place}: not valid TOML: {message}")]
     Syntax {

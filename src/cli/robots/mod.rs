@@ -1,6 +1,7 @@
 //! `joulepath robots`: the catalogue, and robots of one's own.
 
 mod check;
+mod import;
 mod show;
 
 use std::io::Write;
@@ -15,7 +16,8 @@ use crate::robot;
 /// List the known robots, show or check one, or import one.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  joulepath robots show IRB1600-10/1.45\n  \
-                        joulepath robots check arm.urdf")]
+                        joulepath robots check arm.urdf\n  \
+                        joulepath robots import backup --out cell.toml")]
 pub struct RobotsArgs {
     #[command(subcommand)]
     command: RobotsCommand,
@@ -39,6 +41,8 @@ enum RobotsCommand {
         /// Names or robot files; all known robots if none is given.
         robots: Vec<String>,
     },
+    /// A URDF, a MOC.cfg or a backup as Robot TOML.
+    Import(import::ImportArgs),
 }
 
 /// Runs the command.
@@ -49,6 +53,7 @@ pub fn run(args: &RobotsArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         RobotsCommand::List => list(args.format)?,
         RobotsCommand::Show { robot } => show::run(robot, args.format)?,
+        RobotsCommand::Import(args) => import::run(args)?,
         RobotsCommand::Check { robots } => return check::run(robots, args.format),
     }
     Ok(ExitCode::SUCCESS)
