@@ -55,7 +55,7 @@ fn figures_without_a_checkable_source_are_assumed() {
     }
 }
 
-/// RobotComponents has the ranges of the two arm lengths swapped.
+/// `RobotComponents` has the ranges of the two arm lengths swapped.
 #[test]
 fn the_arm_lengths_of_the_irb1600_have_their_own_ranges() {
     for name in ["IRB1600-6/1.2", "IRB1600-10/1.2"] {
@@ -161,7 +161,7 @@ fn axis_2_of_the_irb2600_has_the_right_sign() {
     }
 }
 
-/// RobotComponents has −120…125, a controller −125…120.
+/// `RobotComponents` has −120…125, a controller −125…120.
 #[test]
 fn axis_5_of_the_irb4600_is_the_controllers() {
     let model = robot("IRB4600-40/2.55");

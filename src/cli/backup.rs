@@ -74,6 +74,11 @@ pub fn place(path: &Path) -> Option<(PathBuf, String)> {
     Some((root, task.file_name()?.to_string_lossy().into_owned()))
 }
 
+/// The file of the motion configuration of the backup at `root`.
+pub fn motion_configuration(root: &Path) -> Option<PathBuf> {
+    child(&child(root, "SYSPAR")?, "MOC.cfg")
+}
+
 /// Reads the backup at `root`; what is missing or broken is left out.
 pub fn read(root: &Path) -> Backup {
     let file = |folder: &str, name: &str| {

@@ -112,11 +112,17 @@ pub(super) fn document(name: &str) -> Result<Node, RobotError> {
         [(full, text)] => tree::parse(full, text),
         [] => Err(RobotError::Unknown {
             name: name.to_owned(),
-            suggestion: nearest(name, names()).map(str::to_owned),
+            suggestion: suggestion(name, &asked).map(str::to_owned),
         }),
         several => Err(RobotError::Ambiguous {
             name: name.to_owned(),
             candidates: several.iter().map(|(full, _)| (*full).to_owned()).collect(),
         }),
     }
+}
+
+/// The nearest robot of the same type, else of all.
+fn suggestion(name: &str, asked: &Name) -> Option<&'static str> {
+    let of_type = names().filter(|full| Name::parse(full).same_type(asked));
+    nearest(name, of_type).or_else(|| nearest(name, names()))
 }

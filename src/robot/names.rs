@@ -68,6 +68,11 @@ impl Name {
         Name { kind, numbers, words }
     }
 
+    /// Whether both are of one type, such as `1600`.
+    pub(super) fn same_type(&self, other: &Name) -> bool {
+        self.kind == other.kind
+    }
+
     /// How `self`, as asked for, fits the full name `full`, if it does.
     pub(super) fn fit(&self, full: &Name) -> Option<Fit> {
         if self.kind != full.kind || self.words != full.words {

@@ -1,5 +1,7 @@
 //! Values as TOML writes them.
 
+use std::fmt::Write;
+
 use nalgebra::Isometry3;
 
 /// Below this cosine the pitch is a quarter turn, and roll and yaw are one angle.
@@ -18,7 +20,9 @@ pub(super) fn quoted(text: &str) -> String {
     for c in text.chars() {
         match c {
             '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
             c => quoted.push(c),
         }
     }

@@ -1,6 +1,7 @@
 //! `joulepath robots check`: whether a robot is sound, and what it lacks.
 
-use std::io::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use serde_json::{Map, Value, json};
@@ -105,10 +106,10 @@ fn text(finding: &Finding) -> String {
     let verdict = if finding.problems.is_empty() { "sound" } else { "NOT SOUND" };
     let mut text = format!("{}: {verdict}, {} joints\n", finding.name, finding.joints);
     for problem in &finding.problems {
-        text.push_str(&format!("  {problem}\n"));
+        let _ = writeln!(text, "  {problem}");
     }
     for (command, missing) in finding.lacks.iter().filter(|(_, missing)| !missing.is_empty()) {
-        text.push_str(&format!("  {command} lacks {}\n", missing.join(", ")));
+        let _ = writeln!(text, "  {command} lacks {}", missing.join(", "));
     }
     text
 }

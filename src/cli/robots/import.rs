@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use crate::cli::backup::child;
+use crate::cli::backup::motion_configuration;
 use crate::cli::output;
 use crate::robot::{from_toml, import_moc, import_urdf};
 use crate::text;
@@ -53,8 +53,7 @@ fn configuration(source: &Path) -> anyhow::Result<PathBuf> {
     if !source.is_dir() {
         return Ok(source.to_path_buf());
     }
-    let inside = child(source, "SYSPAR").and_then(|folder| child(&folder, "MOC.cfg"));
-    inside.or_else(|| child(source, "MOC.cfg")).with_context(|| {
+    motion_configuration(source).with_context(|| {
         format!("'{}' has no SYSPAR/MOC.cfg; give a backup folder or a file", source.display())
     })
 }

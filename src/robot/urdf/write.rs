@@ -1,5 +1,6 @@
 //! The chain as Robot TOML.
 
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -32,7 +33,7 @@ pub(super) fn toml(
         }
         let _ =
             write!(text, "\n[[joint]] # {}\nsource = {source}\n", joint.name.replace('\n', " "));
-        let _ = write!(text, "{}axis = {}\n", pose(placement), list(&axis));
+        let _ = writeln!(text, "{}axis = {}", pose(placement), list(&axis));
     }
     limits(document, chain, &mut text)?;
     for link in links {
@@ -60,7 +61,7 @@ fn limits(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(
         };
         let (low, high) = (low.max(-CONTINUOUS), high.min(CONTINUOUS));
         // Not a number is not smaller either.
-        if !(low < high) {
+        if low.partial_cmp(&high) != Some(Ordering::Less) {
             let message = format!(
                 "joint \"{}\" has the range {low} to {high} rad; give <limit lower=\"…\" \
                  upper=\"…\"> with lower < upper",
