@@ -248,7 +248,7 @@ fn guard(
     context.insert("indent", &indent);
     context.insert("branches", branches);
     let head = tera.render("guard", &context)?;
-    let head = head.trim_end_matches('\n').replace('\n', end_of_line);
+    let head = head.strip_suffix('\n').unwrap_or(&head).replace('\n', end_of_line);
     let tail = format!("{end_of_line}{indent}ENDIF");
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },

@@ -37,7 +37,7 @@ pub enum What {
     /// Movements from rest to rest.
     Run(Box<Run>),
     /// A wait.
-    Wait(WaitRecord),
+    Wait(Box<WaitRecord>),
     /// A change of an output, and the number of fly-by movements that were under way.
     Output(Output, usize),
     /// A movement that could not be worked out; the robot may stand elsewhere afterwards.

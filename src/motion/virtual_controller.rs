@@ -166,7 +166,7 @@ impl Machine for VirtualController<'_> {
             .as_ref()
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
         let record = WaitRecord { wait, basis, q: self.q, load, position_known: self.certain };
-        self.push(duration, What::Wait(record));
+        self.push(duration, What::Wait(Box::new(record)));
     }
 
     fn sets(&mut self, output: Output) {
