@@ -151,7 +151,7 @@ fn an_arm_given_joint_by_joint_is_recognised() {
     ];
     for (i, ([x, y, z], axis)) in steps.iter().enumerate() {
         let [low, high] = limits[i];
-        urdf += &format!("<link name=\"l{}\"/>", i + 1);
+        urdf.extend(["<link name=\"l", &(i + 1).to_string(), "\"/>"]);
         let rest = format!(
             "<origin xyz=\"{x} {y} {z}\"/><axis xyz=\"{axis}\"/>\
              <limit lower=\"{low}\" upper=\"{high}\" effort=\"0\" velocity=\"0\"/>"
