@@ -15,6 +15,7 @@ use crate::robot::Model;
 use super::fk::fk;
 use super::inverse::wrap;
 use super::jacobian::jacobian;
+use super::radical_inverse::radical_inverse;
 
 /// Starts of the search for all solutions.
 const STARTS: u32 = 160;
@@ -80,16 +81,4 @@ fn miss(model: &Model, pose: &Isometry3<f64>, q: &[f64; 6]) -> Vector6<f64> {
     let linear = pose.translation.vector - now.translation.vector;
     let angular = (pose.rotation * now.rotation.inverse()).scaled_axis();
     Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
-}
-
-/// The `n`-th number of van der Corput's sequence to the base, between 0 and 1: such
-/// sequences to several bases fill a cube evenly (J. H. Halton, 1960).
-fn radical_inverse(mut n: u32, base: u32) -> f64 {
-    let (mut sum, mut share) = (0.0, 1.0);
-    while n > 0 {
-        share /= f64::from(base);
-        sum += share * f64::from(n % base);
-        n /= base;
-    }
-    sum
 }

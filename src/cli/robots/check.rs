@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use serde_json::{Map, Value, json};
 
 use crate::cli::common::Format;
-use crate::kinematics::{fk, ik_near, limits_ok};
+use crate::kinematics::{fk, ik_near, limits_ok, radical_inverse};
 use crate::robot::{self, Link, Model, lacking};
 
 /// Poses over the ranges of the joints at which forward and inverse kinematics
@@ -89,17 +89,6 @@ fn leads_back(model: &Model, n: u32) -> bool {
         let miss = fk(model, &found).inverse() * pose;
         miss.translation.vector.norm() < SAME && miss.rotation.angle() < SAME
     })
-}
-
-/// The `n`-th number of van der Corput's sequence to the base, between 0 and 1.
-fn radical_inverse(mut n: u32, base: u32) -> f64 {
-    let (mut sum, mut share) = (0.0, 1.0);
-    while n > 0 {
-        share /= f64::from(base);
-        sum += share * f64::from(n % base);
-        n /= base;
-    }
-    sum
 }
 
 fn text(finding: &Finding) -> String {
