@@ -19,7 +19,7 @@ const SAME_POSE: f64 = 1e-10;
 
 /// A serial arm with and one without an elbow offset, and one with rods.
 fn robots() -> [Model; 3] {
-    let rods = "extends = \"irb6640\"\nname = \"rods\"\n\
+    let rods = "extends = \"IRB6640-180/2.55\"\nname = \"rods\"\n\
                 [kinematics]\ncoupling = \"parallelogram\"\n";
     [irb1600(), find("IRB6640-180/2.55").unwrap(), from_toml("rods.toml", rods).unwrap()]
 }

@@ -7,8 +7,8 @@
 use std::fs;
 use std::path::Path;
 
-use joulepath::kinematics::{Conf, conf_of, fk, ik_conf};
-use joulepath::robot::find;
+use joulepath::kinematics::{Conf, conf_of, fk, ik_all, ik_conf};
+use joulepath::robot::{find, from_toml, import_urdf};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 /// Median distance of the forward kinematics from the target \[m\]: the nominal
@@ -92,7 +92,12 @@ fn logged_joints_of_an_irb6640() {
         let off = found.iter().zip(&row.joints).map(|(a, b)| (a - b).abs());
         largest = off.fold(largest, f64::max);
     }
-    eprintln!("largest joint difference: {largest:.2e} rad on {} rows", rows.len());
+    let on_edge = rows.iter().filter(|row| conf_of(&model, &row.joints) != row.conf).count();
+    eprintln!(
+        "largest joint difference: {largest:.2e} rad on {} rows, {on_edge} of them with an angle \
+         at the edge of a quadrant",
+        rows.len()
+    );
     assert!(largest <= JOINT);
 }
 
@@ -117,6 +122,47 @@ fn robotstudio_targets_of_an_irb1600() {
         if target["name"] != "Home" {
             // Home has joints at exactly 0, where either neighbour is right.
             assert_eq!(conf_of(&model, &q), conf, "{}", target["name"]);
+        }
+    }
+}
+
+#[test]
+fn single_pairs_of_targets_and_joints() {
+    let Some(text) = shared("pairs/single_pairs.json") else { return };
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let numbers = |value: &serde_json::Value| -> Vec<f64> {
+        value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    for pair in document["pairs"].as_array().unwrap() {
+        // The arm of the IRB1600 is the same for every payload.
+        let name = pair["robot"].as_str().unwrap().replace("IRB1600-x", "IRB1600-10");
+        let joints: [f64; 6] = numbers(&pair["joints_deg"]).try_into().unwrap();
+        let target = pose(
+            numbers(&pair["trans_mm"]).try_into().unwrap(),
+            numbers(&pair["rot_wxyz"]).try_into().unwrap(),
+        );
+        let found = fk(&find(&name).unwrap(), &joints.map(f64::to_radians));
+        let miss = (found.translation.vector - target.translation.vector).norm();
+        eprintln!("{name}: {miss:.1e} m");
+        assert!(miss < 1e-5 && found.rotation.angle_to(&target.rotation) < 1e-5, "{name}: {miss}");
+    }
+}
+
+#[test]
+fn robots_of_published_logs_are_read() {
+    for (path, joints) in [
+        ("tx40/tx40_mdh_modified.urdf", 6),
+        ("ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf", 6),
+        ("ur10_unisa/panda_mdh_dummy_inertia.urdf", 7),
+    ] {
+        let Some(text) = shared(path) else { return };
+        let model = from_toml(path, &import_urdf(path, &text).unwrap()).unwrap();
+        assert_eq!((model.dof, model.links.len()), (joints, joints), "{path}");
+        if joints == 6 {
+            let q = [0.3, -0.8, 0.9, 0.4, 0.7, -0.2];
+            let pose = fk(&model, &q);
+            let same = |found: &[f64; 6]| found.iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-6);
+            assert!(ik_all(&model, &pose).unwrap().iter().any(same), "{path}");
         }
     }
 }

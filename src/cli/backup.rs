@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::system_parameters::{Entry, section};
+use crate::robot::system_parameters::{Entry, section};
 use crate::text;
 
 /// The folder of modules that all tasks share.
@@ -72,6 +72,11 @@ pub fn place(path: &Path) -> Option<(PathBuf, String)> {
     (is_task && is_named(rapid, "RAPID")).then_some(())?;
     let root = rapid.parent()?.to_path_buf();
     Some((root, task.file_name()?.to_string_lossy().into_owned()))
+}
+
+/// The file of the motion configuration of the backup at `root`.
+pub fn motion_configuration(root: &Path) -> Option<PathBuf> {
+    child(&child(root, "SYSPAR")?, "MOC.cfg")
 }
 
 /// Reads the backup at `root`; what is missing or broken is left out.

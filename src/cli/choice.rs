@@ -1,5 +1,7 @@
 //! Which of the files that were read are the program, and for which robot.
 
+use std::path::Path;
+
 use anyhow::bail;
 
 use super::backup::{self, Backup, Task};
@@ -12,6 +14,8 @@ pub struct Choice<'i> {
     pub files: Vec<&'i InputFile>,
     /// The task of a backup that they are of.
     pub task: Option<&'i Task>,
+    /// The folder of that backup.
+    pub backup: Option<&'i Path>,
     /// What was chosen, for people.
     pub notes: Vec<String>,
 }
@@ -23,7 +27,8 @@ pub struct Choice<'i> {
 /// When the files are of several backups.
 pub fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
     let Some(first) = input.files.iter().find_map(|file| file.place.as_ref()) else {
-        return Ok(Choice { files: input.files.iter().collect(), task: None, notes: Vec::new() });
+        let files = input.files.iter().collect();
+        return Ok(Choice { files, task: None, backup: None, notes: Vec::new() });
     };
     if let [(one, _), (other, _), ..] = input.backups.as_slice() {
         bail!(
@@ -32,7 +37,7 @@ pub fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
             other.display()
         );
     }
-    let (_, backup) = &input.backups[first.backup];
+    let (root, backup) = &input.backups[first.backup];
     let mut folders: Vec<&str> = Vec::new();
     for place in input.files.iter().filter_map(|file| file.place.as_ref()) {
         if !backup::is_shared(&place.folder) && !folders.contains(&place.folder.as_str()) {
@@ -51,7 +56,8 @@ pub fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
         }
         (place, _) => place.is_some(),
     };
-    Ok(Choice { files: input.files.iter().filter(belongs).collect(), task, notes })
+    let files = input.files.iter().filter(belongs).collect();
+    Ok(Choice { files, task, backup: Some(root), notes })
 }
 
 /// The task to run: the one that moves a robot, the first of several.

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
+use super::backup::motion_configuration;
 use super::choice;
 use super::input::{self, Input};
 use crate::config::{self, Config};
@@ -14,7 +15,7 @@ use crate::motion::timeline::What;
 use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
 use crate::robot::{self, Model};
-use crate::text::{FileId, SourceFile, is_encoded_module};
+use crate::text::{self, FileId, SourceFile, is_encoded_module};
 
 /// Options of commands that run a program.
 #[derive(Debug, Args)]
@@ -149,6 +150,10 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
             error.into()
         }
     })?;
+    let model = match choice.backup.filter(|_| of_backup) {
+        Some(backup) => as_configured(backup, model, args.quiet),
+        None => model,
+    };
     if of_backup {
         note(args.quiet, &format!("the robot is {}, as the backup says ({name})", model.name));
     }
@@ -187,6 +192,22 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         .collect();
     let inputs = times.into_iter().map(|(name, _)| name).collect();
     Ok(Job { input, files, model, config, entry, options, inputs })
+}
+
+/// The robot with what its backup says of it: ranges, base frame, loads of the arm.
+fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
+    let Some(path) = motion_configuration(backup) else { return model };
+    let shown = path.display().to_string();
+    let configured =
+        fs::read(&path).map_err(|error| format!("{shown}: {error}")).and_then(|bytes| {
+            let text = robot::import_moc(&shown, &text::decode(&bytes).text, None);
+            let model = text.and_then(|text| robot::from_toml(&shown, &text));
+            model.map_err(|error| error.to_string())
+        });
+    configured.unwrap_or_else(|why| {
+        note(quiet, &format!("the robot is used as it comes, not as set up: {why}"));
+        model
+    })
 }
 
 fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {

@@ -10,7 +10,6 @@ pub mod output;
 pub mod parse;
 pub mod robots;
 pub mod simulate;
-pub mod system_parameters;
 
 use std::process::ExitCode;
 

@@ -27,11 +27,14 @@ pub fn kinetic_energy(model: &Model, load: &Load, q: &[f64], qd: &[f64]) -> f64 
 }
 
 /// Potential energy of links and load \[J\] at `q` \[rad\], 0 where every centre of
-/// mass lies in the plane z = 0 of the base; 0 where the robot has no dynamics.
+/// mass lies at the height of the base frame; 0 where the robot has no dynamics.
 #[must_use]
 pub fn potential_energy(model: &Model, load: &Load, q: &[f64]) -> f64 {
+    let up = model.kinematics.up();
     let mut energy = 0.0;
-    for_each_body(model, load, q, &[], |body| energy += body.link.mass * GRAVITY * body.com.z);
+    for_each_body(model, load, q, &[], |body| {
+        energy += body.link.mass * GRAVITY * body.com.dot(&up);
+    });
     energy
 }
 

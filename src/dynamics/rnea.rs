@@ -57,7 +57,7 @@ fn newton_euler(
     // of its origin; gravity enters as an acceleration of the base.
     let mut w = Vector3::zeros();
     let mut wd = Vector3::zeros();
-    let mut a = Vector3::new(0.0, 0.0, GRAVITY);
+    let mut a = model.kinematics.up() * GRAVITY;
     for i in 0..=last {
         let joint = &joints[i];
         let link = if i == last { &loaded } else { &model.links[i] };

@@ -7,7 +7,9 @@
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
-use crate::robot::{Coupling, Model, Opw};
+use nalgebra::Vector3;
+
+use crate::robot::{Coupling, Model};
 
 use super::fk::Frames;
 
@@ -30,35 +32,56 @@ impl fmt::Display for Conf {
     }
 }
 
-/// The configuration of the joint angles `q` \[rad\]. Without OPW kinematics,
-/// and for parallelogram robots, `cfx` is 0.
+/// The configuration of the joint angles `q` \[rad\]. For parallelogram robots `cfx`
+/// is 0.
 #[must_use]
 pub fn conf_of(model: &Model, q: &[f64; 6]) -> Conf {
-    let cfx = match &model.kinematics.opw {
-        Some(opw) if model.kinematics.coupling == Coupling::None => cfx(model, opw, q),
-        _ => 0,
+    let cfx = match model.kinematics.coupling {
+        Coupling::None => Shape::at(model, q).cfx(q),
+        Coupling::Parallelogram => 0,
     };
     Conf { cf1: quarter(q[0]), cf4: quarter(q[3]), cf6: quarter(q[5]), cfx }
 }
 
 /// The quarter turn that an angle \[rad\] lies in.
-pub(super) fn quarter(angle: f64) -> i32 {
+fn quarter(angle: f64) -> i32 {
     (angle / FRAC_PI_2).floor() as i32
 }
 
-/// The elbow's angle: from the upper arm to the line from elbow to wrist
-/// centre, about axis 3 \[rad\].
-pub(super) fn elbow_angle(model: &Model, opw: &Opw, q: &[f64; 6]) -> f64 {
-    let serial = model.kinematics.to_serial(q);
-    opw.signs[2] * serial[2] - opw.offsets[2] + opw.a2.atan2(opw.c3)
+/// Where the wrist centre lies in the plane of the arm.
+pub(super) struct Shape {
+    /// Its distance in front of axis 1 \[m\].
+    pub(super) reach: f64,
+    /// From the upper arm to the line from elbow to wrist centre, about axis 3 \[rad\].
+    pub(super) elbow: f64,
 }
 
-fn cfx(model: &Model, opw: &Opw, q: &[f64; 6]) -> i32 {
-    let frames = Frames::at(model, q);
-    // The wrist centre's abscissa in the plane of the arm.
-    let (sin, cos) = (opw.signs[0] * q[0] - opw.offsets[0]).sin_cos();
-    let wrist = frames.origin[3];
-    let behind_axis_1 = wrist.x * cos + wrist.y * sin < 0.0;
-    let behind_lower_arm = elbow_angle(model, opw, q).sin() < 0.0;
-    4 * i32::from(behind_axis_1) + 2 * i32::from(behind_lower_arm) + i32::from(q[4] < 0.0)
+impl Shape {
+    pub(super) fn at(model: &Model, q: &[f64; 6]) -> Shape {
+        let frames = Frames::at(model, q);
+        // Where the wrist axes do not meet, axis 5 stands for the wrist centre.
+        let wrist = match &model.kinematics.opw {
+            Some(opw) => {
+                let flange = frames.flange(model);
+                flange.translation.vector - flange.rotation * Vector3::z() * opw.c4
+            }
+            None => frames.origin[4],
+        };
+        let signs = model.kinematics.opw.as_ref().map_or([1.0; 6], |opw| opw.signs);
+        let up = frames.axis[0] * signs[0];
+        let across = frames.axis[2] * signs[2];
+        let upper_arm = frames.origin[2] - frames.origin[1];
+        let forearm = wrist - frames.origin[2];
+        let [a, b] = [upper_arm, forearm].map(|v| v - across * v.dot(&across));
+        Shape {
+            reach: wrist.dot(&across.cross(&up)),
+            elbow: across.dot(&a.cross(&b)).atan2(a.dot(&b)),
+        }
+    }
+
+    fn cfx(&self, q: &[f64; 6]) -> i32 {
+        let behind_axis_1 = self.reach < 0.0;
+        let behind_lower_arm = self.elbow.sin() < 0.0;
+        4 * i32::from(behind_axis_1) + 2 * i32::from(behind_lower_arm) + i32::from(q[4] < 0.0)
+    }
 }

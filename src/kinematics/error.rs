@@ -44,10 +44,14 @@ pub enum IkError {
         /// Those that the pose has, inside the joints' ranges.
         found: Vec<Conf>,
     },
-    /// The robot's chain has no closed inverse.
-    #[error(
-        "{robot} has no OPW kinematics, so poses have no joint angles; program it with jointtargets"
-    )]
+    /// The search found nothing.
+    #[error("no joint angles of {robot} have the pose: it is out of reach, or nearly so")]
+    NotFound {
+        /// The robot.
+        robot: String,
+    },
+    /// The robot has fewer or more joints than a pose has coordinates.
+    #[error("{robot} has not six joints, so poses have no joint angles; give jointtargets")]
     NoInverse {
         /// The robot.
         robot: String,

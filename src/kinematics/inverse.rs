@@ -1,5 +1,5 @@
-//! Closed inverse of an ortho-parallel arm with a spherical wrist: all eight
-//! branches. Letters as in [`Opw`]; θ are OPW angles.
+//! All branches of the inverse. For an ortho-parallel arm with a spherical wrist in
+//! closed form, eight of them; letters as in [`Opw`]; θ are OPW angles.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,9 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Vector3};
 
 use crate::robot::{Coupling, Model, Opw};
 
+use super::conf::Shape;
 use super::error::{IkError, Side};
+use super::numeric;
 
 /// Lengths by which a pose at the edge of the reach may miss it \[m\]: rounding
 /// of targets that are written with few digits is left to the caller.
@@ -35,23 +37,43 @@ pub(super) struct Locked {
     pub(super) slope: f64,
 }
 
-/// All solutions of the pose, at most eight, each angle in (−π, π]; position
-/// limits are not looked at. In a wrist singularity joint 4 is at its zero.
+/// All solutions of the pose, each angle in (−π, π]; position limits are not looked
+/// at. Of an OPW arm at most eight, where joint 4 is at its zero in a wrist
+/// singularity; of another arm at most sixteen, of which one may be missed.
 ///
 /// # Errors
-/// The pose is out of reach or not finite, or the robot has no OPW kinematics.
+/// The pose is out of reach or not finite, or the robot has not six joints.
 pub fn ik_all(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<[f64; 6]>, IkError> {
     Ok(branches(model, pose)?.iter().map(|branch| branch.q).collect())
 }
 
 /// The branches behind [`ik_all`]; never empty.
 pub(super) fn branches(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
-    let Some(opw) = &model.kinematics.opw else {
+    if model.dof != 6 {
         return Err(IkError::NoInverse { robot: model.name.clone() });
-    };
+    }
     if !pose.to_homogeneous().iter().all(|entry| entry.is_finite()) {
         return Err(IkError::NotFinite);
     }
+    match &model.kinematics.opw {
+        Some(opw) => closed(model, opw, pose),
+        None => searched(model, pose),
+    }
+}
+
+fn searched(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
+    let found = numeric::solutions(model, pose);
+    if found.is_empty() {
+        return Err(IkError::NotFound { robot: model.name.clone() });
+    }
+    let branch = |q: [f64; 6]| {
+        let shape = Shape::at(model, &q);
+        Branch { q, back: shape.reach < 0.0, elbow: shape.elbow, locked: None }
+    };
+    Ok(found.into_iter().map(branch).collect())
+}
+
+fn closed(model: &Model, opw: &Opw, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
     let rotation = pose.rotation.to_rotation_matrix().into_inner();
     let centre = pose.translation.vector - opw.c4 * rotation.column(2);
     let beyond_b = centre.xy().norm_squared() - opw.b * opw.b;

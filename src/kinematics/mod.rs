@@ -10,6 +10,8 @@ mod fk;
 mod inverse;
 mod jacobian;
 mod limits;
+mod numeric;
+mod radical_inverse;
 mod select;
 mod singularity;
 
@@ -19,5 +21,6 @@ pub use fk::fk;
 pub use inverse::ik_all;
 pub use jacobian::{jacobian, jacobian_dot};
 pub use limits::limits_ok;
+pub use radical_inverse::radical_inverse;
 pub use select::{ik_conf, ik_near};
 pub use singularity::{Singularity, singularity};

@@ -10,11 +10,15 @@ use super::conf::{Conf, conf_of};
 use super::error::IkError;
 use super::inverse::{Branch, branches};
 use super::limits::limits_ok;
+use super::numeric::refine;
 
 /// By how much an angle may lie outside the quarter turn that the
 /// configuration names \[rad\]: targets and configurations are rounded apart, and
 /// angles at zero are reported on either side.
 const EDGE: f64 = 1e-3;
+/// Difference of the angles below which a searched solution is taken for the nearest
+/// \[rad\]: a step on a path is far smaller, other branches lie beyond.
+const NEAR: f64 = 0.3;
 const TURN: f64 = 2.0 * PI;
 
 /// The solution of the pose that has the configuration, inside the position
@@ -61,6 +65,14 @@ pub fn ik_near(
     pose: &Isometry3<f64>,
     q_ref: &[f64; 6],
 ) -> Result<[f64; 6], IkError> {
+    if model.dof == 6
+        && model.kinematics.opw.is_none()
+        && let Some(q) = refine(model, pose, q_ref)
+        && q.iter().zip(q_ref).all(|(a, b)| (a - b).abs() < NEAR)
+    {
+        limits_ok(model, &q)?;
+        return Ok(q);
+    }
     let mut best = (f64::INFINITY, *q_ref);
     for branch in branches(model, pose)? {
         let mut q = branch.q;

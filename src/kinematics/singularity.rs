@@ -2,8 +2,7 @@
 
 use crate::robot::Model;
 
-use super::conf::elbow_angle;
-use super::fk::Frames;
+use super::conf::Shape;
 
 /// Distances from the three singularities of an arm with a spherical wrist;
 /// each is 0 in its singularity.
@@ -22,11 +21,10 @@ pub struct Singularity {
 #[must_use]
 pub fn singularity(model: &Model, q: &[f64; 6]) -> Option<Singularity> {
     let opw = model.kinematics.opw.as_ref()?;
-    let (sin, cos) = (opw.signs[0] * q[0] - opw.offsets[0]).sin_cos();
-    let wrist_centre = Frames::at(model, q).origin[3];
+    let shape = Shape::at(model, q);
     Some(Singularity {
         wrist: (opw.signs[4] * q[4] - opw.offsets[4]).sin().abs(),
-        elbow: elbow_angle(model, opw, q).sin().abs(),
-        shoulder: (wrist_centre.x * cos + wrist_centre.y * sin).abs(),
+        elbow: shape.elbow.sin().abs(),
+        shoulder: shape.reach.abs(),
     })
 }

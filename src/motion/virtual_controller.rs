@@ -213,7 +213,9 @@ impl VirtualController<'_> {
         if !movement.wobj.fixed {
             return Err("a work object on a moving mechanical unit is not simulated".into());
         }
-        let base = movement.settings.displacement.unwrap_or_else(Isometry3::identity)
+        // Targets are stated in the world, solved in the robot's base frame.
+        let base = self.model.kinematics.base.inverse()
+            * movement.settings.displacement.unwrap_or_else(Isometry3::identity)
             * movement.wobj.frame;
         let tool = movement.tool.frame;
         let near = |pose: &Isometry3<f64>| {

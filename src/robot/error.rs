@@ -7,17 +7,15 @@ use thiserror::Error;
 pub enum RobotError {
     /// The catalogue has no such robot.
     #[error(
-        "unknown robot \"{name}\"{}; known robots: {}; or give a robot TOML file",
-        .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?")),
-        .known.join(", ")
+        "unknown robot \"{name}\"{}; joulepath robots list shows the known ones; \
+         or give a robot TOML or URDF file",
+        .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?"))
     )]
     Unknown {
         /// As asked for.
         name: String,
         /// The nearest name of the catalogue, if one is near.
         suggestion: Option<String>,
-        /// Every name of the catalogue.
-        known: Vec<String>,
     },
     /// The name fits several robots.
     #[error("\"{name}\" fits several robots: {}; name one of them in full", .candidates.join(", "))]
@@ -36,10 +34,26 @@ pub enum RobotError {
         source: std::io::Error,
     },
     /// The file's kind is not supported.
-    #[error("{path} is not a robot TOML file; give a file that ends in .toml")]
+    #[error("{path} is no robot file; give a Robot TOML that ends in .toml or a URDF in .urdf")]
     Format {
         /// Path as given.
         path: String,
+    },
+    /// A URDF that no model can be made of.
+    #[error("{place}: {message}")]
+    Urdf {
+        /// `file:line` of the element.
+        place: String,
+        /// What is wrong with it and the way out.
+        message: String,
+    },
+    /// A controller's configuration that tells no robot.
+    #[error("{place}: {message}")]
+    Configuration {
+        /// `file`, or `file:line`.
+        place: String,
+        /// What is wrong with it and the way out.
+        message: String,
     },
     /// Not TOML.
     #[error("{place}: not valid TOML: {message}")]

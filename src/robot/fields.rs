@@ -93,6 +93,11 @@ impl Fields {
         self.entries.remove(key)
     }
 
+    /// The keys that are not read yet.
+    pub(super) fn keys(&self) -> Vec<String> {
+        self.entries.keys().cloned().collect()
+    }
+
     /// An error unless `value` is there.
     pub(super) fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, RobotError> {
         value.ok_or_else(|| RobotError::Missing {
@@ -223,6 +228,15 @@ impl Fields {
             .enumerate()
             .map(|(i, item)| Fields::new(&format!("{name} {}", i + 1), item))
             .collect()
+    }
+
+    /// A number or a list of any length.
+    pub(super) fn any_numbers(&mut self, key: &str) -> Result<Option<Vec<f64>>, RobotError> {
+        let length = match self.entries.get(key).map(|node| &node.value) {
+            Some(Value::List(items)) => items.len(),
+            _ => return Ok(self.number(key, Accepts::Finite)?.map(|value| vec![value])),
+        };
+        self.numbers(key, length, "numbers", Accepts::Finite)
     }
 
     fn numbers(

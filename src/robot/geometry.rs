@@ -10,6 +10,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion
 use super::MAX_DOF;
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
+use super::ortho_parallel::recognise;
 use super::provenance::Origin;
 
 /// Below this, a coordinate of an axis or an origin is rounding of a zero.
@@ -92,10 +93,13 @@ pub struct Geometry {
     pub joints: Vec<Joint>,
     /// tool0 in the last joint's frame; z points out of the flange.
     pub flange: Isometry3<f64>,
-    /// The OPW parameters of the chain, where it has that form.
+    /// The OPW parameters of the chain, where it has that form; a chain that is given
+    /// joint by joint may have it too.
     pub opw: Option<Opw>,
     /// Coupling of joints 2 and 3.
     pub coupling: Coupling,
+    /// The base frame in the world: where the robot stands, and how it is mounted.
+    pub base: Isometry3<f64>,
 }
 
 impl Geometry {
@@ -123,6 +127,12 @@ impl Geometry {
         tau
     }
 
+    /// Unit vector against gravity, in the base frame.
+    #[must_use]
+    pub fn up(&self) -> Vector3<f64> {
+        self.base.rotation.inverse() * Vector3::z()
+    }
+
     pub(super) fn read(
         fields: Option<Fields>,
         joints: Vec<Fields>,
@@ -130,10 +140,12 @@ impl Geometry {
     ) -> Result<Option<Geometry>, RobotError> {
         let mut opw = None;
         let mut flange = None;
+        let mut base = None;
         let mut coupling = Coupling::None;
         if let Some(mut fields) = fields {
             opw = fields.table("opw")?.map(|table| Opw::read(table, origins)).transpose()?;
             flange = fields.table("flange")?.map(|table| pose(table, origins)).transpose()?;
+            base = fields.table("base")?.map(|table| pose(table, origins)).transpose()?;
             let words = [("none", Coupling::None), ("parallelogram", Coupling::Parallelogram)];
             coupling = fields.choice("coupling", &words)?.unwrap_or(Coupling::None);
             let place = fields.place();
@@ -155,9 +167,10 @@ impl Geometry {
                 });
             }
         }
+        let base = base.unwrap_or_else(Isometry3::identity);
         if let Some(opw) = opw {
             let (joints, flange) = opw.chain();
-            return Ok(Some(Geometry { joints, flange, opw: Some(opw), coupling }));
+            return Ok(Some(Geometry { joints, flange, opw: Some(opw), coupling, base }));
         }
         let joints =
             joints.into_iter().map(|table| joint(table, origins)).collect::<Result<Vec<_>, _>>()?;
@@ -165,7 +178,8 @@ impl Geometry {
             return Ok(None);
         }
         let flange = flange.unwrap_or_else(Isometry3::identity);
-        Ok(Some(Geometry { joints, flange, opw: None, coupling }))
+        let opw = recognise(&joints, &flange);
+        Ok(Some(Geometry { joints, flange, opw, coupling, base }))
     }
 }
 
@@ -173,7 +187,7 @@ impl Opw {
     /// The chain of this arm. At angle 0 of all joints, every joint's frame is
     /// parallel to the base frame; the frames of joints 4 to 6 lie in the wrist
     /// centre.
-    fn chain(&self) -> (Vec<Joint>, Isometry3<f64>) {
+    pub(super) fn chain(&self) -> (Vec<Joint>, Isometry3<f64>) {
         let steps = [
             (Vector3::zeros(), Vector3::z()),
             (Vector3::new(self.a1, self.b, self.c1), Vector3::y()),

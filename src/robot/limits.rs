@@ -12,6 +12,8 @@ pub struct Limits {
     pub position: Vec<[f64; 2]>,
     /// Wider ranges under a condition.
     pub position_if: Vec<PositionIf>,
+    /// Range of q3 − q2, which the rods of a parallelogram robot allow \[rad\].
+    pub coupled: Option<[f64; 2]>,
     /// Largest speed of each joint \[rad/s\].
     pub velocity: Option<Vec<f64>>,
     /// Largest acceleration of each joint \[rad/s²\].
@@ -41,8 +43,9 @@ pub struct PositionIf {
 
 impl Limits {
     /// The range of joint `joint` (from 0) at the joint angles `q` \[rad\]:
-    /// its own one, widened by each condition that holds. An unbounded range
-    /// for a joint that the robot does not have.
+    /// its own one, widened by each condition that holds; for joint 3 narrowed by
+    /// the [`coupled`](Self::coupled) range at the angle of joint 2. An unbounded
+    /// range for a joint that the robot does not have.
     #[must_use]
     pub fn position_at(&self, q: &[f64], joint: usize) -> [f64; 2] {
         let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
@@ -53,6 +56,12 @@ impl Limits {
                 low = low.min(wider.position[0]);
                 high = high.max(wider.position[1]);
             }
+        }
+        if let ([from, to], 2, Some(upper_arm)) =
+            (self.coupled.unwrap_or(unbounded), joint, q.get(1))
+        {
+            low = low.max(upper_arm + from);
+            high = high.min(upper_arm + to);
         }
         [low, high]
     }
@@ -71,6 +80,7 @@ impl Limits {
         let limits = Limits {
             position,
             position_if,
+            coupled: fields.interval("coupled")?,
             velocity: fields.per_joint("velocity", dof, Accepts::Positive)?,
             acceleration: fields.per_joint("acceleration", dof, Accepts::Positive)?,
             jerk: fields.per_joint("jerk", dof, Accepts::Positive)?,

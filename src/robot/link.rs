@@ -1,6 +1,6 @@
 //! Mass, centre of mass and inertia of a link.
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
@@ -32,6 +32,31 @@ impl Link {
         self.mass >= 0.0 && moments[0] >= -slack && moments[2] <= moments[0] + moments[1] + slack
     }
 
+    /// The body of a frame, seen from the frame that it is placed in.
+    pub(super) fn placed(&self, placed: &Isometry3<f64>) -> Link {
+        let r = placed.rotation.to_rotation_matrix();
+        Link {
+            mass: self.mass,
+            com: placed.transform_point(&self.com.into()).coords,
+            inertia: r.matrix() * self.inertia * r.matrix().transpose(),
+        }
+    }
+
+    /// Both bodies as one.
+    pub(super) fn joined(&self, other: &Link) -> Link {
+        let mass = self.mass + other.mass;
+        if mass <= 0.0 {
+            return Link { inertia: self.inertia + other.inertia, ..self.clone() };
+        }
+        let com = (self.com * self.mass + other.com * other.mass) / mass;
+        let about = |body: &Link| {
+            let d = body.com - com;
+            let steiner = Matrix3::identity() * d.norm_squared() - d * d.transpose();
+            body.inertia + steiner * body.mass
+        };
+        Link { mass, com, inertia: about(self) + about(other) }
+    }
+
     pub(super) fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Link, RobotError> {
         let mass = fields.number("mass", Accepts::NonNegative)?;
         let mass = fields.required("mass", mass)?;
@@ -55,6 +80,25 @@ impl Link {
         }
         origins.extend(fields.finish()?);
         Ok(Link { mass, com: Vector3::from(com), inertia })
+    }
+}
+
+/// What is mounted on a link, such as a valve block on the upper arm.
+pub(super) struct ArmLoad {
+    /// The joint behind which it is mounted, from 0.
+    pub(super) joint: usize,
+    /// The body, in that joint's frame.
+    pub(super) body: Link,
+}
+
+impl ArmLoad {
+    pub(super) fn read(
+        mut fields: Fields,
+        dof: usize,
+        origins: &mut Vec<Origin>,
+    ) -> Result<ArmLoad, RobotError> {
+        let joint = fields.joint("joint", dof)?;
+        Ok(ArmLoad { joint, body: Link::read(fields, origins)? })
     }
 }
 

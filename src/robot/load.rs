@@ -7,21 +7,21 @@ use super::catalogue;
 use super::error::RobotError;
 use super::model::Model;
 use super::tree::{self, Node, Value};
+use super::urdf::import_urdf;
 
 /// How many robots may extend each other.
 const MAX_EXTENDS: usize = 8;
 
-/// The robot in the Robot TOML file `name_or_path`, or else the robot of the
+/// The robot in the Robot TOML or URDF file `name_or_path`, or else the robot of the
 /// catalogue with that name.
 ///
-/// A path is what ends in `.toml` or names an existing file.
+/// A path is what ends in `.toml` or `.urdf` or names an existing file.
 ///
 /// # Errors
 /// The file cannot be read or is wrong; the catalogue has no such robot.
 pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     let path = Path::new(name_or_path);
-    let is_toml = path.extension().is_some_and(|ext| ext.eq_ignore_ascii_case("toml"));
-    if is_toml {
+    if kind(path).is_some() {
         return Model::read(resolve(read_file(path)?, path.parent(), 0)?);
     }
     if path.is_file() {
@@ -59,7 +59,7 @@ pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result
     }
     let beside: Option<PathBuf> = folder.map(|folder| folder.join(name));
     let base = match beside {
-        Some(path) if Path::new(name).extension().is_some_and(|ext| ext == "toml") => {
+        Some(path) if kind(&path).is_some() => {
             resolve(read_file(&path)?, path.parent(), depth + 1)?
         }
         _ => resolve(catalogue::document(name)?, None, depth + 1)?,
@@ -67,9 +67,29 @@ pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result
     Ok(tree::overlay(base, node))
 }
 
+/// Kinds of robot files.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Toml,
+    Urdf,
+}
+
+/// The kind that the name of a file says.
+fn kind(path: &Path) -> Option<Kind> {
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    match extension.as_str() {
+        "toml" => Some(Kind::Toml),
+        "urdf" => Some(Kind::Urdf),
+        _ => None,
+    }
+}
+
 fn read_file(path: &Path) -> Result<Node, RobotError> {
     let shown = path.display().to_string();
     let text = fs::read_to_string(path)
         .map_err(|source| RobotError::Io { path: shown.clone(), source })?;
-    tree::parse(&shown, &text)
+    match kind(path) {
+        Some(Kind::Urdf) => tree::parse(&shown, &import_urdf(&shown, &text)?),
+        _ => tree::parse(&shown, &text),
+    }
 }

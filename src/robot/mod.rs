@@ -1,13 +1,14 @@
 //! What a robot is: an immutable [`Model`] of geometry, limits, inertia,
 //! friction, motors, drives and brakes, with the origin of every number.
 //!
-//! A model is loaded from a Robot TOML file ([`load`]) or found in the embedded
+//! A model is loaded from a Robot TOML or URDF file ([`load`]) or found in the embedded
 //! catalogue by a name as people write it ([`find`]). SI units and radians
 //! throughout; joint numbers count from 1 in files and messages, from 0 in code.
 
 mod catalogue;
 mod controller;
 mod drive;
+mod effect;
 mod error;
 mod fields;
 mod friction;
@@ -15,25 +16,35 @@ mod geometry;
 mod limits;
 mod link;
 mod load;
+mod moc;
 mod model;
 mod motors;
 mod names;
+mod ortho_parallel;
 mod provenance;
+mod readiness;
+pub mod system_parameters;
+mod toml_text;
 mod tree;
+mod urdf;
 
 pub use catalogue::{find, names};
 pub use controller::Controller;
 pub use drive::{Brakes, Drive, Sharing, Standstill};
+pub use effect::EffectParameters;
 pub use error::RobotError;
 pub use friction::Friction;
 pub use geometry::{Coupling, Geometry, Joint, Opw};
 pub use limits::{Limits, PositionIf};
 pub use link::Link;
 pub use load::{from_toml, load};
+pub use moc::import_moc;
 pub use model::Model;
 pub use motors::Motors;
 pub use names::nearest;
 pub use provenance::{Origin, Provenance};
+pub use readiness::lacking;
+pub use urdf::import_urdf;
 
 /// The largest number of joints a model may have.
 pub const MAX_DOF: usize = 7;

@@ -3,12 +3,13 @@
 use super::MAX_DOF;
 use super::controller::Controller;
 use super::drive::{Brakes, Drive, Standstill};
+use super::effect::EffectParameters;
 use super::error::RobotError;
 use super::fields::Fields;
 use super::friction::Friction;
 use super::geometry::Geometry;
 use super::limits::Limits;
-use super::link::Link;
+use super::link::{ArmLoad, Link};
 use super::motors::Motors;
 use super::provenance::{self, Origin};
 use super::tree::Node;
@@ -24,7 +25,8 @@ pub struct Model {
     pub kinematics: Geometry,
     /// What the robot may not exceed.
     pub limits: Limits,
-    /// The rigid bodies; empty where the robot has no dynamics.
+    /// The rigid bodies with what is mounted on them; empty where the robot has no
+    /// dynamics.
     pub links: Vec<Link>,
     /// Friction; zero where no source gives it.
     pub friction: Friction,
@@ -38,6 +40,8 @@ pub struct Model {
     pub standstill: Standstill,
     /// The motion planner.
     pub controller: Controller,
+    /// What identification or diagnosis added.
+    pub effects: Vec<EffectParameters>,
     /// The origin of every number, in the order of the fields above.
     pub origins: Vec<Origin>,
 }
@@ -78,7 +82,7 @@ impl Model {
 
         let limits = robot.table("limits")?;
         let limits = Limits::read(robot.required("limits", limits)?, dof, &mut origins)?;
-        let mut links = Vec::new();
+        let mut links: Vec<Link> = Vec::new();
         for table in robot.tables("link")? {
             links.push(Link::read(table, &mut origins)?);
         }
@@ -89,6 +93,12 @@ impl Model {
                 found: links.len(),
                 expected: format!("{dof}, one for each joint, or none"),
             });
+        }
+        for table in robot.tables("arm_load")? {
+            let load = ArmLoad::read(table, dof, &mut origins)?;
+            if let Some(link) = links.get_mut(load.joint) {
+                *link = link.joined(&load.body);
+            }
         }
         let friction = match robot.table("friction")? {
             Some(table) => Friction::read(table, dof, &mut origins)?,
@@ -111,8 +121,12 @@ impl Model {
             None => Standstill::none(dof),
         };
         let controller = match robot.table("controller")? {
-            Some(table) => Controller::read(table, &mut origins)?,
+            Some(table) => Controller::read(table, dof, &mut origins)?,
             None => Controller::default(),
+        };
+        let effects = match robot.table("effects")? {
+            Some(table) => EffectParameters::read_all(table, &mut origins)?,
+            None => Vec::new(),
         };
         origins.extend(robot.finish()?);
         Ok(Model {
@@ -127,6 +141,7 @@ impl Model {
             brakes,
             standstill,
             controller,
+            effects,
             origins,
         })
     }

@@ -1,11 +1,24 @@
 //! Robot names as people and controllers write them.
 //!
-//! `IRB 1600-10/1.45`, `irb1600_10_145`, `IRB1600-1.45` and the controller's
-//! `ROB1_1600_1.45_10` are one robot: a type, and a payload and a reach, of
-//! which one may be missing.
+//! `IRB 1600-10/1.45`, `irb1600_10_145` and the controller's `ROB1_1600_1.45_10`
+//! are one robot: a type, and a payload and a reach, of which one may be missing.
 
 /// Largest share of letters that may differ in a suggestion.
 const NEAR: f64 = 0.5;
+
+/// How well a name as asked for fits a full one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Fit {
+    /// The reach agrees when rounded to the digits asked for.
+    Rounded,
+    /// What is asked for agrees, but it is not all.
+    Part,
+    /// The full name.
+    Whole,
+}
+
+/// Names of series beside their numbers.
+const SERIES: [(&str, &str); 2] = [("gofa", "15000"), ("yumi", "14000")];
 
 /// What a name says.
 #[derive(Debug, PartialEq)]
@@ -21,7 +34,10 @@ pub(super) struct Name {
 impl Name {
     /// Reads a name; any text has a reading.
     pub(super) fn parse(text: &str) -> Name {
-        let lower = text.trim().to_lowercase();
+        let mut lower = text.trim().to_lowercase();
+        for (series, number) in SERIES {
+            lower = lower.replace(series, &format!("{number} "));
+        }
         let mut tokens = lower
             .split(|c: char| !c.is_alphanumeric() && c != '.')
             .filter(|token| !token.is_empty())
@@ -32,29 +48,55 @@ impl Name {
             .filter(|token| !token.is_empty() && !is_mechanical_unit(token));
         let kind = tokens.next().unwrap_or_default().to_owned();
         let (mut numbers, mut words) = (Vec::new(), Vec::new());
-        for token in tokens {
+        while let Some(token) = tokens.next() {
             if token.parse::<f64>().is_ok_and(f64::is_finite) {
                 numbers.push(token.to_owned());
+            } else if token == "type" {
+                // `Type C` is the generation of the cast parts.
+                tokens.next();
             } else if !token.starts_with("type") {
                 words.push(token.to_owned());
             }
         }
+        // `1_5_037` is 1.5 kg and 0.37 m in the name of a file.
+        if let [whole, decimals, _] = numbers.as_slice()
+            && !decimals.starts_with('0')
+        {
+            let payload = format!("{whole}.{decimals}");
+            numbers.splice(..2, [payload]);
+        }
         Name { kind, numbers, words }
     }
 
-    /// Whether `self`, as asked for, can mean the full name `full`.
-    pub(super) fn means(&self, full: &Name) -> bool {
+    /// Whether both are of one type, such as `1600`.
+    pub(super) fn same_type(&self, other: &Name) -> bool {
+        self.kind == other.kind
+    }
+
+    /// How `self`, as asked for, fits the full name `full`, if it does.
+    pub(super) fn fit(&self, full: &Name) -> Option<Fit> {
         if self.kind != full.kind || self.words != full.words {
-            return false;
+            return None;
         }
         match (self.numbers.as_slice(), full.numbers.as_slice()) {
-            ([], _) => true,
-            ([one], [payload, reach]) => same_payload(one, payload) || same_reach(one, reach),
-            ([one, two], [payload, reach]) => {
-                (same_payload(one, payload) && same_reach(two, reach))
-                    || (same_payload(two, payload) && same_reach(one, reach))
+            ([], []) => Some(Fit::Whole),
+            ([], _) => Some(Fit::Part),
+            ([one], [payload, reach]) => {
+                let fits = same_payload(one, payload) || same_reach(one, reach);
+                fits.then_some(Fit::Part)
             }
-            (asked, known) => asked == known,
+            ([one, two], [payload, reach]) => [(one, two), (two, one)]
+                .into_iter()
+                .filter(|(asked, _)| same_payload(asked, payload))
+                .filter_map(|(_, asked)| {
+                    if same_reach(asked, reach) {
+                        Some(Fit::Whole)
+                    } else {
+                        rounds_to(reach, asked).then_some(Fit::Rounded)
+                    }
+                })
+                .max(),
+            _ => None,
         }
     }
 }
@@ -82,6 +124,13 @@ fn same_reach(asked: &str, known: &str) -> bool {
     reach(asked).is_some_and(|r| Some(r) == reach(known))
 }
 
+/// Whether the known reach, rounded to the decimals that were asked for, is the one
+/// asked for: ABB calls the 0.58 m of an IRB120 0.6 m.
+fn rounds_to(known: &str, asked: &str) -> bool {
+    let Some((_, decimals)) = asked.split_once('.') else { return false };
+    known.parse::<f64>().is_ok_and(|reach| format!("{reach:.*}", decimals.len()) == asked)
+}
+
 /// Reach in tenths of a millimetre, of `1.45`, `145`, `058` or `0475`.
 fn reach(text: &str) -> Option<i64> {
     let metres = if text.contains('.') {
@@ -98,17 +147,21 @@ fn compact(text: &str) -> Vec<char> {
     text.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect()
 }
 
-/// Levenshtein distance.
+/// Letters to insert, delete, replace or exchange with their neighbour.
 fn edit_distance(a: &[char], b: &[char]) -> usize {
+    let mut before: Vec<usize> = Vec::new();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.iter().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
+        let mut next = vec![i + 1];
         for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+            let replaced = row[j] + usize::from(x != y);
+            let mut least = replaced.min(row[j + 1] + 1).min(next[j] + 1);
+            if i > 0 && j > 0 && a[i - 1] == *y && b[j - 1] == *x {
+                least = least.min(before[j - 1] + 1);
+            }
+            next.push(least);
         }
+        before = std::mem::replace(&mut row, next);
     }
     row[b.len()]
 }

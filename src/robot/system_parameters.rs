@@ -35,6 +35,20 @@ pub fn section(text: &str, name: &str) -> Vec<Entry> {
     entries
 }
 
+/// The line at which the file breaks off, and how it can be told, if it does. A
+/// controller ends every line, closes every quote and continues no last line.
+pub fn break_off(text: &str) -> Option<(usize, &'static str)> {
+    let last = text.lines().count();
+    let open = text.lines().position(|line| line.matches('"').count() % 2 == 1);
+    if let Some(line) = open {
+        return Some((line + 1, "a quote is not closed"));
+    }
+    if text.trim_end().ends_with('\\') {
+        return Some((last, "the last line is continued by nothing"));
+    }
+    (!text.ends_with(['\n', '\r'])).then_some((last, "the last line has no end"))
+}
+
 fn entry(text: &str) -> Entry {
     let mut entry = Entry::new();
     let mut key: Option<String> = None;
@@ -81,5 +95,15 @@ mod tests {
         assert_eq!(tasks[1]["entry"], "a b");
         assert_eq!(section(text, "OTHER")[0]["value"], "-1.5");
         assert!(section("-a \"unclosed", "x").is_empty());
+    }
+
+    #[test]
+    fn a_file_that_breaks_off_is_told_from_a_whole_one() {
+        let whole =
+            "MOC:CFG_1.0:6:0::\n#\nARM:\n\n -name \"rob1_1\"\\\n -upper_joint_bound 3.1416\n";
+        assert_eq!(break_off(whole), None);
+        for end in (25..whole.len()).filter(|end| !whole[..*end].ends_with('\n')) {
+            assert!(break_off(&whole[..end]).is_some(), "{:?}", &whole[..end]);
+        }
     }
 }

@@ -1,0 +1,119 @@
+//! `joulepath robots check`: whether a robot is sound, and what it lacks.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use serde_json::{Map, Value, json};
+
+use crate::cli::common::Format;
+use crate::kinematics::{fk, ik_near, limits_ok, radical_inverse};
+use crate::robot::{self, Link, Model, lacking};
+
+/// Poses over the ranges of the joints at which forward and inverse kinematics
+/// are held against each other.
+const POSES: u32 = 64;
+/// Largest difference of the poses \[m\] and \[rad\].
+const SAME: f64 = 1e-6;
+
+/// What was found of one robot.
+struct Finding {
+    name: String,
+    joints: usize,
+    problems: Vec<String>,
+    lacks: Vec<(&'static str, Vec<&'static str>)>,
+}
+
+/// Checks the robots; all of the catalogue where none is named.
+pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode> {
+    let names: Vec<String> = if robots.is_empty() {
+        robot::names().map(str::to_owned).collect()
+    } else {
+        robots.to_vec()
+    };
+    let mut findings = Vec::with_capacity(names.len());
+    for name in &names {
+        findings.push(checked(&robot::load(name)?));
+    }
+    let passed = findings.iter().filter(|finding| finding.problems.is_empty()).count();
+    let mut out = std::io::stdout().lock();
+    match format {
+        Format::Text => {
+            for finding in &findings {
+                write!(out, "{}", text(finding))?;
+            }
+            writeln!(out, "{passed} of {} sound", findings.len())?;
+        }
+        Format::Json => {
+            let robots: Vec<Value> = findings.iter().map(document).collect();
+            writeln!(out, "{:#}", json!({ "robots": robots, "passed": passed }))?;
+        }
+    }
+    Ok(if passed == findings.len() { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+fn checked(model: &Model) -> Finding {
+    let mut problems = Vec::new();
+    for (i, link) in model.links.iter().enumerate() {
+        if !Link::is_consistent(link) {
+            problems.push(format!("no body has the inertia of link {}", i + 1));
+        }
+    }
+    let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
+    if missed > 0 {
+        problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));
+    }
+    Finding { name: model.name.clone(), joints: model.dof, problems, lacks: lacking(model) }
+}
+
+/// Whether the inverse of the `n`-th pose has that pose. Robots without six joints
+/// need a finite pose only.
+fn leads_back(model: &Model, n: u32) -> bool {
+    const BASES: [u32; 7] = [2, 3, 5, 7, 11, 13, 17];
+    let q: Vec<f64> = model
+        .limits
+        .position
+        .iter()
+        .zip(BASES)
+        .map(|([low, high], base)| low + radical_inverse(n, base) * (high - low))
+        .collect();
+    let pose = fk(model, &q);
+    let Ok(q) = <[f64; 6]>::try_from(q.as_slice()) else {
+        return pose.to_homogeneous().iter().all(|entry| entry.is_finite());
+    };
+    // The rods of a parallelogram may not allow the pose: then nothing is to be found.
+    if limits_ok(model, &q).is_err() {
+        return true;
+    }
+    ik_near(model, &pose, &q).is_ok_and(|found| {
+        let miss = fk(model, &found).inverse() * pose;
+        miss.translation.vector.norm() < SAME && miss.rotation.angle() < SAME
+    })
+}
+
+fn text(finding: &Finding) -> String {
+    let verdict = if finding.problems.is_empty() { "sound" } else { "NOT SOUND" };
+    let mut text = format!("{}: {verdict}, {} joints\n", finding.name, finding.joints);
+    for problem in &finding.problems {
+        let _ = writeln!(text, "  {problem}");
+    }
+    for (command, missing) in finding.lacks.iter().filter(|(_, missing)| !missing.is_empty()) {
+        let _ = writeln!(text, "  {command} lacks {}", missing.join(", "));
+    }
+    text
+}
+
+fn document(finding: &Finding) -> Value {
+    let lacks: Map<String, Value> = finding
+        .lacks
+        .iter()
+        .map(|(command, missing)| ((*command).into(), json!(missing)))
+        .collect();
+    json!({
+        "name": finding.name,
+        "joints": finding.joints,
+        "sound": finding.problems.is_empty(),
+        "problems": finding.problems,
+        "lacks": lacks,
+    })
+}

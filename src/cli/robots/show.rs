@@ -1,0 +1,89 @@
+//! `joulepath robots show`: what is known of a robot.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use serde_json::{Value, json};
+
+use crate::cli::common::Format;
+use crate::robot::{self, Model};
+
+/// Shows one robot.
+pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
+    let model = robot::load(robot)?;
+    let mut out = std::io::stdout().lock();
+    match format {
+        Format::Text => write!(out, "{}", text(&model))?,
+        Format::Json => writeln!(out, "{:#}", document(&model))?,
+    }
+    Ok(())
+}
+
+fn text(model: &Model) -> String {
+    let mut text = format!("{}, {} joints\n", model.name, model.dof);
+    let degrees = |list: &[f64]| {
+        list.iter().map(|x| format!("{:.1}", x.to_degrees())).collect::<Vec<_>>().join(" ")
+    };
+    let range =
+        |[low, high]: &[f64; 2]| format!("{:.0}…{:.0}", low.to_degrees(), high.to_degrees());
+    let ranges: Vec<String> = model.limits.position.iter().map(range).collect();
+    let _ = writeln!(text, "position deg: {}", ranges.join(" "));
+    for wider in &model.limits.position_if {
+        let _ = writeln!(
+            text,
+            "  axis {}: {} while axis {} is within {}",
+            wider.joint + 1,
+            range(&wider.position),
+            wider.if_joint + 1,
+            range(&wider.if_within)
+        );
+    }
+    if let Some(coupled) = &model.limits.coupled {
+        let _ = writeln!(text, "  axis 3 minus axis 2: {}", range(coupled));
+    }
+    for (what, list) in [
+        ("speed deg/s", &model.limits.velocity),
+        ("acceleration deg/s2", &model.limits.acceleration),
+    ] {
+        let figures = list.as_ref().map_or_else(|| "not known".into(), |list| degrees(list));
+        let _ = writeln!(text, "{what}: {figures}");
+    }
+    let dynamics = if model.has_dynamics() { "yes" } else { "no: energies can't be computed" };
+    let _ = writeln!(text, "dynamics: {dynamics}");
+    let assumed = model.assumed();
+    if !assumed.is_empty() {
+        let _ = writeln!(text, "\nassumed:");
+        for line in assumed {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    text
+}
+
+fn document(model: &Model) -> Value {
+    let origins: Vec<Value> = model
+        .origins
+        .iter()
+        .map(|origin| {
+            json!({
+                "table": origin.table,
+                "key": origin.key,
+                "provenance": origin.provenance.map(|p| p.to_string()),
+                "source": origin.source,
+            })
+        })
+        .collect();
+    let limits = &model.limits;
+    json!({
+        "name": model.name,
+        "joints": model.dof,
+        "position_rad": limits.position,
+        "velocity_rad_s": limits.velocity,
+        "acceleration_rad_s2": limits.acceleration,
+        "torque_nm": limits.torque,
+        "tcp_speed_m_s": limits.tcp_speed,
+        "dynamics": model.has_dynamics(),
+        "assumed": model.assumed(),
+        "origins": origins,
+    })
+}

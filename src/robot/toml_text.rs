@@ -1,0 +1,48 @@
+//! Values as TOML writes them.
+
+use std::fmt::Write;
+
+use nalgebra::Isometry3;
+
+/// Below this cosine the pitch is a quarter turn, and roll and yaw are one angle.
+const UPRIGHT: f64 = 1e-9;
+
+/// Numbers in the shortest form that reads back as the same.
+pub(super) fn list(values: &[f64]) -> String {
+    // Adding 0 takes the sign off a zero.
+    let values: Vec<String> = values.iter().map(|value| format!("{:?}", value + 0.0)).collect();
+    format!("[{}]", values.join(", "))
+}
+
+/// A text in quotes.
+pub(super) fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+/// The keys `origin` and `rpy` of a pose.
+pub(super) fn pose(pose: &Isometry3<f64>) -> String {
+    let r = pose.rotation.to_rotation_matrix();
+    let level = r[(0, 0)].hypot(r[(1, 0)]);
+    let pitch = (-r[(2, 0)]).atan2(level);
+    let (roll, yaw) = if level < UPRIGHT {
+        ((-r[(1, 2)]).atan2(r[(1, 1)]), 0.0)
+    } else {
+        (r[(2, 1)].atan2(r[(2, 2)]), r[(1, 0)].atan2(r[(0, 0)]))
+    };
+    format!(
+        "origin = {}\nrpy = {}\n",
+        list(pose.translation.vector.as_slice()),
+        list(&[roll, pitch, yaw])
+    )
+}

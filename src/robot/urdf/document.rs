@@ -1,0 +1,124 @@
+//! A URDF read twice: by `urdf-rs` for its content, and as XML for the lines, for what
+//! is there at all, and for the transmissions, which `urdf-rs` leaves out.
+
+use std::collections::BTreeMap;
+
+use urdf_rs::{Joint, Link, Robot};
+
+use crate::robot::error::RobotError;
+
+/// A URDF with the places of its elements.
+pub(super) struct Document {
+    pub(super) file: String,
+    pub(super) robot: Robot,
+    /// Gear ratio by the name of the joint.
+    pub(super) reductions: BTreeMap<String, f64>,
+    lines: BTreeMap<(String, String), usize>,
+    with_inertial: Vec<String>,
+}
+
+impl Document {
+    pub(super) fn read(file: &str, text: &str) -> Result<Document, RobotError> {
+        let fail = |line: usize, message: String| RobotError::Urdf {
+            place: format!("{file}:{line}"),
+            message,
+        };
+        if let Some(at) = text.find("<xacro:") {
+            let line = 1 + text[..at].matches('\n').count();
+            let message = "it has xacro macros; expand them first: xacro FILE > robot.urdf";
+            return Err(fail(line, message.into()));
+        }
+        let xml = roxmltree::Document::parse(text).map_err(|error| {
+            let line = match error {
+                roxmltree::Error::UnexpectedEndOfStream => text.lines().count(),
+                _ => error.pos().row as usize,
+            };
+            fail(line.max(1), format!("not valid XML: {error}; export it again"))
+        })?;
+        let line =
+            |node: &roxmltree::Node<'_, '_>| xml.text_pos_at(node.range().start).row as usize;
+        let root = xml.root_element();
+        if root.tag_name().name() != "robot" {
+            return Err(fail(line(&root), "not a URDF: the first element is not <robot>".into()));
+        }
+        let mut lines = BTreeMap::new();
+        let mut with_inertial = Vec::new();
+        let mut reductions = BTreeMap::new();
+        for node in root.children().filter(roxmltree::Node::is_element) {
+            let tag = node.tag_name().name();
+            let name = node.attribute("name").unwrap_or_default();
+            let known = lines.insert((tag.to_owned(), name.to_owned()), line(&node));
+            if let (Some(first), "link" | "joint") = (known, tag) {
+                let message =
+                    format!("a second {tag} \"{name}\", the first is in line {first}; rename one");
+                return Err(fail(line(&node), message));
+            }
+            match tag {
+                "link" => {
+                    if let Some(inertial) = child(&node, "inertial") {
+                        for part in ["mass", "inertia"] {
+                            if child(&inertial, part).is_none() {
+                                let message = format!(
+                                    "the <inertial> of link \"{name}\" has no <{part}>; add it, \
+                                     or leave <inertial> out of every link"
+                                );
+                                return Err(fail(line(&inertial), message));
+                            }
+                        }
+                        with_inertial.push(name.to_owned());
+                    }
+                }
+                "transmission" => {
+                    if let Some((joint, ratio)) = reduction(&node) {
+                        let message = || {
+                            format!("mechanicalReduction \"{ratio}\" is not a number other than 0")
+                        };
+                        let value: f64 = ratio.parse().unwrap_or(f64::NAN);
+                        if !value.is_finite() || value == 0.0 {
+                            return Err(fail(line(&node), message()));
+                        }
+                        reductions.insert(joint.to_owned(), value.abs());
+                    }
+                }
+                _ => {}
+            }
+        }
+        let robot = urdf_rs::read_from_string(text)
+            .map_err(|error| fail(line(&root), format!("not a sound URDF: {error}")))?;
+        Ok(Document { file: file.to_owned(), robot, reductions, lines, with_inertial })
+    }
+
+    /// An error at the element.
+    pub(super) fn error(&self, tag: &str, name: &str, message: String) -> RobotError {
+        let line = self.lines.get(&(tag.to_owned(), name.to_owned())).copied().unwrap_or(1);
+        RobotError::Urdf { place: format!("{}:{line}", self.file), message }
+    }
+
+    /// Whether the link states its inertia.
+    pub(super) fn has_inertial(&self, link: &str) -> bool {
+        self.with_inertial.iter().any(|name| name == link)
+    }
+
+    pub(super) fn link(&self, name: &str) -> Option<&Link> {
+        self.robot.links.iter().find(|link| link.name == name)
+    }
+
+    /// The joints that hang from a link.
+    pub(super) fn joints_of<'a>(&'a self, link: &'a str) -> impl Iterator<Item = &'a Joint> {
+        self.robot.joints.iter().filter(move |joint| joint.parent.link == link)
+    }
+}
+
+fn child<'a, 'i>(node: &roxmltree::Node<'a, 'i>, tag: &str) -> Option<roxmltree::Node<'a, 'i>> {
+    node.children().find(|child| child.tag_name().name() == tag)
+}
+
+/// Joint and ratio of a transmission: the ratio stands in the actuator, or in the joint.
+fn reduction<'a>(node: &roxmltree::Node<'a, '_>) -> Option<(&'a str, &'a str)> {
+    let joint = child(node, "joint")?;
+    let reduces = |node: &roxmltree::Node<'_, '_>| {
+        node.tag_name().name().eq_ignore_ascii_case("mechanicalReduction")
+    };
+    let ratio = node.descendants().find(reduces)?.text()?;
+    Some((joint.attribute("name")?, ratio.trim()))
+}
