@@ -1,7 +1,7 @@
 //! Power at one state of the robot, and its integral over a motion.
 
 use super::parts::EnergyParts;
-use crate::dynamics::{Data, Load, friction, rnea};
+use crate::dynamics::{Data, Load, Torque, gravity, motor_rates, motor_torques, torque};
 use crate::motion::timed::{JointState, TimedMotion};
 use crate::path::joint_path::{DOF, Joints};
 use crate::robot::{Model, Sharing};
@@ -35,17 +35,17 @@ impl Power {
 
 /// Torques and powers of a loaded robot in a state.
 pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) -> Power {
-    let rigid = rnea(model, data, load, &state.q, &state.qd, &state.qdd);
-    let rub = friction(model, &state.qd);
-    let mut tau = [0.0; DOF];
+    let Torque { rigid, friction } = torque(model, data, load, &state.q, &state.qd, &state.qdd);
+    let all = std::array::from_fn(|j| rigid[j] + friction[j]);
+    let motor = motor_torques(model, all);
+    let rates = motor_rates(model, &state.qd);
     let (mut rigid_w, mut friction_w, mut copper_w) = (0.0, 0.0, 0.0);
     let mut lost_by_joint = 0.0;
     for j in 0..DOF {
-        tau[j] = rigid[j] + rub[j];
         rigid_w += rigid[j] * state.qd[j];
-        friction_w += rub[j] * state.qd[j];
-        copper_w += model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * tau[j] * tau[j];
-        lost_by_joint += (-tau[j] * state.qd[j]).max(0.0);
+        friction_w += friction[j] * state.qd[j];
+        copper_w += model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * motor[j] * motor[j];
+        lost_by_joint += (-motor[j] * rates[j]).max(0.0);
     }
     // Negative mechanical power: of each joint, or of their sum on a common bus.
     let lost = match model.drive.sharing {
@@ -53,14 +53,14 @@ pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) ->
         Sharing::Bus => (-(rigid_w + friction_w)).max(0.0),
     };
     let drive_w = lost * (1.0 - model.drive.regeneration);
-    Power { tau, rigid_w, friction_w, copper_w, drive_w }
+    Power { tau: std::array::from_fn(|j| all[j]), rigid_w, friction_w, copper_w, drive_w }
 }
 
 /// Power with which a loaded robot holds still, by joint: copper loss of the gravity torque and
 /// the constant of the robot's file, W.
 pub fn holding_w(model: &Model, load: &Load, q: &Joints) -> Joints {
     let mut data = Data::new();
-    let tau = rnea(model, &mut data, load, q, &[], &[]);
+    let tau = motor_torques(model, gravity(model, &mut data, load, q));
     std::array::from_fn(|j| {
         let loss = model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]);
         loss * tau[j] * tau[j] + model.standstill.holding_w.get(j).copied().unwrap_or(0.0)

@@ -20,12 +20,13 @@ mod motors;
 mod names;
 mod provenance;
 mod tree;
+mod wrist;
 
 pub use catalogue::{find, names};
 pub use controller::Controller;
 pub use drive::{Brakes, Drive, Sharing, Standstill};
 pub use error::RobotError;
-pub use friction::Friction;
+pub use friction::{Friction, Stribeck};
 pub use geometry::{Coupling, Geometry, Joint, Opw};
 pub use limits::{Limits, PositionIf};
 pub use link::Link;
@@ -34,6 +35,7 @@ pub use model::Model;
 pub use motors::Motors;
 pub use names::nearest;
 pub use provenance::{Origin, Provenance};
+pub use wrist::Wrist;
 
 /// The largest number of joints a model may have.
 pub const MAX_DOF: usize = 7;
