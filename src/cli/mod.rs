@@ -10,6 +10,7 @@ pub mod output;
 pub mod parse;
 pub mod robots;
 pub mod simulate;
+pub mod standstill;
 pub mod system_parameters;
 
 use std::process::ExitCode;
@@ -30,6 +31,7 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
+    Standstill(standstill::StandstillArgs),
     Robots(robots::RobotsArgs),
 }
 
@@ -40,6 +42,7 @@ pub fn main() -> ExitCode {
         Command::Parse(args) => parse::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
+        Command::Standstill(args) => standstill::run(&args),
         Command::Robots(args) => robots::run(&args),
     };
     result.unwrap_or_else(|error| {
