@@ -8,6 +8,7 @@ pub mod listing;
 pub mod optimize;
 pub mod output;
 pub mod parse;
+pub mod predict;
 pub mod robots;
 pub mod simulate;
 pub mod standstill;
@@ -32,6 +33,7 @@ enum Command {
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
     Standstill(standstill::StandstillArgs),
+    Predict(predict::PredictArgs),
     Robots(robots::RobotsArgs),
 }
 
@@ -43,6 +45,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
         Command::Standstill(args) => standstill::run(&args),
+        Command::Predict(args) => predict::run(&args),
         Command::Robots(args) => robots::run(&args),
     };
     result.unwrap_or_else(|error| {
