@@ -50,7 +50,8 @@ fn log_of_seven(separator: &str, angle: &str, number: impl Fn(f64) -> String) ->
     for row in 0..12 {
         let t = 0.01 * f64::from(row);
         let values: Vec<String> = state(t).iter().map(|x| number(*x)).collect();
-        text += &format!("{}{separator}{}{separator}x\n", number(t), values.join(separator));
+        let row = [number(t), values.join(separator), "x\n".into()];
+        text += &row.join(separator);
     }
     text
 }
@@ -134,7 +135,7 @@ fn bad_rows_are_named_and_left_out() {
     let repeated = lines[4].clone();
     lines.insert(5, repeated);
     lines.insert(3, "0.015,1,2".into());
-    let broken = lines[2].replacen(",", ",none,", 1).replace(",x", "");
+    let broken = lines[2].replacen(',', ",none,", 1).replace(",x", "");
     lines.insert(3, broken);
     lines.insert(2, "-1".to_owned() + lines[1].strip_prefix('0').unwrap());
     let log = read_csv(lines.join("\n").as_bytes()).unwrap();

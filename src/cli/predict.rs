@@ -25,7 +25,7 @@ pub struct PredictArgs {
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
 
-    /// The motion: columns t, q1…, qd1…, qdd1… (or q1_deg…).
+    /// The motion: columns `t`, `q1…`, `qd1…`, `qdd1…` (or `q1_deg…`).
     #[arg(long, value_name = "FILE.csv")]
     log: PathBuf,
 
