@@ -1,6 +1,7 @@
 //! The main job through the binary: the contract of its JSON, what it writes, what it says.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -222,7 +223,7 @@ fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
     let output = joulepath(&[args, &ROBOT].concat());
     let message = text(&output.stderr).replace(folder.to_str().unwrap(), "[folder]");
     let lines = message.lines().filter(|line| !line.starts_with("note: assumed"));
-    (lines.map(|line| format!("{line}\n")).collect(), output.status.code())
+    (lines.flat_map(|line| [line, "\n"]).collect(), output.status.code())
 }
 
 /// The same for the program of one file.
@@ -246,7 +247,7 @@ fn the_time_asked_for_has_bounds() {
     let mut all = String::new();
     for args in cases {
         let (said, code) = said_of("", "", args);
-        all.push_str(&format!("{args:?}: {}\n{said}\n", code.unwrap()));
+        writeln!(all, "{args:?}: {}\n{said}", code.unwrap()).unwrap();
     }
     snapshots().bind(|| insta::assert_snapshot!("time", all));
 }
@@ -302,7 +303,7 @@ fn odd_statements_have_their_true_reason() {
     let mut all = String::new();
     for (declarations, statements, args) in cases {
         let (said, code) = said_of(declarations, statements, args);
-        all.push_str(&format!("{statements}\n-> {}\n{said}\n", code.unwrap()));
+        writeln!(all, "{statements}\n-> {}\n{said}", code.unwrap()).unwrap();
     }
     snapshots().bind(|| insta::assert_snapshot!("odd", all));
 }
@@ -311,15 +312,30 @@ fn odd_statements_have_their_true_reason() {
 fn an_unknown_call_is_the_reason_for_what_it_may_change() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "rElsewhere tP;\nMoveAbsJ jA,v1000,fine,tP;")).unwrap();
+    let statements = "MoveAbsJ jB,v500,fine,tP;\nrElsewhere tP;\nMoveAbsJ jA,v500,fine,tP;";
+    fs::write(&path, program("", statements)).unwrap();
     let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
     let result = json(&[&args[..], &ROBOT].concat());
-    let last = result["segments"].as_array().unwrap().last().unwrap();
-    let reason = last["reason"].as_str().unwrap();
-    assert_eq!(
-        reason,
-        "not-constant: it uses tP, which rElsewhere may change: rElsewhere is in no file given"
-    );
+    let segments = result["segments"].as_array().unwrap();
+    let reasons: Vec<&str> = segments.iter().filter_map(|s| s["reason"].as_str()).collect();
+    insta::assert_snapshot!("unknown_call", reasons.join("\n"));
+}
+
+/// A long way of the arm stretched out: points that lie far apart need zones of their size.
+const FAR: &str = "CONST jointtarget jC:=[[-100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+                   CONST jointtarget jD:=[[100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
+
+#[test]
+fn streams_without_indentation_and_over_long_ways_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    let statements = "MoveAbsJ jC,vmax,fine,tP;\nMoveAbsJ jD,vmax,fine,tP;";
+    fs::write(&path, program(FAR, statements)).unwrap();
+    let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
+    let result = json(&[&args[..], &ROBOT].concat());
+    for segment in &result["segments"].as_array().unwrap()[1..] {
+        assert_eq!(segment["rewritten"], true, "{segment}");
+    }
 }
 
 #[test]

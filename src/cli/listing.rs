@@ -1,5 +1,7 @@
 //! The `.pgf` of a program: a new module has to be listed in it.
 
+use std::path::Path;
+
 use super::input::{Input, Listing};
 use crate::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 
@@ -36,7 +38,7 @@ pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
 }
 
 fn is_module(file: &OutputFile) -> bool {
-    file.path.ends_with(".mod")
+    Path::new(&file.path).extension().is_some_and(|extension| extension == "mod")
 }
 
 fn folder(path: &str) -> &str {

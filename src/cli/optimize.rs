@@ -201,6 +201,20 @@ fn progress(quiet: bool) -> ProgressBar {
 /// The complete program below a folder.
 fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
     let mut written = Vec::new();
+    let real = |path: &Path| path.canonicalize().ok();
+    for file in &result.outputs {
+        let path = folder.join(&file.path);
+        let target = real(&path);
+        if target.is_some()
+            && job.files.iter().any(|source| real(Path::new(&source.file.path)) == target)
+        {
+            bail!(
+                "'{}' is a file of the program itself; name another folder, or give --in-place, \
+                 which keeps backups",
+                path.display()
+            );
+        }
+    }
     for file in &result.outputs {
         let path = folder.join(&file.path);
         output::write(&path, &stored(job, file))?;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::ir::hir::{Block, Expr, ExprKind, StmtKind};
+use crate::ir::hir::{Block, Expr, ExprKind, Routine, StmtKind};
 use crate::ir::program::Program;
 use crate::text::Span;
 
@@ -59,7 +59,7 @@ pub struct MissingStreams {
 /// The first guard that calls a function of a module of streams that the program does not have.
 pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
     program.modules.iter().enumerate().find_map(|(m, module)| {
-        let mut blocks = module.routines.iter().flat_map(|routine| routine.blocks());
+        let mut blocks = module.routines.iter().flat_map(Routine::blocks);
         blocks.find_map(|block| guard(program, m, block))
     })
 }

@@ -248,8 +248,10 @@ fn guard(
     context.insert("indent", &indent);
     context.insert("branches", branches);
     let head = tera.render("guard", &context)?;
-    let head = head.trim_end_matches('\n').replace('\n', end_of_line);
-    let tail = format!("{end_of_line}{indent}ENDIF");
+    let head = head.strip_suffix('\n').unwrap_or(&head).replace('\n', end_of_line);
+    let after = file.bytes.get(span.end as usize);
+    let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
+    let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },
         text: text.into_bytes(),

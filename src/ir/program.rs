@@ -72,10 +72,13 @@ pub struct Program {
     written: BTreeMap<DataId, Writer>,
 }
 
+/// What declares each name, by the module in which it is local.
+type Declarations<'a> = BTreeMap<(Option<usize>, &'a str), Vec<(Symbol, &'a Ident)>>;
+
 impl Program {
     /// Builds the symbol tables; a name that is declared twice stands for nothing.
     pub fn new(modules: Vec<Module>) -> Program {
-        let mut declared: BTreeMap<(Option<usize>, &str), Vec<(Symbol, &Ident)>> = BTreeMap::new();
+        let mut declared = Declarations::new();
         for (m, module) in modules.iter().enumerate() {
             let data = module.data.iter().enumerate().map(|(index, data)| {
                 (data.scope, Symbol::Data(DataId { module: m, index }), &data.name)
@@ -92,13 +95,12 @@ impl Program {
         let mut local = vec![BTreeMap::new(); modules.len()];
         let mut clashes = Vec::new();
         for ((module, key), list) in declared {
-            let symbol = match list.as_slice() {
-                [(symbol, _)] => *symbol,
-                _ => {
-                    let spans = list.iter().map(|(_, name)| name.span).collect();
-                    clashes.push(Clash { name: list[0].1.clone(), module, spans });
-                    Symbol::Ambiguous
-                }
+            let symbol = if let [(symbol, _)] = list.as_slice() {
+                *symbol
+            } else {
+                let spans = list.iter().map(|(_, name)| name.span).collect();
+                clashes.push(Clash { name: list[0].1.clone(), module, spans });
+                Symbol::Ambiguous
             };
             let table = module.map_or(&mut global, |m| &mut local[m]);
             table.insert(key.to_owned(), symbol);

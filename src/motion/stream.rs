@@ -17,6 +17,10 @@ use std::ops::Range;
 
 pub use crate::path::joint_path::{DOF, Joints};
 
+/// Size of the zones of a stream, `z200`, m: points farther apart than twice this are cut at the
+/// zone and not at half the distance.
+pub const LARGEST_ZONE: f64 = 0.2;
+
 /// Share of the first and of the last interval between the rest and the nearest inner knot.
 const END_KNOT: f64 = 2.0 / 3.0;
 

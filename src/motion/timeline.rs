@@ -14,6 +14,8 @@ pub struct Simulation {
     pub events: Vec<Event>,
     /// s.
     pub cycle_s: f64,
+    /// The first event of a loop that never ends; one pass of it is in the events.
+    pub repeats_from: Option<usize>,
     /// What could not be simulated.
     pub unresolved: Vec<Note>,
     /// What was assumed about the program.
@@ -37,7 +39,7 @@ pub enum What {
     /// Movements from rest to rest.
     Run(Box<Run>),
     /// A wait.
-    Wait(WaitRecord),
+    Wait(Box<WaitRecord>),
     /// A change of an output, and the number of fly-by movements that were under way.
     Output(Output, usize),
     /// A movement that could not be worked out; the robot may stand elsewhere afterwards.

@@ -50,6 +50,7 @@ pub fn simulate(
         events: Vec::new(),
         pending: Vec::new(),
         notes: Vec::new(),
+        repeats_from: None,
         waited: BTreeMap::new(),
     };
     let execution = execute(program, entry, &mut machine);
@@ -60,6 +61,7 @@ pub fn simulate(
     Simulation {
         events: machine.events,
         cycle_s: machine.time,
+        repeats_from: machine.repeats_from,
         unresolved,
         assumed: execution.assumed,
     }
@@ -85,6 +87,7 @@ struct VirtualController<'a> {
     events: Vec<Event>,
     pending: Vec<Pending>,
     notes: Vec<Note>,
+    repeats_from: Option<usize>,
     /// End of the last wait for each input.
     waited: BTreeMap<String, f64>,
 }
@@ -166,7 +169,7 @@ impl Machine for VirtualController<'_> {
             .as_ref()
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
         let record = WaitRecord { wait, basis, q: self.q, load, position_known: self.certain };
-        self.push(duration, What::Wait(record));
+        self.push(duration, What::Wait(Box::new(record)));
     }
 
     fn sets(&mut self, output: Output) {
@@ -177,6 +180,11 @@ impl Machine for VirtualController<'_> {
 
     fn joints(&mut self) -> Option<Joints> {
         (self.pending.is_empty() && self.certain).then_some(self.q)
+    }
+
+    fn repeats(&mut self) {
+        // What is pending becomes the next event, and its end belongs to the loop.
+        self.repeats_from.get_or_insert(self.events.len());
     }
 
     fn is_full(&self) -> bool {

@@ -48,6 +48,23 @@ impl Check {
         self.worst() <= 1.0 && self.in_range
     }
 
+    /// What is exceeded most, in words; for a check that does not hold.
+    pub fn fault(&self) -> String {
+        let figures = [
+            ("joint speed", self.velocity),
+            ("joint acceleration", self.acceleration),
+            ("jerk", self.jerk),
+            ("torque", self.torque),
+            ("TCP speed", self.tcp_speed),
+            ("distance from the path", self.deviation),
+        ];
+        let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        if self.worst() <= 1.0 {
+            return "a joint would leave its range".to_owned();
+        }
+        format!("{} would be {:.1} % of what is allowed", worst.0, 100.0 * worst.1)
+    }
+
     /// The larger of each figure.
     #[must_use]
     pub fn max(&self, other: &Check) -> Check {

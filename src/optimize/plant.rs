@@ -46,7 +46,7 @@ pub struct Realised {
     pub energy: EnergyParts,
     /// The largest share of a torque limit or of a limit of the path.
     pub worst_share: f64,
-    /// Sum over the samples of what shares exceed 1 − [`ROOM`] by.
+    /// Sum over the samples of what shares exceed the limit less a little room by.
     pub excess: f64,
 }
 

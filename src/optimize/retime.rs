@@ -14,14 +14,14 @@ use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
+use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
 use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::ir::number::{TIME_DECIMALS, joint_as_emitted};
 use crate::kinematics::{fk, jacobian};
 use crate::motion::sampling::{self, Loaded, SpeedCap};
-use crate::motion::stream::Stream;
+use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::motion::timing::grid::PathGrid;
@@ -93,6 +93,10 @@ const FIRST_REACH: f64 = 0.006;
 const BOUND_ROUNDING: f64 = 1e-5;
 /// Placing of the points at first, share of the tolerance of the path.
 const FIRST_SPACING: f64 = 0.1;
+/// Share of the reach of the zones that two points may use up.
+const ZONE_SHARE: f64 = 0.95;
+/// The share that is asked for where they would not keep that: they are placed by other rules too.
+const CLOSER: f64 = 0.6;
 /// Share of the allowed distance from the path that the polishing may use at first.
 const FIRST_DISTANCE: f64 = 0.95;
 /// Distance from the path that costs the polishing a share of the energy, in units of the
@@ -151,6 +155,10 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         Goal::Exactly(time) => {
             work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
                 Reason::NoSaving => work.within(time),
+                // Near the least time there may be no other stream.
+                Reason::NoStream(_) if time < task.run.duration() => {
+                    work.within(time).or(Err(reason))
+                }
                 other => Err(other),
             })
         }
@@ -244,7 +252,7 @@ impl<'a> Work<'a> {
                     if self.moving(&attempt.stream).motion_energy_j() >= worth {
                         return Err(Reason::NoSaving);
                     }
-                    problem = Some(describe(&attempt.check));
+                    problem = Some(attempt.check.fault());
                     if attempt.check.worst() < worst {
                         worst = attempt.check.worst();
                         margins.tighten_a_little(&attempt.check);
@@ -303,7 +311,7 @@ impl<'a> Work<'a> {
                         return Ok(self.retiming(attempt.stream, attempt.check, None));
                     }
                     Ok(attempt) => {
-                        problem = Reason::NoStream(describe(&attempt.check));
+                        problem = Reason::NoStream(attempt.check.fault());
                         best = Some(attempt);
                     }
                     Err(reason) => problem = reason,
@@ -381,13 +389,19 @@ impl<'a> Work<'a> {
     ) -> Result<Intended, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
         let reference = self.reference(profile)?;
-        let spacing = Spacing {
+        let mut spacing = Spacing {
             shortest: self.task.spacing_s,
+            longest: f64::INFINITY,
             tolerance: margins.spacing,
             lever: self.lever,
         };
-        let intervals =
-            rounded_intervals(&adaptive_intervals(&reference, duration, &spacing), duration);
+        let mut intervals = adaptive_intervals(&reference, duration, &spacing);
+        let reach = self.zone_time(&reference, duration);
+        if intervals.iter().any(|interval| *interval > ZONE_SHARE * reach) {
+            spacing.longest = CLOSER * reach;
+            intervals = adaptive_intervals(&reference, duration, &spacing);
+        }
+        let intervals = rounded_intervals(&intervals, duration);
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
             .map_err(|error| failed(&error.to_string()))?;
         match fit {
@@ -411,7 +425,8 @@ impl<'a> Work<'a> {
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let rounded = rounded_points(&polished.stream)?;
+        let rounded = rounded_points(&polished.stream)
+            .map_err(|error| Reason::NoStream(error.to_string()))?;
         let tool = self.task.run.legs[0].tool;
         let check = check(
             self.task.model,
@@ -423,6 +438,19 @@ impl<'a> Work<'a> {
         );
         let intended = Intended { reference, stream: polished.stream };
         Ok(Attempt { stream: rounded, check, intended })
+    }
+
+    /// Time in which the TCP goes no farther than the zones of two points reach, s.
+    fn zone_time(&self, reference: &Reference, duration: f64) -> f64 {
+        let tool = &self.task.run.legs[0].tool;
+        let tcp = |t: f64| (fk(self.task.model, &reference.at(t).0) * tool).translation.vector;
+        let n = (reference.duration() / REFERENCE_STEP).ceil().max(1.0) as usize;
+        let step = reference.duration() / n as f64;
+        let farthest = (0..n)
+            .map(|i| (tcp((i + 1) as f64 * step) - tcp(i as f64 * step)).norm())
+            .fold(0.0, f64::max);
+        let speed = farthest / step * (reference.duration() / duration);
+        2.0 * LARGEST_ZONE / speed
     }
 
     fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
@@ -540,22 +568,6 @@ impl Margins {
     }
 }
 
-fn describe(check: &Check) -> String {
-    let figures = [
-        ("joint speed", check.velocity),
-        ("joint acceleration", check.acceleration),
-        ("jerk", check.jerk),
-        ("torque", check.torque),
-        ("TCP speed", check.tcp_speed),
-        ("distance from the path", check.deviation),
-    ];
-    let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
-    if check.worst() <= 1.0 {
-        return "a joint would leave its range".to_owned();
-    }
-    format!("{} would be {:.1} % of what is allowed", worst.0, 100.0 * worst.1)
-}
-
 fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)
         .into_profile()
@@ -578,43 +590,3 @@ fn levers(model: &Model, run: &Run) -> Joints {
 
 /// A joint whose axis passes the TCP still turns the tool, m/rad.
 const MIN_LEVER: f64 = 0.1;
-
-fn quantum() -> f64 {
-    1.0 / 10_f64.powf(TIME_DECIMALS as f64)
-}
-
-/// At least half a step below `t`: what rounding the figures of one stream does to the time of
-/// the next movement must not add up to a longer cycle.
-fn round_down(t: f64) -> f64 {
-    (t / quantum() - 0.5).floor() * quantum()
-}
-
-fn round_up(t: f64) -> f64 {
-    (t / quantum()).ceil() * quantum()
-}
-
-/// The stream with points as the emitted text will say them.
-fn rounded_points(stream: &Stream) -> Result<Stream, Reason> {
-    let points = stream.points().iter().map(|q| q.map(joint_as_emitted)).collect();
-    Stream::new(*stream.start(), points, stream.intervals().to_vec())
-        .map_err(|error| Reason::NoStream(error.to_string()))
-}
-
-/// Intervals as they will be emitted, with the same sum.
-fn rounded_intervals(intervals: &[f64], duration: f64) -> Vec<f64> {
-    let total = (duration / quantum()).round() as i64;
-    let mut ticks: Vec<i64> = Vec::with_capacity(intervals.len());
-    let mut exact = 0.0;
-    let mut used = 0;
-    for interval in intervals {
-        exact += interval / quantum();
-        let tick = exact.round() as i64 - used;
-        ticks.push(tick);
-        used += tick;
-    }
-    if let Some(last) = ticks.last_mut() {
-        *last += total - used;
-    }
-    let scale = 1.0 / quantum();
-    ticks.into_iter().map(|t| t as f64 / scale).collect()
-}

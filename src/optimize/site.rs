@@ -28,6 +28,8 @@ pub struct Site {
     pub variants: Vec<Variant>,
     /// Why the whole site stays, if it does.
     pub reason: Option<Reason>,
+    /// Its movements.
+    statements: BTreeSet<Span>,
 }
 
 /// One way in which a site ran.
@@ -51,20 +53,24 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
     let places = Places::new(program);
     let mut sites: BTreeMap<(Span, Span), Site> = BTreeMap::new();
     let mut first = true;
+    let joined = joined_by_repetition(simulation);
     for (index, event) in simulation.events.iter().enumerate() {
         let What::Run(run) = &event.what else { continue };
         let (Some(head), Some(tail)) = (run.moves.first(), run.moves.last()) else { continue };
         let (head, tail) = (head.movement.span, tail.movement.span);
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
-            .or_else(|| places.neighbours(run).err());
+            .or_else(|| places.neighbours(run).err())
+            .or_else(|| joined.contains(&index).then_some(Reason::Overlapping));
         let same_file = head.file == tail.file;
         let span = if same_file { head.to(tail) } else { head };
         let site = sites.entry((head, tail)).or_insert_with(|| Site {
             span,
             variants: Vec::new(),
             reason: None,
+            statements: BTreeSet::new(),
         });
+        site.statements.extend(run.moves.iter().map(|record| record.movement.span));
         let locals = locals(run);
         let known = site.variants.iter_mut().find(|variant| {
             let other = variant.events.first().map(|i| &simulation.events[*i].what);
@@ -91,17 +97,34 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
     sites
 }
 
+/// The runs that are one run where the program begins again: its last movement flies on into the
+/// first one of the loop that never ends.
+fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
+    let events = || simulation.events.iter().enumerate();
+    let runs = || events().filter(|(_, event)| matches!(event.what, What::Run(_)));
+    let last = events().rfind(|(_, event)| !matches!(event.what, What::Output(..)));
+    let Some((last, event)) = last else { return Vec::new() };
+    let flies_on = match &event.what {
+        What::Run(run) => run.moves.last().is_some_and(|record| !record.movement.zone.fine),
+        _ => false,
+    };
+    if !flies_on {
+        return Vec::new();
+    }
+    let from = simulation.repeats_from.unwrap_or(0);
+    let first = runs().map(|(index, _)| index).find(|index| *index >= from);
+    std::iter::once(last).chain(first).collect()
+}
+
 /// Sites that share a statement can't both be replaced.
 fn mark_overlaps(sites: &mut [Site]) {
-    let spans: Vec<Span> = sites.iter().map(|site| site.span).collect();
-    for (i, site) in sites.iter_mut().enumerate() {
-        let overlaps = spans.iter().enumerate().any(|(k, other)| {
-            k != i
-                && other.file == site.span.file
-                && other.start < site.span.end
-                && site.span.start < other.end
-        });
-        if overlaps && site.reason.is_none() {
+    let mut users: BTreeMap<Span, usize> = BTreeMap::new();
+    for statement in sites.iter().flat_map(|site| &site.statements) {
+        *users.entry(*statement).or_default() += 1;
+    }
+    for site in sites {
+        let shared = site.statements.iter().any(|statement| users[statement] > 1);
+        if shared && site.reason.is_none() {
             site.reason = Some(Reason::Overlapping);
         }
     }

@@ -127,7 +127,7 @@ pub fn polish_stream(
         };
         let Some((part, next)) = polish.along(&best, &step)? else {
             if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
-                damping *= DAMPING_STEP;
+                damping *= DAMPING_STEP.powi(2);
                 continue;
             }
             status = PolishStatus::Converged;

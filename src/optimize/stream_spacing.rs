@@ -23,6 +23,8 @@ const MOST: f64 = 1e4;
 pub struct Spacing {
     /// Shortest interval, s.
     pub shortest: f64,
+    /// Longest interval, s; infinite where only the error bounds it.
+    pub longest: f64,
     /// Error that the spline may have, in radians or whatever `lever` makes of them.
     pub tolerance: f64,
     /// Weight of each joint in the error: 1 for radians, its distance to the tool for metres.
@@ -31,12 +33,12 @@ pub struct Spacing {
 
 impl Default for Spacing {
     fn default() -> Spacing {
-        Spacing { shortest: 0.05, tolerance: 1e-4, lever: [1.0; DOF] }
+        Spacing { shortest: 0.05, longest: f64::INFINITY, tolerance: 1e-4, lever: [1.0; DOF] }
     }
 }
 
 /// Intervals, s, that add up to `duration`, for a stream that follows `reference` in that time.
-/// None is below the shortest one unless the whole duration is.
+/// None is below the shortest one unless the whole duration is, or much above the longest.
 pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacing) -> Vec<f64> {
     let shortest = spacing.shortest.max(duration / MOST);
     if !(duration > 2.0 * shortest && duration.is_finite()) {
@@ -44,7 +46,7 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
     }
     let count = (duration / shortest * SAMPLES).ceil() as usize;
     let step = duration / count as f64;
-    let longest = (duration / FEWEST).max(shortest);
+    let longest = (duration / FEWEST).min(spacing.longest).max(shortest);
     let stretch = reference.duration() / duration;
     let velocity = |t: f64| reference.at(t * stretch).1.map(|v| v * stretch);
     let mut width: Vec<f64> = (0..count)

@@ -1,5 +1,7 @@
 //! What a user should know of a retrofit besides its figures.
 
+use std::fmt::Write;
+
 use super::figures::{Figures, Segment, SegmentKind};
 use super::work::{Budget, Objective, Settings, Source};
 use crate::energy::account::at_rest;
@@ -58,11 +60,12 @@ pub(super) fn notes(
         && takt >= original.cycle_s
     {
         let rest = |cycle_s: f64| resting_j(model, simulation, takt - cycle_s);
-        note.push_str(&format!(
+        let _ = write!(
+            note,
             "; with the rest of the takt waited for, {:.1} J instead of {:.1} J",
             optimized.energy_j + rest(optimized.cycle_s),
             original.energy_j + rest(original.cycle_s),
-        ));
+        );
     }
     notes.push(note);
     notes

@@ -1,5 +1,7 @@
 //! The verifier: reads the emitted text, simulates it, and compares.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::figures::{OutputFile, OutputKind, Verification};
 use super::work::{Settings, Source, Way, nothing_to_verify, read_program};
 use crate::motion::timed::TimedMotion;
@@ -101,6 +103,9 @@ pub(super) fn verify(
         super::Budget::Factor(_) => true,
     };
     note("the cycle takes no longer than allowed", cycle_kept);
+    if !cycle_kept && same_events && failed.is_empty() {
+        failed = slowed(original, &simulation, sites, ways);
+    }
     if failed.is_empty() && same_events {
         let mut worst = Check::none();
         for i in rewritten {
@@ -125,8 +130,36 @@ pub(super) fn verify(
     Attempt { simulation, verification, failed }
 }
 
+/// The streams behind which a movement that stays takes longer than before.
+fn slowed(
+    original: &Simulation,
+    simulation: &Simulation,
+    sites: &[Site],
+    ways: &[Way],
+) -> Vec<(usize, Reason)> {
+    let mut streams: BTreeMap<usize, usize> = BTreeMap::new();
+    for (i, way) in ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok()) {
+        let events = &sites[way.site].variants[way.variant].events;
+        streams.extend(events.iter().map(|event| (*event, i)));
+    }
+    let pairs = original.events.iter().zip(&simulation.events).enumerate();
+    let slower = pairs.filter(|(event, (before, after))| {
+        !streams.contains_key(event) && after.duration > before.duration + TIME_TOLERANCE
+    });
+    let before = slower.filter_map(|(event, _)| streams.range(..event).next_back());
+    let blamed: BTreeSet<usize> = before.map(|(_, way)| *way).collect();
+    let why = "a movement after it takes longer from where it ends";
+    blamed.into_iter().map(|i| (i, Reason::Verification(why.into()))).collect()
+}
+
 fn empty() -> Simulation {
-    Simulation { events: Vec::new(), cycle_s: 0.0, unresolved: Vec::new(), assumed: Vec::new() }
+    Simulation {
+        events: Vec::new(),
+        cycle_s: 0.0,
+        repeats_from: None,
+        unresolved: Vec::new(),
+        assumed: Vec::new(),
+    }
 }
 
 /// Whether all bytes of `part` stand in `whole`, in order.

@@ -32,7 +32,7 @@ impl Executor<'_> {
                 other => other,
             },
             Some(Symbol::Ambiguous) => {
-                self.forget(&call.args, &text);
+                self.forget(&call.args, &format!("may be changed by {text}"));
                 self.opaque(stmt.span, &declared_twice(&text));
                 Flow::Next
             }

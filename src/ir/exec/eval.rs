@@ -157,7 +157,10 @@ impl Executor<'_> {
         let trusted = matches!(&*value.type_key, "tooldata" | "wobjdata" | "loaddata");
         let reading = match (data.kind, program.writer(id)) {
             (DataKind::Const, _) | (DataKind::Var, None) => value.origin.clone(),
-            (DataKind::Pers, None) if trusted => Origin::of(Dependence::TrustedPersistent(name)),
+            // Instructions of options are handed tools and frames, which they only read.
+            (DataKind::Pers, None | Some(Writer::UnknownCall(_))) if trusted => {
+                Origin::of(Dependence::TrustedPersistent(name))
+            }
             (DataKind::Pers, _) if !trusted => Origin::of(Dependence::Persistent(name)),
             (_, Some(Writer::UnknownCall(call))) => {
                 Origin::of(Dependence::Exposed(name, call.clone()))

@@ -198,7 +198,12 @@ impl Executor<'_> {
                 Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
                 Condition::Known(true) if is_always_true(condition) => {
                     self.unresolved(stmt.span, ENDLESS);
-                    return self.block(body);
+                    self.machine.repeats();
+                    // What stands behind the loop never runs.
+                    return match self.block(body) {
+                        Flow::Next => Flow::Exit,
+                        left => left,
+                    };
                 }
                 Condition::Known(true) => {}
                 Condition::Assumed(true) => {

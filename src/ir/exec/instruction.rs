@@ -102,9 +102,11 @@ impl Executor<'_> {
             "corrdiscon" | "corrclear" => self.clear_unmodelled(&["corrcon"]),
             "tunereset" => self.clear_unmodelled(&["tuneservo"]),
             _ if instructions::is_harmless(key) => {}
-            _ if instructions::is_writing(key) => self.forget(args, text),
+            _ if instructions::is_writing(key) => {
+                self.forget(args, &format!("is written by {text}"));
+            }
             _ => {
-                self.forget(args, text);
+                self.forget(args, &format!("may be changed by {text}, which is in no file given"));
                 self.opaque(
                     stmt.span,
                     &format!("'{text}' is neither in the program nor an instruction that is known"),
@@ -114,8 +116,8 @@ impl Executor<'_> {
         Flow::Next
     }
 
-    /// Data that an instruction may have written are no longer known.
-    pub(super) fn forget(&mut self, args: &[Arg], text: &str) {
+    /// Data that a call may have written are no longer known.
+    pub(super) fn forget(&mut self, args: &[Arg], how: &str) {
         for arg in args {
             let (ArgKind::Positional(expr)
             | ArgKind::Named(_, expr)
@@ -127,7 +129,7 @@ impl Executor<'_> {
                 && let Some(cell) = self.cell_of(name)
                 && !self.cells[cell].read_only
             {
-                let reason = format!("'{}' is written by {text}", name.text);
+                let reason = format!("'{}' {how}", name.text);
                 self.cells[cell].value.datum = Datum::unknown(reason, arg.span);
             }
         }
@@ -306,7 +308,7 @@ impl Executor<'_> {
                     false
                 }
                 Some(Err(why)) => {
-                    self.blame(arguments.positional[0], &why);
+                    self.blame(arguments.positional[0], &values[0].datum, &why);
                     true
                 }
                 None => true,

@@ -33,6 +33,8 @@ pub trait Machine {
     fn waits(&mut self, wait: Wait);
     /// A change of an output.
     fn sets(&mut self, output: Output);
+    /// An endless loop begins: what comes from here on comes again and again.
+    fn repeats(&mut self) {}
     /// Axis positions in rad, if the robot stands and its position is known.
     fn joints(&mut self) -> Option<[f64; 6]>;
     /// True once the machine wants no more (limits of time or of length).

@@ -122,8 +122,8 @@ impl Executor<'_> {
             _ => "tool",
         };
         let named = tool;
-        let tool =
-            convert::tool(&tool_value.datum, tool_name).map_err(|why| self.blame(named, &why))?;
+        let tool = convert::tool(&tool_value.datum, tool_name)
+            .map_err(|why| self.blame(named, &tool_value.datum, &why))?;
         let wobj = match arguments.option_value("wobj") {
             Some(expr) => self.argument(expr, &mut origin),
             None => super::super::predefined::lookup("wobj0")
@@ -213,9 +213,13 @@ impl Executor<'_> {
         origin.iter().filter_map(local).collect()
     }
 
-    /// Why an argument can't be used, with the name of the data; their declaration gets a note.
-    pub(super) fn blame(&mut self, argument: &Expr, why: &str) -> String {
+    /// Why an argument can't be used, with the name of the data; where their value is known but
+    /// wrong, the declaration gets a note.
+    pub(super) fn blame(&mut self, argument: &Expr, datum: &Datum, why: &str) -> String {
         let super::super::hir::ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
+        if datum.first_unknown().is_some() {
+            return why.to_owned();
+        }
         let why = format!("'{}': {why}", name.text);
         let frame = self.frame();
         if !frame.names.iter().any(|(key, _)| *key == name.key)
