@@ -1,9 +1,12 @@
-//! Time per call of the inverse dynamics and of the kinematics, six joints.
+//! Time per call of the dynamics and of the kinematics, six joints. With the times of
+//! Pinocchio beside them: `benches/peers/pinocchio/run`.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use joulepath::dynamics::{Data, Load, rnea};
+use joulepath::dynamics::{
+    Data, Load, Regressor, crba, forward_dynamics, regressor, rnea, rnea_derivatives,
+};
 use joulepath::kinematics::{fk, ik_all, jacobian, jacobian_dot};
 use joulepath::robot::find;
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -26,6 +29,23 @@ fn robot_algorithms(c: &mut Criterion) {
     });
     c.bench_function("rnea with a load", |b| {
         b.iter(|| rnea(&model, &mut data, &load, black_box(&Q), black_box(&QD), black_box(&QDD)));
+    });
+    c.bench_function("rnea derivatives", |b| {
+        b.iter(|| {
+            let (q, qd, qdd) = (black_box(&Q), black_box(&QD), black_box(&QDD));
+            rnea_derivatives(&model, &mut data, &none, q, qd, qdd)
+        });
+    });
+    c.bench_function("crba", |b| b.iter(|| crba(&model, &mut data, &none, black_box(&Q))));
+    c.bench_function("forward dynamics", |b| {
+        b.iter(|| forward_dynamics(&model, &mut data, &none, black_box(&Q), &QD, black_box(&QDD)));
+    });
+    let mut scratch = Regressor::new();
+    c.bench_function("regressor", |b| {
+        b.iter(|| {
+            regressor(&model, &mut scratch, black_box(&Q), black_box(&QD), black_box(&QDD));
+            black_box(&mut scratch);
+        });
     });
     c.bench_function("fk", |b| b.iter(|| fk(&model, black_box(&Q))));
     c.bench_function("ik_all", |b| b.iter(|| ik_all(&model, black_box(&pose))));

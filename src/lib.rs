@@ -10,6 +10,7 @@ pub mod emit;
 pub mod energy;
 pub mod ir;
 pub mod kinematics;
+pub mod log;
 pub mod motion;
 pub mod optimize;
 pub mod path;

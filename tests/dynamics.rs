@@ -3,8 +3,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod arms;
+
+use arms::{ROBOTS, load, robots, states};
 use joulepath::dynamics::{Data, Load, friction, gravity, kinetic_energy, potential_energy, rnea};
-use joulepath::robot::{MAX_DOF, Model, find, from_toml};
+use joulepath::robot::{MAX_DOF, find};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
@@ -15,73 +18,15 @@ const EXACT: f64 = 1e-11;
 /// Step of the central differences \[rad, rad/s, s\].
 const H: f64 = 1e-5;
 
-/// Three joints in general position, a tool frame in general position.
-const SKEW: &str = r#"
-name = "skew"
-[kinematics]
-flange = { origin = [0.1, -0.05, 0.2], rpy = [0.4, -0.3, 1.1] }
-[[joint]]
-origin = [0.1, 0.2, 0.3]
-rpy = [0.1, -0.4, 0.7]
-axis = [0.3, 0.2, 0.9]
-[[joint]]
-origin = [0.5, -0.1, 0.2]
-rpy = [-1.2, 0.5, 0.3]
-axis = [0.0, -1.0, 0.0]
-[[joint]]
-origin = [-0.2, 0.4, 0.1]
-axis = [1.0, 1.0, -0.5]
-[limits]
-position = [[-3.0, 3.0], [-2.0, 2.0], [-1.0, 1.0]]
-[[link]]
-mass = 4.0
-com = [0.1, 0.0, 0.2]
-inertia = [0.3, 0.4, 0.2, 0.01, -0.02, 0.03]
-[[link]]
-mass = 3.0
-com = [-0.1, 0.3, 0.2]
-inertia = [0.2, 0.1, 0.25, 0.0, 0.02, -0.03]
-[[link]]
-mass = 2.0
-com = [0.0, 0.1, 0.0]
-inertia = [0.1, 0.12, 0.08, 0.01, 0.0, 0.0]
-[motors]
-ratio = [50.0, 40.0, 30.0]
-rotor_inertia = [1e-4, 2e-4, 3e-4]
-"#;
-
-fn robots() -> Vec<Model> {
-    let parallelogram = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
-                         [kinematics]\ncoupling = \"parallelogram\"\n";
-    vec![
-        find("IRB1600-10/1.45").unwrap(),
-        from_toml("skew.toml", SKEW).unwrap(),
-        from_toml("rods.toml", parallelogram).unwrap(),
-    ]
-}
-
-fn load() -> Load {
-    Load {
-        mass: 8.0,
-        com: Vector3::new(0.05, -0.02, 0.15),
-        inertia: Matrix3::new(0.1, 0.01, 0.02, 0.01, 0.12, -0.01, 0.02, -0.01, 0.09),
-    }
-}
-
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-fn states() -> impl Strategy<Value = [[f64; MAX_DOF]; 3]> {
-    let values = |size: f64| prop::array::uniform7(-size..size);
-    (values(3.0), values(4.0), values(20.0)).prop_map(|(q, qd, qdd)| [q, qd, qdd])
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn power_is_the_change_of_energy(state in states(), which in 0usize..3) {
+    fn power_is_the_change_of_energy(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let tau = rnea(model, &mut Data::new(), &load(), &q, &qd, &qdd);
@@ -98,7 +43,7 @@ proptest! {
     }
 
     #[test]
-    fn torque_is_that_of_the_lagrangian(state in states(), which in 0usize..3) {
+    fn torque_is_that_of_the_lagrangian(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let tau = rnea(model, &mut Data::new(), &load(), &q, &qd, &qdd);
@@ -132,7 +77,7 @@ proptest! {
     }
 
     #[test]
-    fn columns_of_the_mass_matrix_make_the_torque(state in states(), which in 0usize..3) {
+    fn columns_of_the_mass_matrix_make_the_torque(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let mut data = Data::new();
@@ -182,7 +127,7 @@ fn load_acts_as_a_heavier_last_link() {
 #[test]
 fn friction_has_exact_signs() {
     let model = find("IRB1600-10/1.45").unwrap();
-    let tau = friction(&model, &[1e-12, -1.0, 0.0, -0.0, 2.0, 0.0]);
+    let tau = friction(&model, &[1e-12, -1.0, 0.0, -0.0, 2.0, 0.0], &[0.0; MAX_DOF]);
     assert_eq!(tau, [25.0 + 48.0 * 1e-12, -87.0, 0.0, 0.0, 6.6 + 7.0, 0.0, 0.0]);
 }
 

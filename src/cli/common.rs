@@ -127,21 +127,9 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         note(args.quiet, &format!("'{path}' is an encoded module: what it declares is not known"));
     }
     let (config, folder) = configuration(args)?;
-    let name = match (&args.robot, &config.robot) {
-        (Some(name), _) => name.clone(),
-        (None, Some(name)) => {
-            let beside = folder.join(name);
-            if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() }
-        }
-        (None, None) => match choice.task.and_then(|task| task.robot.as_deref()) {
-            Some(name) => name.to_owned(),
-            None => bail!(
-                "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
-             --robot FILE.toml, or robot = \"…\" in {}",
-                config::FILE_NAME
-            ),
-        },
-    };
+    let of_task = choice.task.and_then(|task| task.robot.as_deref());
+    let name = robot_name(args, &config, &folder).or_else(|| of_task.map(str::to_owned));
+    let name = name.with_context(which_robot)?;
     let of_backup = args.robot.is_none() && config.robot.is_none();
     let model = robot::load(&name).map_err(|error| {
         if of_backup {
@@ -178,7 +166,7 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         bail!("the input {name} comes after {t} s; give a time of 0 or more");
     }
     let options = Options {
-        start: args.start.as_deref().map(start_position).transpose()?,
+        start: args.start.as_deref().map(|text| six_degrees("--start", text)).transpose()?,
         inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
     };
     let files: Vec<Source> = choice
@@ -208,6 +196,32 @@ fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
         note(quiet, &format!("the robot is used as it comes, not as set up: {why}"));
         model
     })
+}
+
+/// The robot of options and configuration, for commands that need no program.
+///
+/// # Errors
+/// None is named, or it can't be read.
+pub fn robot(args: &ProgramArgs) -> anyhow::Result<Model> {
+    let (config, folder) = configuration(args)?;
+    Ok(robot::load(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
+}
+
+fn robot_name(args: &ProgramArgs, config: &Config, folder: &Path) -> Option<String> {
+    let configured = || {
+        let name = config.robot.as_ref()?;
+        let beside = folder.join(name);
+        Some(if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() })
+    };
+    args.robot.clone().or_else(configured)
+}
+
+fn which_robot() -> String {
+    format!(
+        "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
+         --robot FILE.toml, or robot = \"…\" in {}",
+        config::FILE_NAME
+    )
 }
 
 fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
@@ -240,10 +254,14 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
     Ok((name.trim().to_owned(), seconds))
 }
 
-fn start_position(text: &str) -> anyhow::Result<[f64; 6]> {
+/// Six axis positions that an option gives in degrees \[rad\].
+///
+/// # Errors
+/// They are not six numbers.
+pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
     let wrong = || {
         anyhow::anyhow!(
-            "--start {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0"
+            "{option} {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0"
         )
     };
     let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();

@@ -8,8 +8,10 @@ pub mod listing;
 pub mod optimize;
 pub mod output;
 pub mod parse;
+pub mod predict;
 pub mod robots;
 pub mod simulate;
+pub mod standstill;
 
 use std::process::ExitCode;
 
@@ -29,6 +31,8 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
+    Standstill(standstill::StandstillArgs),
+    Predict(predict::PredictArgs),
     Robots(robots::RobotsArgs),
 }
 
@@ -39,6 +43,8 @@ pub fn main() -> ExitCode {
         Command::Parse(args) => parse::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
+        Command::Standstill(args) => standstill::run(&args),
+        Command::Predict(args) => predict::run(&args),
         Command::Robots(args) => robots::run(&args),
     };
     result.unwrap_or_else(|error| {

@@ -7,6 +7,7 @@ use crate::robot::{Link, MAX_DOF, Model};
 
 use super::GRAVITY;
 use super::load::Load;
+use super::motor_side::motor_rates;
 
 /// Kinetic energy of links, load and rotors \[J\] at `q` \[rad\], `qd` \[rad/s\];
 /// 0 where the robot has no dynamics.
@@ -19,7 +20,7 @@ pub fn kinetic_energy(model: &Model, load: &Load, q: &[f64], qd: &[f64]) -> f64 
         energy += 0.5 * spin.dot(&(body.link.inertia * spin));
     });
     if let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) {
-        for (joint, velocity) in qd.iter().enumerate().take(model.dof) {
+        for (joint, velocity) in motor_rates(model, qd).iter().enumerate().take(model.dof) {
             energy += 0.5 * motors.reflected_inertia(joint) * velocity * velocity;
         }
     }

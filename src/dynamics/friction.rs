@@ -1,16 +1,72 @@
-//! Friction of the joints, with exact signs.
+//! Friction of the joints.
+//!
+//! ```text
+//! τ_f = f_C s + f_v q̇ + f_s exp(−(q̇/v_s)²) s + f_a |q̇| + f_d s² + μ |τ_L| s
+//! ```
+//!
+//! with s the sign of the velocity: Coulomb, viscous, Stribeck (B.
+//! Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, "A Survey of Models, Analysis
+//! Tools and Compensation Methods for the Control of Machines with Friction",
+//! Automatica 30, 1994), the difference of the directions, and the part that grows
+//! with the load `τ_L` on the gear. Velocities and torques are those of the motors,
+//! which differ from the joints' only where a wrist is coupled.
 
 use crate::robot::{MAX_DOF, Model};
 
+use super::motor_side::{joint_torques, motor_rates, motor_torques};
+
 /// Torque of each joint against its friction \[Nm\] at the velocities `qd`
-/// \[rad/s\]: coulomb · sign(q̇) + viscous · q̇, with sign(0) = 0.
+/// \[rad/s\], with `load_torque` \[Nm\] through the gears. Exact: s = sign(q̇), and
+/// sign(0) = 0.
 #[must_use]
-pub fn friction(model: &Model, qd: &[f64]) -> [f64; MAX_DOF] {
+pub fn friction(model: &Model, qd: &[f64], load_torque: &[f64; MAX_DOF]) -> [f64; MAX_DOF] {
+    law(model, qd, load_torque, sign)
+}
+
+/// The same, differentiable in the velocities: s = tanh(q̇ / `width`), with `width`
+/// > 0 in \[rad/s\].
+#[must_use]
+pub fn smooth_friction(
+    model: &Model,
+    qd: &[f64],
+    load_torque: &[f64; MAX_DOF],
+    width: f64,
+) -> [f64; MAX_DOF] {
+    law(model, qd, load_torque, |velocity| (velocity / width).tanh())
+}
+
+/// 1, −1, or 0 at 0.
+pub(super) fn sign(velocity: f64) -> f64 {
+    if velocity == 0.0 { 0.0 } else { velocity.signum() }
+}
+
+fn law(
+    model: &Model,
+    qd: &[f64],
+    load_torque: &[f64; MAX_DOF],
+    sign: impl Fn(f64) -> f64,
+) -> [f64; MAX_DOF] {
+    let friction = &model.friction;
+    let rates = motor_rates(model, qd);
+    let loads = motor_torques(model, *load_torque);
     let mut tau = [0.0; MAX_DOF];
-    let laws = model.friction.coulomb.iter().zip(&model.friction.viscous);
-    for ((torque, (coulomb, viscous)), &velocity) in tau.iter_mut().zip(laws).zip(qd) {
-        let sign = if velocity == 0.0 { 0.0 } else { velocity.signum() };
-        *torque = coulomb * sign + viscous * velocity;
+    for joint in 0..model.dof {
+        let velocity = rates[joint];
+        let s = sign(velocity);
+        let mut dry = friction.coulomb[joint];
+        if let Some(law) = &friction.stribeck {
+            dry += law.stiction[joint] * (-(velocity / law.velocity[joint]).powi(2)).exp();
+        }
+        if let Some(mu) = &friction.load_friction {
+            dry += mu[joint] * loads[joint].abs();
+        }
+        tau[joint] = dry * s + friction.viscous[joint] * velocity;
+        if let Some(asymmetry) = &friction.viscous_asymmetry {
+            tau[joint] += asymmetry[joint] * velocity * s;
+        }
+        if let Some(asymmetry) = &friction.coulomb_asymmetry {
+            tau[joint] += asymmetry[joint] * s * s;
+        }
     }
-    tau
+    joint_torques(model, tau)
 }

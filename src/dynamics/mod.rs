@@ -1,4 +1,5 @@
-//! What moving costs in torque: inverse dynamics, gravity, energies, friction.
+//! What moving costs in torque: inverse dynamics with its
+//! derivatives and regressor, mass matrix, forward dynamics, friction, energies.
 //!
 //! Algorithms read a [`Model`](crate::robot::Model), write into a scratch
 //! [`Data`] and return values; none allocates. Results have [`MAX_DOF`]
@@ -7,17 +8,36 @@
 //!
 //! [`MAX_DOF`]: crate::robot::MAX_DOF
 
+mod base_parameters;
+mod crba;
 mod data;
+mod derivatives;
 mod energy;
+mod forward;
 mod friction;
+mod joint_matrix;
 mod load;
+mod motor_side;
+mod parameters;
+mod regressor;
 mod rnea;
+mod spatial;
+mod torque;
 
+pub use base_parameters::{BaseParameters, base_parameters, write_rows};
+pub use crba::crba;
 pub use data::Data;
+pub use derivatives::{Derivatives, rnea_derivatives};
 pub use energy::{kinetic_energy, potential_energy};
-pub use friction::friction;
+pub use forward::forward_dynamics;
+pub use friction::{friction, smooth_friction};
+pub use joint_matrix::JointMatrix;
 pub use load::Load;
+pub use motor_side::{motor_rates, motor_torques};
+pub use parameters::{Parameters, RIGID, link_parameters, parameters};
+pub use regressor::{Regressor, regressor};
 pub use rnea::{gravity, rnea};
+pub use torque::{Torque, torque};
 
 /// Acceleration of free fall \[m/s²\].
 pub const GRAVITY: f64 = 9.81;

@@ -10,6 +10,7 @@ use crate::robot::{MAX_DOF, Model};
 use super::GRAVITY;
 use super::data::Data;
 use super::load::Load;
+use super::motor_side::rotor_torques;
 
 /// Torque of each joint \[Nm\] for the motion `q` \[rad\], `qd` \[rad/s\], `qdd`
 /// \[rad/s²\] with `load` at the flange: rigid bodies and reflected rotors, no
@@ -23,16 +24,25 @@ pub fn rnea(
     qd: &[f64],
     qdd: &[f64],
 ) -> [f64; MAX_DOF] {
-    let geometry = &model.kinematics;
-    let serial = [q, qd, qdd].map(|values| geometry.to_serial(values));
-    let tau = newton_euler(model, data, load, &serial[0], &serial[1], &serial[2]);
-    let mut tau = geometry.from_serial_torque(tau);
-    if let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) {
-        for (joint, &acceleration) in qdd.iter().enumerate().take(model.dof) {
-            tau[joint] += motors.reflected_inertia(joint) * acceleration;
-        }
+    let mut tau = rigid_bodies(model, data, load, q, qd, qdd);
+    for (sum, rotor) in tau.iter_mut().zip(rotor_torques(model, qdd)) {
+        *sum += rotor;
     }
     tau
+}
+
+/// The same without the rotors: the torque through the gears.
+pub(super) fn rigid_bodies(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    q: &[f64],
+    qd: &[f64],
+    qdd: &[f64],
+) -> [f64; MAX_DOF] {
+    let geometry = &model.kinematics;
+    let [q, qd, qdd] = [q, qd, qdd].map(|values| geometry.to_serial(values));
+    geometry.from_serial_torque(newton_euler(model, data, load, &q, &qd, &qdd))
 }
 
 /// Torque of each joint \[Nm\] that holds the robot still at `q` \[rad\].

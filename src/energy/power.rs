@@ -1,16 +1,16 @@
 //! Power at one state of the robot, and its integral over a motion.
 
 use super::parts::EnergyParts;
-use crate::dynamics::{Data, Load, friction, rnea};
+use crate::dynamics::{Data, Load, Torque, gravity, motor_rates, motor_torques, torque};
 use crate::motion::timed::{JointState, TimedMotion};
-use crate::path::joint_path::{DOF, Joints};
-use crate::robot::{Model, Sharing};
+use crate::path::joint_path::Joints;
+use crate::robot::{MAX_DOF, Model, Sharing};
 
 /// Torques and powers at one state.
 #[derive(Clone, Copy, Debug)]
 pub struct Power {
     /// Joint torques with friction, Nm.
-    pub tau: Joints,
+    pub tau: [f64; MAX_DOF],
     /// Σ `τ_rigid` q̇, W.
     pub rigid_w: f64,
     /// Σ `τ_friction` q̇, W.
@@ -35,17 +35,23 @@ impl Power {
 
 /// Torques and powers of a loaded robot in a state.
 pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) -> Power {
-    let rigid = rnea(model, data, load, &state.q, &state.qd, &state.qdd);
-    let rub = friction(model, &state.qd);
-    let mut tau = [0.0; DOF];
+    power_at(model, data, load, [&state.q, &state.qd, &state.qdd])
+}
+
+/// The same for a robot of any number of joints, at position, velocity and acceleration.
+pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3]) -> Power {
+    let [q, qd, qdd] = state;
+    let Torque { rigid, friction } = torque(model, data, load, q, qd, qdd);
+    let all = std::array::from_fn(|j| rigid[j] + friction[j]);
+    let motor = motor_torques(model, all);
+    let rates = motor_rates(model, qd);
     let (mut rigid_w, mut friction_w, mut copper_w) = (0.0, 0.0, 0.0);
     let mut lost_by_joint = 0.0;
-    for j in 0..DOF {
-        tau[j] = rigid[j] + rub[j];
-        rigid_w += rigid[j] * state.qd[j];
-        friction_w += rub[j] * state.qd[j];
-        copper_w += model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * tau[j] * tau[j];
-        lost_by_joint += (-tau[j] * state.qd[j]).max(0.0);
+    for (j, velocity) in qd.iter().enumerate().take(model.dof) {
+        rigid_w += rigid[j] * velocity;
+        friction_w += friction[j] * velocity;
+        copper_w += model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * motor[j] * motor[j];
+        lost_by_joint += (-motor[j] * rates[j]).max(0.0);
     }
     // Negative mechanical power: of each joint, or of their sum on a common bus.
     let lost = match model.drive.sharing {
@@ -53,15 +59,41 @@ pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) ->
         Sharing::Bus => (-(rigid_w + friction_w)).max(0.0),
     };
     let drive_w = lost * (1.0 - model.drive.regeneration);
-    Power { tau, rigid_w, friction_w, copper_w, drive_w }
+    Power { tau: all, rigid_w, friction_w, copper_w, drive_w }
+}
+
+/// What the whole robot takes in a state that needs `power`: base power and the coils that keep
+/// the brakes open are always drawn, and at rest it holds, W.
+pub fn supply_w(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    state: [&[f64]; 3],
+    power: &Power,
+) -> f64 {
+    let [q, qd, qdd] = state;
+    let base =
+        model.drive.base_w + model.brakes.as_ref().map_or(0.0, |brakes| brakes.power_released_w);
+    if qd.iter().chain(qdd).any(|x| *x != 0.0) {
+        base + power.electrical_w()
+    } else {
+        base + holding_at(model, data, load, q).iter().sum::<f64>()
+    }
 }
 
 /// Power with which a loaded robot holds still, by joint: copper loss of the gravity torque and
 /// the constant of the robot's file, W.
 pub fn holding_w(model: &Model, load: &Load, q: &Joints) -> Joints {
-    let mut data = Data::new();
-    let tau = rnea(model, &mut data, load, q, &[], &[]);
+    let holding = holding_at(model, &mut Data::new(), load, q);
+    std::array::from_fn(|j| holding[j])
+}
+
+fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; MAX_DOF] {
+    let tau = motor_torques(model, gravity(model, data, load, q));
     std::array::from_fn(|j| {
+        if j >= model.dof {
+            return 0.0;
+        }
         let loss = model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]);
         loss * tau[j] * tau[j] + model.standstill.holding_w.get(j).copied().unwrap_or(0.0)
     })

@@ -1,6 +1,6 @@
 //! The planned motion of a whole cycle as rows of samples.
 
-use super::power::{Power, holding_w, power};
+use super::power::{Power, power, supply_w};
 use crate::dynamics::{Data, Load};
 use crate::kinematics::{fk, jacobian};
 use crate::motion::timed::JointState;
@@ -109,17 +109,9 @@ impl Sampler<'_> {
         span: Option<Span>,
     ) {
         let model = self.model;
-        let moving = state.qd.iter().any(|x| *x != 0.0) || state.qdd.iter().any(|x| *x != 0.0);
         let power = model.has_dynamics().then(|| power(model, &mut self.data, load, &state));
-        let electrical_w = power.map(|p| {
-            let base = model.drive.base_w
-                + model.brakes.as_ref().map_or(0.0, |brakes| brakes.power_released_w);
-            if moving {
-                base + p.electrical_w()
-            } else {
-                base + holding_w(model, load, &state.q).iter().sum::<f64>()
-            }
-        });
+        let motion: [&[f64]; 3] = [&state.q, &state.qd, &state.qdd];
+        let electrical_w = power.map(|p| supply_w(model, &mut self.data, load, motion, &p));
         let tcp = (fk(model, &state.q) * tool).translation.vector;
         let rate = jacobian(model, &state.q, tool) * nalgebra::Vector6::from(state.qd);
         let tcp_speed = rate.fixed_rows::<3>(0).norm();

@@ -97,7 +97,7 @@ pub fn check(
     end: &Joints,
 ) -> Check {
     let limits = &model.limits;
-    let share = |values: &Joints, limit: &Option<Vec<f64>>| {
+    let share = |values: &[f64], limit: &Option<Vec<f64>>| {
         limit.as_ref().map_or(0.0, |limit| {
             values.iter().zip(limit).map(|(x, l)| x.abs() / l).fold(0.0, f64::max)
         })

@@ -4,6 +4,7 @@
 //! the holding power, plus the time that engaging and releasing take.
 
 use super::reason::Reason;
+use crate::dynamics::Load;
 use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
@@ -22,6 +23,8 @@ pub struct Dwell {
     pub duration: f64,
     /// Where the robot stands, rad.
     pub q: Joints,
+    /// Tool and payload that it holds.
+    pub load: Load,
     /// Mean holding power by joint, W.
     pub holding_w: Joints,
     /// s; `None` where nothing is to be held or no brake is known.
@@ -58,6 +61,7 @@ pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
                         span: wait.wait.span,
                         duration: 0.0,
                         q: wait.q,
+                        load: wait.load.clone(),
                         holding_w: [0.0; DOF],
                         break_even_s: None,
                         potential_j: 0.0,
@@ -91,14 +95,21 @@ pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
     dwells
 }
 
+/// From which length of a dwell on closing the brakes pays, s, where holding takes
+/// `holding_w`; `None` where nothing is to be held or no brake is known.
+pub fn break_even_s(model: &Model, holding_w: f64) -> Option<f64> {
+    let brakes = model.brakes.as_ref().filter(|_| holding_w > 0.0)?;
+    Some(brakes.energy_per_release_j / holding_w + brakes.engage_s + brakes.release_s)
+}
+
 fn judge(model: &Model, dwell: &mut Dwell) {
     let holding: f64 = dwell.holding_w.iter().sum();
     let Some(brakes) = &model.brakes else { return };
-    if holding <= 0.0 || matches!(dwell.reason, Reason::UnknownDwell) {
+    if matches!(dwell.reason, Reason::UnknownDwell) {
         return;
     }
+    let Some(break_even) = break_even_s(model, holding) else { return };
     let delay = brakes.engage_s + brakes.release_s;
-    let break_even = brakes.energy_per_release_j / holding + delay;
     dwell.break_even_s = Some(break_even);
     dwell.reason = if dwell.duration > break_even {
         dwell.potential_j = holding * (dwell.duration - delay) - brakes.energy_per_release_j;

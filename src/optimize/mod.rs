@@ -13,6 +13,7 @@ pub mod plant;
 pub mod reason;
 pub mod retime;
 pub mod site;
+pub mod standstill;
 pub mod stream_fit;
 pub mod stream_limits;
 mod stream_points;

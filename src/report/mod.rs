@@ -3,6 +3,7 @@
 pub mod html;
 pub mod json;
 pub mod place;
+pub mod standstill;
 pub mod svg;
 pub mod table;
 pub mod text;

@@ -21,7 +21,7 @@ pub fn csv(places: Places<'_>, samples: &[Sample]) -> String {
         }
         match &sample.power {
             Some(power) => {
-                for tau in power.tau {
+                for tau in &power.tau[..6] {
                     let _ = write!(out, ",{tau}");
                 }
                 let electrical = sample.electrical_w.unwrap_or(0.0);

@@ -4,18 +4,42 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
-/// Coulomb and viscous friction, at the joint.
+/// Friction at the joint; laws that no source gives are absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     /// Coulomb friction of each joint \[Nm\].
     pub coulomb: Vec<f64>,
     /// Viscous friction of each joint \[Nm s/rad\].
     pub viscous: Vec<f64>,
+    /// Half of what Coulomb friction is larger forwards than backwards \[Nm\].
+    pub coulomb_asymmetry: Option<Vec<f64>>,
+    /// The same of viscous friction \[Nm s/rad\].
+    pub viscous_asymmetry: Option<Vec<f64>>,
+    /// Friction at low speed above Coulomb friction.
+    pub stribeck: Option<Stribeck>,
+    /// Friction per torque through the gear \[1\].
+    pub load_friction: Option<Vec<f64>>,
+}
+
+/// Friction that dies away with speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stribeck {
+    /// Friction at breakaway above Coulomb friction \[Nm\].
+    pub stiction: Vec<f64>,
+    /// Speed at which 1/e of it is left \[rad/s\].
+    pub velocity: Vec<f64>,
 }
 
 impl Friction {
     pub(super) fn none(dof: usize) -> Friction {
-        Friction { coulomb: vec![0.0; dof], viscous: vec![0.0; dof] }
+        Friction {
+            coulomb: vec![0.0; dof],
+            viscous: vec![0.0; dof],
+            coulomb_asymmetry: None,
+            viscous_asymmetry: None,
+            stribeck: None,
+            load_friction: None,
+        }
     }
 
     pub(super) fn read(
@@ -23,16 +47,47 @@ impl Friction {
         dof: usize,
         origins: &mut Vec<Origin>,
     ) -> Result<Friction, RobotError> {
-        let none = Friction::none(dof);
+        let zero = || vec![0.0; dof];
+        let mut law = |fields: &mut Fields, table: &str, key: &str, accepts: Accepts| {
+            let Some(mut law) = fields.table(table)? else { return Ok(None) };
+            let values = law.per_joint(key, dof, accepts)?;
+            let values = law.required(key, values)?;
+            origins.extend(law.finish()?);
+            Ok::<_, RobotError>(Some(values))
+        };
+        let viscous_asymmetry =
+            law(&mut fields, "viscous_asymmetry", "asymmetry", Accepts::Finite)?;
+        let load_friction = law(&mut fields, "load_friction", "mu", Accepts::NonNegative)?;
+        let stribeck = match fields.table("stribeck")? {
+            Some(table) => Some(Stribeck::read(table, dof, origins)?),
+            None => None,
+        };
         let friction = Friction {
-            coulomb: fields
-                .per_joint("coulomb", dof, Accepts::NonNegative)?
-                .unwrap_or(none.coulomb),
-            viscous: fields
-                .per_joint("viscous", dof, Accepts::NonNegative)?
-                .unwrap_or(none.viscous),
+            coulomb: fields.per_joint("coulomb", dof, Accepts::NonNegative)?.unwrap_or_else(zero),
+            viscous: fields.per_joint("viscous", dof, Accepts::NonNegative)?.unwrap_or_else(zero),
+            coulomb_asymmetry: fields.per_joint("coulomb_asymmetry", dof, Accepts::Finite)?,
+            viscous_asymmetry,
+            stribeck,
+            load_friction,
         };
         origins.extend(fields.finish()?);
         Ok(friction)
+    }
+}
+
+impl Stribeck {
+    fn read(
+        mut fields: Fields,
+        dof: usize,
+        origins: &mut Vec<Origin>,
+    ) -> Result<Stribeck, RobotError> {
+        let stiction = fields.per_joint("stiction", dof, Accepts::Finite)?;
+        let velocity = fields.per_joint("velocity", dof, Accepts::Positive)?;
+        let stribeck = Stribeck {
+            stiction: fields.required("stiction", stiction)?,
+            velocity: fields.required("velocity", velocity)?,
+        };
+        origins.extend(fields.finish()?);
+        Ok(stribeck)
     }
 }

@@ -27,13 +27,14 @@ pub mod system_parameters;
 mod toml_text;
 mod tree;
 mod urdf;
+mod wrist;
 
 pub use catalogue::{find, names};
 pub use controller::Controller;
 pub use drive::{Brakes, Drive, Sharing, Standstill};
 pub use effect::EffectParameters;
 pub use error::RobotError;
-pub use friction::Friction;
+pub use friction::{Friction, Stribeck};
 pub use geometry::{Coupling, Geometry, Joint, Opw};
 pub use limits::{Limits, PositionIf};
 pub use link::Link;
@@ -45,6 +46,7 @@ pub use names::nearest;
 pub use provenance::{Origin, Provenance};
 pub use readiness::lacking;
 pub use urdf::import_urdf;
+pub use wrist::Wrist;
 
 /// The largest number of joints a model may have.
 pub const MAX_DOF: usize = 7;

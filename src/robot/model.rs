@@ -13,6 +13,7 @@ use super::link::{ArmLoad, Link};
 use super::motors::Motors;
 use super::provenance::{self, Origin};
 use super::tree::Node;
+use super::wrist::Wrist;
 
 /// A robot. Every list has one entry for each joint, from the base on.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +33,8 @@ pub struct Model {
     pub friction: Friction,
     /// Motors and gears.
     pub motors: Option<Motors>,
+    /// The wrist's gears; uncoupled where no source says otherwise.
+    pub wrist: Wrist,
     /// The drive unit; zero power where no source gives it.
     pub drive: Drive,
     /// Holding brakes.
@@ -108,6 +111,10 @@ impl Model {
             Some(table) => Some(Motors::read(table, dof, &mut origins)?),
             None => None,
         };
+        let wrist = match robot.table("wrist")? {
+            Some(table) => Wrist::read(table, dof, &mut origins)?,
+            None => Wrist::uncoupled(),
+        };
         let drive = match robot.table("drive")? {
             Some(table) => Drive::read(table, &mut origins)?,
             None => Drive::lossless(),
@@ -137,6 +144,7 @@ impl Model {
             links,
             friction,
             motors,
+            wrist,
             drive,
             brakes,
             standstill,

@@ -60,7 +60,7 @@ pub(super) fn samples(model: &Model, run: &Run, corridor: Option<&Corridor>) -> 
         rows.push(Sample {
             t,
             qd: state.qd,
-            tau: p.tau,
+            tau: std::array::from_fn(|joint| p.tau[joint]),
             electrical_w: base_w + drive_w,
             tcp_speed: rate.fixed_rows::<3>(0).norm(),
             ceiling: corridor.map_or(f64::INFINITY, |c| c.offset(&pose, &mut place).ceiling),

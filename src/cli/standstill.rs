@@ -1,0 +1,134 @@
+//! `joulepath standstill`: what standing still costs.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use anyhow::bail;
+use clap::Args;
+
+use super::common::{self, Format, ProgramArgs};
+use crate::dynamics::Load;
+use crate::kinematics::limits_ok;
+use crate::motion;
+use crate::optimize::idle::dwells;
+use crate::optimize::standstill::standing;
+use crate::report::json::assumed;
+use crate::report::place::Places;
+use crate::report::standstill::{self, Pose};
+use crate::report::text;
+use crate::retrofit::read_program;
+use crate::robot::Model;
+
+/// Holding power at rest, when a brake pays, and the cheapest pose nearby.
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("paths", |paths| paths.required(false).required_unless_present("pose")),
+    after_help = "Examples: joulepath standstill --robot IRB1600-10/1.45 --pose \"0,90,-90,0,0,0\"\n          joulepath standstill fixtures/pick_place"
+)]
+pub struct StandstillArgs {
+    #[command(flatten)]
+    program: ProgramArgs,
+
+    /// A pose, axes in degrees, nothing at the flange; may be repeated. Without it the dwells of
+    /// a program are looked at.
+    #[arg(long, value_name = "DEG,…", allow_hyphen_values = true, conflicts_with = "paths")]
+    pose: Vec<String>,
+
+    /// How far each joint may go to a better pose, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 15.0)]
+    within: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Unusable input, or a robot whose holding power is not known.
+pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
+    if !(args.within.is_finite() && args.within >= 0.0) {
+        bail!("--within {}: give a distance of 0 degrees or more", args.within);
+    }
+    let distance = args.within.to_radians();
+    let (model, poses, assumed) =
+        if args.pose.is_empty() { of_program(args, distance)? } else { of_poses(args, distance)? };
+    if model.brakes.is_none() {
+        let text = format!("{} has no [brakes]: nothing is said of when they pay", model.name);
+        common::note(args.program.quiet, &text);
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            let value = standstill::json(&model, &poses, &assumed);
+            serde_json::to_writer_pretty(&mut out, &value)?;
+            writeln!(out)?;
+        }
+        Format::Text => {
+            for text in assumed {
+                common::note(args.program.quiet, &text);
+            }
+            write!(out, "{}", standstill::text(&poses))?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn of_poses(
+    args: &StandstillArgs,
+    distance: f64,
+) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
+    let model = common::robot(&args.program)?;
+    check(&model)?;
+    let mut poses = Vec::new();
+    for text in &args.pose {
+        let q = common::six_degrees("--pose", text)?;
+        if let Err(violation) = limits_ok(&model, &q) {
+            bail!("--pose {text}: {violation}");
+        }
+        let standing = standing(&model, &Load::none(), &q, distance);
+        poses.push(Pose { standing, dwell: None });
+    }
+    let assumed = model.assumed();
+    Ok((model, poses, assumed))
+}
+
+fn of_program(
+    args: &StandstillArgs,
+    distance: f64,
+) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
+    let job = common::prepare(&args.program)?;
+    check(&job.model)?;
+    let (program, entry) = read_program(&job.files, &job.entry)?;
+    let simulation = motion::simulate(&program, entry, &job.model, &job.options);
+    let sources = job.sources();
+    let places = Places::new(&sources);
+    for text in text::notes(&job.model, places, &simulation) {
+        common::note(args.program.quiet, &text);
+    }
+    let poses = dwells(&job.model, &simulation)
+        .iter()
+        .map(|dwell| Pose {
+            standing: standing(&job.model, &dwell.load, &dwell.q, distance),
+            dwell: Some((places.of(dwell.span), dwell.duration)),
+        })
+        .collect();
+    let assumed = assumed(&job.model, &simulation);
+    Ok((job.model, poses, assumed))
+}
+
+/// Whether holding powers can be computed.
+fn check(model: &Model) -> anyhow::Result<()> {
+    let name = &model.name;
+    if model.dof != 6 {
+        bail!("{name} has {} joints; standstill is for robots with 6", model.dof);
+    }
+    if !model.has_dynamics() {
+        bail!("{name} has no dynamics: give its links, [[link]], in a robot file with --robot");
+    }
+    let losses = model.motors.as_ref().map_or(&[][..], |motors| &motors.loss_constant);
+    if losses.iter().all(|loss| *loss == 0.0) {
+        bail!(
+            "{name} has no copper losses: give motors.loss_constant or motors.resistance \
+             in a robot file with --robot"
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,36 @@
+//! What the motors have to do: rigid bodies, rotors and friction.
+
+use crate::robot::{MAX_DOF, Model};
+
+use super::data::Data;
+use super::friction::friction;
+use super::load::Load;
+use super::motor_side::rotor_torques;
+use super::rnea::rigid_bodies;
+
+/// Torques at the joints \[Nm\].
+#[derive(Clone, Copy, Debug)]
+pub struct Torque {
+    /// Of the rigid bodies and the rotors, as [`rnea`](super::rnea) gives it.
+    pub rigid: [f64; MAX_DOF],
+    /// Of friction, with exact signs.
+    pub friction: [f64; MAX_DOF],
+}
+
+/// The torques of the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] with `load`
+/// at the flange. All zero but friction where the robot has no dynamics.
+pub fn torque(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    q: &[f64],
+    qd: &[f64],
+    qdd: &[f64],
+) -> Torque {
+    let mut rigid = rigid_bodies(model, data, load, q, qd, qdd);
+    let friction = friction(model, qd, &rigid);
+    for (sum, rotor) in rigid.iter_mut().zip(rotor_torques(model, qdd)) {
+        *sum += rotor;
+    }
+    Torque { rigid, friction }
+}

@@ -1,0 +1,62 @@
+//! Measured logs: what a robot did, as columns of numbers. Knows no robot.
+
+mod channel;
+mod csv;
+mod error;
+
+pub use channel::Channel;
+pub use csv::read_csv;
+pub use error::LogError;
+
+use channel::Family;
+
+/// A log needs this many usable rows.
+pub const MIN_ROWS: usize = 10;
+
+/// A log, SI units and radians; its rows are in the order of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Log {
+    /// What is in which column of `values`.
+    pub channels: Vec<Channel>,
+    /// A column for each channel, all of the same length.
+    pub values: Vec<Vec<f64>>,
+    /// Rows that were left out.
+    pub rejected: Vec<Rejected>,
+}
+
+/// A row that can't be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rejected {
+    /// Line of the file; the header is 1.
+    pub row: u64,
+    /// Why.
+    pub reason: String,
+}
+
+impl Log {
+    /// Times \[s\].
+    #[must_use]
+    pub fn time(&self) -> &[f64] {
+        self.column(Channel::Time).unwrap_or(&[])
+    }
+
+    /// Number of joints whose positions are logged.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.channels.iter().filter(|channel| channel.family() == Family::Position).count()
+    }
+
+    /// A column, where there is one.
+    #[must_use]
+    pub fn column(&self, channel: Channel) -> Option<&[f64]> {
+        let index = self.channels.iter().position(|known| *known == channel)?;
+        Some(&self.values[index])
+    }
+
+    /// The columns that `channel` names for each joint, in order; `None` where one is
+    /// missing.
+    #[must_use]
+    pub fn of_joints(&self, channel: fn(usize) -> Channel) -> Option<Vec<&[f64]>> {
+        (0..self.joints()).map(|joint| self.column(channel(joint))).collect()
+    }
+}

@@ -1,0 +1,73 @@
+//! Robots, loads and states for tests of the dynamics.
+
+#![allow(
+    dead_code,
+    clippy::allow_attributes,
+    reason = "each test uses its part of this module; an expectation would fail in the others"
+)]
+
+use joulepath::dynamics::Load;
+use joulepath::robot::{MAX_DOF, Model, find, from_toml};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+
+/// Three joints in general position, a tool frame in general position, rotors.
+const SKEW: &str = include_str!("../../fixtures/dynamics/skew.toml");
+/// Seven joints in general position.
+const SEVEN: &str = include_str!("../../fixtures/dynamics/seven.toml");
+/// A pendulum.
+const ONE: &str = "name = \"one\"\n[limits]\nposition = [[-3.0, 3.0]]\n\
+    [[joint]]\norigin = [0.0, 0.0, 1.0]\naxis = [0.0, 1.0, 0.2]\n\
+    [[link]]\nmass = 2.0\ncom = [0.3, 0.1, -0.4]\ninertia = [0.1, 0.2, 0.15, 0.01, 0.0, 0.0]\n";
+/// The robot of the catalogue with forearm rods.
+const RODS: &str = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
+    [kinematics]\ncoupling = \"parallelogram\"\n";
+/// The robot of the catalogue with a coupled wrist and all laws of friction.
+const WRIST: &str = "extends = \"IRB1600-10/1.45\"\nname = \"wrist\"\n\
+    [wrist]\ncoupling = 0.8\n\
+    [friction]\ncoulomb_asymmetry = [1.0, -2.0, 0.5, 0.3, 0.2, 0.1]\n\
+    stribeck = { stiction = [9.0, 6.0, 3.0, 2.0, 2.0, 1.0], \
+    velocity = [0.1, 0.1, 0.1, 0.2, 0.2, 0.2] }\n\
+    viscous_asymmetry = { asymmetry = [3.0, 2.0, -1.0, 0.2, 0.1, 0.1] }\n\
+    load_friction = { mu = [0.05, 0.06, 0.07, 0.08, 0.09, 0.1] }\n";
+
+/// The robot of the catalogue on a slope: gravity has a part across the first axis.
+const TILTED: &str = "extends = \"IRB1600-10/1.45\"\nname = \"tilted\"\n\
+    [kinematics]\nbase = { origin = [0.1, 0.2, 0.3], rpy = [0.4, -0.7, 0.2] }\n";
+
+/// How many there are.
+pub(crate) const ROBOTS: usize = 7;
+
+/// All of them.
+pub(crate) fn robots() -> [Model; ROBOTS] {
+    let of = |name: &str, text: &str| from_toml(name, text).expect("a robot of the tests");
+    [
+        find("IRB1600-10/1.45").expect("in the catalogue"),
+        of("skew.toml", SKEW),
+        of("rods.toml", RODS),
+        of("wrist.toml", WRIST),
+        of("seven.toml", SEVEN),
+        of("one.toml", ONE),
+        of("tilted.toml", TILTED),
+    ]
+}
+
+/// A load in general position.
+pub(crate) fn load() -> Load {
+    Load {
+        mass: 8.0,
+        com: Vector3::new(0.05, -0.02, 0.15),
+        inertia: Matrix3::new(0.1, 0.01, 0.02, 0.01, 0.12, -0.01, 0.02, -0.01, 0.09),
+    }
+}
+
+/// Positions, velocities and accelerations.
+pub(crate) fn states() -> impl Strategy<Value = [[f64; MAX_DOF]; 3]> {
+    let values = |size: f64| prop::array::uniform7(-size..size);
+    (values(3.0), values(4.0), values(20.0)).prop_map(|(q, qd, qdd)| [q, qd, qdd])
+}
+
+/// The largest size of some numbers, at least 1.
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(1.0, |m: f64, x| m.max(x.abs()))
+}

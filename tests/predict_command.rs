@@ -1,0 +1,178 @@
+//! `predict` through the binary, and the logs that it reads.
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use joulepath::dynamics::{Data, Load, torque};
+use joulepath::log::{Channel, read_csv};
+use joulepath::robot::from_toml;
+
+/// What the gram that the program's tool0 weighs may change.
+const TOOL0_NM: f64 = 0.02;
+const TOOL0_W: f64 = 0.2;
+const SEVEN: &str = "fixtures/dynamics/seven.toml";
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
+}
+
+fn predict(robot: &str, log: &Path, more: &[&str]) -> Output {
+    let args = ["predict", "--robot", robot, "--log", log.to_str().unwrap()];
+    joulepath(&[&args[..], more].concat())
+}
+
+fn succeeded(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn written(folder: &tempfile::TempDir, name: &str, text: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// Header and rows.
+fn table(csv: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    (lines.next().unwrap(), lines.collect())
+}
+
+/// A log of seven joints, `number` formatting its figures.
+fn log_of_seven(separator: &str, angle: &str, number: impl Fn(f64) -> String) -> String {
+    let names: Vec<String> = ["q", "qd", "qdd"]
+        .iter()
+        .flat_map(|kind| (1..=7).map(move |joint| format!("{kind}{joint}{angle}")))
+        .collect();
+    let mut text = format!("t{separator}{}{separator}note\n", names.join(separator));
+    for row in 0..12 {
+        let t = 0.01 * f64::from(row);
+        let values: Vec<String> = state(t).iter().map(|x| number(*x)).collect();
+        let row = [number(t), values.join(separator), "x\n".into()];
+        text += &row.join(separator);
+    }
+    text
+}
+
+/// Positions, then velocities, then accelerations.
+fn state(t: f64) -> Vec<f64> {
+    (0..21).map(|k| (0.7 * f64::from(k) + (1.0 + f64::from(k)) * t).sin() * 2.0).collect()
+}
+
+#[test]
+fn simulated_motion_is_predicted() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = "MODULE M\nPROC main()\n\
+        MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tool0;\n\
+        MoveAbsJ [[40,30,-20,50,60,70],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tool0;\n\
+        WaitTime 0.1;\nENDPROC\nENDMODULE\n";
+    let program = written(&folder, "m.mod", program);
+    let motion = folder.path().join("motion.csv");
+    let robot = "IRB1600-10/1.45";
+    let (from, to) = (program.to_str().unwrap(), motion.to_str().unwrap());
+    succeeded(&joulepath(&["simulate", from, "--robot", robot, "--trajectory", to]));
+    let predicted = succeeded(&predict(robot, &motion, &["-q"]));
+    let simulated = fs::read_to_string(&motion).unwrap();
+    let ((names, rows), (all, expected)) = (table(&predicted), table(&simulated));
+    assert_eq!(names, ["t", "tau1", "tau2", "tau3", "tau4", "tau5", "tau6", "p_mech", "p_elec"]);
+    assert_eq!(rows.len(), expected.len());
+    for (row, expected) in rows.iter().zip(&expected) {
+        for (name, value) in names.iter().zip(row) {
+            let column = all.iter().position(|known| known == name).unwrap();
+            let (value, expected) =
+                (value.parse::<f64>().unwrap(), expected[column].parse::<f64>().unwrap());
+            let close = if name.starts_with("p_") { TOOL0_W } else { TOOL0_NM };
+            assert!((value - expected).abs() < close, "{name} at {} s: {value} {expected}", row[0]);
+        }
+    }
+}
+
+#[test]
+fn seven_joints_in_any_form_of_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = from_toml(SEVEN, &fs::read_to_string(SEVEN).unwrap()).unwrap();
+    let degrees = |x: f64| format!("{}", x.to_degrees());
+    let comma = |x: f64| format!("{x}").replace('.', ",");
+    let plain = written(&folder, "plain.csv", &log_of_seven(",", "", |x| x.to_string()));
+    let excel = written(&folder, "excel.csv", &log_of_seven(";", "", comma));
+    let tabs = log_of_seven("\t", "", |x| x.to_string()).replace('\n', "\r\n");
+    let tabs = written(&folder, "tabs.txt", &format!("\u{feff}{tabs}"));
+    // The time is a number as the angles are; only they are degrees.
+    let turned = log_of_seven(",", "_deg", degrees);
+    let turned: Vec<String> = turned
+        .lines()
+        .enumerate()
+        .map(|(row, line)| {
+            let (_, rest) = line.split_once(',').unwrap();
+            let t = row.checked_sub(1).map_or("t".into(), |i| (0.01 * i as f64).to_string());
+            format!("{t},{rest}")
+        })
+        .collect();
+    let turned = written(&folder, "degrees.csv", &turned.join("\n"));
+    for path in [plain, excel, tabs, turned] {
+        let text = succeeded(&predict(SEVEN, &path, &[]));
+        let (names, rows) = table(&text);
+        assert_eq!((names.len(), rows.len()), (1 + 7 + 2, 12));
+        for (index, row) in rows.iter().enumerate() {
+            let values = state(0.01 * index as f64);
+            let (q, qd, qdd) = (&values[..7], &values[7..14], &values[14..]);
+            let found = torque(&model, &mut Data::new(), &Load::none(), q, qd, qdd);
+            for joint in 0..7 {
+                let value: f64 = row[1 + joint].parse().unwrap();
+                let expected = found.rigid[joint] + found.friction[joint];
+                assert!((value - expected).abs() < 1e-9, "{}: {value} {expected}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_rows_are_named_and_left_out() {
+    let mut lines: Vec<String> =
+        log_of_seven(",", "", |x| x.to_string()).lines().map(str::to_owned).collect();
+    let repeated = lines[4].clone();
+    lines.insert(5, repeated);
+    lines.insert(3, "0.015,1,2".into());
+    let broken = lines[2].replacen(',', ",none,", 1).replace(",x", "");
+    lines.insert(3, broken);
+    lines.insert(2, "-1".to_owned() + lines[1].strip_prefix('0').unwrap());
+    let log = read_csv(lines.join("\n").as_bytes()).unwrap();
+    let rejected: Vec<String> =
+        log.rejected.iter().map(|row| format!("{}: {}", row.row, row.reason)).collect();
+    insta::assert_snapshot!(rejected.join("\n"));
+    assert_eq!((log.time().len(), log.joints()), (12, 7));
+    assert!(log.column(Channel::Power).is_none());
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(&folder, "bad.csv", &lines.join("\n"));
+    let output = predict(SEVEN, &path, &[]);
+    assert_eq!(table(&succeeded(&output)).1.len(), 12);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("row 3 left out"));
+}
+
+#[test]
+fn unusable_logs_are_refused_with_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = log_of_seven(",", "", |x| x.to_string());
+    let cut = |count: usize| good.lines().take(count).collect::<Vec<_>>().join("\n");
+    for (text, way_out) in [
+        (String::new(), "the first row names the columns"),
+        (good.replacen('t', "time", 1), "the first row names the columns"),
+        (cut(10), "only 9 usable rows, 10 are needed"),
+        (good.replacen("q7", "p7", 1), "positions of 6 joints are logged, seven has 7"),
+        (good.replacen("q3", "p3", 1), "none for joint 3"),
+        (good.replacen("q3", "q2_deg", 1), "same quantity"),
+        (good.replacen("qdd7", "x", 1), "qdd1 to qdd7"),
+    ] {
+        let output = predict(SEVEN, &written(&folder, "log.csv", &text), &["-q"]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(way_out), "{message}");
+    }
+    let missing = predict(SEVEN, &folder.path().join("none.csv"), &[]);
+    assert_eq!(missing.status.code(), Some(2));
+    let no_dynamics = predict("IRB6640-180/2.55", &written(&folder, "l.csv", &good), &[]);
+    assert!(String::from_utf8_lossy(&no_dynamics.stderr).contains("[[link]]"));
+}

@@ -1,0 +1,106 @@
+//! `standstill` through the binary: the contract of its JSON and the paper's table.
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// Joints 2 and 3 of table 3 are printed in whole watts.
+const PRINTED_W: f64 = 0.5;
+
+fn standstill(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("standstill").args(args).output().unwrap()
+}
+
+fn json(args: &[&str]) -> Value {
+    let output = standstill(&[args, &["--format", "json", "--quiet"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn paper_table_3_in_order_and_size() {
+    let lines: Vec<Vec<&str>> = include_str!("../fixtures/paper/standstill.csv")
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').collect())
+        .collect();
+    let mut args = vec!["--robot".to_owned(), "IRB1600-10/1.45".to_owned()];
+    for line in &lines {
+        args.extend(["--pose".to_owned(), line[1..7].join(",")]);
+    }
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let result = json(&args);
+    let poses = result["poses"].as_array().unwrap();
+    assert_eq!(poses.len(), lines.len());
+    for (pose, line) in poses.iter().zip(&lines) {
+        let watts = numbers(&pose["per_joint_w"]);
+        for joint in [1, 2] {
+            let printed: f64 = line[7 + joint].parse().unwrap();
+            assert!((watts[joint] - printed).abs() < PRINTED_W, "{}: {watts:?}", line[0]);
+        }
+        assert_eq!(watts[0], 5.0, "joint 1 carries no gravity torque");
+        let holding = pose["holding_w"].as_f64().unwrap();
+        assert!((watts.iter().sum::<f64>() - holding).abs() < 1e-12);
+        let brake = &result["brake"];
+        let pays = brake["energy_per_release_j"].as_f64().unwrap() / holding
+            + brake["engage_s"].as_f64().unwrap()
+            + brake["release_s"].as_f64().unwrap();
+        assert!((pose["break_even_s"].as_f64().unwrap() - pays).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn best_pose_is_cheaper_near_and_reachable() {
+    let result =
+        json(&["--robot", "IRB1600-10/1.45", "--within", "10", "--pose", "10,90,-30,20,40,5"]);
+    let pose = &result["poses"][0];
+    let (here, best) = (numbers(&pose["q_deg"]), numbers(&pose["best_nearby"]["q_deg"]));
+    assert_eq!(here, [10.0, 90.0, -30.0, 20.0, 40.0, 5.0]);
+    assert!(here.iter().zip(&best).all(|(a, b)| (a - b).abs() < 10.0 + 1e-6), "{best:?}");
+    assert_eq!((best[0], best[5]), (10.0, 5.0), "axes 1 and 6 do not help");
+    let before = pose["holding_w"].as_f64().unwrap();
+    let after = pose["best_nearby"]["holding_w"].as_f64().unwrap();
+    assert!(after < 0.9 * before, "{after} {before}");
+    // A finer grid around the found pose finds nothing better.
+    let mut poses = vec!["--robot".to_owned(), "IRB1600-10/1.45".to_owned()];
+    for (second, third) in (-10..=10).flat_map(|a| (-10..=10).map(move |b| (a, b))) {
+        let list = format!("10,{},{},{},{},5", 90 + second, -30 + third, best[3], best[4]);
+        poses.extend(["--pose".to_owned(), list]);
+    }
+    let mut args: Vec<&str> = poses.iter().map(String::as_str).collect();
+    args.extend(["--within", "0"]);
+    for pose in json(&args)["poses"].as_array().unwrap() {
+        assert!(pose["holding_w"].as_f64().unwrap() > after - 0.01);
+    }
+}
+
+#[test]
+fn dwells_of_a_program_have_places() {
+    let result = json(&["fixtures/pick_place"]);
+    let poses = result["poses"].as_array().unwrap();
+    let long = poses.iter().find(|pose| pose["duration_s"] == 12.0).unwrap();
+    assert!(long["file"].as_str().unwrap().ends_with("Machine.mod"));
+    assert!(long["break_even_s"].as_f64().unwrap() < 12.0);
+}
+
+#[test]
+fn what_is_missing_is_said() {
+    let pose = "0,0,0,0,0,0";
+    for (args, way_out) in [
+        (vec!["--pose", pose], "--robot NAME"),
+        (vec!["--robot", "IRB6640-180/2.55", "--pose", pose], "[[link]]"),
+        (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0"], "six axis positions"),
+        (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0,0,0,900"], "joint 6"),
+        (vec!["--robot", "IRB1600-10/1.45"], "<PATHS>"),
+    ] {
+        let output = standstill(&args);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(message.contains(way_out), "{message}");
+    }
+}
