@@ -257,6 +257,11 @@ impl Parser<'_> {
                     self.name();
                     height = self.taller(mark, NodeKind::FieldAccess, height);
                 }
+                TokenKind::LeftBrace if self.brace_opens_block() => break,
+                TokenKind::LeftBracket if self.position == self.end => {
+                    self.bracketed_index();
+                    height = self.taller(mark, NodeKind::Error, height);
+                }
                 TokenKind::LeftBrace => {
                     let indices = self.deeper(|parser| {
                         parser.bump();

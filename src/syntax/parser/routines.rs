@@ -33,6 +33,10 @@ impl Parser<'_> {
             (_, true) => self.parameters(),
             (_, false) => self.error_expected("'('"),
         }
+        if self.at(TokenKind::LeftBrace) {
+            self.error_unexpected("a statement");
+            self.opens_brace();
+        }
         if self.quiet {
             self.rest_of_parameters();
         }
