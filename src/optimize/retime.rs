@@ -6,6 +6,7 @@
 
 use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
@@ -185,6 +186,32 @@ pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
     Some(optimum.profile.duration() + task.run.settling)
 }
+
+/// Times at which a trade-off is computed, over that before.
+const PACES: [f64; 4] = [1.0, 1.3, 1.7, 2.3];
+
+/// What a run takes over the time that it gets, settling included: the energies are of the
+/// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
+pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
+    let work = Work::new(task).ok()?;
+    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let fast = fastest_profile(&grid, &limits).ok()?;
+    let settling = task.run.settling;
+    let shortest = shortest.max(RESERVE * fast.duration() + settling);
+    let paces = PACES.iter().map(|pace| pace * task.run.duration());
+    let inside = paces.filter(|time| *time > shortest && *time < longest);
+    let times: Vec<f64> = std::iter::once(shortest).chain(inside).chain([longest]).collect();
+    let energy = |time: f64| {
+        let outcome = minimize_energy(&grid, &limits, &work.model, &fast, time - settling);
+        let optimum = outcome.into_optimum()?;
+        Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
+    };
+    let known = times.into_iter().filter(|time| *time >= shortest).filter_map(energy);
+    TradeOff::through(&known.collect::<Vec<_>>())
+}
+
+/// A stream needs this much more time than the fastest profile, at least.
+const RESERVE: f64 = 1.05;
 
 struct Work<'a> {
     task: &'a Task<'a>,
