@@ -11,6 +11,7 @@ mod inverse;
 mod jacobian;
 mod limits;
 mod numeric;
+mod offset_wrist;
 mod radical_inverse;
 mod select;
 mod singularity;

@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion
 use super::MAX_DOF;
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::ortho_parallel::recognise;
+use super::ortho_parallel::{offset_wrist, recognise};
 use super::provenance::Origin;
 
 /// Below this, a coordinate of an axis or an origin is rounding of a zero.
@@ -76,6 +76,16 @@ pub struct Opw {
     pub signs: [f64; 6],
 }
 
+/// An arm of the OPW form up to axis 5, which axis 6 passes at a distance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffsetWrist {
+    /// The arm if its axis 6 went through the crossing of axes 4 and 5, and its flange
+    /// lay there (`c4` = 0).
+    pub arm: Opw,
+    /// That flange, at angle 0 of that axis 6, in the frame of joint 5.
+    pub crossing: Isometry3<f64>,
+}
+
 /// How the joint angles that a controller reports turn the serial chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coupling {
@@ -96,6 +106,8 @@ pub struct Geometry {
     /// The OPW parameters of the chain, where it has that form; a chain that is given
     /// joint by joint may have it too.
     pub opw: Option<Opw>,
+    /// What else is known of a chain of six joints without that form.
+    pub offset_wrist: Option<OffsetWrist>,
     /// Coupling of joints 2 and 3.
     pub coupling: Coupling,
     /// The base frame in the world: where the robot stands, and how it is mounted.
@@ -170,7 +182,8 @@ impl Geometry {
         let base = base.unwrap_or_else(Isometry3::identity);
         if let Some(opw) = opw {
             let (joints, flange) = opw.chain();
-            return Ok(Some(Geometry { joints, flange, opw: Some(opw), coupling, base }));
+            let (opw, offset_wrist) = (Some(opw), None);
+            return Ok(Some(Geometry { joints, flange, opw, offset_wrist, coupling, base }));
         }
         let joints =
             joints.into_iter().map(|table| joint(table, origins)).collect::<Result<Vec<_>, _>>()?;
@@ -179,7 +192,8 @@ impl Geometry {
         }
         let flange = flange.unwrap_or_else(Isometry3::identity);
         let opw = recognise(&joints, &flange);
-        Ok(Some(Geometry { joints, flange, opw, coupling, base }))
+        let offset_wrist = if opw.is_none() { offset_wrist(&joints) } else { None };
+        Ok(Some(Geometry { joints, flange, opw, offset_wrist, coupling, base }))
     }
 }
 

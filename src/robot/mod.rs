@@ -35,7 +35,7 @@ pub use drive::{Brakes, Drive, Sharing, Standstill};
 pub use effect::EffectParameters;
 pub use error::RobotError;
 pub use friction::{Friction, Stribeck};
-pub use geometry::{Coupling, Geometry, Joint, Opw};
+pub use geometry::{Coupling, Geometry, Joint, OffsetWrist, Opw};
 pub use limits::{Limits, PositionIf};
 pub use link::Link;
 pub use load::{from_toml, load};
