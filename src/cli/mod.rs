@@ -5,6 +5,7 @@ pub mod choice;
 pub mod common;
 pub mod input;
 pub mod listing;
+pub mod load;
 pub mod optimize;
 pub mod output;
 pub mod parse;

@@ -9,7 +9,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion
 
 use super::MAX_DOF;
 use super::error::RobotError;
-use super::fields::{Accepts, Fields};
+use super::fields::{ANGLE, Accepts, Fields, LENGTH};
 use super::ortho_parallel::{offset_wrist, recognise};
 use super::provenance::Origin;
 
@@ -230,7 +230,7 @@ impl Opw {
     fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Opw, RobotError> {
         let mut lengths = [0.0; 7];
         for (length, key) in lengths.iter_mut().zip(["a1", "a2", "b", "c1", "c2", "c3", "c4"]) {
-            let value = fields.number(key, Accepts::Finite)?;
+            let value = fields.number(key, LENGTH)?;
             *length = fields.required(key, value)?;
         }
         let [a1, a2, b, c1, c2, c3, c4] = lengths;
@@ -242,9 +242,9 @@ impl Opw {
                 must: "an arm with c2 > 0 and a forearm".into(),
             });
         }
-        let offsets = fields.array::<6>("offsets")?;
+        let offsets = fields.array::<6>("offsets", ANGLE)?;
         let offsets = fields.required("offsets", offsets)?;
-        let signs = fields.array::<6>("signs")?;
+        let signs = fields.array::<6>("signs", Accepts::Finite)?;
         let signs = fields.required("signs", signs)?;
         if signs.iter().any(|sign| sign.abs() != 1.0) {
             return Err(RobotError::Value {
@@ -264,12 +264,12 @@ fn tidy(v: Vector3<f64>) -> Vector3<f64> {
 }
 
 fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotError> {
-    let origin = fields.array::<3>("origin")?;
+    let origin = fields.array::<3>("origin", LENGTH)?;
     let origin = fields.required("origin", origin)?;
-    let [roll, pitch, yaw] = fields.array::<3>("rpy")?.unwrap_or_default();
-    let axis = fields.array::<3>("axis")?;
+    let [roll, pitch, yaw] = fields.array::<3>("rpy", ANGLE)?.unwrap_or_default();
+    let axis = fields.array::<3>("axis", Accepts::Between(-1e9, 1e9, "a direction"))?;
     let axis = fields.required("axis", axis)?;
-    let Some(axis) = Unit::try_new(Vector3::from(axis), f64::MIN_POSITIVE) else {
+    let Some(axis) = Unit::try_new(Vector3::from(axis), 1e-9) else {
         return Err(RobotError::Value {
             place: fields.place(),
             key: fields.path("axis"),
@@ -286,8 +286,8 @@ fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotEr
 }
 
 fn pose(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Isometry3<f64>, RobotError> {
-    let origin = fields.array::<3>("origin")?.unwrap_or_default();
-    let [roll, pitch, yaw] = fields.array::<3>("rpy")?.unwrap_or_default();
+    let origin = fields.array::<3>("origin", LENGTH)?.unwrap_or_default();
+    let [roll, pitch, yaw] = fields.array::<3>("rpy", ANGLE)?.unwrap_or_default();
     origins.extend(fields.finish()?);
     Ok(Isometry3::from_parts(
         Translation3::from(Vector3::from(origin)),
