@@ -190,7 +190,7 @@ fn files_extend_files_beside_them() {
     assert!(matches!(load(&broken).unwrap_err(), RobotError::Base { .. }));
     let other = write("robot.json", "{}");
     assert!(matches!(load(&other).unwrap_err(), RobotError::Format { .. }));
-    assert!(matches!(load("nowhere.toml").unwrap_err(), RobotError::Base { .. }));
+    assert!(matches!(load("nowhere.toml").unwrap_err(), RobotError::Io { .. }));
     assert_eq!(load("irb1600_10_145").unwrap().name, "IRB1600-10/1.45");
 }
 
@@ -224,6 +224,17 @@ fn wrong_files_name_the_place_and_the_way_out() {
         with("[motors]\nratio = [1,1]\nresistance = [1,1]\n"),
         with("[[limits.position_if]]\njoint = 3\n"),
         changed("[kinematics]", "[kinematics]\ncoupling = \"parallelogram\""),
+        // Other units: degrees, millimetres, degrees per second, grams.
+        changed("[-2.0, 2.0]", "[-115, 115]"),
+        changed("axis = [0, 1, 0]", "axis = [0, 1, 0]\nrpy = [0, 90, 0]"),
+        second_link("com = [0,0,0]", "com = [0,0,120]"),
+        changed("[2, 3]", "[180, 175]"),
+        second_link("mass = 1", "mass = 310000"),
+        second_link("mass = 1", "mass = 1e400"),
+        second_link("mass = 1", "mass = 99999999999999999999999"),
+        second_link("mass = 1", "mass_g = 1000"),
+        changed("axis = [0, 1, 0]", "axis = [0, 1e300, 0]"),
+        changed("axis = [0, 1, 0]", "axis = [0, 1e-300, 0]"),
         format!("name=\"x\"\n{}", "[[joint]]\norigin=[0,0,0]\naxis=[0,0,1]\n".repeat(8)),
     ];
     let messages: Vec<String> = texts.iter().map(|text| error(text).to_string()).collect();

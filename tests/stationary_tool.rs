@@ -118,8 +118,8 @@ fn the_work_moves_along_the_line() {
     for line in text.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
-        // The second line of the program's movements, before its zone.
-        if cells[column("line")] != "9" {
+        // The first line of the program, before its zone.
+        if cells[column("line")] != "12" {
             continue;
         }
         let q: [f64; 6] = std::array::from_fn(|i| number(&format!("q{}", i + 1)));

@@ -8,7 +8,7 @@ use crate::robot::{Coupling, Model};
 
 use super::conf::{Conf, conf_of};
 use super::error::IkError;
-use super::inverse::{Branch, branches};
+use super::inverse::{Branch, Locked, branches};
 use super::limits::limits_ok;
 use super::numeric::refine;
 
@@ -103,9 +103,7 @@ fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6
     }
     let mut q = into_limits(model, branch.q);
     if let Some(locked) = branch.locked {
-        // Any q4 solves the pose: the one of least size in its quarter turn.
-        let low = f64::from(conf.cf4) * FRAC_PI_2;
-        q[3] = 0.0_f64.clamp(low, low + FRAC_PI_2);
+        q[3] = locked_fourth(&locked, conf);
         q[5] = locked.offset - locked.slope * q[3];
     }
     for (joint, quarter) in [(0, conf.cf1), (3, conf.cf4), (5, conf.cf6)] {
@@ -118,6 +116,19 @@ fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6
         excess += miss;
     }
     Some((excess, q))
+}
+
+/// In a wrist singularity any q4 solves the pose: the one of least size in its quarter turn
+/// with which q6 is in its own, if there is one.
+fn locked_fourth(locked: &Locked, conf: Conf) -> f64 {
+    let [low, low6] = [conf.cf4, conf.cf6].map(|quarter| f64::from(quarter) * FRAC_PI_2);
+    let high = low + FRAC_PI_2;
+    // The middle of the range of q4 that brings q6 into its quarter turn, less whole turns.
+    let middle = (locked.offset - low6 - FRAC_PI_4) / locked.slope;
+    let turns = ((low + FRAC_PI_4 - middle) / TURN).round();
+    let middle = middle + TURN * turns;
+    let (from, to) = (low.max(middle - FRAC_PI_4), high.min(middle + FRAC_PI_4));
+    if from <= to { 0.0_f64.clamp(from, to) } else { 0.0_f64.clamp(low, high) }
 }
 
 /// 0 where both bits agree, the distance to the border of the two where that is
