@@ -223,12 +223,14 @@ fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
                     || limits_ok(&model, &q).is_err(),
                 "{name} {q:?}"
             );
-            let conf = ik_conf(&model, &pose, conf_of(&model, &q));
-            assert!(
-                conf.is_ok_and(|found| found.iter().all(|x| x.is_finite()))
-                    || limits_ok(&model, &q).is_err(),
-                "{name} {q:?}"
-            );
+            // With the wrist centre on axis 1 the quarter turns of the others hang on its angle.
+            let on_axis = singularity(&model, &q).is_some_and(|found| found.shoulder < 1e-6);
+            match ik_conf(&model, &pose, conf_of(&model, &q)) {
+                Ok(found) => assert!(found.iter().all(|x| x.is_finite()), "{name} {q:?}"),
+                Err(why) => {
+                    assert!(on_axis || limits_ok(&model, &q).is_err(), "{name} {q:?}: {why}");
+                }
+            }
             if let Some(measures) = singularity(&model, &q) {
                 let all = [measures.wrist, measures.elbow, measures.shoulder];
                 assert!(all.iter().all(|x| x.is_finite()), "{name} {q:?}");

@@ -119,7 +119,7 @@ fn the_work_moves_along_the_line() {
         let cells: Vec<&str> = line.split(',').collect();
         let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
         // The first line of the program, before its zone.
-        if cells[column("line")] != "12" {
+        if cells[column("line")] != "11" {
             continue;
         }
         let q: [f64; 6] = std::array::from_fn(|i| number(&format!("q{}", i + 1)));

@@ -14,8 +14,12 @@ use super::{numeric, offset_wrist};
 /// Lengths by which a pose at the edge of the reach may miss it \[m\]: rounding
 /// of targets that are written with few digits is left to the caller.
 const REACH_SLACK: f64 = 1e-9;
-/// |sin θ5| below which axes 4 and 6 count as one.
-pub(super) const WRIST_SINGULAR: f64 = 1e-8;
+/// |sin θ5| below which axes 4 and 6 count as one: where the arm is stretched as well, θ5 has
+/// half the digits.
+const WRIST_SINGULAR: f64 = 1e-7;
+
+/// Distance from axis 1 below which a wrist centre lies on it \[m\].
+const ON_AXIS: f64 = 1e-9;
 
 /// One branch of the inverse.
 #[derive(Clone, Copy, Debug)]
@@ -45,11 +49,16 @@ pub(super) struct Locked {
 /// # Errors
 /// The pose is out of reach or not finite, or the robot has not six joints.
 pub fn ik_all(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<[f64; 6]>, IkError> {
-    Ok(branches(model, pose)?.iter().map(|branch| branch.q).collect())
+    Ok(branches(model, pose, 0.0)?.iter().map(|branch| branch.q).collect())
 }
 
-/// The branches behind [`ik_all`]; never empty.
-pub(super) fn branches(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
+/// The branches behind [`ik_all`]; never empty. `q1` \[rad\] is the angle of joint 1 where any
+/// will do: with the wrist centre on its axis.
+pub(super) fn branches(
+    model: &Model,
+    pose: &Isometry3<f64>,
+    q1: f64,
+) -> Result<Vec<Branch>, IkError> {
     if model.dof != 6 {
         return Err(IkError::NoInverse { robot: model.name.clone() });
     }
@@ -57,7 +66,7 @@ pub(super) fn branches(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branc
         return Err(IkError::NotFinite);
     }
     match &model.kinematics.opw {
-        Some(opw) => closed(model, opw, pose),
+        Some(opw) => closed(model, opw, pose, q1),
         None => searched(model, pose),
     }
 }
@@ -77,12 +86,17 @@ fn searched(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError
     Ok(found.into_iter().map(branch).collect())
 }
 
-fn closed(model: &Model, opw: &Opw, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
+fn closed(
+    model: &Model,
+    opw: &Opw,
+    pose: &Isometry3<f64>,
+    q1: f64,
+) -> Result<Vec<Branch>, IkError> {
     let rotation = pose.rotation.to_rotation_matrix().into_inner();
     let centre = pose.translation.vector - opw.c4 * rotation.column(2);
     let mut found = Vec::with_capacity(8);
     let mut nearest: Option<(f64, Side)> = None;
-    for (facing, back) in facings(opw, &centre).into_iter().zip([false, true]) {
+    for (facing, back) in facings(opw, &centre, q1).into_iter().zip([false, true]) {
         match facing {
             Ok(arms) => {
                 for Arm { theta, elbow } in arms {
@@ -113,8 +127,9 @@ pub(super) struct Arm {
 /// How a wrist centre is missed: distance \[m\] and side.
 type Miss = (f64, Side);
 
-/// Both elbows with axis 1 facing the wrist centre, then with it facing away.
-pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>) -> [Result<[Arm; 2], Miss>; 2] {
+/// Both elbows with axis 1 facing the wrist centre, then with it facing away; `q1` as of
+/// [`branches`].
+pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm; 2], Miss>; 2] {
     let beyond_b = centre.xy().norm_squared() - opw.b * opw.b;
     if beyond_b < -REACH_SLACK * opw.b.abs() {
         let miss = (opw.b.abs() - centre.xy().norm(), Side::Inside);
@@ -122,7 +137,12 @@ pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>) -> [Result<[Arm; 2], Mis
     }
     let radius = beyond_b.max(0.0).sqrt();
     [radius, -radius].map(|reach| {
-        let theta1 = centre.y.atan2(centre.x) - opw.b.atan2(reach);
+        let towards = if centre.xy().norm() < ON_AXIS {
+            opw.signs[0] * q1 - opw.offsets[0]
+        } else {
+            centre.y.atan2(centre.x)
+        };
+        let theta1 = towards - opw.b.atan2(reach);
         let elbows = arm(opw, reach - opw.a1, centre.z - opw.c1)?;
         Ok(elbows.map(|[theta2, theta3, elbow]| Arm { theta: [theta1, theta2, theta3], elbow }))
     })

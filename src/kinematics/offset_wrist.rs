@@ -110,7 +110,7 @@ impl<'a> Search<'a> {
         let axis = link.rotation * self.fifth.axis.into_inner();
         let centre = link * self.wrist.crossing;
         let mut arms = [None; ARMS];
-        let facings = facings(&self.wrist.arm, &centre.translation.vector);
+        let facings = facings(&self.wrist.arm, &centre.translation.vector, 0.0);
         for (pair, facing) in arms.chunks_exact_mut(2).zip(facings) {
             for (to, arm) in pair.iter_mut().zip(facing.into_iter().flatten()) {
                 *to = Some((arm, axis.dot(&(forearm(arm.theta) * Vector3::z()))));

@@ -28,7 +28,8 @@ const TURN: f64 = 2.0 * PI;
 /// The pose is out of reach; its solution with this configuration breaks a
 /// position limit; no solution has the configuration.
 pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64; 6], IkError> {
-    let branches = branches(model, pose)?;
+    let low1 = f64::from(conf.cf1) * FRAC_PI_2;
+    let branches = branches(model, pose, 0.0_f64.clamp(low1, low1 + FRAC_PI_2))?;
     let mut best: Option<(f64, [f64; 6])> = None;
     let mut outside = None;
     for branch in &branches {
@@ -55,7 +56,8 @@ pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64;
 }
 
 /// The solution nearest to `q_ref` (least sum of squared differences), whole
-/// turns included; in a wrist singularity joint 4 stays where it is. It follows a
+/// turns included; in a wrist singularity joint 4 stays where it is, and joint 1 with the
+/// wrist centre on its axis. It follows a
 /// path without jumps when `q_ref` is the solution a small step before.
 ///
 /// # Errors
@@ -74,7 +76,7 @@ pub fn ik_near(
         return Ok(q);
     }
     let mut best = (f64::INFINITY, *q_ref);
-    for branch in branches(model, pose)? {
+    for branch in branches(model, pose, q_ref[0])? {
         let mut q = branch.q;
         if let Some(locked) = branch.locked {
             q[3] = q_ref[3];
