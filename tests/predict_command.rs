@@ -147,7 +147,8 @@ fn positions_are_enough() {
     for row in 0..rows {
         let q: Vec<String> =
             (0..7).map(|joint| swing(joint, time(row))[0].to_degrees().to_string()).collect();
-        text += &format!("{},{}\n", time(row), q.join(","));
+        text += &[time(row).to_string(), q.join(",")].join(",");
+        text.push('\n');
     }
     let path = written(&folder, "positions.csv", &text);
     let joints: Vec<String> = (1..=7).map(|joint| format!("q{joint}_deg=A{joint}")).collect();

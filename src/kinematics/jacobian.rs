@@ -40,6 +40,7 @@ pub fn jacobian_dot<const N: usize>(
 }
 
 /// A point that a Jacobian is taken at.
+#[derive(Clone, Copy)]
 pub(super) enum Tip<'a> {
     /// The origin of a frame in tool0.
     Held(&'a Isometry3<f64>),

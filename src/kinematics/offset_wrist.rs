@@ -1,5 +1,5 @@
 //! All branches of the inverse of an arm whose axis 6 passes the crossing of axes 4 and 5
-//! at a distance, such as a GoFa.
+//! at a distance, such as an ABB CRB 15000.
 //!
 //! With q6 given, the pose of link 5 is known, hence the crossing, hence four arms in
 //! closed form. Those are solutions whose axis 4 is at a right angle to axis 5: the zeros

@@ -156,16 +156,11 @@ fn vector<'a, 'i>(
 ) -> Result<Option<[f64; 3]>, Wrong<'a, 'i>> {
     let Some(text) = node.attribute(name) else { return Ok(None) };
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(finite).collect();
-    match numbers.and_then(|list| <[f64; 3]>::try_from(list).ok()) {
-        Some(list) => Ok(Some(list)),
-        None => {
-            let tag = node.tag_name().name();
-            let whose = describe(of);
-            let message =
-                format!("<{tag} {name}=\"{text}\"> of {whose}: give three finite numbers");
-            Err((node, message))
-        }
+    if let Some(list) = numbers.and_then(|list| <[f64; 3]>::try_from(list).ok()) {
+        return Ok(Some(list));
     }
+    let (tag, whose) = (node.tag_name().name(), describe(of));
+    Err((node, format!("<{tag} {name}=\"{text}\"> of {whose}: give three finite numbers")))
 }
 
 /// A finite number of an attribute.
