@@ -6,6 +6,7 @@ pub mod common;
 pub mod generate;
 pub mod input;
 pub mod listing;
+pub mod load;
 pub mod optimize;
 pub mod output;
 pub mod parse;
