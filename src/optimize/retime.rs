@@ -321,7 +321,7 @@ impl<'a> Work<'a> {
             }
             match best {
                 Some(attempt) => margins.tighten(&attempt.check),
-                None => margins.load *= FIRST_MARGIN,
+                None => margins.lighten(),
             }
         }
         Err(problem)
