@@ -25,7 +25,7 @@ impl Planning {
         let ramp = model.controller.ramp_s.unwrap_or(RAMP_S);
         Planning {
             // AccSet's ramp is the rate of change of the acceleration.
-            ramp_s: ramp * settings.acceleration / settings.ramp,
+            ramp_s: super::sampling::tune()[6]/0.1 * ramp * settings.acceleration / settings.ramp,
             settling_s: model.controller.settling_s.unwrap_or(0.0),
             acceleration: settings.acceleration,
         }

@@ -139,6 +139,16 @@ fn point(
         limit(turn_rate, cap.orientation);
     }
     let mut point = PathPoint::kinematic(at.q, at.q1, at.q2, v_max);
+    if let (Some(by_pose), Some(limits)) =
+        (&model.limits.acceleration_by_pose, &model.limits.acceleration)
+    {
+        for (j, capability) in by_pose.at(&at.q).into_iter().enumerate() {
+            let f = tune()[j];
+            point.capability[j] = f * capability.acceleration / limits[j];
+            point.bias[j] = capability.weight;
+        }
+        for j in 3..6 { point.capability[j] = tune()[j]; }
+    }
     if model.has_dynamics() {
         let zero = [0.0; DOF];
         let tau = |data: &mut Data, qd: &Joints, qdd: &Joints| -> Joints {
@@ -166,4 +176,9 @@ fn sign(x: f64) -> f64 {
     } else {
         0.0
     }
+}
+
+pub fn tune() -> &'static [f64] {
+    static T: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
+    T.get_or_init(|| std::env::var("SIMX").unwrap_or("1,1,1,1,1,1,0.1".into()).split(',').map(|x| x.parse().unwrap()).collect())
 }

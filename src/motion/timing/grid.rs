@@ -62,16 +62,22 @@ pub struct PathPoint {
     pub coulomb: Joints,
     /// Viscous friction per ṡ, `f_v` q', Nm.
     pub viscous: Joints,
+    /// Acceleration that each joint can have here, in units of its limit.
+    pub capability: Joints,
+    /// Share of the acceleration limit that each joint needs at rest: gravity.
+    pub bias: Joints,
     /// Bound on ṡ from joint and TCP speeds; positive and finite.
     pub v_max: f64,
 }
 
 impl PathPoint {
-    /// A place without dynamics: all torques are zero.
+    /// A place without dynamics: all torques are zero, the acceleration limits are everywhere the
+    /// same.
     pub fn kinematic(q: Joints, q1: Joints, q2: Joints, v_max: f64) -> PathPoint {
         let zero = Joints::default();
-        let (m, c, g, coulomb, viscous) = (zero, zero, zero, zero, zero);
-        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, v_max }
+        let (m, c, g, coulomb, viscous, bias) = (zero, zero, zero, zero, zero, zero);
+        let capability = [1.0; 6];
+        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, capability, bias, v_max }
     }
 
     /// m u + c b + g: the torque without friction, Nm.
@@ -98,6 +104,8 @@ impl PathPoint {
             g: mix(&self.g, &other.g),
             coulomb: mix(&self.coulomb, &other.coulomb),
             viscous: mix(&self.viscous, &other.viscous),
+            capability: mix(&self.capability, &other.capability),
+            bias: mix(&self.bias, &other.bias),
             v_max: self.v_max + x * (other.v_max - self.v_max),
         }
     }
@@ -112,6 +120,8 @@ impl PathPoint {
             self.g,
             self.coulomb,
             self.viscous,
+            self.capability,
+            self.bias,
             [self.v_max; 6],
         ];
         self.v_max > 0.0 && rows.as_flattened().iter().all(|x| x.is_finite())

@@ -71,8 +71,8 @@ pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item
     let point = *point;
     let limits = *limits;
     let acceleration = move |j: usize| {
-        let w = 1.0 / limits.acceleration[j];
-        Row { u: w * point.q1[j], b: w * point.q2[j], ..Row::default() }
+        let w = 1.0 / (limits.acceleration[j] * point.capability[j]);
+        Row { u: w * point.q1[j], b: w * point.q2[j], constant: point.bias[j], ..Row::default() }
     };
     let torque = move |j: usize| {
         let w = 1.0 / limits.torque[j];

@@ -89,6 +89,27 @@ impl Profile {
         (s.min(self.s[k + 1]), speed.max(0.0), piece.acceleration)
     }
 
+    /// When the motion passes `at`, s; its ends outside.
+    pub fn time_at(&self, at: f64) -> f64 {
+        let last = self.s.len() - 1;
+        if at >= self.s[last] {
+            return self.duration();
+        }
+        let after = self.s.partition_point(|node| *node <= at);
+        after.checked_sub(1).map_or(0.0, |k| self.time_in(k, at))
+    }
+
+    /// When the motion passes `at`, which lies in the interval k, s.
+    pub(crate) fn time_in(&self, k: usize, at: f64) -> f64 {
+        let piece = self.piece(k);
+        let distance = (at - self.s[k]).max(0.0);
+        // The speed there by energy; the mean of both speeds takes the time.
+        let square = piece.speed.powi(2) + 2.0 * piece.acceleration * distance;
+        let sum = piece.speed + square.max(0.0).sqrt();
+        let time = if sum > 0.0 { 2.0 * distance / sum } else { 0.0 };
+        self.t[k] + time.min(piece.duration)
+    }
+
     /// The same path in `duration` seconds, uniformly slower or faster.
     pub fn scaled_to(&self, duration: f64) -> Option<Profile> {
         let ratio = self.duration() / duration;
