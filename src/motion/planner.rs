@@ -54,13 +54,14 @@ pub fn plan(
     let grid = sampling::grid(loaded, path, &nodes, caps).map_err(|_| NoTiming)?;
     let limits = PathLimits::new(limits.acceleration, limits.torque).map_err(|_| NoTiming)?;
     let fastest = time_optimal(&grid, &limits).into_profile().ok_or(NoTiming)?;
+    let longer = planning.average.window - planning.average.closing;
     let profile = match time {
-        Some(time) if fastest.duration() + planning.ramp_s < time => {
-            slowed(&grid, &limits, fastest, time - planning.ramp_s)?
+        Some(time) if fastest.duration() + longer < time => {
+            slowed(&grid, &limits, fastest, time - longer)?
         }
         _ => fastest,
     };
-    let timing = Averaged::new(path, profile, planning.ramp_s);
+    let timing = Averaged::new(path, profile, planning.average);
     Ok(TimedMotion::Path(path.clone(), timing))
 }
 

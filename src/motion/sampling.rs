@@ -1,5 +1,6 @@
 //! From a joint path to the grid that the timing solvers see.
 
+use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint};
 use crate::dynamics::{Data, Load, rnea};
 use crate::kinematics::jacobian;
@@ -33,8 +34,10 @@ pub struct Loaded<'a> {
 const LEG_INTERVALS: usize = 4;
 /// Intervals of a zone.
 const ZONE_INTERVALS: usize = 8;
-/// Nodes nearer to each other than this share of the path are one.
-const NODE_DISTANCE: f64 = 1e-4;
+/// Halvings of the first and the last interval: a slow motion gets to its speed early.
+const END_HALVINGS: i32 = 8;
+/// Nodes nearer to each other than this are one, m of the path or share of a short one.
+const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
 /// Nodes in s: about `count` intervals in all, closer towards the ends of the legs, where speeds
 /// change; and the edges and kinks of the zones.
@@ -51,24 +54,18 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
         }));
         begin = end;
     }
-    // Evenly in each zone, whatever pieces it happens to be made of.
-    let mut zone: Option<(f64, f64)> = None;
-    let is_zone = |kind: PieceKind| matches!(kind, PieceKind::CartesianZone | PieceKind::JointZone);
-    for piece in path.pieces() {
-        let end = piece.s + piece.length;
-        zone = match (zone, is_zone(piece.kind)) {
-            (Some((begin, _)), true) => Some((begin, end)),
-            (None, true) => Some((piece.s, end)),
-            (found, false) => {
-                nodes.extend(found.into_iter().flat_map(zone_nodes));
-                None
-            }
-        };
+    let ends = [nodes[1], length - nodes[nodes.len() - 2]];
+    for k in 1..=END_HALVINGS {
+        let [first, last] = ends.map(|interval| interval * 0.5_f64.powi(k));
+        nodes.extend([first, length - last]);
     }
+    // Evenly in each zone, whatever pieces it happens to be made of.
+    nodes.extend(zones(path).into_iter().flat_map(zone_nodes));
     nodes.sort_by(f64::total_cmp);
+    let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * length);
     let mut kept: Vec<f64> = Vec::with_capacity(nodes.len());
     for node in nodes {
-        if kept.last().is_none_or(|last| node - last > NODE_DISTANCE * length) {
+        if kept.last().is_none_or(|last| node - last > apart) {
             kept.push(node);
         }
     }
@@ -76,6 +73,28 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
         *last = length;
     }
     kept
+}
+
+/// Begin and end of each zone.
+fn zones(path: &JointPath) -> Vec<(f64, f64)> {
+    let is_zone = |piece: &Piece| {
+        matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone)
+    };
+    let mut zones: Vec<(f64, f64)> = Vec::new();
+    let mut corner = None;
+    for piece in path.pieces().iter().filter(|piece| is_zone(piece)) {
+        let end = piece.s + piece.length;
+        // Zones may touch: one lies around the end of each leg.
+        let before = piece.leg.checked_sub(1).map_or(0.0, |leg| path.leg_end(leg));
+        let starts = piece.s - before < path.leg_end(piece.leg) - end;
+        let around = if starts { piece.leg.saturating_sub(1) } else { piece.leg };
+        match zones.last_mut() {
+            Some(zone) if corner == Some(around) => zone.1 = end,
+            _ => zones.push((piece.s, end)),
+        }
+        corner = Some(around);
+    }
+    zones
 }
 
 /// The edges of a zone and nodes between them.
@@ -94,14 +113,31 @@ pub fn grid(
     caps: &[SpeedCap],
 ) -> Result<PathGrid, GridError> {
     let mut data = Data::new();
+    let mut zones = zones(path).into_iter().peekable();
     let mut ends = Vec::with_capacity(nodes.len());
     for pair in nodes.windows(2) {
-        let piece = path.piece_at(0.5 * (pair[0] + pair[1]));
-        let extent = path.extent(piece.leg);
-        let cap = &caps[piece.leg];
-        ends.push([pair[0], pair[1]].map(|s| point(loaded, &mut data, piece, s, cap, extent)));
+        let middle = 0.5 * (pair[0] + pair[1]);
+        while zones.peek().is_some_and(|(_, end)| *end < middle) {
+            zones.next();
+        }
+        let zone = zones.peek().filter(|(begin, _)| *begin <= middle);
+        let piece = path.piece_at(middle);
+        let limits = Bounds {
+            cap: &caps[piece.leg],
+            extent: path.extent(piece.leg),
+            zone: zone.map(|(begin, end)| end - begin),
+        };
+        ends.push([pair[0], pair[1]].map(|s| point(loaded, &mut data, piece, s, &limits)));
     }
     PathGrid::new(nodes.to_vec(), ends)
+}
+
+/// What bounds the speed on an interval besides the joints.
+struct Bounds<'a> {
+    cap: &'a SpeedCap,
+    extent: Extent,
+    /// Length of the zone that holds it.
+    zone: Option<f64>,
 }
 
 fn point(
@@ -109,8 +145,7 @@ fn point(
     data: &mut Data,
     piece: &Piece,
     s: f64,
-    cap: &SpeedCap,
-    extent: Extent,
+    Bounds { cap, extent, zone }: &Bounds<'_>,
 ) -> PathPoint {
     let at = piece.eval(s);
     let mut v_max = f64::INFINITY;
@@ -138,16 +173,18 @@ fn point(
         limit(tcp_rate, cap.tcp);
         limit(turn_rate, cap.orientation);
     }
+    if let Some(zone) = zone {
+        // The interpolator takes at least one step in each zone: runs with z1 show it.
+        v_max = v_max.min(zone / interpolation_s(model));
+    }
     let mut point = PathPoint::kinematic(at.q, at.q1, at.q2, v_max);
     if let (Some(by_pose), Some(limits)) =
         (&model.limits.acceleration_by_pose, &model.limits.acceleration)
     {
         for (j, capability) in by_pose.at(&at.q).into_iter().enumerate() {
-            let f = tune()[j];
-            point.capability[j] = f * capability.acceleration / limits[j];
+            point.capability[j] = capability.acceleration / limits[j];
             point.bias[j] = capability.weight;
         }
-        for j in 3..6 { point.capability[j] = tune()[j]; }
     }
     if model.has_dynamics() {
         let zero = [0.0; DOF];
@@ -176,9 +213,4 @@ fn sign(x: f64) -> f64 {
     } else {
         0.0
     }
-}
-
-pub fn tune() -> &'static [f64] {
-    static T: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
-    T.get_or_init(|| std::env::var("SIMX").unwrap_or("1,1,1,1,1,1,0.1".into()).split(',').map(|x| x.parse().unwrap()).collect())
 }

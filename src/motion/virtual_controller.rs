@@ -276,14 +276,10 @@ impl VirtualController<'_> {
         if let Some((leg, reason)) = &problem {
             self.note(movements[*leg].span, reason);
         }
-        // Settling belongs to the last move that moves.
         let moved = durations.iter().sum::<f64>() > 0.0;
-        let settling = if moved { planning.settling_s } else { 0.0 };
         let mut records = Vec::with_capacity(movements.len());
         let mut t = 0.0;
-        let count = movements.len();
-        for (i, movement) in movements.into_iter().enumerate() {
-            let duration = durations[i] + if i + 1 == count { settling } else { 0.0 };
+        for (movement, duration) in movements.into_iter().zip(durations) {
             records.push(MoveRecord { movement, t_start: t, duration });
             t += duration;
         }
@@ -294,14 +290,29 @@ impl VirtualController<'_> {
             load,
             start,
             end,
-            settling,
+            settling: 0.0,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
         };
         // An output between fly-by movements was noted when the run was not planned yet: it
         // keeps its place in the order before the run's event.
         self.certain = run.problem.is_none();
+        if moved {
+            self.settle(planning.settling_s);
+        }
         self.push(t, What::Run(Box::new(run)));
+    }
+
+    /// Between two movements the robot rests at the stop point. A wait takes that time too.
+    fn settle(&mut self, settling: f64) {
+        let Some(Event { duration, what: What::Run(before), .. }) = self.events.last_mut() else {
+            return;
+        };
+        let Some(last) = before.moves.last_mut().filter(|_| *duration > 0.0) else { return };
+        before.settling += settling;
+        last.duration += settling;
+        *duration += settling;
+        self.time += settling;
     }
 
     fn realise(&self, stream: Stream, movements: &[Movement]) -> Planned {

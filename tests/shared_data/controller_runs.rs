@@ -63,6 +63,7 @@ impl Logged {
 struct Compared {
     logged: Logged,
     duration: f64,
+    moving: f64,
     /// RMS of the joint path at equal times, rad.
     rms: f64,
     /// Closest approach to each corner, logged and simulated, m.
@@ -223,6 +224,8 @@ fn compare(model: &Model, program: &[Value], logged: Logged) -> Compared {
 
     let moves = |t: f64| state(&runs, origin + t).1.iter().any(|qd| qd.abs() > STANDS);
     let begin = (0..).map(|i| f64::from(i) * 1e-3).find(|t| moves(*t) || *t > duration).unwrap();
+    let finish = (0..).map(|i| duration - f64::from(i) * 1e-3).find(|t| moves(*t) || *t < 0.0).unwrap();
+    let moving = finish - begin;
     let end = logged.motion[logged.motion.len() - 1].0.max(duration - begin);
     let steps = (end / PERIOD) as usize;
     let mut square = 0.0;
@@ -247,7 +250,7 @@ fn compare(model: &Model, program: &[Value], logged: Logged) -> Compared {
             corners.push((approach(&logged_points, &corner), approach(&points, &corner)));
         }
     }
-    Compared { logged, duration, rms, corners }
+    Compared { logged, duration, moving, rms, corners }
 }
 
 fn percentile(values: &[f64], share: f64) -> f64 {
@@ -351,8 +354,30 @@ fn logged_runs_of_an_irc5() {
         }
     }
     for c in &compared {
+        if std::env::var("DUR").is_ok() {
+            eprintln!("DUR {} pub {:.3} log {:.3} sim {:.3} simthr {:.3}", c.logged.name(), c.logged.duration, c.logged.motion.last().unwrap().0, c.duration, c.moving);
+        }
         if std::env::var("CORNERS").is_ok() && c.corner_fails() > 0 {
             eprintln!("{} {:?}", c.logged.name(), c.corners);
         }
+    }
+}
+
+#[test]
+fn dump_one() {
+    let Ok(name) = std::env::var("DUMP") else { return };
+    let parts: Vec<&str> = name.split(',').collect();
+    let programs: Value = serde_json::from_str(&shared("controller_runs/programs.json").unwrap()).unwrap();
+    let model = find("IRB6640-180/2.55").unwrap();
+    let runs = simulated(&model, &rapid(programs["programs"][parts[0]].as_array().unwrap(), parts[1], parts[2]));
+    let tool = runs[0].1.legs[0].tool;
+    let o = runs[0].0;
+    let n: f64 = runs.iter().map(|r| r.1.duration()).sum();
+    let mut t = 0.0;
+    while t < n {
+        let (q, qd) = state(&runs, o + t);
+        let v = joulepath::kinematics::jacobian(&model, &q, &tool) * nalgebra::Vector6::from(qd);
+        eprintln!("S {t:.4} {:.5} {q:?}", v.fixed_rows::<3>(0).norm());
+        t += 0.004032;
     }
 }
