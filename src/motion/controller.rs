@@ -1,6 +1,8 @@
 //! Constants of the controller's motion planner under the settings in force.
 
+use super::planner::MotionLimits;
 use crate::ir::movement::Settings;
+use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
 
 /// Window of the average where the robot's file has none, s. Runs of an IRC5 with an IRB6640: the
@@ -12,10 +14,14 @@ const RAMP_S: f64 = 0.10;
 const CORE: f64 = 0.16;
 /// Share of the window by which a motion ends early. Same runs: their durations, from the start of
 /// the first command to standstill, are 0.03 to 0.04 s shorter than the averaged motion.
-const CLOSING: f64 = 1.0 / 3.0;
+const CLOSING: f64 = 0.3;
 /// Period of the interpolator where the robot's file has none, s. Published configurations:
 /// `std_servo_queue_time` of 0.193536 s is 48 periods.
 const INTERPOLATION_S: f64 = 0.004_032;
+
+/// Time in which each joint gets to its largest speed where the robot's file has no accelerations,
+/// s. An IRB6640-180/2.55 takes that: its measured accelerations over the speeds of its data sheet.
+const TO_FULL_SPEED_S: Joints = [0.34, 0.36, 0.17, 0.08, 0.07, 0.07];
 
 /// Figures of the planner under the settings in force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +59,39 @@ impl Planning {
             acceleration: settings.acceleration,
         }
     }
+}
+
+/// The limits of the robot with a share of its accelerations. Where its file has none they are
+/// those with which an IRB6640 gets to its speeds.
+pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
+    let list = |values: &Option<Vec<f64>>, factor: f64| -> Joints {
+        std::array::from_fn(|j| {
+            values.as_ref().and_then(|v| v.get(j)).map_or(f64::INFINITY, |x| x * factor)
+        })
+    };
+    let acceleration = if model.limits.acceleration.is_some() {
+        list(&model.limits.acceleration, share)
+    } else {
+        let speed = list(&model.limits.velocity, share);
+        std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
+    };
+    let torque = if model.has_dynamics() {
+        list(&model.limits.torque, 1.0)
+    } else {
+        [f64::INFINITY; DOF]
+    };
+    MotionLimits { acceleration, torque }
+}
+
+/// What a simulation assumes about the robot where its file has no figures.
+pub fn assumed(model: &Model) -> Option<String> {
+    model.limits.acceleration.is_none().then(|| {
+        format!(
+            "joint accelerations of {}: each joint gets to its speed in the time that an \
+             IRB6640-180/2.55 takes",
+            model.name
+        )
+    })
 }
 
 /// Period of the interpolator, s.

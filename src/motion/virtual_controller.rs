@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::controller::Planning;
-use super::planner::{MotionLimits, plan};
+use super::controller::{Planning, assumed, motion_limits};
+use super::planner::plan;
 use super::sampling::{Loaded, SpeedCap};
 use super::stream::Stream;
 use super::timed::TimedMotion;
@@ -55,6 +55,8 @@ pub fn simulate(
     };
     let execution = execute(program, entry, &mut machine);
     machine.flush();
+    let mut assumptions = execution.assumed;
+    assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
     unresolved.sort_by_key(|note| note.span);
@@ -63,7 +65,7 @@ pub fn simulate(
         cycle_s: machine.time,
         repeats_from: machine.repeats_from,
         unresolved,
-        assumed: execution.assumed,
+        assumed: assumptions,
     }
 }
 
@@ -410,23 +412,6 @@ type Planned = (Vec<(f64, TimedMotion)>, Vec<f64>, Option<(usize, String)>);
 /// `\T` under `VelSet`: an override of 50 % takes twice the time.
 fn timed(movement: &Movement) -> Option<f64> {
     movement.time.map(|t| t / movement.settings.speed_override)
-}
-
-/// The limits of the robot with a share of its accelerations.
-pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
-    let list = |values: &Option<Vec<f64>>, factor: f64| -> Joints {
-        std::array::from_fn(|j| {
-            values.as_ref().and_then(|v| v.get(j)).map_or(f64::INFINITY, |x| x * factor)
-        })
-    };
-    MotionLimits {
-        acceleration: list(&model.limits.acceleration, share),
-        torque: if model.has_dynamics() {
-            list(&model.limits.torque, 1.0)
-        } else {
-            [f64::INFINITY; DOF]
-        },
-    }
 }
 
 /// The programmed speed of a movement as a cap; a timed one has none but its time.

@@ -17,7 +17,7 @@ pub fn lacking(model: &Model) -> Vec<(&'static str, Vec<&'static str>)> {
     let bodies = (model.has_dynamics(), "dynamics (masses, inertias)");
     let motors = (model.motors.is_some(), "motor data");
     let needs: [(&str, &[(bool, &'static str)]); 7] = [
-        ("simulate", &[joints, speeds, accelerations]),
+        ("simulate", &[joints, speeds]),
         ("optimize", &[joints, speeds, accelerations, torques, bodies, motors]),
         ("standstill", &[bodies, motors]),
         ("excite", &[joints, speeds, accelerations]),
