@@ -1,7 +1,10 @@
 //! Power at one state of the robot, and its integral over a motion.
 
 use super::parts::EnergyParts;
-use crate::dynamics::{Data, Load, Torque, gravity, motor_rates, motor_torques, torque};
+use crate::dynamics::{
+    Data, Load, Torque, gravity, kinetic_energy, motor_rates, motor_torques, potential_energy,
+    torque,
+};
 use crate::motion::timed::{JointState, TimedMotion};
 use crate::path::joint_path::Joints;
 use crate::robot::{MAX_DOF, Model, Sharing};
@@ -118,7 +121,12 @@ pub fn motion_energy(
     knots.retain(|t| *t > from && *t < to);
     knots.insert(0, from);
     knots.push(to);
-    let mut sum = EnergyParts::default();
+    // The rigid work is what the robot has gained; the rest is integrated.
+    let ends = [from, to].map(|t| motion.at(t));
+    let [before, after] = ends.map(|JointState { q, qd, .. }| {
+        kinetic_energy(model, load, &q, &qd) + potential_energy(model, load, &q)
+    });
+    let mut sum = EnergyParts { mechanical_j: after - before, ..EnergyParts::default() };
     for pair in knots.windows(2) {
         let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
         let h = (pair[1] - pair[0]) / steps;
@@ -129,7 +137,6 @@ pub fn motion_energy(
                 let p = power(model, &mut data, load, &state);
                 let w = 0.5 * h * w;
                 sum += EnergyParts {
-                    mechanical_j: w * p.rigid_w,
                     friction_j: w * p.friction_w,
                     copper_j: w * p.copper_w,
                     drive_j: w * p.drive_w,

@@ -24,6 +24,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
+/// Change of the path's acceleration, share of its largest, that makes a kink worth a knot.
+const KINK: f64 = 0.02;
+
 /// The timing of a path: a speed profile, averaged over time.
 #[derive(Clone, Debug)]
 pub struct Averaged {
@@ -34,6 +37,8 @@ pub struct Averaged {
     edges: [(f64, f64); 4],
     /// Times between which the joints before averaging are polynomials, s.
     knots: Vec<f64>,
+    /// Between two of them: the interval of the profile and the piece of the path.
+    stretches: Vec<(u32, u32)>,
     /// ∫ q from the start to each of these times, rad s.
     integral: Vec<Joints>,
     /// The end of the motion, from where the motion before averaging has ended.
@@ -53,16 +58,7 @@ impl Averaged {
     /// The path run by `profile`, averaged.
     pub fn new(path: &JointPath, profile: Profile, average: Average) -> Averaged {
         let Average { window, core, closing } = average;
-        let mut knots: Vec<f64> = profile.times().to_vec();
-        let mut at = 0;
-        for piece in path.pieces().iter().skip(1) {
-            while profile.s().get(at + 1).is_some_and(|s| *s <= piece.s) {
-                at += 1;
-            }
-            knots.push(profile.time_in(at, piece.s));
-        }
-        knots.sort_by(f64::total_cmp);
-        knots.dedup();
+        let (knots, stretches) = stretches(path, &profile);
         let begin = profile.duration();
         let (side, middle) = ((1.0 - core) / window, (1.0 + core) / window);
         let mut averaged = Averaged {
@@ -75,13 +71,14 @@ impl Averaged {
                 (window, -side),
             ],
             knots,
+            stretches,
             integral: Vec::new(),
             closing: Closing { begin, length: 0.0, coefficients: [[0.0; 6]; DOF] },
         };
         let mut sum = [0.0; DOF];
         let mut integral = vec![sum];
-        for pair in averaged.knots.windows(2) {
-            let part = averaged.stretch(path, pair[0], pair[1]);
+        for k in 0..averaged.stretches.len() {
+            let part = averaged.stretch(path, k, averaged.knots[k + 1]);
             sum = std::array::from_fn(|j| sum[j] + part[j]);
             integral.push(sum);
         }
@@ -132,23 +129,32 @@ impl Averaged {
     fn average(&self, path: &JointPath, t: f64) -> JointState {
         let mut state = JointState::rest([0.0; DOF]);
         for (delay, c) in self.edges {
-            let (q, qd) = self.source(path, t - delay);
-            let sum = self.sum(path, t - delay);
+            let source = self.source(path, t - delay);
             for j in 0..DOF {
-                state.q[j] += c * sum[j];
-                state.qd[j] += c * q[j];
-                state.qdd[j] += c * qd[j];
+                state.q[j] += c * source.sum[j];
+                state.qd[j] += c * source.q[j];
+                state.qdd[j] += c * source.qd[j];
             }
         }
         state
     }
 
-    /// Times between which every joint moves smoothly, from 0 to the duration.
+    /// Times between which the joints move smoothly, from 0 to the duration: where the
+    /// acceleration before averaging changes by a share that counts, and that time later.
     pub fn knots(&self) -> Vec<f64> {
-        let mut knots = self.knots.clone();
+        let pieces: Vec<f64> = self.profile.pieces().map(|piece| piece.acceleration).collect();
+        let largest = pieces.iter().fold(0.0, |max: f64, a| max.max(a.abs()));
+        let mut knots = vec![0.0];
+        for (pair, t) in pieces.windows(2).zip(&self.profile.times()[1..]) {
+            if (pair[1] - pair[0]).abs() > KINK * largest {
+                knots.push(*t);
+            }
+        }
+        knots.push(self.profile.duration());
         if self.window > 0.0 {
+            let source = knots.clone();
             for (delay, _) in &self.edges[1..] {
-                knots.extend(self.knots.iter().map(|t| t + delay));
+                knots.extend(source.iter().map(|t| t + delay));
             }
             knots.retain(|t| *t < self.closing.begin);
             knots.extend([self.closing.begin, self.duration()]);
@@ -158,42 +164,79 @@ impl Averaged {
         knots
     }
 
-    /// q and q̇ before averaging.
-    fn source(&self, path: &JointPath, t: f64) -> (Joints, Joints) {
-        let (s, v, _) = self.profile.at(t);
-        let PathPoint { q, q1, .. } = path.eval(s);
-        (q, q1.map(|x| x * v))
-    }
-
-    /// ∫ q from 0 to t, rad s.
-    fn sum(&self, path: &JointPath, t: f64) -> Joints {
-        if t <= 0.0 {
-            return path.eval(0.0).q.map(|q| q * t);
-        }
+    /// The motion before averaging.
+    fn source(&self, path: &JointPath, t: f64) -> Source {
         let last = self.knots.len() - 1;
+        if t <= 0.0 {
+            let q = path.eval(0.0).q;
+            return Source { sum: q.map(|q| q * t), q, qd: [0.0; DOF] };
+        }
         if t >= self.knots[last] {
+            let q = path.eval(path.length()).q;
             let rest = t - self.knots[last];
-            let end = path.eval(path.length()).q;
-            return std::array::from_fn(|j| self.integral[last][j] + end[j] * rest);
+            let sum = std::array::from_fn(|j| self.integral[last][j] + q[j] * rest);
+            return Source { sum, q, qd: [0.0; DOF] };
         }
         let k = self.knots.partition_point(|knot| *knot <= t) - 1;
-        let part = self.stretch(path, self.knots[k], t);
-        std::array::from_fn(|j| self.integral[k][j] + part[j])
+        let part = self.stretch(path, k, t);
+        let (interval, piece) = self.stretches[k];
+        let (s, v, _) = self.profile.in_interval(interval as usize, t);
+        let PathPoint { q, q1, .. } = path.pieces()[piece as usize].eval(s);
+        Source {
+            sum: std::array::from_fn(|j| self.integral[k][j] + part[j]),
+            q,
+            qd: q1.map(|x| x * v),
+        }
     }
 
-    /// ∫ q between two times of one stretch, rad s.
-    fn stretch(&self, path: &JointPath, from: f64, to: f64) -> Joints {
+    /// ∫ q from the begin of a stretch to a time in it, rad s.
+    fn stretch(&self, path: &JointPath, k: usize, to: f64) -> Joints {
+        let (interval, piece) = self.stretches[k];
+        let piece = &path.pieces()[piece as usize];
+        let from = self.knots[k];
         let h = to - from;
         let mut sum = [0.0; DOF];
         for (x, weight) in GAUSS {
-            let (s, _, _) = self.profile.at(from + h * x);
-            let q = path.eval(s).q;
+            let (s, _, _) = self.profile.in_interval(interval as usize, from + h * x);
+            let q = piece.position(s);
             for j in 0..DOF {
                 sum[j] += h * weight * q[j];
             }
         }
         sum
     }
+}
+
+/// The times at which the profile passes its nodes and the ends of the path's pieces, and between
+/// them the interval of the profile and the piece of the path.
+fn stretches(path: &JointPath, profile: &Profile) -> (Vec<f64>, Vec<(u32, u32)>) {
+    let (s, pieces) = (profile.s(), path.pieces());
+    let (mut interval, mut piece) = (0, 0);
+    let mut knots = vec![0.0];
+    let mut stretches = Vec::with_capacity(s.len() + pieces.len());
+    while interval + 1 < s.len() && piece < pieces.len() {
+        stretches.push((interval as u32, piece as u32));
+        let (node, end) = (s[interval + 1], pieces[piece].s + pieces[piece].length);
+        let last = piece + 1 == pieces.len();
+        if node <= end || last {
+            knots.push(profile.times()[interval + 1]);
+            interval += 1;
+            if node == end && !last {
+                piece += 1;
+            }
+        } else {
+            knots.push(profile.time_in(interval, end));
+            piece += 1;
+        }
+    }
+    (knots, stretches)
+}
+
+/// q, q̇ and ∫ q from the start, at a time before averaging.
+struct Source {
+    q: Joints,
+    qd: Joints,
+    sum: Joints,
 }
 
 impl Closing {

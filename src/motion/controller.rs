@@ -14,7 +14,7 @@ const RAMP_S: f64 = 0.10;
 const CORE: f64 = 0.16;
 /// Share of the window by which a motion ends early. Same runs: their durations, from the start of
 /// the first command to standstill, are 0.03 to 0.04 s shorter than the averaged motion.
-const CLOSING: f64 = 0.3;
+const CLOSING: f64 = 0.33;
 /// Period of the interpolator where the robot's file has none, s. Published configurations:
 /// `std_servo_queue_time` of 0.193536 s is 48 periods.
 const INTERPOLATION_S: f64 = 0.004_032;

@@ -82,7 +82,11 @@ impl Profile {
         if t.is_nan() || t < 0.0 {
             return (self.s[0], self.b[0].sqrt(), 0.0);
         }
-        let k = self.t.partition_point(|node| *node <= t) - 1;
+        self.in_interval(self.t.partition_point(|node| *node <= t) - 1, t)
+    }
+
+    /// (s, ṡ, s̈) at the time `t` (s), which lies in the interval k.
+    pub(crate) fn in_interval(&self, k: usize, t: f64) -> (f64, f64, f64) {
         let (piece, tau) = (self.piece(k), t - self.t[k]);
         let speed = piece.speed + piece.acceleration * tau;
         let s = self.s[k] + tau * 0.5 * (piece.speed + speed);
