@@ -121,6 +121,7 @@ pub fn motion_energy(
     knots.retain(|t| *t > from && *t < to);
     knots.insert(0, from);
     knots.push(to);
+    reversals(motion, &mut knots);
     // The rigid work is what the robot has gained; the rest is integrated.
     let ends = [from, to].map(|t| motion.at(t));
     let [before, after] = ends.map(|JointState { q, qd, .. }| {
@@ -146,4 +147,36 @@ pub fn motion_energy(
         }
     }
     sum
+}
+
+/// Halvings of the search for the moment at which a joint turns.
+const HALVINGS: usize = 40;
+
+/// Adds the moments at which a joint turns, where dry friction jumps.
+fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
+    let mut found = Vec::new();
+    for pair in knots.windows(2) {
+        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
+        let h = (pair[1] - pair[0]) / steps;
+        let mut before = motion.at(pair[0]).qd;
+        for i in 0..steps as usize {
+            let (a, b) = (pair[0] + h * i as f64, pair[0] + h * (i + 1) as f64);
+            let after = motion.at(b).qd;
+            for j in 0..after.len() {
+                if before[j] * after[j] >= 0.0 {
+                    continue;
+                }
+                let (mut low, mut high) = (a, b);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    let same = motion.at(middle).qd[j] * before[j] > 0.0;
+                    *(if same { &mut low } else { &mut high }) = middle;
+                }
+                found.push(0.5 * (low + high));
+            }
+            before = after;
+        }
+    }
+    knots.extend(found);
+    knots.sort_by(f64::total_cmp);
 }

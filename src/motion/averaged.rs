@@ -254,7 +254,12 @@ impl Closing {
                 -15.0 * d + 8.0 * v + 1.5 * a,
                 6.0 * d - 3.0 * v - 0.5 * a,
             ];
-            std::array::from_fn(|k| unit[k] / h.powi(k as i32))
+            let mut scale = 1.0;
+            unit.map(|c| {
+                let scaled = c / scale;
+                scale *= h;
+                scaled
+            })
         });
         Closing { begin, length, coefficients }
     }

@@ -30,8 +30,6 @@ pub struct Planning {
     pub average: Average,
     /// Time between the end of a movement at a stop point and the start of the next, s.
     pub settling_s: f64,
-    /// Share of the accelerations that is used.
-    pub acceleration: f64,
 }
 
 /// The moving average that limits the jerk.
@@ -49,14 +47,15 @@ impl Planning {
     /// From the robot's figures and `AccSet`.
     pub fn new(model: &Model, settings: &Settings) -> Planning {
         let controller = &model.controller;
-        // AccSet's ramp is the rate of change of the acceleration.
-        let window = controller.ramp_s.unwrap_or(RAMP_S) / settings.ramp;
+        // AccSet's ramp is the rate of change of the acceleration; that of stop points is taken
+        // for the whole way to one.
+        let ramp = settings.ramp.min(settings.fine_point_ramp);
+        let window = controller.ramp_s.unwrap_or(RAMP_S) / ramp;
         let closing = window * controller.closing.unwrap_or(CLOSING);
         Planning {
             average: Average { window, core: controller.ramp_core.unwrap_or(CORE), closing },
             // The runs stop as long as if every average were complete.
             settling_s: controller.settling_s.unwrap_or(closing),
-            acceleration: settings.acceleration,
         }
     }
 }
@@ -75,11 +74,8 @@ pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
         let speed = list(&model.limits.velocity, share);
         std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
     };
-    let torque = if model.has_dynamics() {
-        list(&model.limits.torque, 1.0)
-    } else {
-        [f64::INFINITY; DOF]
-    };
+    let torque =
+        if model.has_dynamics() { list(&model.limits.torque, 1.0) } else { [f64::INFINITY; DOF] };
     MotionLimits { acceleration, torque }
 }
 

@@ -62,7 +62,7 @@ pub fn plan(
         _ => fastest,
     };
     let timing = Averaged::new(path, profile, planning.average);
-    Ok(TimedMotion::Path(path.clone(), timing))
+    Ok(TimedMotion::Path(path.clone(), Box::new(timing)))
 }
 
 /// The motion that takes `time` by an even lower speed, found by bisection of its cap.

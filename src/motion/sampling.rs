@@ -1,24 +1,39 @@
 //! From a joint path to the grid that the timing solvers see.
 
 use super::controller::interpolation_s;
-use super::timing::grid::{GridError, PathGrid, PathPoint};
+use super::timing::grid::{GridError, PathGrid, PathPoint, TCP_ROWS};
+use super::timing::limits::Row;
 use crate::dynamics::{Data, Load, rnea};
-use crate::kinematics::jacobian;
-use crate::path::joint_path::{DOF, Extent, JointPath, Joints, Piece, PieceKind};
+use crate::kinematics::{jacobian, jacobian_dot};
+use crate::path::joint_path::{
+    DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
+};
 use crate::robot::Model;
 
-/// Speed limits of one leg.
+/// Limits that the program sets for one leg.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedCap {
     /// TCP speed, m/s.
     pub tcp: f64,
     /// Reorientation speed, rad/s.
     pub orientation: f64,
+    /// Share of the robot's accelerations.
+    pub acceleration: f64,
+    /// Acceleration and deceleration of the TCP along its path, m/s².
+    pub path_acceleration: [f64; 2],
+    /// Acceleration of the TCP, m/s².
+    pub world_acceleration: f64,
 }
 
 impl SpeedCap {
     /// No limit but the robot's own.
-    pub const NONE: SpeedCap = SpeedCap { tcp: f64::INFINITY, orientation: f64::INFINITY };
+    pub const NONE: SpeedCap = SpeedCap {
+        tcp: f64::INFINITY,
+        orientation: f64::INFINITY,
+        acceleration: 1.0,
+        path_acceleration: [f64::INFINITY; 2],
+        world_acceleration: f64::INFINITY,
+    };
 }
 
 /// Robot and load of a run.
@@ -77,9 +92,8 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
 
 /// Begin and end of each zone.
 fn zones(path: &JointPath) -> Vec<(f64, f64)> {
-    let is_zone = |piece: &Piece| {
-        matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone)
-    };
+    let is_zone =
+        |piece: &Piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone);
     let mut zones: Vec<(f64, f64)> = Vec::new();
     let mut corner = None;
     for piece in path.pieces().iter().filter(|piece| is_zone(piece)) {
@@ -186,6 +200,8 @@ fn point(
             point.bias[j] = capability.weight;
         }
     }
+    point.capability = point.capability.map(|share| share * cap.acceleration);
+    point.tcp_rows = tcp_rows(model, &at, &extent.tool, &twist, cap);
     if model.has_dynamics() {
         let zero = [0.0; DOF];
         let tau = |data: &mut Data, qd: &Joints, qdd: &Joints| -> Joints {
@@ -204,6 +220,59 @@ fn point(
     }
     point
 }
+
+/// Inner radius of a regular octagon around the unit circle, and of its corners.
+const OCTAGON: [f64; 2] = [0.923_879_532_511_286_7, 1.306_562_964_876_376_5];
+
+/// The rows of `PathAccLim` and `WorldAccLim`: with p' and p'' of the TCP the acceleration is
+/// p' s̈ + p'' ṡ², split into its part along the path and across it.
+fn tcp_rows(
+    model: &Model,
+    at: &PiecePoint,
+    tool: &nalgebra::Isometry3<f64>,
+    twist: &nalgebra::Vector6<f64>,
+    cap: &SpeedCap,
+) -> [Row; TCP_ROWS] {
+    let mut rows = [Row::default(); TCP_ROWS];
+    let [up, down] = cap.path_acceleration;
+    let world = cap.world_acceleration;
+    if !(up.is_finite() || down.is_finite() || world.is_finite()) {
+        return rows;
+    }
+    let rate = twist.fixed_rows::<3>(0).into_owned();
+    let speed = rate.norm();
+    if speed == 0.0 {
+        return rows;
+    }
+    let bend = jacobian(model, &at.q, tool) * nalgebra::Vector6::from(at.q2)
+        + jacobian_dot(model, &at.q, &at.q1, tool) * nalgebra::Vector6::from(at.q1);
+    let bend = bend.fixed_rows::<3>(0).into_owned();
+    let along = bend.dot(&rate) / speed;
+    let across = (bend - rate * (along / speed)).norm();
+    let row = |t: f64, n: f64, limit: f64, constant: f64| Row {
+        u: t * speed / limit,
+        b: (t * along + n * across) / limit,
+        constant,
+        ..Row::default()
+    };
+    if up.is_finite() || down.is_finite() {
+        // One side without a limit is as good as a very large one.
+        let [up, down] = [up, down].map(|x| x.min(NO_ACCELERATION_LIMIT));
+        let half = 0.5 * (up + down);
+        rows[0] = row(1.0, 0.0, half, 0.5 * (down - up) / half);
+    }
+    if world.is_finite() {
+        let [flat, corner] = OCTAGON.map(|x| x * world);
+        rows[1] = row(1.0, 0.0, flat, 0.0);
+        rows[2] = row(0.0, 1.0, flat, 0.0);
+        rows[3] = row(1.0, 1.0, corner, 0.0);
+        rows[4] = row(1.0, -1.0, corner, 0.0);
+    }
+    rows
+}
+
+/// An acceleration that no robot has, m/s².
+const NO_ACCELERATION_LIMIT: f64 = 1e3;
 
 fn sign(x: f64) -> f64 {
     if x > 0.0 {

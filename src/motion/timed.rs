@@ -29,7 +29,7 @@ impl JointState {
 #[derive(Clone, Debug)]
 pub enum TimedMotion {
     /// Along a path with its timing.
-    Path(Arc<JointPath>, Averaged),
+    Path(Arc<JointPath>, Box<Averaged>),
     /// A stream of timed points.
     Stream(Stream),
 }

@@ -30,7 +30,18 @@ pub struct Options {
     /// Seconds after which an input comes, by lower-case name: counted from the start of the
     /// cycle or from the end of the last wait for it.
     pub inputs: BTreeMap<String, f64>,
+    /// Levels of inputs, by lower-case name.
+    pub levels: BTreeMap<String, f64>,
+    /// Override of all speeds, 1 = 100 %.
+    pub speed_override: Option<f64>,
+    /// How often the loop that never ends runs; once where it is not said.
+    pub passes: Option<u32>,
+    /// Time after which the simulation ends, s.
+    pub max_time: Option<f64>,
 }
+
+/// Time after which a simulation ends where nothing else is said, s: ten hours.
+pub const MAX_TIME: f64 = 36_000.0;
 
 /// Runs a program on the virtual controller.
 pub fn simulate(
@@ -189,12 +200,40 @@ impl Machine for VirtualController<'_> {
         self.repeats_from.get_or_insert(self.events.len());
     }
 
+    fn passes(&self) -> u32 {
+        self.options.passes.unwrap_or(1)
+    }
+
+    fn stated_level(&self, signal: &str) -> Option<f64> {
+        self.options.levels.get(signal).copied()
+    }
+
     fn is_full(&self) -> bool {
-        self.events.len() + self.pending.len() > MAX_EVENTS
+        self.events.len() + self.pending.len() > MAX_EVENTS || self.is_late()
+    }
+
+    fn full_because(&self) -> Option<String> {
+        let limit = self.options.max_time.unwrap_or(MAX_TIME);
+        self.is_late().then(|| format!("the cycle lasts longer than {limit} s (--max-time)"))
     }
 }
 
 impl VirtualController<'_> {
+    fn is_late(&self) -> bool {
+        self.time > self.options.max_time.unwrap_or(MAX_TIME)
+    }
+
+    /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
+    fn speed_override(&self, movement: &Movement) -> f64 {
+        let settings = &movement.settings;
+        settings.speed_override * settings.refresh * self.options.speed_override.unwrap_or(1.0)
+    }
+
+    /// `\T` under the overrides: 50 % takes twice the time.
+    fn timed(&self, movement: &Movement) -> Option<f64> {
+        movement.time.map(|t| t / self.speed_override(movement))
+    }
+
     fn note(&mut self, span: crate::text::Span, reason: &str) {
         let note = Note { span, reason: reason.to_owned() };
         if !self.notes.contains(&note) {
@@ -253,8 +292,9 @@ impl VirtualController<'_> {
             }
         };
         let mut speed = movement.speed;
-        speed.tcp = (speed.tcp * movement.settings.speed_override).min(movement.settings.speed_max);
-        speed.orientation *= movement.settings.speed_override;
+        let factor = self.speed_override(movement);
+        speed.tcp = (speed.tcp * factor).min(movement.settings.speed_max);
+        speed.orientation *= factor;
         Ok(Leg { kind, start: self.q, end, tool, target, speed, zone: movement.zone })
     }
 
@@ -271,7 +311,7 @@ impl VirtualController<'_> {
         let movements: Vec<Movement> = pending.into_iter().map(|p| p.movement).collect();
         let loaded = Loaded { model: self.model, load: &load };
 
-        let (motions, durations, problem) = match as_stream(&start, &legs, &movements) {
+        let (motions, durations, problem) = match self.as_stream(&start, &legs, &movements) {
             Some(stream) => self.realise(stream, &movements),
             None => self.plan_run(loaded, &legs, &movements, &planning),
         };
@@ -315,6 +355,27 @@ impl VirtualController<'_> {
         last.duration += settling;
         *duration += settling;
         self.time += settling;
+    }
+
+    /// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
+    fn as_stream(&self, start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
+        let mut intervals = Vec::with_capacity(legs.len());
+        for movement in movements {
+            if movement.form != MoveForm::AbsJ {
+                return None;
+            }
+            intervals.push(self.timed(movement)?);
+        }
+        // Distances between neighbouring points; the robot's own place does not count for zones
+        // of the points after it.
+        for pair in legs.windows(2) {
+            let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
+            if pair[0].zone.tcp < 0.5 * apart.norm() {
+                return None;
+            }
+        }
+        let points = legs.iter().map(|leg| leg.end).collect();
+        Stream::new(*start, points, intervals).ok()
     }
 
     fn realise(&self, stream: Stream, movements: &[Movement]) -> Planned {
@@ -364,7 +425,7 @@ impl VirtualController<'_> {
     ) -> Planned {
         let caps: Vec<SpeedCap> =
             legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
-        let limits = motion_limits(self.model, planning.acceleration);
+        let limits = motion_limits(self.model, 1.0);
         let (paths, problem) = match build(self.model, legs) {
             Ok(paths) => (paths, None),
             Err(error) => {
@@ -381,9 +442,15 @@ impl VirtualController<'_> {
         for path in paths {
             let path = Arc::new(path);
             let indices = path.legs();
-            let times: Option<f64> = indices.clone().map(|i| timed(&movements[i])).sum();
+            let times: Option<f64> = indices.clone().map(|i| self.timed(&movements[i])).sum();
             match plan(loaded, &path, &caps, &limits, planning, times) {
                 Ok(motion) => {
+                    // Where there is no room for a zone the robot stops as at a stop point.
+                    if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty())
+                    {
+                        durations[last] += planning.settling_s;
+                        t += planning.settling_s;
+                    }
                     let mut before = 0.0;
                     for leg in indices {
                         let at = motion.time_at(path.leg_end(leg));
@@ -409,38 +476,19 @@ const LATENESS_ROUNDING: f64 = 1e-3;
 /// Motions with their start in the run, duration of each move, and what went wrong at which leg.
 type Planned = (Vec<(f64, TimedMotion)>, Vec<f64>, Option<(usize, String)>);
 
-/// `\T` under `VelSet`: an override of 50 % takes twice the time.
-fn timed(movement: &Movement) -> Option<f64> {
-    movement.time.map(|t| t / movement.settings.speed_override)
-}
-
 /// The programmed speed of a movement as a cap; a timed one has none but its time.
 fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
+    let settings = &movement.settings;
+    let limits = SpeedCap {
+        acceleration: settings.acceleration,
+        path_acceleration: settings.path_acceleration,
+        world_acceleration: settings.world_acceleration,
+        ..SpeedCap::NONE
+    };
     match movement.time {
-        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation },
-        Some(_) => SpeedCap::NONE,
+        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation, ..limits },
+        Some(_) => limits,
     }
-}
-
-/// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
-fn as_stream(start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
-    let mut intervals = Vec::with_capacity(legs.len());
-    for movement in movements {
-        if movement.form != MoveForm::AbsJ {
-            return None;
-        }
-        intervals.push(timed(movement)?);
-    }
-    // Distances between neighbouring points; the robot's own place does not count for zones
-    // of the points after it.
-    for pair in legs.windows(2) {
-        let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
-        if pair[0].zone.tcp < 0.5 * apart.norm() {
-            return None;
-        }
-    }
-    let points = legs.iter().map(|leg| leg.end).collect();
-    Stream::new(*start, points, intervals).ok()
 }
 
 /// Tool and payload at the flange.

@@ -368,6 +368,7 @@ impl<'a> Work<'a> {
             .map(|record| SpeedCap {
                 tcp: margins.speed * self.task.ceilings.of(&record.movement),
                 orientation: f64::INFINITY,
+                ..SpeedCap::NONE
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };

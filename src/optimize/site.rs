@@ -241,6 +241,18 @@ fn settings_allow(settings: &Settings) -> Result<(), Reason> {
     if settings.acceleration != 1.0 || settings.ramp != 1.0 {
         return setting("AccSet");
     }
+    if settings.fine_point_ramp != 1.0 {
+        return setting("AccSet\\FinePointRamp");
+    }
+    if settings.refresh != 1.0 {
+        return setting("SpeedRefresh");
+    }
+    if settings.path_acceleration.iter().any(|limit| limit.is_finite()) {
+        return setting("PathAccLim");
+    }
+    if settings.world_acceleration.is_finite() {
+        return setting("WorldAccLim");
+    }
     if settings.displacement.is_some() {
         return setting("PDispSet");
     }

@@ -124,11 +124,7 @@ fn measure<'a>(
 }
 
 /// TCP length of a line (m) and its curve; none if it goes nowhere.
-fn line(
-    from: &Isometry3<f64>,
-    to: &Isometry3<f64>,
-    turn: &Vector3<f64>,
-) -> (f64, Option<Curve>) {
+fn line(from: &Isometry3<f64>, to: &Isometry3<f64>, turn: &Vector3<f64>) -> (f64, Option<Curve>) {
     let chord = to.translation.vector - from.translation.vector;
     let length = chord.norm();
     let extent = length.max(METRES_PER_RADIAN * turn.norm());

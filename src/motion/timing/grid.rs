@@ -7,10 +7,14 @@
 //!
 //! m = M q', c = RNEA(q, q', q'') − g: Bobrow, Dubowsky, Gibson (1985); Verscheure et al. (2009).
 
+use super::limits::Row;
 use crate::motion::stream::Joints;
 
 /// Fewest intervals of a path that starts and ends at rest: one cannot move from 0 to 0.
 pub const MIN_INTERVALS: usize = 2;
+
+/// Rows of a place for the acceleration of the TCP at most.
+pub(crate) const TCP_ROWS: usize = 5;
 
 /// Why numbers do not make a path grid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -66,6 +70,8 @@ pub struct PathPoint {
     pub capability: Joints,
     /// Share of the acceleration limit that each joint needs at rest: gravity.
     pub bias: Joints,
+    /// Limits on the acceleration of the TCP; rows of zeros are none.
+    pub(crate) tcp_rows: [Row; TCP_ROWS],
     /// Bound on ṡ from joint and TCP speeds; positive and finite.
     pub v_max: f64,
 }
@@ -77,7 +83,8 @@ impl PathPoint {
         let zero = Joints::default();
         let (m, c, g, coulomb, viscous, bias) = (zero, zero, zero, zero, zero, zero);
         let capability = [1.0; 6];
-        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, capability, bias, v_max }
+        let tcp_rows = [Row::default(); TCP_ROWS];
+        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, capability, bias, tcp_rows, v_max }
     }
 
     /// m u + c b + g: the torque without friction, Nm.
@@ -106,6 +113,7 @@ impl PathPoint {
             viscous: mix(&self.viscous, &other.viscous),
             capability: mix(&self.capability, &other.capability),
             bias: mix(&self.bias, &other.bias),
+            tcp_rows: std::array::from_fn(|i| self.tcp_rows[i].toward(&other.tcp_rows[i], x)),
             v_max: self.v_max + x * (other.v_max - self.v_max),
         }
     }

@@ -60,6 +60,17 @@ pub(crate) struct Row {
 }
 
 impl Row {
+    /// The row at the share `x` of the way to `other`.
+    pub(crate) fn toward(&self, other: &Row, x: f64) -> Row {
+        let mix = |a: f64, b: f64| a + x * (b - a);
+        Row {
+            u: mix(self.u, other.u),
+            b: mix(self.b, other.b),
+            root: mix(self.root, other.root),
+            constant: mix(self.constant, other.constant),
+        }
+    }
+
     /// The left side without the absolute value.
     pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
         self.u * u + self.b * b + self.root * b.sqrt() + self.constant
@@ -83,7 +94,8 @@ pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item
             constant: w * (point.g[j] + point.coulomb[j]),
         }
     };
-    (0..DOF).flat_map(move |j| [acceleration(j), torque(j)]).filter(|row| *row != Row::default())
+    let joints = (0..DOF).flat_map(move |j| [acceleration(j), torque(j)]);
+    joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
 }
 
 /// The largest share of a limit that the profile b (one per node) uses at the ends of the
