@@ -191,6 +191,7 @@ const LINE: (f64, f64, f64) = (12.5, 0.1, 0.15);
 
 #[test]
 fn a_line_starts_as_measured() {
+    const STEP: f64 = 1e-3;
     let model = find("IRB6640-180/2.55").unwrap();
     let tool = "[TRUE,[[75,0,493.3],[0.965925826,0,0.258819045,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]";
     let none = "[9E9,9E9,9E9,9E9,9E9,9E9]";
@@ -208,7 +209,6 @@ fn a_line_starts_as_measured() {
         let twist = jacobian(&model, &state.q, &frame) * nalgebra::Vector6::from(state.qd);
         twist.fixed_rows::<3>(0).norm()
     };
-    const STEP: f64 = 1e-3;
     let acceleration = |i: usize| {
         let t = i as f64 * STEP;
         (speed(t + STEP) - speed((t - STEP).max(0.0))) / (2.0 * STEP)
@@ -294,7 +294,8 @@ fn joules_and_seconds_of_the_moves_and_waits_are_those_of_the_cycle() {
         "MoveJ a,v1000,fine,tool0;\nWaitTime 0.5;\nMoveL b,v500,z30,tool0;\nMoveL c,v1000,fine,tool0;",
     );
     let account = account(&model, &simulation);
-    let energy: f64 = account.events.iter().flatten().map(|part| part.energy_j()).sum();
+    let energy: f64 =
+        account.events.iter().flatten().map(joulepath::energy::EnergyParts::energy_j).sum();
     assert!((energy - account.total.energy_j()).abs() < 1e-9 * energy);
     let time: f64 = simulation.events.iter().map(|event| event.duration).sum();
     assert!((time - simulation.cycle_s).abs() < 1e-12);

@@ -230,7 +230,8 @@ fn compare(model: &Model, program: &[Value], logged: Logged) -> Compared {
     let tcp = |q: &[f64; 6]| (fk(model, q) * tool).translation.vector;
 
     let moves = |t: f64| state(&runs, origin + t).1.iter().any(|qd| qd.abs() > STANDS);
-    let begin = (0..).map(|i| f64::from(i) * 1e-3).find(|t| moves(*t) || *t > duration).unwrap();
+    let times = (0..(1e3 * duration) as u32).map(|i| f64::from(i) * 1e-3);
+    let begin = times.into_iter().find(|t| moves(*t)).unwrap();
     let end = logged.motion[logged.motion.len() - 1].0.max(duration - begin);
     let steps = (end / PERIOD) as usize;
     let mut square = 0.0;

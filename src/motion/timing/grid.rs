@@ -14,7 +14,7 @@ use crate::motion::stream::Joints;
 pub const MIN_INTERVALS: usize = 2;
 
 /// Rows of a place for the acceleration of the TCP at most.
-pub(crate) const TCP_ROWS: usize = 5;
+pub const TCP_ROWS: usize = 5;
 
 /// Why numbers do not make a path grid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -71,7 +71,7 @@ pub struct PathPoint {
     /// Share of the acceleration limit that each joint needs at rest: gravity.
     pub bias: Joints,
     /// Limits on the acceleration of the TCP; rows of zeros are none.
-    pub(crate) tcp_rows: [Row; TCP_ROWS],
+    pub tcp_rows: [Row; TCP_ROWS],
     /// Bound on ṡ from joint and TCP speeds; positive and finite.
     pub v_max: f64,
 }

@@ -52,11 +52,15 @@ impl PathLimits {
 
 /// |u · `u` + b · `b` + √b · `root` + `constant`| ≤ 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) u: f64,
-    pub(crate) b: f64,
-    pub(crate) root: f64,
-    pub(crate) constant: f64,
+pub struct Row {
+    /// Factor of s̈.
+    pub u: f64,
+    /// Factor of ṡ².
+    pub b: f64,
+    /// Factor of ṡ.
+    pub root: f64,
+    /// The rest.
+    pub constant: f64,
 }
 
 impl Row {
