@@ -52,7 +52,8 @@ fn wrong_options_name_the_way_out() {
         ("--input", "diPart", "SIGNAL=SECONDS"),
         ("--passes", "0", "1.."),
     ] {
-        let arguments = [&program[..], &[&format!("{option}={value}")]].concat();
+        let given = format!("{option}={value}");
+        let arguments = [&program[..], &[given.as_str()]].concat();
         let output = joulepath(&arguments);
         assert_eq!(output.status.code(), Some(2), "{option}");
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
