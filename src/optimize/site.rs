@@ -175,6 +175,9 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
         [(_, TimedMotion::Path(path, _))] if passes_singularity(path) => {
             Err(Reason::Path("a line passes close to a singularity".into()))
         }
+        [(_, TimedMotion::Path(path, _))] if path.legs().any(|leg| path.extent(leg).flat_arc) => {
+            Err(Reason::Path("the three points of an arc lie on a line".into()))
+        }
         [(_, TimedMotion::Path(..))] => Ok(()),
         [(_, TimedMotion::Stream(_))] => Err(Reason::Timed),
         _ => Err(Reason::SharpCorner),

@@ -185,7 +185,15 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
     let last = legs[legs.len() - 1].index;
     let extents = (first..=last).map(|index| {
         let leg = legs.iter().rfind(|leg| leg.index <= index).unwrap_or(&legs[0]);
-        Extent { length: leg.length, angle: leg.angle, extent: leg.extent, tool: leg.leg.tool }
+        let flat_arc = matches!(leg.leg.kind, LegKind::Arc(_))
+            && matches!(leg.curve, Some(Curve::Line { .. }));
+        Extent {
+            length: leg.length,
+            angle: leg.angle,
+            extent: leg.extent,
+            tool: leg.leg.tool,
+            flat_arc,
+        }
     });
     Ok(JointPath::new(builder.pieces, first, extents.collect()))
 }

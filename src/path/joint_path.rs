@@ -110,6 +110,8 @@ pub struct Extent {
     pub extent: f64,
     /// TCP in the flange's frame, m.
     pub tool: Isometry3<f64>,
+    /// True for an arc whose three points lie on a line, along which it is followed.
+    pub flat_arc: bool,
 }
 
 /// A joint path over [0, length]: q and q′ are continuous, and q″ up to jumps that
