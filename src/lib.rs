@@ -8,6 +8,7 @@ pub mod diagnostics;
 pub mod dynamics;
 pub mod emit;
 pub mod energy;
+pub mod generate;
 pub mod ir;
 pub mod kinematics;
 pub mod log;

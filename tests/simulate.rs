@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 
 use joulepath::dynamics::{Data, kinetic_energy, potential_energy, torque};
 use joulepath::energy::account;
-use joulepath::kinematics::jacobian;
 use joulepath::motion::timed::TimedMotion;
 use joulepath::motion::timeline::{Run, What};
 use joulepath::motion::{Options, Simulation, simulate};
@@ -144,7 +143,7 @@ fn accelerations(model: &Model, body: &str) -> [f64; 2] {
     let tool = run.legs[0].tool;
     let velocity = |t: f64| {
         let state = run.at(t);
-        let twist = jacobian(model, &state.q, &tool) * nalgebra::Vector6::from(state.qd);
+        let twist = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
         twist.fixed_rows::<3>(0).into_owned()
     };
     let mut worst = [0.0_f64; 2];
@@ -206,7 +205,7 @@ fn a_line_starts_as_measured() {
     let frame = run.legs[0].tool;
     let speed = |t: f64| {
         let state = run.at(t);
-        let twist = jacobian(&model, &state.q, &frame) * nalgebra::Vector6::from(state.qd);
+        let twist = frame.jacobian(&model, &state.q) * nalgebra::Vector6::from(state.qd);
         twist.fixed_rows::<3>(0).norm()
     };
     let acceleration = |i: usize| {

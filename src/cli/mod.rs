@@ -3,8 +3,10 @@
 pub mod backup;
 pub mod choice;
 pub mod common;
+pub mod generate;
 pub mod input;
 pub mod listing;
+pub mod load;
 pub mod optimize;
 pub mod output;
 pub mod parse;
@@ -31,6 +33,7 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
+    Generate(generate::GenerateArgs),
     Standstill(standstill::StandstillArgs),
     Predict(predict::PredictArgs),
     Robots(robots::RobotsArgs),
@@ -43,6 +46,7 @@ pub fn main() -> ExitCode {
         Command::Parse(args) => parse::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
+        Command::Generate(args) => generate::run(&args),
         Command::Standstill(args) => standstill::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Robots(args) => robots::run(&args),

@@ -187,7 +187,7 @@ fn report(file: &InputFile, parse: &Parse, backups: &[(PathBuf, Backup)]) -> Fil
         bytes: source.stored(&source.bytes).len(),
         lines: source.lines.count(),
         encoding: source.encoding(),
-        bom: source.charset.bom || source.utf16.is_some(),
+        bom: source.charset.bom || source.utf16.is_some_and(|utf16| utf16.bom),
         encoded: text::is_encoded_module(&source.bytes),
         lossless: is_lossless(parse, &source.bytes),
         errors: errors.collect(),
@@ -255,11 +255,11 @@ fn summary(file: &FileReport) -> String {
         return format!("{}: encoded module, {} bytes, not read", file.path, file.bytes);
     }
     format!(
-        "{}: {}, {} bytes, {} lines, {}, {}, {}, {}",
+        "{}: {}, {} bytes, {}, {}, {}, {}, {}",
         file.path,
         counted(file.errors.len(), "error"),
         file.bytes,
-        file.lines,
+        counted(file.lines as usize, "line"),
         file.encoding,
         counted(file.routines, "routine"),
         counted(file.statements, "statement"),

@@ -1,12 +1,21 @@
 //! Measured logs: what a robot did, as columns of numbers. Knows no robot.
 
 mod channel;
+mod columns;
 mod csv;
+mod differentiate;
 mod error;
+mod motion;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod rows;
 
 pub use channel::Channel;
+pub use columns::ColumnMap;
 pub use csv::read_csv;
+pub use differentiate::derivatives;
 pub use error::LogError;
+pub use motion::Motion;
 
 use channel::Family;
 
@@ -20,6 +29,8 @@ pub struct Log {
     pub channels: Vec<Channel>,
     /// A column for each channel, all of the same length.
     pub values: Vec<Vec<f64>>,
+    /// Line of the file of each usable row; the header is 1.
+    pub rows: Vec<u64>,
     /// Rows that were left out.
     pub rejected: Vec<Rejected>,
 }
@@ -31,6 +42,20 @@ pub struct Rejected {
     pub row: u64,
     /// Why.
     pub reason: String,
+}
+
+/// The log in the bytes of a file, CSV or Parquet by its content.
+///
+/// # Errors
+/// Columns that can't be understood, fewer than [`MIN_ROWS`] usable rows, a damaged file.
+pub fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
+    if bytes.starts_with(b"PAR1") {
+        #[cfg(feature = "parquet")]
+        return parquet::read_parquet(bytes, map);
+        #[cfg(not(feature = "parquet"))]
+        return Err(LogError::Parquet { reason: "this build does not read them".into() });
+    }
+    read_csv(bytes, map)
 }
 
 impl Log {

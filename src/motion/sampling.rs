@@ -4,7 +4,7 @@ use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint, TCP_ROWS};
 use super::timing::limits::Row;
 use crate::dynamics::{Data, Load, rnea};
-use crate::kinematics::{jacobian, jacobian_dot};
+use crate::kinematics::Tcp;
 use crate::path::joint_path::{
     DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
 };
@@ -170,7 +170,7 @@ fn point(
             }
         }
     }
-    let twist = jacobian(model, &at.q, &extent.tool) * nalgebra::Vector6::from(at.q1);
+    let twist = extent.tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q1);
     let tcp_rate = twist.fixed_rows::<3>(0).norm();
     let turn_rate = twist.fixed_rows::<3>(3).norm();
     let mut limit = |rate: f64, speed: f64| {
@@ -229,7 +229,7 @@ const OCTAGON: [f64; 2] = [0.923_879_532_511_286_7, 1.306_562_964_876_376_5];
 fn tcp_rows(
     model: &Model,
     at: &PiecePoint,
-    tool: &nalgebra::Isometry3<f64>,
+    tool: &Tcp,
     twist: &nalgebra::Vector6<f64>,
     cap: &SpeedCap,
 ) -> [Row; TCP_ROWS] {
@@ -244,8 +244,8 @@ fn tcp_rows(
     if speed == 0.0 {
         return rows;
     }
-    let bend = jacobian(model, &at.q, tool) * nalgebra::Vector6::from(at.q2)
-        + jacobian_dot(model, &at.q, &at.q1, tool) * nalgebra::Vector6::from(at.q1);
+    let bend = tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q2)
+        + tool.jacobian_dot(model, &at.q, &at.q1) * nalgebra::Vector6::from(at.q1);
     let bend = bend.fixed_rows::<3>(0).into_owned();
     let along = bend.dot(&rate) / speed;
     let across = (bend - rate * (along / speed)).norm();

@@ -6,6 +6,7 @@
 
 use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
@@ -19,7 +20,7 @@ use super::stream_spacing::{Spacing, adaptive_intervals};
 use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::kinematics::{fk, jacobian};
+use crate::kinematics::fk;
 use crate::motion::controller::motion_limits;
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
@@ -186,6 +187,32 @@ pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
     Some(optimum.profile.duration() + task.run.settling)
 }
+
+/// Times at which a trade-off is computed, over that before.
+const PACES: [f64; 4] = [1.0, 1.3, 1.7, 2.3];
+
+/// What a run takes over the time that it gets, settling included: the energies are of the
+/// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
+pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
+    let work = Work::new(task).ok()?;
+    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let fast = fastest_profile(&grid, &limits).ok()?;
+    let settling = task.run.settling;
+    let shortest = shortest.max(RESERVE * fast.duration() + settling);
+    let paces = PACES.iter().map(|pace| pace * task.run.duration());
+    let inside = paces.filter(|time| *time > shortest && *time < longest);
+    let times: Vec<f64> = std::iter::once(shortest).chain(inside).chain([longest]).collect();
+    let energy = |time: f64| {
+        let outcome = minimize_energy(&grid, &limits, &work.model, &fast, time - settling);
+        let optimum = outcome.into_optimum()?;
+        Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
+    };
+    let known = times.into_iter().filter(|time| *time >= shortest).filter_map(energy);
+    TradeOff::through(&known.collect::<Vec<_>>())
+}
+
+/// A stream needs this much more time than the fastest profile, at least.
+const RESERVE: f64 = 1.05;
 
 struct Work<'a> {
     task: &'a Task<'a>,
@@ -445,7 +472,7 @@ impl<'a> Work<'a> {
     /// Time in which the TCP goes no farther than the zones of two points reach, s.
     fn zone_time(&self, reference: &Reference, duration: f64) -> f64 {
         let tool = &self.task.run.legs[0].tool;
-        let tcp = |t: f64| (fk(self.task.model, &reference.at(t).0) * tool).translation.vector;
+        let tcp = |t: f64| tool.pose(&fk(self.task.model, &reference.at(t).0)).translation.vector;
         let n = (reference.duration() / REFERENCE_STEP).ceil().max(1.0) as usize;
         let step = reference.duration() / n as f64;
         let farthest = (0..n)
@@ -526,9 +553,9 @@ impl Plant for RobotPlant<'_> {
     fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> [f64; 2] {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
-        let pose = fk(task.model, q) * tool;
+        let pose = tool.pose(&fk(task.model, q));
         let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
-        let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
+        let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
         let speed = rate.fixed_rows::<3>(0).norm();
         [speed / (self.margins.speed * ceiling), distance / self.margins.distance]
     }
@@ -581,7 +608,7 @@ fn levers(model: &Model, run: &Run) -> Joints {
     let mut lever = [MIN_LEVER; DOF];
     for leg in &run.legs {
         for q in [&leg.start, &leg.end] {
-            let j = crate::kinematics::jacobian(model, q, &leg.tool);
+            let j = leg.tool.jacobian(model, q);
             for (i, lever) in lever.iter_mut().enumerate() {
                 *lever = lever.max(j.fixed_view::<3, 1>(0, i).norm());
             }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use nalgebra::Isometry3;
+use crate::kinematics::Tcp;
 
 /// Joints of a robot that RAPID programs move.
 pub const DOF: usize = 6;
@@ -108,8 +108,8 @@ pub struct Extent {
     pub angle: f64,
     /// Length in the parameter s.
     pub extent: f64,
-    /// TCP in the flange's frame, m.
-    pub tool: Isometry3<f64>,
+    /// Where the TCP is fixed, m.
+    pub tool: Tcp,
     /// True for an arc whose three points lie on a line, along which it is followed.
     pub flat_arc: bool,
 }

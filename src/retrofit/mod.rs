@@ -4,6 +4,7 @@
 //! that, and compare. What does not hold keeps its original moves.
 
 pub mod figures;
+mod goals;
 mod notes;
 mod outputs;
 mod segments;

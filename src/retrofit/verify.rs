@@ -204,11 +204,6 @@ fn compare(
     };
     let corridor =
         Corridor::new(model, run, settings.ceilings).ok_or("the original path is not one piece")?;
-    if settings.budget == super::Budget::AsBefore
-        && after.duration > before.duration + TIME_TOLERANCE
-    {
-        return Err("it takes longer than before".into());
-    }
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }

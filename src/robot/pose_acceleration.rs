@@ -12,7 +12,7 @@
 //! outer one. The weight of both on axis 2 is balanced by springs.
 
 use super::error::RobotError;
-use super::fields::Fields;
+use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
 /// Coefficients of the formulas in the module's text; s²/rad, the last two of axis 3 without unit.
@@ -64,9 +64,9 @@ impl PoseAcceleration {
         mut fields: Fields,
         origins: &mut Vec<Origin>,
     ) -> Result<PoseAcceleration, RobotError> {
-        let axis_1 = fields.array("axis_1")?;
-        let axis_2 = fields.array("axis_2")?;
-        let axis_3 = fields.array("axis_3")?;
+        let axis_1 = fields.array("axis_1", Accepts::Finite)?;
+        let axis_2 = fields.array("axis_2", Accepts::Finite)?;
+        let axis_3 = fields.array("axis_3", Accepts::Finite)?;
         let read = PoseAcceleration {
             axis_1: fields.required("axis_1", axis_1)?,
             axis_2: fields.required("axis_2", axis_2)?,

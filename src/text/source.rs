@@ -85,10 +85,12 @@ mod tests {
         let little: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
         let big: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
         for (bytes, name) in [(little, "UTF-16LE"), (big, "UTF-16BE")] {
-            let file = file(&bytes);
-            assert_eq!((file.encoding(), file.lines.count()), (name, 3));
-            assert_eq!(file.bytes, text.as_bytes());
-            assert_eq!(file.stored(&file.bytes), bytes);
+            for bytes in [&bytes[..], &bytes[2..]] {
+                let file = file(bytes);
+                assert_eq!((file.encoding(), file.lines.count()), (name, 3));
+                assert_eq!(file.bytes, text.as_bytes());
+                assert_eq!(file.stored(&file.bytes), bytes);
+            }
             // Damaged, it stays as it is.
             let cut = &bytes[..bytes.len() - 1];
             assert_eq!(self::file(cut).stored(cut), cut);

@@ -1,13 +1,24 @@
 //! UTF-16, the one encoding in which RAPID's own characters are more than a byte.
 //!
 //! Such a file is read as UTF-8 and written back as it was, so that nothing else has to know.
-//! Without its byte order mark, or damaged, it is taken byte for byte like any other.
+//! Without a byte order mark it shows in the zeros between its first characters, which are ASCII
+//! in every module. Damaged, it is taken byte for byte like any other.
 
 use std::borrow::Cow;
 
-/// UTF-16 with a byte order mark.
+/// Characters at the start of a file without a byte order mark that have to be ASCII.
+const ASCII_AT_START: usize = 8;
+
+/// UTF-16 in one of its forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Utf16 {
+pub struct Utf16 {
+    order: Order,
+    /// Whether the file starts with a byte order mark.
+    pub bom: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
     /// The low byte first.
     Le,
     /// The high byte first.
@@ -17,38 +28,58 @@ pub enum Utf16 {
 impl Utf16 {
     /// The text of a file, if it is UTF-16 and can be written back without a loss.
     pub(super) fn read(bytes: &[u8]) -> Option<(Utf16, String)> {
-        let (kind, body) = match bytes {
-            [0xFF, 0xFE, body @ ..] => (Utf16::Le, body),
+        let (form, body) = match bytes {
+            [0xFF, 0xFE, body @ ..] => (Utf16 { order: Order::Le, bom: true }, body),
             // `FE` alone begins a module in ABB's binary encoding.
-            [0xFE, 0xFF, body @ ..] if body.first() == Some(&0) => (Utf16::Be, body),
-            _ => return None,
+            [0xFE, 0xFF, body @ ..] if body.first() == Some(&0) => {
+                (Utf16 { order: Order::Be, bom: true }, body)
+            }
+            _ => (Utf16 { order: Order::without_mark(bytes)?, bom: false }, bytes),
         };
         let (pairs, []) = body.as_chunks::<2>() else { return None };
-        let units = pairs.iter().map(|pair| match kind {
-            Utf16::Le => u16::from_le_bytes(*pair),
-            Utf16::Be => u16::from_be_bytes(*pair),
+        let units = pairs.iter().map(|pair| match form.order {
+            Order::Le => u16::from_le_bytes(*pair),
+            Order::Be => u16::from_be_bytes(*pair),
         });
         let text = char::decode_utf16(units).collect::<Result<String, _>>().ok()?;
-        Some((kind, text))
+        Some((form, text))
     }
 
     /// The bytes of a file with this text; what is not UTF-8 becomes U+FFFD.
     pub(super) fn write(self, text: &[u8]) -> Vec<u8> {
         let text: Cow<'_, str> = String::from_utf8_lossy(text);
-        std::iter::once(0xFEFF)
+        self.bom
+            .then_some(0xFEFF)
+            .into_iter()
             .chain(text.encode_utf16())
-            .flat_map(|unit| match self {
-                Utf16::Le => unit.to_le_bytes(),
-                Utf16::Be => unit.to_be_bytes(),
+            .flat_map(|unit| match self.order {
+                Order::Le => unit.to_le_bytes(),
+                Order::Be => unit.to_be_bytes(),
             })
             .collect()
     }
 
     /// Its name in the WHATWG list.
     pub(super) fn name(self) -> &'static str {
-        match self {
-            Utf16::Le => "UTF-16LE",
-            Utf16::Be => "UTF-16BE",
+        match self.order {
+            Order::Le => "UTF-16LE",
+            Order::Be => "UTF-16BE",
+        }
+    }
+}
+
+impl Order {
+    /// The order of a file without a mark, if its start is ASCII in UTF-16.
+    fn without_mark(bytes: &[u8]) -> Option<Order> {
+        let (pairs, _) = bytes.as_chunks::<2>();
+        let start = pairs.get(..ASCII_AT_START)?;
+        let is_ascii = |byte: u8| byte != 0 && byte.is_ascii();
+        if start.iter().all(|[low, high]| is_ascii(*low) && *high == 0) {
+            Some(Order::Le)
+        } else if start.iter().all(|[high, low]| is_ascii(*low) && *high == 0) {
+            Some(Order::Be)
+        } else {
+            None
         }
     }
 }

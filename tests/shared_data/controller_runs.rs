@@ -227,7 +227,7 @@ fn compare(model: &Model, program: &[Value], logged: Logged) -> Compared {
     let origin = runs[0].0;
     let duration: f64 = runs.iter().map(|(_, run)| run.duration()).sum();
     let tool = runs[0].1.legs[0].tool;
-    let tcp = |q: &[f64; 6]| (fk(model, q) * tool).translation.vector;
+    let tcp = |q: &[f64; 6]| tool.pose(&fk(model, q)).translation.vector;
 
     let moves = |t: f64| state(&runs, origin + t).1.iter().any(|qd| qd.abs() > STANDS);
     let times = (0..(1e3 * duration) as u32).map(|i| f64::from(i) * 1e-3);

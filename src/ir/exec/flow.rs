@@ -91,7 +91,7 @@ impl Executor<'_> {
             }
             StmtKind::Label(_) | StmtKind::Connect { .. } | StmtKind::Placeholder => Flow::Next,
             StmtKind::Broken => {
-                self.unresolved(stmt.span, "the statement has a syntax error");
+                self.opaque(stmt.span, "the statement has a syntax error");
                 Flow::Next
             }
         }

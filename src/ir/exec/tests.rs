@@ -51,9 +51,14 @@ const DATA: &str = "
 
 /// What a machine is told by these statements.
 fn told(statements: &str) -> Vec<String> {
+    told_with_errors(statements, 0)
+}
+
+/// The same for statements that have that many syntax errors.
+fn told_with_errors(statements: &str, errors: usize) -> Vec<String> {
     let text = format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\nENDMODULE");
     let parse = syntax::parse(text.as_bytes());
-    assert!(parse.errors.is_empty(), "{statements}: {:?}", parse.errors);
+    assert!(parse.errors.len() == errors, "{statements}: {:?}", parse.errors);
     let program = Program::new(lower(FileId(0), &parse, text.as_bytes()));
     let mut recorder = Recorder::default();
     execute(&program, program.entry("main").expect("main"), &mut recorder);
@@ -81,6 +86,12 @@ fn every_family_of_movements_is_resolved() {
         assert!(told.len() == 1 && told[0].ends_with(" 100.0"), "{statement}: {told:?}");
     }
     assert_eq!(told("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
+}
+
+#[test]
+fn a_statement_with_an_error_may_move_the_robot() {
+    let told = told_with_errors("MoveJ p10, v100 fine, tool0;\nMoveJ p20, v100, fine, tool0;", 1);
+    assert_eq!(told, ["the statement has a syntax error (true)", "MoveJ 150.0"]);
 }
 
 #[test]

@@ -24,6 +24,8 @@ impl Parser<'_> {
         let wrong = self.current();
         let misspelt = self.misspelling(closer);
         if misspelt > 0 {
+            // Said already, where its `{` stood.
+            self.quiet = self.closes_brace();
             let message = format!("expected {}, found {}", closer.describe(), self.found());
             self.close_error(message, opener, false);
             let mark = self.mark();
@@ -46,15 +48,26 @@ impl Parser<'_> {
         let keyword = self.tokens.kind(opener).describe();
         let related = self.related(opener, format!("this {keyword} is not closed"));
         let range = self.tokens.range(self.position);
-        let end = if before { range.start } else { range.end };
-        self.push_error(range.start, end, message, Some(related));
+        match (before, self.at(TokenKind::EndOfFile)) {
+            // Not on the empty line behind the last one.
+            (true, true) => {
+                let place = self.end_before(self.position);
+                self.push_error(place, place, message, Some(related));
+            }
+            (true, false) => self.push_error(range.start, range.start, message, Some(related)),
+            (false, _) => self.push_error(range.start, range.end, message, Some(related)),
+        }
     }
 
     /// Whether a misspelling of the keyword that closes the innermost block
     /// stands alone on this line: the number of its tokens, or 0.
     pub(super) fn misspelt_closer(&mut self) -> usize {
         match self.open.last() {
-            Some(open) if self.at(TokenKind::Identifier) => self.misspelling(open.closer),
+            Some(open)
+                if matches!(self.current(), TokenKind::Identifier | TokenKind::RightBrace) =>
+            {
+                self.misspelling(open.closer)
+            }
             _ => 0,
         }
     }
@@ -62,6 +75,10 @@ impl Parser<'_> {
     /// `ENIDF`, `END IF`, `END` or `END_IF` for `ENDIF`, alone on its line: the
     /// number of its tokens, or 0.
     fn misspelling(&mut self, closer: TokenKind) -> usize {
+        let foreign = self.foreign_closer(closer);
+        if foreign > 0 {
+            return foreign;
+        }
         let word = self.text(self.position);
         if !self.at(TokenKind::Identifier)
             || !word.first().is_some_and(|letter| letter.eq_ignore_ascii_case(&b'E'))
@@ -80,7 +97,8 @@ impl Parser<'_> {
         let alone = self.tokens.kind(second) == TokenKind::EndOfFile || self.first_on_line(second);
         let other = closer != TokenKind::EndModule
             && word.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"END"));
-        usize::from(alone && (other || is_near(word, wanted)))
+        let near = is_near(word, wanted);
+        usize::from(alone && (near || other && !self.ends_nothing(second, closer)))
     }
 
     /// Whether the closing keyword at hand is the wrong one for the innermost
@@ -233,7 +251,11 @@ impl Parser<'_> {
     /// Closes what a left-over branch began, silently.
     fn close_stray(&mut self, closer: TokenKind) {
         self.open.pop();
-        self.eat(closer);
+        if !self.eat(closer) {
+            for _ in 0..self.misspelling(closer) {
+                self.bump();
+            }
+        }
     }
 
     /// Skips a statement that is nested too deeply, with the statements in it.
@@ -346,7 +368,7 @@ pub(super) fn closes_block(kind: TokenKind) -> bool {
 
 /// Whether a word differs from a keyword by one letter that is wrong, missing
 /// or too much, or by two neighbours exchanged.
-fn is_near(word: &[u8], keyword: &[u8]) -> bool {
+pub(super) fn is_near(word: &[u8], keyword: &[u8]) -> bool {
     let word = word.to_ascii_uppercase();
     let same = word.iter().zip(keyword).take_while(|(a, b)| a == b).count();
     let (a, b) = (&word[same..], &keyword[same..]);

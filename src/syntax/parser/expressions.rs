@@ -111,7 +111,11 @@ impl Parser<'_> {
                 }
                 related = true;
             }
+            let comparing = self.at(TokenKind::Equal);
             self.bump();
+            if comparing {
+                self.skip_doubled_equal();
+            }
             let right = self.binary(level.tighter(), "an expression");
             height = self.taller(mark, NodeKind::BinaryExpression, height.max(right));
         }
@@ -256,6 +260,11 @@ impl Parser<'_> {
                     self.bump();
                     self.name();
                     height = self.taller(mark, NodeKind::FieldAccess, height);
+                }
+                TokenKind::LeftBrace if self.brace_opens_block() => break,
+                TokenKind::LeftBracket if self.position == self.end => {
+                    self.bracketed_index();
+                    height = self.taller(mark, NodeKind::Error, height);
                 }
                 TokenKind::LeftBrace => {
                     let indices = self.deeper(|parser| {

@@ -9,6 +9,7 @@ mod arguments;
 mod blocks;
 mod data;
 mod expressions;
+mod foreign;
 mod modules;
 mod recovery;
 mod routines;
@@ -44,6 +45,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parse {
         parentheses: Parentheses::default(),
         line: Line::default(),
         open: Vec::new(),
+        braces: 0,
         steps: 0,
     };
     parser.skip_trivia();
@@ -88,6 +90,8 @@ struct Parser<'a> {
     line: Line,
     /// Block statements and routines that are not closed yet, outermost first.
     open: Vec<Open>,
+    /// Blocks that began with `{` in the place of a keyword and are not closed.
+    braces: u32,
     steps: u64,
 }
 

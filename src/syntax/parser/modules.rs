@@ -1,6 +1,7 @@
 //! Files and modules: `grammar/modules.ebnf`.
 
 use super::Parser;
+use super::blocks::is_near;
 use super::recovery::{closes_routine, ends_block, starts_data, starts_statement};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
@@ -62,6 +63,11 @@ impl Parser<'_> {
                     self.bare_declarations();
                     has_rapid = true;
                 }
+                _ if self.at_misspelt_module() => {
+                    self.error_unexpected("MODULE");
+                    self.module();
+                    has_rapid = true;
+                }
                 _ => self.outside_text(has_rapid),
             }
             debug_assert!(self.position > before, "every round reads something");
@@ -116,6 +122,21 @@ impl Parser<'_> {
             && (self.next() == TokenKind::Identifier)
     }
 
+    /// Whether the keyword of a module is misspelt here: alone with a name, and
+    /// attributes, on its line.
+    fn at_misspelt_module(&mut self) -> bool {
+        if !self.at(TokenKind::Identifier)
+            || !self.first_on_line(self.position)
+            || !is_near(self.text(self.position), b"MODULE")
+        {
+            return false;
+        }
+        let name = self.after(self.position);
+        let behind = self.after(name);
+        self.tokens.kind(name) == TokenKind::Identifier
+            && (self.tokens.kind(behind) == TokenKind::LeftParen || self.first_on_line(behind))
+    }
+
     /// Whether a declaration starts here, told from prose by what follows.
     fn at_declaration(&mut self) -> bool {
         let next = match self.current() {
@@ -168,7 +189,9 @@ impl Parser<'_> {
             self.bump();
             match self.current() {
                 TokenKind::EndOfFile | TokenKind::HeaderMark | TokenKind::EndModule => break,
-                _ if self.at_module() || self.at_declaration() => break,
+                _ if self.at_module() || self.at_misspelt_module() || self.at_declaration() => {
+                    break;
+                }
                 _ => {}
             }
         }

@@ -148,6 +148,9 @@ impl Parser<'_> {
         if !self.quiet {
             let new_line = self.first_on_line(self.position) || self.at(TokenKind::EndOfFile);
             if ends_block(self.current()) || new_line && self.looks_like_start() {
+                if self.report_foreign_test() {
+                    return;
+                }
                 let message = format!("expected ';', found {}", self.found());
                 self.error_before(message);
                 self.headless_branches();
@@ -166,6 +169,9 @@ impl Parser<'_> {
             return true;
         }
         self.error_expected(wanted.describe());
+        if self.opens_brace() {
+            return true;
+        }
         let mut ended = false;
         let mark = self.mark();
         let start = self.position;

@@ -19,6 +19,9 @@ impl Parser<'_> {
             if self.at_routine() || self.misspelt_closer() > 0 {
                 break;
             }
+            if self.foreign_branch_end() {
+                continue;
+            }
             let before = self.position;
             let kind = self.current();
             if ends_block(kind) || matches!(kind, TokenKind::Then | TokenKind::Do) {
@@ -78,7 +81,9 @@ impl Parser<'_> {
             TokenKind::Identifier => self.name_statement(),
             _ => {
                 let mark = self.mark();
-                self.error_unexpected("a statement");
+                if !self.foreign_comment() {
+                    self.error_unexpected("a statement");
+                }
                 self.bump();
                 self.recover();
                 self.finish(mark, NodeKind::Error);
@@ -98,6 +103,8 @@ impl Parser<'_> {
             TokenKind::Assign | TokenKind::Equal | TokenKind::Dot | TokenKind::LeftBrace => {
                 self.assignment();
             }
+            TokenKind::LeftBracket if self.assigns_to_brackets() => self.assignment(),
+            TokenKind::Plus | TokenKind::Minus if self.foreign_increment() => {}
             _ => self.call_statement(),
         }
     }
@@ -251,6 +258,7 @@ impl Parser<'_> {
     pub(super) fn else_branches(&mut self) {
         let mut after_else = false;
         loop {
+            let braced = self.closes_brace_before_else();
             let mark = self.mark();
             let branch = matches!(self.current(), TokenKind::ElseIf | TokenKind::Else);
             if branch && after_else {
@@ -261,12 +269,16 @@ impl Parser<'_> {
                 TokenKind::ElseIf => {
                     self.bump();
                     self.expression();
+                    self.quiet |= braced;
                     self.end_header(TokenKind::Then);
                     self.block();
                     self.finish(mark, NodeKind::ElseIfBranch);
                 }
                 TokenKind::Else => {
                     self.bump();
+                    if braced {
+                        self.opens_brace();
+                    }
                     self.block();
                     self.finish(mark, NodeKind::ElseBranch);
                 }
