@@ -9,6 +9,7 @@ pub mod cycle;
 mod energy_cones;
 pub mod energy_program;
 pub mod idle;
+mod margins;
 pub mod path_energy;
 pub mod plant;
 pub mod reason;

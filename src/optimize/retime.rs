@@ -8,6 +8,7 @@ use super::check::{Check, check};
 use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
+use super::margins::Margins;
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
 use super::reason::Reason;
@@ -81,26 +82,16 @@ pub struct Retiming {
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
 const ATTEMPTS: usize = 6;
-/// Margin to acceleration and torque limits at first: what a stream between nodes needs.
-const FIRST_MARGIN: f64 = 0.98;
-/// Margin to speed ceilings at first.
-const FIRST_SPEED_MARGIN: f64 = 0.995;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
 /// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
 const EASING: f64 = 10.0;
-/// Reach of lower ceilings at first, m.
-const FIRST_REACH: f64 = 0.006;
 /// Rounding between two integrations of the same energy, relative.
 const BOUND_ROUNDING: f64 = 1e-5;
-/// Placing of the points at first, share of the tolerance of the path.
-const FIRST_SPACING: f64 = 0.1;
 /// Share of the reach of the zones that two points may use up.
 const ZONE_SHARE: f64 = 0.95;
 /// The share that is asked for where they would not keep that: they are placed by other rules too.
 const CLOSER: f64 = 0.6;
-/// Share of the allowed distance from the path that the polishing may use at first.
-const FIRST_DISTANCE: f64 = 0.95;
 /// Distance from the path that costs the polishing a share of the energy, in units of the
 /// tolerance of the path.
 const CORRIDOR: f64 = 0.3;
@@ -110,22 +101,6 @@ const NEARLY: f64 = 2.0;
 const WORTHWHILE: f64 = 1e-3;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
-
-/// Margins and tolerances of one attempt.
-#[derive(Clone)]
-struct Margins {
-    /// Share of acceleration and torque limits that the intended motion may use.
-    load: f64,
-    /// Share of the speed ceilings.
-    speed: f64,
-    /// Distance before and behind a lower ceiling from which it holds, m: a stream is shaped at
-    /// places some way apart.
-    reach: f64,
-    /// Tolerance of the points' placing, m.
-    spacing: f64,
-    /// Share of the allowed distance from the path that the polishing may use.
-    distance: f64,
-}
 
 /// A realised stream with its faults.
 struct Attempt {
@@ -181,7 +156,7 @@ pub const SLOWEST: f64 = 10.0;
 /// power does not count: the rest of a takt has to be waited for anyway.
 pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
     let fast = fastest_profile(&grid, &limits).ok()?;
     let longest = SLOWEST * task.run.duration();
     let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
@@ -195,7 +170,7 @@ const PACES: [f64; 4] = [1.0, 1.3, 1.7, 2.3];
 /// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
 pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
     let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
     let fast = fastest_profile(&grid, &limits).ok()?;
     let settling = task.run.settling;
     let shortest = shortest.max(RESERVE * fast.duration() + settling);
@@ -258,7 +233,7 @@ impl<'a> Work<'a> {
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
-        let mut margins = self.first_margins();
+        let mut margins = Margins::first(self.tolerance());
         let mut problem = None;
         let mut begun: Option<Intended> = None;
         let mut worst = NEARLY;
@@ -291,7 +266,7 @@ impl<'a> Work<'a> {
                     }
                 }
                 Err(Reason::NoStream(why)) => {
-                    margins.load *= FIRST_MARGIN;
+                    margins.lighten();
                     problem = Some(why);
                 }
                 Err(other) => return Err(other),
@@ -324,7 +299,7 @@ impl<'a> Work<'a> {
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
     fn least_time(&self) -> Result<Retiming, Reason> {
-        let mut margins = self.first_margins();
+        let mut margins = Margins::first(self.tolerance());
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = Reason::NoSaving;
         for _ in 0..ATTEMPTS {
@@ -368,16 +343,6 @@ impl<'a> Work<'a> {
         let line =
             self.task.run.legs.iter().any(|leg| !matches!(leg.kind, crate::path::LegKind::Joint));
         if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
-    }
-
-    fn first_margins(&self) -> Margins {
-        Margins {
-            load: FIRST_MARGIN,
-            speed: FIRST_SPEED_MARGIN,
-            reach: FIRST_REACH,
-            spacing: FIRST_SPACING * self.tolerance(),
-            distance: FIRST_DISTANCE,
-        }
     }
 
     /// The problem on the path, shaped so that a stream can follow its solution.
@@ -563,39 +528,6 @@ impl Plant for RobotPlant<'_> {
 
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
-
-impl Margins {
-    /// The limits themselves.
-    fn none() -> Margins {
-        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0 }
-    }
-
-    /// Tighter for another attempt from the begin.
-    fn tighten(&mut self, check: &Check) {
-        let load = check.torque.max(check.acceleration);
-        if load > 1.0 {
-            self.load *= FIRST_MARGIN / load;
-        }
-        if check.velocity > 1.0 {
-            self.speed *= FIRST_SPEED_MARGIN / check.velocity;
-        }
-        if check.tcp_speed > 1.0 {
-            self.reach *= 2.0;
-        }
-        if check.deviation > 1.0 {
-            self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
-            self.spacing *= 0.7;
-        }
-    }
-
-    /// Tighter for more polishing of a stream that nearly holds.
-    fn tighten_a_little(&mut self, check: &Check) {
-        let over = |share: f64| share.max(1.0);
-        self.load /= over(check.torque);
-        self.speed /= over(check.tcp_speed);
-        self.distance /= over(check.deviation);
-    }
-}
 
 fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)
