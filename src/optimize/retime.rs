@@ -31,7 +31,6 @@ use crate::motion::timing::grid::PathGrid;
 use crate::motion::timing::limits::PathLimits;
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
-
 use crate::path::joint_path::{DOF, JointPath, Joints};
 use crate::robot::{self, Model};
 
@@ -322,7 +321,7 @@ impl<'a> Work<'a> {
             }
             match best {
                 Some(attempt) => margins.tighten(&attempt.check),
-                None => margins.load *= FIRST_MARGIN,
+                None => margins.lighten(),
             }
         }
         Err(problem)
