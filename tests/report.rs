@@ -90,7 +90,7 @@ const HEAD: &str = "MODULE Cell
     PROC rFront()
 ";
 const ORIGINAL: &str = "        MoveAbsJ jAside,v1000,z50,tool0;
-        MoveL pFront,v500,fine,tool0;
+        MoveL pFront,v300,fine,tool0;
 ";
 const TAIL: &str = "    ENDPROC
 ENDMODULE
@@ -455,7 +455,7 @@ fn executions_of_one_stream_share_their_plots() {
     let page = small_page("Cell.mod");
     assert_eq!(page.matches("<details class=\"way\"").count(), 1);
     assert!(page.contains("<summary>2 runs: "));
-    // The programmed 500 mm/s of the line.
+    // The programmed 300 mm/s of the line.
     assert!(page.contains("class=\"ceiling\""));
 }
 

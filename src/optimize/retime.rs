@@ -22,6 +22,7 @@ use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
 use crate::kinematics::fk;
+use crate::motion::controller::motion_limits;
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
@@ -30,7 +31,6 @@ use crate::motion::timing::grid::PathGrid;
 use crate::motion::timing::limits::PathLimits;
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
-use crate::motion::virtual_controller::motion_limits;
 use crate::path::joint_path::{DOF, JointPath, Joints};
 use crate::robot::{self, Model};
 
@@ -359,6 +359,7 @@ impl<'a> Work<'a> {
             .map(|record| SpeedCap {
                 tcp: margins.speed * self.task.ceilings.of(&record.movement),
                 orientation: f64::INFINITY,
+                ..SpeedCap::NONE
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };

@@ -7,11 +7,13 @@ mod movements;
 mod proof;
 mod samples;
 mod segments;
+mod simulation;
 mod source;
 mod standstill;
 mod summary;
 mod ways;
 
+pub use simulation::simulate_report;
 use tera::{Context, Tera};
 
 use super::place::Places;
