@@ -18,7 +18,7 @@ use crate::path::JointPath;
 use crate::path::joint_path::Joints;
 
 /// Intervals of the grid for one path, besides those of its zones.
-const INTERVALS: usize = 64;
+const INTERVALS: usize = 48;
 /// Halvings of the search for a speed that makes a move last as long as its `\T` says.
 const HALVINGS: usize = 30;
 

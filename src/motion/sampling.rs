@@ -129,6 +129,7 @@ pub fn grid(
     let mut data = Data::new();
     let mut zones = zones(path).into_iter().peekable();
     let mut ends = Vec::with_capacity(nodes.len());
+    let mut last = None;
     for pair in nodes.windows(2) {
         let middle = 0.5 * (pair[0] + pair[1]);
         while zones.peek().is_some_and(|(_, end)| *end < middle) {
@@ -141,7 +142,15 @@ pub fn grid(
             extent: path.extent(piece.leg),
             zone: zone.map(|(begin, end)| end - begin),
         };
-        ends.push([pair[0], pair[1]].map(|s| point(loaded, &mut data, piece, s, &limits)));
+        // Within a leg and a zone a path is smooth: a node looks the same from both sides.
+        let stretch = (piece.leg, piece.kind, limits.zone);
+        let begin = match last {
+            Some((before, end)) if before == stretch => end,
+            _ => point(loaded, &mut data, piece, pair[0], &limits),
+        };
+        let end = point(loaded, &mut data, piece, pair[1], &limits);
+        last = Some((stretch, end));
+        ends.push([begin, end]);
     }
     PathGrid::new(nodes.to_vec(), ends)
 }
