@@ -9,7 +9,7 @@ use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::optimize::check::Check;
-use joulepath::optimize::corridor::Ceilings;
+use joulepath::optimize::corridor::Freedom;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{
@@ -56,7 +56,7 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         objective: Objective::Energy,
         budget: Budget::AsBefore,
         spacing_s: 0.05,
-        ceilings: Ceilings::Programmed,
+        freedom: Freedom::none(),
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();

@@ -5,7 +5,7 @@
 //! tightens the margins and is tried again.
 
 use super::check::{Check, check};
-use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
 use super::margins::Margins;
@@ -18,7 +18,7 @@ use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
-use crate::dynamics::{Data, rnea};
+use crate::dynamics::{Data, potential_energy, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
 use crate::kinematics::fk;
@@ -45,8 +45,8 @@ pub struct Task<'a> {
     pub energy_before: EnergyParts,
     /// Least time between two points, s.
     pub spacing_s: f64,
-    /// Which programmed speeds are ceilings.
-    pub ceilings: Ceilings,
+    /// What the stream may do that the run did not.
+    pub freedom: &'a Freedom,
 }
 
 /// The time of a run, settling included.
@@ -120,6 +120,47 @@ struct Intended {
 /// # Errors
 /// The reason why the run stays as it is.
 pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
+    let mut moves = task.run.moves.iter();
+    if !moves.any(|record| task.freedom.of(&record.movement) > 0.0) {
+        return on_path(task, goal);
+    }
+    // What is free is never worse than what keeps to the path.
+    let strict = Freedom { deviation: 0.0, ..task.freedom.clone() };
+    let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
+    match (kept, on_path(task, goal)) {
+        (Ok(kept), Ok(free)) => {
+            let bound = free_bound(task, free.duration_s - task.run.settling);
+            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+            let better = match goal {
+                Goal::Fastest => free.duration_s < kept.duration_s,
+                _ => free.energy.energy_j() < kept.energy.energy_j(),
+            };
+            Ok(if better { Retiming { lower_bound_j: bound + idle, ..free } } else { kept })
+        }
+        (Ok(only), Err(_)) => Ok(only),
+        (Err(_), Ok(free)) => {
+            let bound = free_bound(task, free.duration_s - task.run.settling);
+            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+            Ok(Retiming { lower_bound_j: bound + idle, ..free })
+        }
+        (Err(reason), Err(_)) => Err(reason),
+    }
+}
+
+/// No motion between the ends of a run in this time (s) takes less, J: what it gains in height,
+/// dry friction over the way, and viscous friction of the same speed all the time.
+fn free_bound(task: &Task<'_>, time: f64) -> f64 {
+    let Task { model, run, .. } = task;
+    let height = |q: &Joints| potential_energy(model, &run.load, q);
+    let friction: f64 = (0..DOF)
+        .map(|j| (run.end[j] - run.start[j]).abs())
+        .enumerate()
+        .map(|(j, way)| way * (model.friction.coulomb[j] + model.friction.viscous[j] * way / time))
+        .sum();
+    height(&run.end) - height(&run.start) + friction
+}
+
+fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     let work = Work::new(task)?;
     match goal {
         Goal::Within(time) => {
@@ -203,7 +244,7 @@ impl<'a> Work<'a> {
             return Err(Reason::SharpCorner);
         };
         let corridor =
-            Corridor::new(task.model, task.run, task.ceilings).ok_or(Reason::SharpCorner)?;
+            Corridor::new(task.model, task.run, task.freedom).ok_or(Reason::SharpCorner)?;
         let robot = task.model;
         let list = |values: &Option<Vec<f64>>| -> Joints {
             std::array::from_fn(|j| {
@@ -337,6 +378,13 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// How far the motion may leave the path somewhere, m, before the polishing minds.
+    fn looseness(&self) -> f64 {
+        let moves = self.task.run.moves.iter();
+        let free = moves.map(|record| self.task.freedom.of(&record.movement)).fold(0.0, f64::max);
+        if free > 0.0 { free } else { CORRIDOR * self.tolerance() }
+    }
+
     /// The smallest tolerance on the path, m.
     fn tolerance(&self) -> f64 {
         let line =
@@ -357,7 +405,7 @@ impl<'a> Work<'a> {
             .moves
             .iter()
             .map(|record| SpeedCap {
-                tcp: margins.speed * self.task.ceilings.of(&record.movement),
+                tcp: margins.speed * self.task.freedom.ceilings.of(&record.movement),
                 orientation: f64::INFINITY,
                 ..SpeedCap::NONE
             })
@@ -414,7 +462,7 @@ impl<'a> Work<'a> {
             margins,
             ceilings: self.corridor.eased(margins.reach, EASING),
         };
-        let corridor = PolishCorridor { tolerance: CORRIDOR * self.tolerance(), lever: self.lever };
+        let corridor = PolishCorridor { tolerance: self.looseness(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;

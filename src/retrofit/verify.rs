@@ -203,7 +203,7 @@ fn compare(
         return Err("the emitted points do not run as a stream".into());
     };
     let corridor =
-        Corridor::new(model, run, settings.ceilings).ok_or("the original path is not one piece")?;
+        Corridor::new(model, run, &settings.freedom).ok_or("the original path is not one piece")?;
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }

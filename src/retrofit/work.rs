@@ -13,7 +13,7 @@ use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
-use crate::optimize::corridor::Ceilings;
+use crate::optimize::corridor::Freedom;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::{Goal, Retiming, Task, retime};
@@ -68,8 +68,8 @@ pub struct Settings {
     pub budget: Budget,
     /// Least time between two points of a stream, s.
     pub spacing_s: f64,
-    /// Which programmed speeds are ceilings.
-    pub ceilings: Ceilings,
+    /// What streams may do that the movements did not.
+    pub freedom: Freedom,
 }
 
 /// Why a program can't be retrofitted at all.
@@ -388,7 +388,7 @@ fn retime_all(
                 run,
                 energy_before: energy,
                 spacing_s: settings.spacing_s,
-                ceilings: settings.ceilings,
+                freedom: &settings.freedom,
             };
             Some((*i, task))
         })
