@@ -203,9 +203,6 @@ pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     Some(optimum.profile.duration() + task.run.settling)
 }
 
-/// Times at which a trade-off is computed, over that before.
-const PACES: [f64; 4] = [1.0, 1.3, 1.7, 2.3];
-
 /// What a run takes over the time that it gets, settling included: the energies are of the
 /// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
 pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
@@ -214,20 +211,21 @@ pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOf
     let fast = fastest_profile(&grid, &limits).ok()?;
     let settling = task.run.settling;
     let shortest = shortest.max(RESERVE * fast.duration() + settling);
-    let paces = PACES.iter().map(|pace| pace * task.run.duration());
-    let inside = paces.filter(|time| *time > shortest && *time < longest);
-    let times: Vec<f64> = std::iter::once(shortest).chain(inside).chain([longest]).collect();
-    let energy = |time: f64| {
-        let outcome = minimize_energy(&grid, &limits, &work.model, &fast, time - settling);
+    let known = |time: f64| {
+        let outcome =
+            minimize_energy_from(&grid, &limits, &work.model, &fast, time - settling, None);
         let optimum = outcome.into_optimum()?;
         Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
     };
-    let known = times.into_iter().filter(|time| *time >= shortest).filter_map(energy);
-    TradeOff::through(&known.collect::<Vec<_>>())
+    let before = task.run.duration().max(shortest);
+    let far = if longest > FAR * before { Some(known(longest)?) } else { None };
+    TradeOff::about(known(before)?, shortest, longest.max(before), far)
 }
 
 /// A stream needs this much more time than the fastest profile, at least.
 const RESERVE: f64 = 1.05;
+/// Times this much longer than before are worth a look of their own.
+const FAR: f64 = 1.5;
 
 struct Work<'a> {
     task: &'a Task<'a>,
