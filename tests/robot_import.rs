@@ -317,6 +317,77 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
     }
 }
 
+/// Every message has the line of the file, the key, and what it must be.
+#[test]
+fn figures_of_a_configuration_are_refused_where_they_stand() {
+    let whole = configuration();
+    let cut = |end: &str| whole[..whole.find(end).unwrap() + end.len()].to_owned();
+    let load = "-mass 4.5";
+    let uses = |name: &str| format!("-name \"rob1_2\" -use_customer_arm_load \"{name}\"");
+    for (text, place, words) in [
+        (
+            whole.replace("speed 5.5", "speed -5"),
+            5,
+            "-linear_max_speed of MOTION_PLANNER is \"-5\"",
+        ),
+        (
+            whole.replace("2.0944", "120"),
+            17,
+            "-upper_joint_bound of rob1_2 is \"120\"; it must be an",
+        ),
+        (whole.replace("-1.5708", "2.5"), 17, "rob1_2 turns from 2.5 to 2.0944 rad"),
+        (whole.replace(load, "-mass -4.5"), 36, "-mass of r1_load_3 is \"-4.5\""),
+        (whole.replace("-inertia_y 0.02", "-inertia_y 0.2"), 37, "r1_load_3: no body has"),
+        (
+            whole.replace("r1_load_1\"", "r1_load_9\" -mass 2"),
+            34,
+            "no arm carries the load r1_load_9",
+        ),
+        (whole.replace("-name \"rob1_2\"", &uses("valve")), 17, "is \"valve\", which the section"),
+        (cut("ARM_LOAD:\r\n"), 32, "breaks off here"),
+        (cut("CFRIC_BLOCK:\r\n"), 39, "breaks off here"),
+        (whole.replace("_1600_1.45_10", "_9999_1.45_10"), 9, "unknown robot"),
+        (whole.replace("-inertia_y", "-mass 3 -inertia_y"), 37, "a second -mass"),
+        (whole.repeat(2), 56, "a second \"motion_planner_1\" in MOTION_PLANNER"),
+        (
+            whole.replace(
+                "_pos_z 0.2",
+                "_pos_z 0.2 -base_frame_orient_u0 3 -base_frame_orient_u1 2",
+            ),
+            10,
+            "a quaternion of length 3.606",
+        ),
+    ] {
+        let message = import_moc("MOC.cfg", &text, None).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("MOC.cfg:{place}: ")), "{place}: {message}");
+        assert!(message.contains(words), "{words}: {message}");
+    }
+}
+
+#[test]
+fn a_load_hangs_once_where_its_arm_refers_to_it() {
+    let plain = find("IRB1600-10/1.45").unwrap();
+    let added = |text: &str| -> Vec<f64> {
+        let toml = import_moc("MOC.cfg", text, None).unwrap();
+        let model = from_toml("MOC.cfg", &toml).unwrap();
+        model.links.iter().zip(&plain.links).map(|(link, own)| link.mass - own.mass).collect()
+    };
+    let whole = configuration();
+    let uses = "-name \"rob1_2\" -use_customer_arm_load \"r1_load_3\"";
+    assert_eq!(added(&whole), [0.0, 0.0, 4.5, 0.0, 0.0, 0.0]);
+    let moved = whole.replace("-name \"rob1_2\"", uses);
+    assert_eq!(added(&moved), [0.0, 4.5, 0.0, 0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn the_robot_of_the_backup_passes_the_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("cell.toml").display().to_string();
+    assert!(robots(&["import", "fixtures/backup", "--out", &out]).status.success());
+    let output = robots(&["check", &out]);
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+}
+
 fn robots(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("robots").args(args).output().unwrap()
 }

@@ -15,7 +15,7 @@ const SPEED: Accepts = Accepts::Between(
 const ACCELERATION: Accepts =
     Accepts::Between(f64::MIN_POSITIVE, 2000.0, "more than 0 and at most 2000, in rad/s2");
 /// Speeds of the tool centre point \[m/s\].
-const TCP_SPEED: Accepts =
+pub(super) const TCP_SPEED: Accepts =
     Accepts::Between(f64::MIN_POSITIVE, 50.0, "more than 0 and at most 50, in m/s (not mm/s)");
 
 /// Limits of the joints and of the tool centre point. A limit that no source

@@ -55,8 +55,8 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
 fn checked(model: &Model) -> Finding {
     let mut problems = Vec::new();
     for (i, link) in model.links.iter().enumerate() {
-        if !Link::is_consistent(link) {
-            problems.push(format!("no body has the inertia of link {}", i + 1));
+        if let Some(why) = Link::impossible(link) {
+            problems.push(format!("[[link]] {}: {why}; correct its mass and inertia", i + 1));
         }
     }
     let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
