@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 use insta::assert_snapshot;
 use joulepath::dynamics::{Data, Load, gravity};
 use joulepath::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
-use joulepath::robot::{Model, find, from_toml, import_moc, import_urdf, load};
+use joulepath::robot::{Model, Use, find, from_toml, import_moc, import_urdf, load, ready};
 use nalgebra::Vector3;
 
 const INERTIAL: &str = "<inertial><origin xyz=\"0 0 0.1\"/><mass value=\"2\"/>\
@@ -228,6 +228,14 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
         changed("velocity=\"3\"", "velocity=\"-3\""),
         changed("type=\"revolute\"", "type=\"revolve\""),
         changed("<parent link=\"base\"/>", ""),
+        changed(">80<", ">-80<"),
+        changed("<joint name=\"j2\"/>", "<joint name=\"j3\"/>"),
+        changed("izz=\"0.01\"", "izz=\"0.05\""),
+        changed("izz=\"0.01\"", "izz=\"10000\"").replacen("0.02", "10000", 2),
+        changed(
+            "<link name=\"flange\"/>",
+            "<link name=\"flange\"><visual><geometry><mesh/></geometry></visual></link>",
+        ),
         changed("<joint name=\"j1\"", "<joint"),
         changed("</robot>", &format!("{}{}</robot>", "<a>".repeat(9000), "</a>".repeat(9000))),
         "<model/>".to_owned(),
@@ -377,6 +385,50 @@ fn a_load_hangs_once_where_its_arm_refers_to_it() {
     assert_eq!(added(&whole), [0.0, 0.0, 4.5, 0.0, 0.0, 0.0]);
     let moved = whole.replace("-name \"rob1_2\"", uses);
     assert_eq!(added(&moved), [0.0, 4.5, 0.0, 0.0, 0.0, 0.0]);
+}
+
+/// Units that no bound of a single figure tells are found by the check.
+#[test]
+fn the_check_doubts_figures_in_other_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("robot.toml").display().to_string();
+    let link =
+        "[[link]]\nmass = 31\ncom = [0, 0, 0]\ninertia = [530000, 540000, 120000, 0, 0, 0]\n";
+    for (more, place) in [
+        (link.repeat(6), "[[link]] 1"),
+        (
+            "[limits]\nacceleration = [859, 802, 1031, 2000, 2000, 2000]\n".into(),
+            "joint 1: 859 rad/s2",
+        ),
+        ("[limits]\nvelocity = [90, 90, 90, 90, 90, 90]\n".into(), "joint 1: 90 rad/s"),
+        (format!("[limits]\nposition = [{}]\n", "[-45, 45],".repeat(6)), "joint 1: up to 45 rad"),
+        ("[kinematics.opw]\na1 = 15\n".into(), "m long"),
+    ] {
+        fs::write(&path, format!("extends = \"IRB1600-10/1.45\"\n{more}")).unwrap();
+        let output = robots(&["check", &path]);
+        assert_eq!(output.status.code(), Some(1), "{more}");
+        assert!(stdout(&output).contains(place), "{}", stdout(&output));
+    }
+}
+
+#[test]
+fn what_a_file_lacks_is_added_by_extending_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.urdf").display().to_string();
+    fs::write(&path, arm().replace(INERTIAL, "")).unwrap();
+    let message = ready(&load(&path).unwrap(), Use::Predict).unwrap_err().to_string();
+    let extends = format!("extends = \"{path}\"");
+    assert!(message.contains(&extends), "{message}");
+    let overlay = folder.path().join("more.toml").display().to_string();
+    let link = "[[link]]\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1, 0, 0, 0]\n";
+    fs::write(&overlay, format!("{extends}\n{}", link.repeat(2))).unwrap();
+    assert!(ready(&load(&overlay).unwrap(), Use::Predict).is_ok());
+}
+
+#[test]
+fn ranges_are_shown_as_they_are() {
+    let shown = stdout(&robots(&["show", "IRB14000 right"]));
+    assert!(shown.contains("-143.5…43.5 ") && shown.contains("-123.5…80 "), "{shown}");
 }
 
 #[test]

@@ -374,7 +374,12 @@ impl Fields {
 
 /// Whether a joint may have the bound \[rad\]: as one that is not endless, or as one that is.
 pub(super) fn is_turn(bound: f64) -> bool {
-    bound.abs() <= FARTHEST_TURN || bound.abs() >= ENDLESS
+    bound.abs() <= FARTHEST_TURN || is_endless(bound)
+}
+
+/// Whether the bound \[rad\] stands for an endless joint.
+pub(super) fn is_endless(bound: f64) -> bool {
+    bound.abs() >= ENDLESS
 }
 
 fn per_joint_words(dof: usize) -> String {

@@ -123,7 +123,16 @@ impl PositionIf {
         let joint = fields.joint("joint", dof)?;
         let position = fields.interval("position")?;
         let position = fields.required("position", position)?;
+        let place = fields.place_of("if_joint");
         let if_joint = fields.joint("if_joint", dof)?;
+        if if_joint == joint {
+            return Err(RobotError::Value {
+                place,
+                key: fields.path("if_joint"),
+                value: (if_joint + 1).to_string(),
+                must: "another joint than the one whose range widens".into(),
+            });
+        }
         let if_within = fields.interval("if_within")?;
         let if_within = fields.required("if_within", if_within)?;
         origins.extend(fields.finish()?);
