@@ -27,6 +27,10 @@ const GAUSS: [(f64, f64); 4] = [
 /// Change of the path's acceleration, share of its largest, that makes a kink worth a knot.
 const KINK: f64 = 0.02;
 
+/// Joint speed (rad/s) and acceleration (rad/s²) that are rounding of none. Dry friction would
+/// take its sign for that of a motion.
+const STILL: f64 = 1e-9;
+
 /// The timing of a path: a speed profile, averaged over time.
 #[derive(Clone, Debug)]
 pub struct Averaged {
@@ -36,11 +40,13 @@ pub struct Averaged {
     /// (1/s): q̄ = Σ c ∫ q up to t − delay.
     edges: [(f64, f64); 4],
     /// Times between which the joints before averaging are polynomials, s.
-    knots: Vec<f64>,
+    source_knots: Vec<f64>,
     /// Between two of them: the interval of the profile and the piece of the path.
     stretches: Vec<(u32, u32)>,
-    /// ∫ q from the start to each of these times, rad s.
+    /// ∫ (q − q₀) from the start to each of these times, rad s.
     integral: Vec<Joints>,
+    /// Times between which the averaged joints move smoothly, s.
+    knots: Vec<f64>,
     /// The end of the motion, from where the motion before averaging has ended.
     closing: Closing,
 }
@@ -58,7 +64,7 @@ impl Averaged {
     /// The path run by `profile`, averaged.
     pub fn new(path: &JointPath, profile: Profile, average: Average) -> Averaged {
         let Average { window, core, closing } = average;
-        let (knots, stretches) = stretches(path, &profile);
+        let (source_knots, stretches) = stretches(path, &profile);
         let begin = profile.duration();
         let (side, middle) = ((1.0 - core) / window, (1.0 + core) / window);
         let mut averaged = Averaged {
@@ -70,24 +76,26 @@ impl Averaged {
                 (0.75 * window, side - middle),
                 (window, -side),
             ],
-            knots,
+            source_knots,
             stretches,
             integral: Vec::new(),
+            knots: Vec::new(),
             closing: Closing { begin, length: 0.0, coefficients: [[0.0; 6]; DOF] },
         };
         let mut sum = [0.0; DOF];
         let mut integral = vec![sum];
         for k in 0..averaged.stretches.len() {
-            let part = averaged.stretch(path, k, averaged.knots[k + 1]);
+            let part = averaged.stretch(path, k, averaged.source_knots[k + 1]);
             sum = std::array::from_fn(|j| sum[j] + part[j]);
             integral.push(sum);
         }
         averaged.integral = integral;
         if window > 0.0 {
             let from = averaged.average(path, begin);
-            let end = path.eval(path.length()).q;
+            let end = path.end();
             averaged.closing = Closing::new(begin, window - closing, &from, &end);
         }
+        averaged.knots = averaged.smooth_between();
         averaged
     }
 
@@ -109,10 +117,10 @@ impl Averaged {
     /// The state at `t`; outside, at rest at the nearer end.
     pub fn at(&self, path: &JointPath, t: f64) -> JointState {
         if t <= 0.0 {
-            return JointState::rest(path.eval(0.0).q);
+            return JointState::rest(path.start());
         }
         if t >= self.duration() {
-            return JointState::rest(path.eval(path.length()).q);
+            return JointState::rest(path.end());
         }
         if self.window == 0.0 {
             let (s, v, a) = self.profile.at(t);
@@ -127,7 +135,7 @@ impl Averaged {
     }
 
     fn average(&self, path: &JointPath, t: f64) -> JointState {
-        let mut state = JointState::rest([0.0; DOF]);
+        let mut state = JointState::rest(path.start());
         for (delay, c) in self.edges {
             let source = self.source(path, t - delay);
             for j in 0..DOF {
@@ -136,12 +144,22 @@ impl Averaged {
                 state.qdd[j] += c * source.qd[j];
             }
         }
+        for (qd, qdd) in state.qd.iter_mut().zip(&mut state.qdd) {
+            if qd.abs() < STILL && qdd.abs() < STILL {
+                (*qd, *qdd) = (0.0, 0.0);
+            }
+        }
         state
     }
 
-    /// Times between which the joints move smoothly, from 0 to the duration: where the
-    /// acceleration before averaging changes by a share that counts, and that time later.
-    pub fn knots(&self) -> Vec<f64> {
+    /// Times between which the joints move smoothly, from 0 to the duration, s.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Where the acceleration before averaging changes by a share that counts, and the edges of
+    /// the average later.
+    fn smooth_between(&self) -> Vec<f64> {
         let pieces: Vec<f64> = self.profile.pieces().map(|piece| piece.acceleration).collect();
         let largest = pieces.iter().fold(0.0, |max: f64, a| max.max(a.abs()));
         let mut knots = vec![0.0];
@@ -166,41 +184,42 @@ impl Averaged {
 
     /// The motion before averaging.
     fn source(&self, path: &JointPath, t: f64) -> Source {
-        let last = self.knots.len() - 1;
+        let last = self.source_knots.len() - 1;
         if t <= 0.0 {
-            let q = path.eval(0.0).q;
-            return Source { sum: q.map(|q| q * t), q, qd: [0.0; DOF] };
+            return Source { sum: [0.0; DOF], q: [0.0; DOF], qd: [0.0; DOF] };
         }
-        if t >= self.knots[last] {
-            let q = path.eval(path.length()).q;
-            let rest = t - self.knots[last];
+        if t >= self.source_knots[last] {
+            let (start, end) = (path.start(), path.end());
+            let q: Joints = std::array::from_fn(|j| end[j] - start[j]);
+            let rest = t - self.source_knots[last];
             let sum = std::array::from_fn(|j| self.integral[last][j] + q[j] * rest);
             return Source { sum, q, qd: [0.0; DOF] };
         }
-        let k = self.knots.partition_point(|knot| *knot <= t) - 1;
+        let k = self.source_knots.partition_point(|knot| *knot <= t) - 1;
         let part = self.stretch(path, k, t);
         let (interval, piece) = self.stretches[k];
         let (s, v, _) = self.profile.in_interval(interval as usize, t);
         let PathPoint { q, q1, .. } = path.pieces()[piece as usize].eval(s);
         Source {
             sum: std::array::from_fn(|j| self.integral[k][j] + part[j]),
-            q,
+            q: std::array::from_fn(|j| q[j] - path.start()[j]),
             qd: q1.map(|x| x * v),
         }
     }
 
-    /// ∫ q from the begin of a stretch to a time in it, rad s.
+    /// ∫ (q − q₀) from the begin of a stretch to a time in it, rad s.
     fn stretch(&self, path: &JointPath, k: usize, to: f64) -> Joints {
         let (interval, piece) = self.stretches[k];
         let piece = &path.pieces()[piece as usize];
-        let from = self.knots[k];
+        let start = path.start();
+        let from = self.source_knots[k];
         let h = to - from;
         let mut sum = [0.0; DOF];
         for (x, weight) in GAUSS {
             let (s, _, _) = self.profile.in_interval(interval as usize, from + h * x);
             let q = piece.position(s);
             for j in 0..DOF {
-                sum[j] += h * weight * q[j];
+                sum[j] += h * weight * (q[j] - start[j]);
             }
         }
         sum
@@ -232,7 +251,7 @@ fn stretches(path: &JointPath, profile: &Profile) -> (Vec<f64>, Vec<(u32, u32)>)
     (knots, stretches)
 }
 
-/// q, q̇ and ∫ q from the start, at a time before averaging.
+/// q − q₀, q̇ and ∫ (q − q₀) from the start, at a time before averaging.
 struct Source {
     q: Joints,
     qd: Joints,

@@ -55,10 +55,10 @@ impl TimedMotion {
     }
 
     /// Times between which every joint moves smoothly, from 0 to the duration.
-    pub fn knots(&self) -> Vec<f64> {
+    pub fn knots(&self) -> &[f64] {
         match self {
             TimedMotion::Path(_, timing) => timing.knots(),
-            TimedMotion::Stream(stream) => stream.knots().times().to_vec(),
+            TimedMotion::Stream(stream) => stream.knots().times(),
         }
     }
 

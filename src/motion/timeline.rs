@@ -1,5 +1,6 @@
 //! The result of a simulation: runs, waits and outputs on one time line.
 
+use super::pace::Pace;
 use super::timed::{JointState, TimedMotion};
 use crate::dynamics::Load;
 use crate::ir::exec::Note;
@@ -77,6 +78,9 @@ impl Run {
 
     /// The state at `t` after the start of the run.
     pub fn at(&self, t: f64) -> JointState {
+        if t >= self.duration() - self.settling {
+            return JointState::rest(self.end);
+        }
         let after = self.motions.partition_point(|(begin, _)| *begin <= t);
         match after.checked_sub(1).and_then(|i| self.motions.get(i)) {
             Some((begin, motion)) => motion.at(t - begin),
@@ -94,6 +98,8 @@ pub struct MoveRecord {
     pub t_start: f64,
     /// s.
     pub duration: f64,
+    /// What sets its pace.
+    pub pace: Pace,
 }
 
 /// A wait with its length.

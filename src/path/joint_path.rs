@@ -121,13 +121,30 @@ pub struct JointPath {
     pieces: Vec<Piece>,
     /// Index of the first leg, and the legs from there on.
     legs: (usize, Vec<Extent>),
+    /// Joints where the path begins and ends, rad.
+    ends: [Joints; 2],
 }
 
 impl JointPath {
-    /// From pieces that follow each other without a gap, and the legs from the index
-    /// `first` on that they belong to.
-    pub fn new(pieces: Vec<Piece>, first: usize, legs: Vec<Extent>) -> JointPath {
-        JointPath { pieces, legs: (first, legs) }
+    /// From pieces that follow each other without a gap, the legs from the index `first` on
+    /// that they belong to, and the joints at both ends without the pieces' rounding.
+    pub fn new(
+        pieces: Vec<Piece>,
+        first: usize,
+        legs: Vec<Extent>,
+        ends: [Joints; 2],
+    ) -> JointPath {
+        JointPath { pieces, legs: (first, legs), ends }
+    }
+
+    /// Joints where the path begins, rad.
+    pub fn start(&self) -> Joints {
+        self.ends[0]
+    }
+
+    /// Joints where the path ends, rad.
+    pub fn end(&self) -> Joints {
+        self.ends[1]
     }
 
     /// What is known of a leg of the path.
