@@ -1,6 +1,8 @@
 //! Movements with `\T`, what sets the pace of a movement, and lines past singular places.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+use std::fmt::Write;
+
 use joulepath::dynamics::{Data, torque};
 use joulepath::kinematics::fk;
 use joulepath::motion::timeline::{Run, What};
@@ -97,7 +99,7 @@ fn the_limit_that_holds_for_the_longest_time_sets_the_pace() {
     assert_eq!(pace(joint), "joint-speed");
 }
 
-/// Excess over PathAccLim that the tightening leaves, and differences over time.
+/// Excess over `PathAccLim` that the tightening leaves, and differences over time.
 const OVERSHOOT: f64 = 1.01;
 
 #[test]
@@ -161,8 +163,8 @@ fn a_line_without_configuration_ends_where_it_arrives() {
     let mut body = String::new();
     for (i, angle) in [0.0, 100.0, 200.0, 300.0].into_iter().enumerate() {
         let y = 100.0 * i as f64;
-        body +=
-            &format!("MoveL [[800,{y},700],{},[0,0,0,0],{NONE}],v200,fine,tool0;\n", turn(angle));
+        let turn = turn(angle);
+        writeln!(body, "MoveL [[800,{y},700],{turn},[0,0,0,0],{NONE}],v200,fine,tool0;").unwrap();
     }
     let simulation = run(&body);
     assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);

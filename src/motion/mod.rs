@@ -5,6 +5,7 @@ pub mod controller;
 mod leg_times;
 pub mod pace;
 pub mod planner;
+mod quintics;
 mod run_plan;
 pub mod sampling;
 pub mod stream;

@@ -118,6 +118,8 @@ impl Task<'_> {
             pace
         });
         let paces = paces.collect();
+        // The grid of a long path is large.
+        drop(grid);
         let timing = Averaged::new(path, profile, planning.average);
         Ok((TimedMotion::Path((*path).clone(), Box::new(timing)), paces))
     }

@@ -3,11 +3,9 @@
 use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
 use super::timing::limits::Row;
-use crate::dynamics::{Data, Load, rnea};
+use crate::dynamics::{Data, Load, rnea_each};
 use crate::kinematics::Tcp;
-use crate::path::joint_path::{
-    DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
-};
+use crate::path::joint_path::{DOF, Extent, JointPath, PathPoint as PiecePoint, Piece, PieceKind};
 use crate::robot::Model;
 
 /// Limits that the program sets for one leg.
@@ -213,16 +211,11 @@ fn point(
     point.capability = point.capability.map(|share| share * cap.acceleration);
     point.tcp_rows = tcp_rows(model, &at, &extent.tool, &twist, cap);
     if model.has_dynamics() {
-        let zero = [0.0; DOF];
-        let tau = |data: &mut Data, qd: &Joints, qdd: &Joints| -> Joints {
-            let tau = rnea(model, data, load, &at.q, qd, qdd);
-            std::array::from_fn(|j| tau[j])
-        };
-        point.g = tau(data, &zero, &zero);
-        let m = tau(data, &zero, &at.q1);
-        let c = tau(data, &at.q1, &at.q2);
-        point.m = std::array::from_fn(|j| m[j] - point.g[j]);
-        point.c = std::array::from_fn(|j| c[j] - point.g[j]);
+        let motions: [[&[f64]; 2]; 3] = [[&[], &[]], [&[], &at.q1], [&at.q1, &at.q2]];
+        let [g, m, c] = rnea_each(model, data, load, &at.q, motions);
+        point.g = std::array::from_fn(|j| g[j]);
+        point.m = std::array::from_fn(|j| m[j] - g[j]);
+        point.c = std::array::from_fn(|j| c[j] - g[j]);
         for j in 0..DOF {
             point.coulomb[j] = model.friction.coulomb[j] * sign(at.q1[j]);
             point.viscous[j] = model.friction.viscous[j] * at.q1[j];

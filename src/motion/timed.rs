@@ -46,7 +46,7 @@ impl TimedMotion {
     /// The state at `t` after the start; outside, at rest at the nearer end.
     pub fn at(&self, t: f64) -> JointState {
         match self {
-            TimedMotion::Path(path, timing) => timing.at(path, t),
+            TimedMotion::Path(_, timing) => timing.at(t),
             TimedMotion::Stream(stream) => {
                 let (q, qd, qdd) = stream.eval(t);
                 JointState { q, qd, qdd }

@@ -76,6 +76,13 @@ impl Run {
         self.moves.iter().map(|m| m.duration).sum()
     }
 
+    /// The motions that may be under way between two times, s from the start of the run.
+    pub fn motions_between(&self, from: f64, to: f64) -> &[(f64, TimedMotion)] {
+        let first = self.motions.partition_point(|(begin, _)| *begin <= from).saturating_sub(1);
+        let last = self.motions.partition_point(|(begin, _)| *begin < to);
+        self.motions.get(first..last).unwrap_or_default()
+    }
+
     /// The state at `t` after the start of the run.
     pub fn at(&self, t: f64) -> JointState {
         if t >= self.duration() - self.settling {

@@ -75,10 +75,28 @@ impl Row {
         }
     }
 
+    /// Bound on the absolute value while |u| and b are at most these.
+    pub(crate) fn largest(&self, u: f64, b: f64) -> f64 {
+        // Without inertia the acceleration does not matter, however large it may be.
+        let inertial = if self.u == 0.0 { 0.0 } else { self.u.abs() * u };
+        inertial + self.b.abs() * b + self.root.abs() * b.sqrt() + self.constant.abs()
+    }
+
     /// The left side without the absolute value.
     pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
         self.u * u + self.b * b + self.root * b.sqrt() + self.constant
     }
+}
+
+/// Largest |u| that the acceleration limits of the joints allow at a place where b is at most
+/// `b_max`.
+pub(crate) fn largest_acceleration(point: &PathPoint, limits: &PathLimits, b_max: f64) -> f64 {
+    let bound = |j: usize| {
+        let row = acceleration_row(point, limits, j);
+        (1.0 + row.constant.abs() + row.b.abs() * b_max) / row.u.abs()
+    };
+    // Rows are left out by this: a hair of room for the tolerance on the others.
+    (0..DOF).map(bound).fold(f64::INFINITY, f64::min) * 1.001
 }
 
 fn acceleration_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
