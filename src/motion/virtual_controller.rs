@@ -12,9 +12,9 @@ use super::stream::Stream;
 use super::timed::TimedMotion;
 use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord, What};
 use crate::dynamics::Load;
-use crate::ir::exec::{Machine, Note, execute};
+use crate::ir::exec::{Machine, Note, Waited, execute};
 use crate::ir::instructions::MoveForm;
-use crate::ir::movement::{LoadData, Movement, Output, Target, Tool, Unresolved, Wait};
+use crate::ir::movement::{LoadData, Movement, Output, Stop, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
 use crate::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
@@ -60,13 +60,21 @@ pub fn simulate(
         time: 0.0,
         events: Vec::new(),
         pending: Vec::new(),
+        pending_s: 0.0,
+        ahead: 0.0,
+        cut: false,
+        in_position: false,
         notes: Vec::new(),
         repeats_from: None,
         waited: BTreeMap::new(),
     };
     let execution = execute(program, entry, &mut machine);
     machine.flush();
+    machine.tell_limit();
     let mut assumptions = execution.assumed;
+    assumptions.extend(machine.in_position.then(|| {
+        format!("at stop points with inpos the error of the servos dies away over {SERVO_S} s")
+    }));
     assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
@@ -99,11 +107,25 @@ struct VirtualController<'a> {
     time: f64,
     events: Vec<Event>,
     pending: Vec<Pending>,
+    /// Time that the pending movements take at their speeds, s.
+    pending_s: f64,
+    /// Time by which the logic is ahead of the motion (`\Conc`), s.
+    ahead: f64,
+    /// True once a run was cut off at the largest time.
+    cut: bool,
+    /// True once a stop point waited for the servos.
+    in_position: bool,
     notes: Vec<Note>,
     repeats_from: Option<usize>,
     /// End of the last wait for each input.
     waited: BTreeMap<String, f64>,
 }
+
+/// Time constant with which the error of the servos dies away at a stop point, s. Chosen: position
+/// loops of such robots close at some 20/s; no measurement of stop points with `inpos` is known.
+const SERVO_S: f64 = 0.05;
+/// Zones may shorten movements to this share.
+const SHORTEST: f64 = 0.5;
 
 /// Events of a simulation: more are not kept.
 const MAX_EVENTS: usize = 200_000;
@@ -133,6 +155,7 @@ impl Machine for VirtualController<'_> {
                 self.q = leg.end;
                 self.tool = Some(gripping(&movement));
                 let fine = leg.zone.fine;
+                self.pending_s += self.time_at_speed(&leg, &movement);
                 self.pending.push(Pending { movement, leg });
                 if fine {
                     self.flush();
@@ -148,17 +171,28 @@ impl Machine for VirtualController<'_> {
         }
     }
 
-    fn waits(&mut self, wait: Wait) {
+    fn waits(&mut self, wait: Wait) -> Waited {
         self.flush();
-        let begin = self.time;
+        // What the logic does while a movement with \Conc is under way takes no time of its own.
+        let begin = self.time - self.ahead;
+        let mut waited = Waited::Ended;
         let known = wait.signal.as_ref().and_then(|signal| {
             let key = signal.to_lowercase();
             let delay = self.options.inputs.get(&key)?;
             Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
         });
-        let (duration, basis) = match (wait.duration, known) {
+        let (length, basis) = match (wait.duration, known) {
             (Some(duration), _) => (duration, WaitBasis::Stated),
-            (None, Some(at)) => ((at - begin).max(0.0), WaitBasis::Input),
+            (None, Some(at)) => {
+                let rest = (at - begin).max(0.0);
+                match wait.max_time {
+                    Some(most) if most < rest => {
+                        waited = Waited::TimedOut;
+                        (most, WaitBasis::Stated)
+                    }
+                    _ => (rest, WaitBasis::Input),
+                }
+            }
             (None, None) => {
                 let what = match (&wait.signal, &wait.other) {
                     (Some(signal), _) => format!(
@@ -174,15 +208,18 @@ impl Machine for VirtualController<'_> {
                 (0.0, WaitBasis::Unknown)
             }
         };
-        if let Some(signal) = &wait.signal {
-            self.waited.insert(signal.to_lowercase(), begin + duration);
+        if let Some(signal) = wait.signal.as_ref().filter(|_| waited == Waited::Ended) {
+            self.waited.insert(signal.to_lowercase(), begin + length);
         }
+        let duration = (length - self.ahead).max(0.0);
+        self.ahead = (self.ahead - length).max(0.0);
         let load = self
             .tool
             .as_ref()
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
         let record = WaitRecord { wait, basis, q: self.q, load, position_known: self.certain };
         self.push(duration, What::Wait(Box::new(record)));
+        waited
     }
 
     fn sets(&mut self, output: Output) {
@@ -200,6 +237,25 @@ impl Machine for VirtualController<'_> {
         self.repeats_from.get_or_insert(self.events.len());
     }
 
+    fn leaves_loop(&mut self) {
+        self.repeats_from = None;
+    }
+
+    fn clock(&self) -> f64 {
+        self.time + self.pending_s
+    }
+
+    fn has_come(&mut self, signal: &str) -> Option<bool> {
+        let key = signal.to_lowercase();
+        let delay = self.options.inputs.get(&key)?;
+        let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
+        let come = self.clock() >= at;
+        if come {
+            self.waited.insert(key, at);
+        }
+        Some(come)
+    }
+
     fn passes(&self) -> u32 {
         self.options.passes.unwrap_or(1)
     }
@@ -211,16 +267,61 @@ impl Machine for VirtualController<'_> {
     fn is_full(&self) -> bool {
         self.events.len() + self.pending.len() > MAX_EVENTS || self.is_late()
     }
-
-    fn full_because(&self) -> Option<String> {
-        let limit = self.options.max_time.unwrap_or(MAX_TIME);
-        self.is_late().then(|| format!("the cycle lasts longer than {limit} s (--max-time)"))
-    }
 }
 
 impl VirtualController<'_> {
+    fn max_time(&self) -> f64 {
+        self.options.max_time.unwrap_or(MAX_TIME)
+    }
+
+    /// Whether the cycle is longer than it may be, with the pending movements as short as they
+    /// can be.
     fn is_late(&self) -> bool {
-        self.time > self.options.max_time.unwrap_or(MAX_TIME)
+        self.cut || self.time + SHORTEST * self.pending_s > self.max_time()
+    }
+
+    /// Time that a movement takes without acceleration, s.
+    fn time_at_speed(&self, leg: &Leg, movement: &Movement) -> f64 {
+        if let Some(time) = self.timed(movement) {
+            return time;
+        }
+        let before = leg.tool.pose(&fk(self.model, &leg.start));
+        let way = match leg.kind {
+            LegKind::Joint => 0.0,
+            _ => (leg.target.translation.vector - before.translation.vector).norm(),
+        };
+        let joints = self.model.limits.velocity.iter().flatten();
+        let turns = leg.start.iter().zip(&leg.end).zip(joints);
+        let slowest = turns.map(|((a, b), speed)| (b - a).abs() / speed).fold(0.0, f64::max);
+        slowest.max(way / leg.speed.tcp)
+    }
+
+    /// Tells at which instruction the simulation ended, if it was not the program's end.
+    fn tell_limit(&mut self) {
+        let reason = if self.cut || self.time > self.max_time() {
+            format!(
+                "the cycle lasts longer than {} s (--max-time): it is shown up to the end of this \
+                 instruction, at {:.3} s",
+                self.max_time(),
+                self.time
+            )
+        } else if self.events.len() > MAX_EVENTS {
+            format!(
+                "more than {MAX_EVENTS} movements, waits and outputs, as if the program did not \
+                 end: the cycle is shown up to here"
+            )
+        } else {
+            return;
+        };
+        let span = self.events.iter().rev().find_map(|event| match &event.what {
+            What::Run(run) => run.moves.last().map(|record| record.movement.span),
+            What::Wait(record) => Some(record.wait.span),
+            What::Output(output, _) => Some(output.span),
+            What::Left(left) => Some(left.span),
+        });
+        if let Some(span) = span {
+            self.note(span, &reason);
+        }
     }
 
     /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
@@ -258,8 +359,9 @@ impl VirtualController<'_> {
         // What does not move with the robot is stated in the world, solved in its base frame.
         let world = self.model.kinematics.base.inverse();
         let held = movement.tool.robhold;
-        let object = movement.settings.displacement.unwrap_or_else(Isometry3::identity)
-            * movement.wobj.frame;
+        // A program displacement moves the targets in the object's frame.
+        let displacement = movement.settings.displacement.unwrap_or_else(Isometry3::identity);
+        let object = movement.wobj.frame * displacement;
         let base = if held { world * object } else { object };
         let frame = movement.tool.frame;
         let tool = if held { Tcp::Held(frame) } else { Tcp::Stationary(world * frame) };
@@ -305,20 +407,44 @@ impl VirtualController<'_> {
     /// Plans the pending movements as one run to a stop.
     fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
-        let (Some(first), Some(last)) = (pending.first(), pending.last()) else { return };
+        self.pending_s = 0.0;
+        let Some(first) = pending.first() else { return };
         let start = first.leg.start;
-        let end = last.leg.end;
         let settings = first.movement.settings.clone();
         let planning = Planning::new(self.model, &settings);
         let load = effective_load(&first.movement);
-        let legs: Vec<Leg> = pending.iter().map(|p| p.leg.clone()).collect();
-        let movements: Vec<Movement> = pending.into_iter().map(|p| p.movement).collect();
+        let mut legs: Vec<Leg> = pending.iter().map(|p| p.leg.clone()).collect();
+        let mut movements: Vec<Movement> = pending.into_iter().map(|p| p.movement).collect();
         let loaded = Loaded { model: self.model, load: &load };
 
-        let (motions, durations, problem) = match self.as_stream(&start, &legs, &movements) {
-            Some(stream) => self.realise(stream, &movements),
-            None => self.plan_run(loaded, &legs, &movements, &planning),
-        };
+        let mut planned = self.plan_pending(loaded, &legs, &movements, &planning);
+        let left = self.max_time() - self.time;
+        let ends = planned.1.iter().scan(0.0, |t, duration| {
+            *t += duration;
+            Some(*t)
+        });
+        if let Some(kept) = ends.clone().position(|t| t > left).map(|late| late + 1)
+            && kept < legs.len()
+        {
+            // The robot stops at the end of the movement during which the time is over.
+            legs.truncate(kept);
+            movements.truncate(kept);
+            planned = self.plan_pending(loaded, &legs, &movements, &planning);
+            self.cut = true;
+        }
+        let (motions, mut durations, problem) = planned;
+        let end = legs.last().map_or(start, |leg| leg.end);
+        self.q = if self.cut { end } else { self.q };
+        let stands = movements.last().map_or(0.0, |movement| self.stands(movement));
+        if let Some(duration) = durations.last_mut() {
+            *duration += stands;
+        }
+        // The logic goes on when a movement with \Conc begins.
+        let under_way = movements.iter().zip(&durations).rev();
+        let under_way = under_way.take_while(|(movement, _)| movement.concurrent);
+        let ahead: f64 = under_way.map(|(_, duration)| duration).sum();
+        let all = movements.iter().all(|movement| movement.concurrent);
+        self.ahead = if all { self.ahead + ahead } else { ahead };
         if let Some((leg, reason)) = &problem {
             self.note(movements[*leg].span, reason);
         }
@@ -336,7 +462,7 @@ impl VirtualController<'_> {
             load,
             start,
             end,
-            settling: 0.0,
+            settling: stands,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
         };
@@ -347,6 +473,34 @@ impl VirtualController<'_> {
             self.settle(planning.settling_s);
         }
         self.push(t, What::Run(Box::new(run)));
+    }
+
+    fn plan_pending(
+        &self,
+        loaded: Loaded<'_>,
+        legs: &[Leg],
+        movements: &[Movement],
+        planning: &Planning,
+    ) -> Planned {
+        let start = legs.first().map_or(self.q, |leg| leg.start);
+        match self.as_stream(&start, legs, movements) {
+            Some(stream) => self.realise(stream, movements),
+            None => self.plan_run(loaded, legs, movements, planning),
+        }
+    }
+
+    /// Time that the robot stands at a stop point besides settling, s.
+    fn stands(&mut self, movement: &Movement) -> f64 {
+        match movement.stop {
+            Stop::Fine => 0.0,
+            Stop::Time(time) => time,
+            Stop::InPosition { share, least, most } => {
+                self.in_position = true;
+                // The error that `fine` allows is reached without a wait; it dies away from there.
+                let longer = if share > 0.0 { -SERVO_S * share.ln() } else { f64::INFINITY };
+                longer.max(0.0).clamp(least, most)
+            }
+        }
     }
 
     /// Between two movements the robot rests at the stop point. A wait takes that time too.

@@ -116,6 +116,11 @@ impl Executor<'_> {
                     Value::unknown(format!("'{}' is a routine", name.text), name.span)
                 }
                 Some(Symbol::Ambiguous) => Value::unknown(declared_twice(&name.text), name.span),
+                _ if name.key == "errno" => Value {
+                    datum: self.errno.clone().map_or(Datum::Num(0.0), Datum::Text),
+                    type_key: "errnum".into(),
+                    origin: Origin::of(Dependence::Variable("ERRNO".into())),
+                },
                 _ => predefined::lookup(&name.key).unwrap_or_else(|| {
                     Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
                 }),
@@ -283,14 +288,17 @@ impl Executor<'_> {
                     let type_key = self.cells[cell].value.type_key.clone();
                     let place = self.place(&type_key, &path);
                     let slot = &mut self.cells[cell].value.datum;
-                    match place {
-                        Some(indices) => store(slot, &indices, value.datum),
-                        None => {
-                            *slot = Datum::unknown(
-                                format!("it was written at a place in '{}' not known", name.text),
-                                target.span,
-                            );
-                        }
+                    let changed = if let Some(indices) = place {
+                        store(slot, &indices, value.datum)
+                    } else {
+                        *slot = Datum::unknown(
+                            format!("it was written at a place in '{}' not known", name.text),
+                            target.span,
+                        );
+                        true
+                    };
+                    if changed {
+                        self.changes(Some(cell));
                     }
                     return;
                 }
@@ -364,16 +372,20 @@ enum Step<'e> {
     Index(&'e Expr),
 }
 
-fn store(slot: &mut Datum, indices: &[usize], value: Datum) {
+/// Writes a part of a value; true if it was another one before.
+fn store(slot: &mut Datum, indices: &[usize], value: Datum) -> bool {
     match indices {
-        [] => *slot = value,
-        [first, rest @ ..] => {
-            if let Datum::List(items) = slot
-                && let Some(item) = items.get_mut(*first)
-            {
-                store(item, rest, value);
-            }
+        [] if *slot == value => false,
+        [] => {
+            *slot = value;
+            true
         }
+        [first, rest @ ..] => match slot {
+            Datum::List(items) => {
+                items.get_mut(*first).is_some_and(|item| store(item, rest, value))
+            }
+            _ => false,
+        },
     }
 }
 
@@ -424,7 +436,7 @@ fn binary(op: BinaryOp, left: &Datum, right: &Datum, expr: &Expr) -> Datum {
 }
 
 /// Equality with the precision of RAPID's `num`.
-fn equal(a: &Datum, b: &Datum) -> bool {
+pub(super) fn equal(a: &Datum, b: &Datum) -> bool {
     match (a, b) {
         (Datum::Num(a), Datum::Num(b)) => (*a as f32) == (*b as f32),
         (Datum::List(a), Datum::List(b)) => {
