@@ -82,6 +82,7 @@ impl Executor<'_> {
                         self.unresolved(stmt.span, ENDLESS);
                         continue;
                     }
+                    let branches = decided.is_some() && matches!(stmt.kind, StmtKind::If { .. });
                     let known = marks.iter_mut().find(|(label, _)| *label == at);
                     let pass = match known {
                         Some((_, mark)) => self.pass(mark, "GOTO", decided.map(|p| *p), None),
@@ -91,8 +92,9 @@ impl Executor<'_> {
                         self.unresolved(stmt.span, ENDLESS);
                         continue;
                     }
-                    // The mark is set already.
-                    index = at + 1;
+                    // The IF that led back goes the other way now; else the mark is set already.
+                    let goes_on = branches && matches!(pass, Pass::Came);
+                    index = if goes_on { index - 1 } else { at + 1 };
                 }
                 Some(at) => index = at,
                 None => return Flow::Jump(label, decided),

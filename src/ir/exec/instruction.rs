@@ -440,10 +440,14 @@ impl Executor<'_> {
         self.unresolved(
             stmt.span,
             format!(
-                "the controller stops with an error here: {text} with {what}; taken as if it \
-                     were not there"
+                "the controller stops with an error here: {text} with {what}; taken as if it were \
+                 not there"
             ),
         );
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        settings.other.push(text.into());
+        self.settings = Arc::new(settings);
     }
 
     fn not_known(&mut self, stmt: &Stmt, text: &str) {

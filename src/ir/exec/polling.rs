@@ -120,8 +120,8 @@ impl Executor<'_> {
             self.unresolved(
                 poll.condition.span,
                 format!(
-                    "moves until {name} changes, at a time that is not known: one pass is \
-                     simulated{hint}"
+                    "moves until {name} changes, at a time that is not known: taken as during \
+                     the first pass{hint}"
                 ),
             );
             return self.comes(mark, &poll);
