@@ -482,6 +482,11 @@ fn a_test_on_an_input_tells_its_other_ways() {
     let told = reasons(&zero).join("\n");
     assert!(told.contains("2 other branches (3 instructions)"), "{told}");
     assert!(told.contains("--assume giPart"), "{told}");
+    // Through a variable too.
+    let body_of = |value: &str| body.replace("TEST giPart", &format!("n:={value};\nTEST n"));
+    let told = reasons(&simulated(&body_of("giPart+0"))).join("\n");
+    assert!(told.contains("2 other branches") && told.contains("--assume giPart"), "{told}");
+    assert!(reasons(&simulated(&body_of("0"))).is_empty());
     let levels = BTreeMap::from([("gipart".to_owned(), 3.0)]);
     let three = run_with(&irb1600(), body, &Options { levels, ..Options::default() });
     assert_eq!(runs(&three).len(), 3);

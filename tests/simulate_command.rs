@@ -32,9 +32,15 @@ fn the_report_is_one_page_with_everything_in_it() {
     let output = joulepath(&["simulate", "fixtures/hard/waits.mod", robot, name, "--report", path]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let html = fs::read_to_string(page).unwrap();
-    for part in
-        ["Cycle by instruction", "Electrical power", "Joint positions", "Source", "waits.mod"]
-    {
+    for part in [
+        "Cycle by instruction",
+        "Electrical power",
+        "Joint positions",
+        "Source",
+        "waits.mod",
+        "6 waits of unknown length counted as 0 s",
+        ">waits.mod:14 MoveAbsJ<",
+    ] {
         assert!(html.contains(part), "{part}");
     }
     assert!(!html.contains("<script") && !html.contains("http"), "nothing is loaded");
@@ -109,6 +115,7 @@ fn movements_that_do_more_are_marked_and_waits_have_their_joules() {
         let wanted = match instruction.get(..5) {
             Some("Trigg") => Value::from("trigger"),
             Some("Searc") => Value::from("search"),
+            _ if instruction.ends_with("Sync") => Value::from("call"),
             _ if instruction.ends_with("DO") => Value::from("output"),
             _ => Value::Null,
         };

@@ -100,14 +100,19 @@ impl Executor<'_> {
         {
             return cell;
         }
+        self.seen_input = None;
         let mut value = self.eval(expr);
+        if let Datum::Signal(_) = value.datum {
+            self.seen_input = None;
+        }
+        let input = self.seen_input.clone();
         let alias = self.alias(expr, &value);
         // A signal is passed on as such.
         if !matches!(value.datum, Datum::Signal(_)) {
             value.type_key = param.type_name.key.as_str().into();
         }
         let reading = Origin::of(Dependence::Local(param.name.text.as_str().into()));
-        self.cells.push(Cell { value, reading, read_only: false, alias });
+        self.cells.push(Cell { value, reading, read_only: false, alias, input });
         self.cells.len() - 1
     }
 

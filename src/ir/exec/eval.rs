@@ -89,6 +89,7 @@ impl Executor<'_> {
         let key = name.to_lowercase();
         let stated = self.machine.stated_level(&key);
         let level = self.signals.get(&key).copied().or(stated);
+        self.seen_input = Some(name.clone());
         if let (None, Some(level)) = (self.signals.get(&key), stated) {
             self.assume(format!("{name} is {level} (stated by --assume)"));
         }
@@ -107,6 +108,9 @@ impl Executor<'_> {
             Some(cell) => {
                 let cell = &self.cells[cell];
                 let mut value = cell.value.clone();
+                if let Some(input) = &cell.input {
+                    self.seen_input = Some(input.clone());
+                }
                 // What a cell holds is described by how it is reached, not by its history.
                 value.origin = cell.reading.clone();
                 value
@@ -151,6 +155,7 @@ impl Executor<'_> {
             reading: Origin::default(),
             read_only: true,
             alias: None,
+            input: None,
         });
         let cell = self.cells.len() - 1;
         self.globals.insert(id, cell);
@@ -178,8 +183,13 @@ impl Executor<'_> {
             (DataKind::Var, _) => Origin::of(Dependence::Variable(name)),
             (DataKind::Pers, _) => Origin::of(Dependence::Persistent(name)),
         };
-        self.cells[cell] =
-            Cell { value, reading, read_only: data.kind == DataKind::Const, alias: None };
+        self.cells[cell] = Cell {
+            value,
+            reading,
+            read_only: data.kind == DataKind::Const,
+            alias: None,
+            input: None,
+        };
         cell
     }
 
@@ -267,6 +277,7 @@ impl Executor<'_> {
     /// `target := value`; what can't be written is left with a note.
     pub(super) fn assign(&mut self, target: &Expr, value: Value) {
         let value = self.level(value);
+        let input = self.seen_input.take();
         let mut path = Vec::new();
         let mut base = target;
         loop {
@@ -297,6 +308,7 @@ impl Executor<'_> {
                         );
                         true
                     };
+                    self.cells[cell].input = input;
                     if changed {
                         self.changes(Some(cell));
                     }

@@ -195,6 +195,7 @@ impl Executor<'_> {
         }
         match &stmt.kind {
             StmtKind::Assign { target, value } => {
+                self.seen_input = None;
                 let value = self.eval(value);
                 self.assign(target, value);
                 Flow::Next
@@ -244,7 +245,7 @@ impl Executor<'_> {
             _ => Origin::of(Dependence::Variable(data.name.text.as_str().into())),
         };
         let read_only = data.kind == super::super::hir::DataKind::Const;
-        self.cells.push(Cell { value, reading, read_only, alias: None });
+        self.cells.push(Cell { value, reading, read_only, alias: None, input: None });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((data.name.key.clone(), cell));
     }
@@ -254,12 +255,20 @@ impl Executor<'_> {
         let mut decided = None;
         for (condition, block) in branches {
             match self.condition(condition) {
+                Condition::Known(false) if self.seen_input.is_some() => {
+                    self.note_branch(condition, "FALSE", Some(block));
+                }
                 Condition::Known(false) => {}
                 Condition::Assumed(false) => {
                     self.note_branch(condition, "FALSE", Some(block));
                     decided = Some(Poll { condition: condition.clone(), value: false });
                 }
-                Condition::Known(true) => return decided_by(decided, self.block(block)),
+                Condition::Known(true) => {
+                    if self.seen_input.is_some() {
+                        self.note_branch(condition, "TRUE", otherwise);
+                    }
+                    return decided_by(decided, self.block(block));
+                }
                 Condition::Assumed(true) => {
                     self.note_branch(condition, "TRUE", otherwise);
                     decided = Some(Poll { condition: condition.clone(), value: true });
@@ -298,7 +307,8 @@ impl Executor<'_> {
     }
 
     fn how_to_state(&mut self, expr: &Expr) -> String {
-        let signal = self.first_signal(expr);
+        let seen = self.seen_input.clone();
+        let signal = self.first_signal(expr).or(seen);
         format!("--assume {}=LEVEL states another", signal.as_deref().unwrap_or("SIGNAL"))
     }
 
@@ -316,6 +326,7 @@ impl Executor<'_> {
     }
 
     fn read_condition(&mut self, expr: &Expr) -> Condition {
+        self.seen_input = None;
         let value = self.eval(expr);
         let value = self.level(value);
         let input = value.origin.iter().any(|d| matches!(d, Dependence::Input(_)));
@@ -359,6 +370,7 @@ impl Executor<'_> {
             reading: Origin::of(Dependence::Local(var.text.as_str().into())),
             read_only: true,
             alias: None,
+            input: None,
         });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((var.key.clone(), cell));
@@ -523,8 +535,10 @@ impl Executor<'_> {
         cases: &[(Vec<Expr>, Block)],
         default: Option<&Block>,
     ) -> Flow {
+        self.seen_input = None;
         let tested = self.eval(value);
         let tested = self.level(tested);
+        let input = self.seen_input.clone();
         if let Some(unknown) = tested.datum.first_unknown() {
             let reason = unknown.reason.clone();
             let taken = if default.is_some() { "DEFAULT is taken" } else { "no CASE is taken" };
@@ -542,7 +556,8 @@ impl Executor<'_> {
                     }
                 }
             }
-            if tested.origin.iter().any(|d| matches!(d, Dependence::Input(_))) {
+            if input.is_some() {
+                self.seen_input = input;
                 self.note_case(value, &tested.datum, taken, cases, default);
             }
             if let Some((_, block)) = taken.and_then(|i| cases.get(i)) {

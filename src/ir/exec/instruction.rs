@@ -209,6 +209,7 @@ impl Executor<'_> {
         let waited = self.wait(stmt, text, length, max_time);
         let timed_out = waited == Waited::TimedOut;
         if let Some(flag) = arguments.option_value("timeflag") {
+            self.seen_input = None;
             self.assign(flag, Value::constant(Datum::Bool(timed_out), "bool"));
             return if timed_out { Err(Flow::Next) } else { Ok(()) };
         }

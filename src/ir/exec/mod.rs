@@ -114,6 +114,8 @@ struct Cell {
     read_only: bool,
     /// A name, valid in every module, of data that the value was passed from.
     alias: Option<Arc<str>>,
+    /// An input from which the value was worked out.
+    input: Option<Arc<str>>,
 }
 
 /// An active routine.
@@ -175,6 +177,8 @@ struct Executor<'a> {
     watchers: usize,
     /// A condition whose next value is taken the other way.
     forced: Option<Span>,
+    /// The input that was read last, itself or through data worked out from it.
+    seen_input: Option<Arc<str>>,
     /// The error that a handler deals with: RAPID's `ERRNO`.
     errno: Option<Arc<str>>,
     execution: Execution,
@@ -199,6 +203,7 @@ impl<'a> Executor<'a> {
             polls: Vec::new(),
             watchers: 0,
             forced: None,
+            seen_input: None,
             errno: None,
             execution: Execution::default(),
         }
