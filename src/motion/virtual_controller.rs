@@ -63,7 +63,7 @@ pub fn simulate(
         pending_s: 0.0,
         ahead: 0.0,
         cut: false,
-        in_position: false,
+        assumed: Vec::new(),
         notes: Vec::new(),
         repeats_from: None,
         waited: BTreeMap::new(),
@@ -72,9 +72,7 @@ pub fn simulate(
     machine.flush();
     machine.tell_limit();
     let mut assumptions = execution.assumed;
-    assumptions.extend(machine.in_position.then(|| {
-        format!("at stop points with inpos the error of the servos dies away over {SERVO_S} s")
-    }));
+    assumptions.append(&mut machine.assumed);
     assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
@@ -113,8 +111,8 @@ struct VirtualController<'a> {
     ahead: f64,
     /// True once a run was cut off at the largest time.
     cut: bool,
-    /// True once a stop point waited for the servos.
-    in_position: bool,
+    /// What was assumed about the controller on the way.
+    assumed: Vec<String>,
     notes: Vec<Note>,
     repeats_from: Option<usize>,
     /// End of the last wait for each input.
@@ -495,7 +493,12 @@ impl VirtualController<'_> {
             Stop::Fine => 0.0,
             Stop::Time(time) => time,
             Stop::InPosition { share, least, most } => {
-                self.in_position = true;
+                let text = format!(
+                    "at stop points with inpos the error of the servos dies away over {SERVO_S} s"
+                );
+                if !self.assumed.contains(&text) {
+                    self.assumed.push(text);
+                }
                 // The error that `fine` allows is reached without a wait; it dies away from there.
                 let longer = if share > 0.0 { -SERVO_S * share.ln() } else { f64::INFINITY };
                 longer.max(0.0).clamp(least, most)

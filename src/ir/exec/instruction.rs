@@ -308,12 +308,11 @@ impl Executor<'_> {
             }),
         };
         let after = if key == "pulsedo" { Some(0.0) } else { level };
-        match after {
-            Some(level) => self.set_level(&signal, level),
-            None => {
-                self.signals.remove(&signal.to_lowercase());
-                self.changes(None);
-            }
+        if let Some(level) = after {
+            self.set_level(&signal, level);
+        } else {
+            self.signals.remove(&signal.to_lowercase());
+            self.changes(None);
         }
         self.machine.sets(Output {
             instruction: text.into(),
