@@ -1,25 +1,30 @@
 //! The virtual controller: executes a program and lays its movements on a time line.
 
+mod load;
+mod time_limit;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Isometry3;
+use rayon::prelude::*;
 
-use super::controller::{Planning, assumed, motion_limits};
-use super::planner::plan;
-use super::sampling::{Loaded, SpeedCap};
-use super::stream::Stream;
-use super::timed::TimedMotion;
+use load::{effective_load, gripped, gripping};
+
+use super::controller::assumed;
+use super::run_plan::{Planned, plan_run};
+use super::sampling::Loaded;
 use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord, What};
 use crate::dynamics::Load;
 use crate::ir::exec::{Machine, Note, Waited, execute};
 use crate::ir::instructions::MoveForm;
-use crate::ir::movement::{LoadData, Movement, Output, Stop, Target, Tool, Unresolved, Wait};
+use crate::ir::movement::{Movement, Output, Settings, Stop, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
 use crate::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
-use crate::path::{Leg, LegKind, build};
+use crate::path::{Leg, LegKind, arrival};
 use crate::robot::Model;
+use crate::text::Span;
 
 /// What a simulation needs besides the program and the robot.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +60,8 @@ pub fn simulate(
         options,
         q: options.start.unwrap_or([0.0; DOF]),
         certain: true,
+        settling: 0.0,
+        late: false,
         moved: false,
         tool: None,
         time: 0.0,
@@ -62,25 +69,28 @@ pub fn simulate(
         pending: Vec::new(),
         pending_s: 0.0,
         ahead: 0.0,
-        cut: false,
+        waited_last: Waited::Ended,
         assumed: Vec::new(),
+        drafts: Vec::new(),
         notes: Vec::new(),
         repeats_from: None,
         waited: BTreeMap::new(),
     };
     let execution = execute(program, entry, &mut machine);
     machine.flush();
-    machine.tell_limit();
+    machine.lay_out();
+    machine.tell_length();
     let mut assumptions = execution.assumed;
     assumptions.append(&mut machine.assumed);
     assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
     unresolved.sort_by_key(|note| note.span);
+    let count = machine.events.len();
     Simulation {
         events: machine.events,
         cycle_s: machine.time,
-        repeats_from: machine.repeats_from,
+        repeats_from: machine.repeats_from.filter(|first| *first < count),
         unresolved,
         assumed: assumptions,
     }
@@ -97,8 +107,12 @@ struct VirtualController<'a> {
     options: &'a Options,
     /// Where the robot stands, or will once the pending movements are done.
     q: Joints,
-    /// False after something that may have moved the robot elsewhere.
+    /// False after something that may have moved the robot elsewhere, as far as laid out.
     certain: bool,
+    /// How long the robot rests after the last run before it can move on, s.
+    settling: f64,
+    /// True once what is laid out lasts too long.
+    late: bool,
     moved: bool,
     /// Tool of the last movement.
     tool: Option<Tool>,
@@ -109,21 +123,65 @@ struct VirtualController<'a> {
     pending_s: f64,
     /// Time by which the logic is ahead of the motion (`\Conc`), s.
     ahead: f64,
-    /// True once a run was cut off at the largest time.
-    cut: bool,
+    /// How the wait that was laid out last ended.
+    waited_last: Waited,
     /// What was assumed about the controller on the way.
     assumed: Vec<String>,
+    /// What is not on the time line yet: each becomes one event.
+    drafts: Vec<Draft>,
     notes: Vec<Note>,
     repeats_from: Option<usize>,
     /// End of the last wait for each input.
     waited: BTreeMap<String, f64>,
 }
 
+/// A run to a stop that is not planned yet.
+struct RunDraft {
+    movements: Vec<Movement>,
+    legs: Vec<Leg>,
+    /// `\T` of the movements under the overrides, s.
+    times: Vec<Option<f64>>,
+    load: Load,
+    /// In force at its first movement.
+    settings: Arc<Settings>,
+}
+
+/// A wait at joints q (rad) that is not on the time line yet.
+struct WaitDraft {
+    wait: Wait,
+    q: Joints,
+    load: Load,
+}
+
+/// What becomes an event once the time is known.
+enum Draft {
+    Run(Box<RunDraft>),
+    Wait(Box<WaitDraft>),
+    Output(Output, usize),
+    Left(Unresolved),
+}
+
+impl RunDraft {
+    /// The first movements of it alone: the robot stops behind them.
+    fn truncate(&mut self, count: usize) {
+        self.movements.truncate(count);
+        self.legs.truncate(count);
+        self.times.truncate(count);
+    }
+
+    fn plan(&self, model: &Model) -> Planned {
+        let loaded = Loaded { model, load: &self.load };
+        plan_run(loaded, &self.legs, &self.movements, &self.times, &self.settings)
+    }
+}
+
+/// Drafts that are planned together: they share the processors, and an endless program does not
+/// run far beyond the time at which it is stopped.
+const BATCH: usize = 256;
+
 /// Time constant with which the error of the servos dies away at a stop point, s. Chosen: position
 /// loops of such robots close at some 20/s; no measurement of stop points with `inpos` is known.
 const SERVO_S: f64 = 0.05;
-/// Zones may shorten movements to this share.
-const SHORTEST: f64 = 0.5;
 
 /// Events of a simulation: more are not kept.
 const MAX_EVENTS: usize = 200_000;
@@ -135,8 +193,7 @@ impl Machine for VirtualController<'_> {
             Err(unresolved) => {
                 self.flush();
                 if unresolved.moves {
-                    self.certain = false;
-                    self.push(0.0, What::Left(unresolved));
+                    self.keep(Draft::Left(unresolved));
                 }
                 return;
             }
@@ -157,97 +214,63 @@ impl Machine for VirtualController<'_> {
                 self.pending.push(Pending { movement, leg });
                 if fine {
                     self.flush();
+                } else {
+                    self.flush_if_late();
                 }
             }
             Err(reason) => {
                 self.flush();
                 self.note(movement.span, &reason);
-                self.certain = false;
                 let left = Unresolved { span: movement.span, reason, moves: true };
-                self.push(0.0, What::Left(left));
+                self.keep(Draft::Left(left));
             }
         }
     }
 
     fn waits(&mut self, wait: Wait) -> Waited {
         self.flush();
-        // What the logic does while a movement with \Conc is under way takes no time of its own.
-        let begin = self.time - self.ahead;
-        let mut waited = Waited::Ended;
-        let known = wait.signal.as_ref().and_then(|signal| {
-            let key = signal.to_lowercase();
-            let delay = self.options.inputs.get(&key)?;
-            Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
-        });
-        let (length, basis) = match (wait.duration, known) {
-            (Some(duration), _) => (duration, WaitBasis::Stated),
-            (None, Some(at)) => {
-                let rest = (at - begin).max(0.0);
-                match wait.max_time {
-                    Some(most) if most < rest => {
-                        waited = Waited::TimedOut;
-                        (most, WaitBasis::Stated)
-                    }
-                    _ => (rest, WaitBasis::Input),
-                }
-            }
-            (None, None) => {
-                let what = match (&wait.signal, &wait.other) {
-                    (Some(signal), _) => format!(
-                        "{signal}, at a time that is not known: taken as 0 s \
-                         (--input {signal}=SECONDS states it)"
-                    ),
-                    (None, Some(other)) => format!("{other}: taken as 0 s"),
-                    (None, None) => {
-                        "a condition, at a time that is not known: taken as 0 s".to_owned()
-                    }
-                };
-                self.note(wait.span, &format!("waits for {what}"));
-                (0.0, WaitBasis::Unknown)
-            }
-        };
-        if let Some(signal) = wait.signal.as_ref().filter(|_| waited == Waited::Ended) {
-            self.waited.insert(signal.to_lowercase(), begin + length);
-        }
-        let duration = (length - self.ahead).max(0.0);
-        self.ahead = (self.ahead - length).max(0.0);
+        let may_time_out = wait.max_time.is_some() && self.comes_at(&wait).is_some();
         let load = self
             .tool
             .as_ref()
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
-        let record = WaitRecord { wait, basis, q: self.q, load, position_known: self.certain };
-        self.push(duration, What::Wait(Box::new(record)));
-        waited
+        self.keep(Draft::Wait(Box::new(WaitDraft { wait, q: self.q, load })));
+        if !may_time_out {
+            return Waited::Ended;
+        }
+        self.lay_out();
+        self.waited_last
     }
 
     fn sets(&mut self, output: Output) {
         // Fly-by movements go on while the logic runs; the place in the order is kept.
         let position = self.pending.len();
-        self.push(0.0, What::Output(output, position));
+        self.keep(Draft::Output(output, position));
     }
 
     fn joints(&mut self) -> Option<Joints> {
-        (self.pending.is_empty() && self.certain).then_some(self.q)
+        if !self.pending.is_empty() {
+            return None;
+        }
+        self.lay_out();
+        self.certain.then_some(self.q)
     }
 
     fn repeats(&mut self) {
         // What is pending becomes the next event, and its end belongs to the loop.
-        self.repeats_from.get_or_insert(self.events.len());
+        self.repeats_from.get_or_insert(self.events.len() + self.drafts.len());
     }
 
     fn leaves_loop(&mut self) {
         self.repeats_from = None;
     }
 
-    fn clock(&self) -> f64 {
-        self.time + self.pending_s
-    }
-
     fn has_come(&mut self, signal: &str) -> Option<bool> {
         let key = signal.to_lowercase();
-        let delay = self.options.inputs.get(&key)?;
+        let delay = *self.options.inputs.get(&key)?;
+        self.lay_out();
         let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
-        let come = self.clock() >= at;
+        let come = self.time + self.pending_s >= at;
         if come {
             self.waited.insert(key, at);
         }
@@ -263,65 +286,11 @@ impl Machine for VirtualController<'_> {
     }
 
     fn is_full(&self) -> bool {
-        self.events.len() + self.pending.len() > MAX_EVENTS || self.is_late()
+        self.events.len() + self.drafts.len() + self.pending.len() > MAX_EVENTS || self.late
     }
 }
 
 impl VirtualController<'_> {
-    fn max_time(&self) -> f64 {
-        self.options.max_time.unwrap_or(MAX_TIME)
-    }
-
-    /// Whether the cycle is longer than it may be, with the pending movements as short as they
-    /// can be.
-    fn is_late(&self) -> bool {
-        self.cut || self.time + SHORTEST * self.pending_s > self.max_time()
-    }
-
-    /// Time that a movement takes without acceleration, s.
-    fn time_at_speed(&self, leg: &Leg, movement: &Movement) -> f64 {
-        if let Some(time) = self.timed(movement) {
-            return time;
-        }
-        let before = leg.tool.pose(&fk(self.model, &leg.start));
-        let way = match leg.kind {
-            LegKind::Joint => 0.0,
-            _ => (leg.target.translation.vector - before.translation.vector).norm(),
-        };
-        let joints = self.model.limits.velocity.iter().flatten();
-        let turns = leg.start.iter().zip(&leg.end).zip(joints);
-        let slowest = turns.map(|((a, b), speed)| (b - a).abs() / speed).fold(0.0, f64::max);
-        slowest.max(way / leg.speed.tcp)
-    }
-
-    /// Tells at which instruction the simulation ended, if it was not the program's end.
-    fn tell_limit(&mut self) {
-        let reason = if self.cut || self.time > self.max_time() {
-            format!(
-                "the cycle lasts longer than {} s (--max-time): it is shown up to the end of this \
-                 instruction, at {:.3} s",
-                self.max_time(),
-                self.time
-            )
-        } else if self.events.len() > MAX_EVENTS {
-            format!(
-                "more than {MAX_EVENTS} movements, waits and outputs, as if the program did not \
-                 end: the cycle is shown up to here"
-            )
-        } else {
-            return;
-        };
-        let span = self.events.iter().rev().find_map(|event| match &event.what {
-            What::Run(run) => run.moves.last().map(|record| record.movement.span),
-            What::Wait(record) => Some(record.wait.span),
-            What::Output(output, _) => Some(output.span),
-            What::Left(left) => Some(left.span),
-        });
-        if let Some(span) = span {
-            self.note(span, &reason);
-        }
-    }
-
     /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
     fn speed_override(&self, movement: &Movement) -> f64 {
         let settings = &movement.settings;
@@ -333,7 +302,7 @@ impl VirtualController<'_> {
         movement.time.map(|t| t / self.speed_override(movement))
     }
 
-    fn note(&mut self, span: crate::text::Span, reason: &str) {
+    fn note(&mut self, span: Span, reason: &str) {
         let note = Note { span, reason: reason.to_owned() };
         if !self.notes.contains(&note) {
             self.notes.push(note);
@@ -366,6 +335,7 @@ impl VirtualController<'_> {
         let near = |pose: &Isometry3<f64>| {
             ik_near(self.model, pose, &self.q).map_err(|error| error.to_string())
         };
+        let mut stated_end = true;
         let (kind, end, target) = match &movement.target {
             Target::Joints(q) => {
                 limits_ok(self.model, q).map_err(|error| error.to_string())?;
@@ -392,6 +362,7 @@ impl VirtualController<'_> {
                     (MoveForm::Linear, _) => LegKind::Line,
                     _ => LegKind::Joint,
                 };
+                stated_end = stated || !linear;
                 (kind, end, pose)
             }
         };
@@ -399,67 +370,96 @@ impl VirtualController<'_> {
         let factor = self.speed_override(movement);
         speed.tcp = (speed.tcp * factor).min(movement.settings.speed_max);
         speed.orientation *= factor;
-        Ok(Leg { kind, start: self.q, end, tool, target, speed, zone: movement.zone })
+        let axiswise = movement.settings.axiswise_wrist();
+        let zone = movement.zone;
+        let mut leg = Leg { kind, start: self.q, end, tool, target, axiswise, speed, zone };
+        if !stated_end && !axiswise {
+            // The configuration in which the line arrives.
+            leg.end = arrival(self.model, &leg).unwrap_or(end);
+        }
+        Ok(leg)
     }
 
-    /// Plans the pending movements as one run to a stop.
+    /// Keeps the pending movements as one run to a stop.
     fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
         self.pending_s = 0.0;
         let Some(first) = pending.first() else { return };
-        let start = first.leg.start;
         let settings = first.movement.settings.clone();
-        let planning = Planning::new(self.model, &settings);
         let load = effective_load(&first.movement);
-        let mut legs: Vec<Leg> = pending.iter().map(|p| p.leg.clone()).collect();
-        let mut movements: Vec<Movement> = pending.into_iter().map(|p| p.movement).collect();
-        let loaded = Loaded { model: self.model, load: &load };
+        let times = pending.iter().map(|p| self.timed(&p.movement)).collect();
+        let (movements, legs) = pending.into_iter().map(|p| (p.movement, p.leg)).unzip();
+        self.keep(Draft::Run(Box::new(RunDraft { movements, legs, times, load, settings })));
+    }
 
-        let mut planned = self.plan_pending(loaded, &legs, &movements, &planning);
-        let left = self.max_time() - self.time;
-        let ends = planned.1.iter().scan(0.0, |t, duration| {
-            *t += duration;
-            Some(*t)
-        });
-        if let Some(kept) = ends.clone().position(|t| t > left).map(|late| late + 1)
-            && kept < legs.len()
-        {
-            // The robot stops at the end of the movement during which the time is over.
-            legs.truncate(kept);
-            movements.truncate(kept);
-            planned = self.plan_pending(loaded, &legs, &movements, &planning);
-            self.cut = true;
+    fn keep(&mut self, draft: Draft) {
+        self.drafts.push(draft);
+        if self.drafts.len() >= BATCH {
+            self.lay_out();
         }
-        let (motions, mut durations, problem) = planned;
-        let end = legs.last().map_or(start, |leg| leg.end);
-        self.q = if self.cut { end } else { self.q };
+    }
+
+    /// Plans what is kept, runs side by side, and lays it on the time line.
+    fn lay_out(&mut self) {
+        let model = self.model;
+        let drafts = std::mem::take(&mut self.drafts);
+        let plans: Vec<Option<Planned>> = drafts
+            .par_iter()
+            .map(|draft| match draft {
+                Draft::Run(run) => Some(run.plan(model)),
+                _ => None,
+            })
+            .collect();
+        for (draft, plan) in drafts.into_iter().zip(plans) {
+            if self.late {
+                break;
+            }
+            match (draft, plan) {
+                (Draft::Run(run), Some(plan)) => self.lay_run(*run, plan),
+                (Draft::Wait(wait), _) => self.lay_wait(*wait),
+                (Draft::Output(output, position), _) => {
+                    self.push(0.0, What::Output(output, position));
+                }
+                (Draft::Left(left), _) => {
+                    self.certain = false;
+                    self.push(0.0, What::Left(left));
+                }
+                (Draft::Run(_), None) => unreachable!("every run is planned"),
+            }
+            self.late = self.late || self.time > self.max_time();
+        }
+    }
+
+    fn lay_run(&mut self, run: RunDraft, plan: Planned) {
+        let (run, plan) = self.in_time(run, plan);
+        let RunDraft { movements, legs, load, .. } = run;
+        let Planned { motions, mut pieces, problem, settling_s } = plan;
         let stands = movements.last().map_or(0.0, |movement| self.stands(movement));
-        if let Some(duration) = durations.last_mut() {
+        if let Some((duration, _)) = pieces.last_mut() {
             *duration += stands;
         }
         // The logic goes on when a movement with \Conc begins.
-        let under_way = movements.iter().zip(&durations).rev();
+        let under_way = movements.iter().zip(&pieces).rev();
         let under_way = under_way.take_while(|(movement, _)| movement.concurrent);
-        let ahead: f64 = under_way.map(|(_, duration)| duration).sum();
+        let ahead: f64 = under_way.map(|(_, (duration, _))| duration).sum();
         let all = movements.iter().all(|movement| movement.concurrent);
         self.ahead = if all { self.ahead + ahead } else { ahead };
         if let Some((leg, reason)) = &problem {
             self.note(movements[*leg].span, reason);
         }
-        let moved = durations.iter().sum::<f64>() > 0.0;
         let mut records = Vec::with_capacity(movements.len());
         let mut t = 0.0;
-        for (movement, duration) in movements.into_iter().zip(durations) {
-            records.push(MoveRecord { movement, t_start: t, duration });
+        for (movement, (duration, pace)) in movements.into_iter().zip(pieces) {
+            records.push(MoveRecord { movement, t_start: t, duration, pace });
             t += duration;
         }
         let run = Run {
             moves: records,
+            load,
+            start: legs[0].start,
+            end: legs[legs.len() - 1].end,
             legs,
             motions,
-            load,
-            start,
-            end,
             settling: stands,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
@@ -467,24 +467,31 @@ impl VirtualController<'_> {
         // An output between fly-by movements was noted when the run was not planned yet: it
         // keeps its place in the order before the run's event.
         self.certain = run.problem.is_none();
-        if moved {
-            self.settle(planning.settling_s);
+        if t > 0.0 {
+            self.settle();
         }
+        self.settling = settling_s;
         self.push(t, What::Run(Box::new(run)));
     }
 
-    fn plan_pending(
-        &self,
-        loaded: Loaded<'_>,
-        legs: &[Leg],
-        movements: &[Movement],
-        planning: &Planning,
-    ) -> Planned {
-        let start = legs.first().map_or(self.q, |leg| leg.start);
-        match self.as_stream(&start, legs, movements) {
-            Some(stream) => self.realise(stream, movements),
-            None => self.plan_run(loaded, legs, movements, planning),
-        }
+    /// Between two movements the robot rests at the stop point. A wait takes that time too.
+    fn settle(&mut self) {
+        let settling = self.settling;
+        let Some(Event { duration, what: What::Run(before), .. }) = self.events.last_mut() else {
+            return;
+        };
+        let Some(last) = before.moves.last_mut().filter(|_| *duration > 0.0) else { return };
+        before.settling += settling;
+        last.duration += settling;
+        *duration += settling;
+        self.time += settling;
+    }
+
+    /// When what a wait waits for comes, s from the start, if the user states it.
+    fn comes_at(&self, wait: &Wait) -> Option<f64> {
+        let key = wait.signal.as_ref()?.to_lowercase();
+        let delay = self.options.inputs.get(&key)?;
+        Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
     }
 
     /// Time that the robot stands at a stop point besides settling, s.
@@ -506,184 +513,43 @@ impl VirtualController<'_> {
         }
     }
 
-    /// Between two movements the robot rests at the stop point. A wait takes that time too.
-    fn settle(&mut self, settling: f64) {
-        let Some(Event { duration, what: What::Run(before), .. }) = self.events.last_mut() else {
-            return;
-        };
-        let Some(last) = before.moves.last_mut().filter(|_| *duration > 0.0) else { return };
-        before.settling += settling;
-        last.duration += settling;
-        *duration += settling;
-        self.time += settling;
-    }
-
-    /// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
-    fn as_stream(&self, start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
-        let mut intervals = Vec::with_capacity(legs.len());
-        for movement in movements {
-            if movement.form != MoveForm::AbsJ {
-                return None;
-            }
-            intervals.push(self.timed(movement)?);
-        }
-        // Distances between neighbouring points; the robot's own place does not count for zones
-        // of the points after it.
-        for pair in legs.windows(2) {
-            let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
-            if pair[0].zone.tcp < 0.5 * apart.norm() {
-                return None;
-            }
-        }
-        let points = legs.iter().map(|leg| leg.end).collect();
-        Stream::new(*start, points, intervals).ok()
-    }
-
-    fn realise(&self, stream: Stream, movements: &[Movement]) -> Planned {
-        // What the controller can't reach in time it does later.
-        let scale = self.lateness(&stream);
-        let stream = if scale > 1.0 {
-            let intervals = stream.intervals().iter().map(|t| t * scale).collect();
-            Stream::new(*stream.start(), stream.points().to_vec(), intervals).unwrap_or(stream)
-        } else {
-            stream
-        };
-        // A point's share of the time: up to the middle of the corner at it.
-        let times = stream.knots().times();
-        let mut durations = Vec::with_capacity(movements.len());
-        for i in 0..movements.len() {
-            let end = if i + 1 == movements.len() {
-                stream.duration()
-            } else {
-                0.5 * (times[i + 1] + times[i + 2])
-            };
-            let begin = if i == 0 { 0.0 } else { 0.5 * (times[i] + times[i + 1]) };
-            durations.push(end - begin);
-        }
-        (vec![(0.0, TimedMotion::Stream(stream))], durations, None)
-    }
-
-    /// How much slower than asked a stream runs, for the robot's speeds and accelerations.
-    fn lateness(&self, stream: &Stream) -> f64 {
-        let limits = &self.model.limits;
-        let worst = |values: &Joints, limit: &Option<Vec<f64>>| {
-            limit.as_ref().map_or(0.0, |limit| {
-                values.iter().zip(limit).map(|(x, l)| x / l).fold(0.0, f64::max)
-            })
-        };
-        let speed = worst(&stream.max_velocity(), &limits.velocity);
-        let acceleration = worst(&stream.max_acceleration(), &limits.acceleration).sqrt();
-        let scale = speed.max(acceleration);
-        if scale > 1.0 + LATENESS_ROUNDING { scale } else { 1.0 }
-    }
-
-    fn plan_run(
-        &self,
-        loaded: Loaded<'_>,
-        legs: &[Leg],
-        movements: &[Movement],
-        planning: &Planning,
-    ) -> Planned {
-        let caps: Vec<SpeedCap> =
-            legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
-        let limits = motion_limits(self.model, 1.0);
-        let (paths, problem) = match build(self.model, legs) {
-            Ok(paths) => (paths, None),
-            Err(error) => {
-                // For the time alone: the same points joint by joint.
-                let joint: Vec<Leg> =
-                    legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
-                let problem = Some((error.leg(), error.to_string()));
-                (build(self.model, &joint).unwrap_or_default(), problem)
-            }
-        };
-        let mut motions = Vec::new();
-        let mut durations = vec![0.0; legs.len()];
-        let mut t = 0.0;
-        for path in paths {
-            let path = Arc::new(path);
-            let indices = path.legs();
-            let times: Option<f64> = indices.clone().map(|i| self.timed(&movements[i])).sum();
-            match plan(loaded, &path, &caps, &limits, planning, times) {
-                Ok(motion) => {
-                    // Where there is no room for a zone the robot stops as at a stop point.
-                    if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty())
-                    {
-                        durations[last] += planning.settling_s;
-                        t += planning.settling_s;
+    fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
+        // What the logic does while a movement with \Conc is under way takes no time of its own.
+        let begin = self.time - self.ahead;
+        self.waited_last = Waited::Ended;
+        let (length, basis) = match (wait.duration, self.comes_at(&wait)) {
+            (Some(duration), _) => (duration, WaitBasis::Stated),
+            (None, Some(at)) => {
+                let rest = (at - begin).max(0.0);
+                match wait.max_time {
+                    Some(most) if most < rest => {
+                        self.waited_last = Waited::TimedOut;
+                        (most, WaitBasis::Stated)
                     }
-                    let mut before = 0.0;
-                    for leg in indices {
-                        let at = motion.time_at(path.leg_end(leg));
-                        durations[leg] += at - before;
-                        before = at;
-                    }
-                    let duration = motion.duration();
-                    motions.push((t, motion));
-                    t += duration;
-                }
-                Err(error) => {
-                    return (motions, durations, Some((indices.start, error.to_string())));
+                    _ => (rest, WaitBasis::Input),
                 }
             }
+            (None, None) => {
+                let what = match (&wait.signal, &wait.other) {
+                    (Some(signal), _) => format!(
+                        "{signal}, at a time that is not known: taken as 0 s \
+                         (--input {signal}=SECONDS states it)"
+                    ),
+                    (None, Some(other)) => format!("{other}: taken as 0 s"),
+                    (None, None) => {
+                        "a condition, at a time that is not known: taken as 0 s".to_owned()
+                    }
+                };
+                self.note(wait.span, &format!("waits for {what}"));
+                (0.0, WaitBasis::Unknown)
+            }
+        };
+        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == Waited::Ended) {
+            self.waited.insert(signal.to_lowercase(), begin + length);
         }
-        (motions, durations, problem)
-    }
-}
-
-/// Excess over a limit that is rounding of emitted figures and no reason to be late.
-const LATENESS_ROUNDING: f64 = 1e-3;
-
-/// Motions with their start in the run, duration of each move, and what went wrong at which leg.
-type Planned = (Vec<(f64, TimedMotion)>, Vec<f64>, Option<(usize, String)>);
-
-/// The programmed speed of a movement as a cap; a timed one has none but its time.
-fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
-    let settings = &movement.settings;
-    let limits = SpeedCap {
-        acceleration: settings.acceleration,
-        path_acceleration: settings.path_acceleration,
-        world_acceleration: settings.world_acceleration,
-        ..SpeedCap::NONE
-    };
-    match movement.time {
-        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation, ..limits },
-        Some(_) => limits,
-    }
-}
-
-/// Tool and payload at the flange.
-pub fn effective_load(movement: &Movement) -> Load {
-    if let Some(total) = &movement.total_load {
-        return load(total, &Isometry3::identity());
-    }
-    gripped(&gripping(movement), movement.settings.grip_load.as_ref())
-}
-
-/// The tool with the frame in which `GripLoad` states a load: that of the tool, or of the work
-/// object where the robot holds that.
-fn gripping(movement: &Movement) -> Tool {
-    let tool = movement.tool.clone();
-    if tool.robhold { tool } else { Tool { frame: movement.wobj.frame, ..tool } }
-}
-
-/// A tool with what `GripLoad` says that it holds.
-fn gripped(tool: &Tool, grip: Option<&LoadData>) -> Load {
-    let alone = load(&tool.load, &Isometry3::identity());
-    match grip {
-        Some(grip) => alone.with(&load(grip, &tool.frame)),
-        None => alone,
-    }
-}
-
-fn load(data: &LoadData, frame: &Isometry3<f64>) -> Load {
-    let [w, x, y, z] = data.axes;
-    let axes = frame.rotation * UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
-    let axes = axes.to_rotation_matrix();
-    let principal = Matrix3::from_diagonal(&Vector3::from(data.inertia));
-    Load {
-        mass: data.mass,
-        com: frame * nalgebra::Point3::from(Vector3::from(data.com)) - nalgebra::Point3::origin(),
-        inertia: axes * principal * axes.transpose(),
+        let duration = (length - self.ahead).max(0.0);
+        self.ahead = (self.ahead - length).max(0.0);
+        let record = WaitRecord { wait, basis, q, load, position_known: self.certain };
+        self.push(duration, What::Wait(Box::new(record)));
     }
 }

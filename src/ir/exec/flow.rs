@@ -6,7 +6,7 @@ use super::super::hir::{Block, Data, Expr, ExprKind, Ident, Stmt, StmtKind};
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::eval::equal;
 use super::polling::{Mark, Pass, Poll};
-use super::{Cell, Executor, MAX_PASSES, MAX_STATEMENTS};
+use super::{Cell, Executor, MAX_STATEMENTS};
 use crate::text::Span;
 
 /// The note on a loop without an end.
@@ -45,7 +45,7 @@ const RETRIES: u32 = 4;
 const ANY_ERROR: &str = "long_jmp_all_err";
 
 /// A condition, as far as it is known.
-enum Condition {
+pub(super) enum Condition {
     Known(bool),
     /// It depends on inputs at assumed levels.
     Assumed(bool),
@@ -111,7 +111,7 @@ impl Executor<'_> {
         marks.push((label, self.mark()));
     }
 
-    fn unwatch(&mut self) {
+    pub(super) fn unwatch(&mut self) {
         self.watchers -= 1;
         if self.watchers == 0 {
             self.polls.clear();
@@ -180,7 +180,7 @@ impl Executor<'_> {
     }
 
     /// Counts a statement or a pass; true if no more may run.
-    fn is_over(&mut self, at: Span) -> bool {
+    pub(super) fn is_over(&mut self, at: Span) -> bool {
         self.statements += 1;
         if self.statements > MAX_STATEMENTS {
             self.unresolved(at, "the program does not end: the cycle is shown up to here");
@@ -312,7 +312,7 @@ impl Executor<'_> {
         format!("--assume {}=LEVEL states another", signal.as_deref().unwrap_or("SIGNAL"))
     }
 
-    fn condition(&mut self, expr: &Expr) -> Condition {
+    pub(super) fn condition(&mut self, expr: &Expr) -> Condition {
         let condition = self.read_condition(expr);
         let Condition::Assumed(value) = condition else { return condition };
         if self.forced == Some(expr.span) {
@@ -340,193 +340,6 @@ impl Executor<'_> {
                 None => String::new(),
             }),
         }
-    }
-
-    fn for_statement(
-        &mut self,
-        stmt: &Stmt,
-        var: &Ident,
-        (from, to, step): (&Expr, &Expr, Option<&Expr>),
-        body: &Block,
-    ) -> Flow {
-        let from = self.eval(from).datum.num();
-        let to = self.eval(to).datum.num();
-        let step = match step {
-            Some(expr) => self.eval(expr).datum.num(),
-            None => None,
-        };
-        let (Some(from), Some(to)) = (from, to) else {
-            self.unresolved(stmt.span, "the bounds of the loop are not known: it was passed over");
-            return Flow::Next;
-        };
-        // Without STEP the loop counts towards its end.
-        let step = step.unwrap_or(if to >= from { 1.0 } else { -1.0 });
-        if step == 0.0 || !step.is_finite() {
-            self.unresolved(stmt.span, "STEP 0: the loop was passed over");
-            return Flow::Next;
-        }
-        self.cells.push(Cell {
-            value: Value::constant(Datum::Num(from), "num"),
-            reading: Origin::of(Dependence::Local(var.text.as_str().into())),
-            read_only: true,
-            alias: None,
-            input: None,
-        });
-        let cell = self.cells.len() - 1;
-        self.frame_mut().names.push((var.key.clone(), cell));
-        let depth = self.frame().names.len();
-        let mut watched = self.watch(body);
-        let mut flow = Flow::Next;
-        let mut pass = 0.0;
-        loop {
-            let x = from + pass * step;
-            if (step > 0.0 && x > to) || (step < 0.0 && x < to) {
-                break;
-            }
-            if pass >= f64::from(MAX_PASSES) || self.is_over(stmt.span) {
-                if pass >= f64::from(MAX_PASSES) {
-                    self.unresolved(stmt.span, "the loop has too many passes; it was left here");
-                }
-                flow = if self.machine.is_full() { Flow::Exit } else { Flow::Next };
-                break;
-            }
-            self.cells[cell].value = Value::constant(Datum::Num(x), "num");
-            flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
-            if !matches!(flow, Flow::Next) {
-                break;
-            }
-            if let Some(mark) = &mut watched {
-                let left = ((to - x) / step).floor().max(0.0);
-                if matches!(self.pass(mark, "FOR", None, Some(left)), Pass::TimedOut) {
-                    break;
-                }
-            }
-            pass += 1.0;
-        }
-        if watched.is_some() {
-            self.unwatch();
-        }
-        self.frame_mut().names.truncate(depth - 1);
-        flow
-    }
-
-    /// A mark for a loop that its body may leave: only such a loop can end with an input.
-    fn watch(&mut self, body: &Block) -> Option<Mark> {
-        if never_leaves(body) {
-            return None;
-        }
-        self.watchers += 1;
-        Some(self.mark())
-    }
-
-    /// The body of `WHILE TRUE`, which only the body itself can leave.
-    fn endless(&mut self, stmt: &Stmt, body: &Block) -> Flow {
-        let passes = self.machine.passes().max(1);
-        self.machine.repeats();
-        let mut watched = self.watch(body);
-        let mut flow = Flow::Next;
-        let mut pass = 0;
-        while pass < passes {
-            if self.is_over(stmt.span) {
-                flow = Flow::Exit;
-                break;
-            }
-            let depth = self.frame().names.len();
-            flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
-            if !matches!(flow, Flow::Next) {
-                break;
-            }
-            // The pass after a wait for an input still is the one that waited.
-            let again =
-                watched.as_mut().is_some_and(|mark| matches!(self.pass_at_rest(mark), Pass::Came));
-            pass += u32::from(!again);
-        }
-        if watched.is_some() {
-            self.unwatch();
-        }
-        match flow {
-            Flow::Next => {
-                let plural = if passes == 1 { "pass" } else { "passes" };
-                let passes = if passes == 1 { "one".to_owned() } else { passes.to_string() };
-                let text = format!("an endless loop: simulated for {passes} {plural}");
-                self.unresolved(stmt.span, text);
-                // What stands behind the loop never runs.
-                Flow::Exit
-            }
-            Flow::Exit => Flow::Exit,
-            other => {
-                self.machine.leaves_loop();
-                other
-            }
-        }
-    }
-
-    /// As [`Executor::pass`], for a loop that is no wait as long as it moves.
-    fn pass_at_rest(&mut self, mark: &mut Mark) -> Pass {
-        if mark.has_moved(self) {
-            *mark = self.mark();
-            return Pass::Ordinary;
-        }
-        self.pass(mark, "WHILE", None, None)
-    }
-
-    fn while_statement(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
-        self.watchers += 1;
-        let flow = self.passes_of_while(stmt, condition, body);
-        self.unwatch();
-        flow
-    }
-
-    fn passes_of_while(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
-        let mut mark = self.mark();
-        for pass in 0..MAX_PASSES {
-            if self.is_over(stmt.span) {
-                return Flow::Exit;
-            }
-            let mut decided = None;
-            match self.condition(condition) {
-                Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
-                Condition::Known(true) if is_always_true(condition) => {
-                    return self.endless(stmt, body);
-                }
-                Condition::Known(true) => {}
-                Condition::Assumed(true) if self.may_move(body) => {
-                    decided = Some(Poll { condition: condition.clone(), value: true });
-                }
-                Condition::Assumed(true) => {
-                    // A loop that polls an input is a wait for it.
-                    self.wait_for("WHILE", condition, None);
-                    self.flip(&Poll { condition: condition.clone(), value: true });
-                    self.forced = None;
-                    return Flow::Next;
-                }
-                Condition::Unknown(why) => {
-                    self.unresolved(
-                        condition.span,
-                        format!("the condition of the loop is not known{why}: passed over"),
-                    );
-                    return Flow::Next;
-                }
-            }
-            let depth = self.frame().names.len();
-            let flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
-            if !matches!(flow, Flow::Next) {
-                return flow;
-            }
-            if decided.is_some()
-                && !matches!(self.pass(&mut mark, "WHILE", decided, None), Pass::Waiting)
-            {
-                self.forced = None;
-                return Flow::Next;
-            }
-            if pass + 1 == MAX_PASSES {
-                self.unresolved(stmt.span, "the loop does not end; it was left here");
-            }
-        }
-        Flow::Next
     }
 
     fn test_statement(
@@ -628,7 +441,7 @@ fn is_endless(stmt: &Stmt, body: &[Stmt]) -> bool {
 }
 
 /// Whether nothing in these statements can jump out of them.
-fn never_leaves(block: &[Stmt]) -> bool {
+pub(super) fn never_leaves(block: &[Stmt]) -> bool {
     block.iter().all(|stmt| match &stmt.kind {
         StmtKind::Goto(_)
         | StmtKind::Return(_)
@@ -646,10 +459,6 @@ fn calls(block: &[Stmt]) -> usize {
         kind => kind.blocks().into_iter().map(|inner| calls(inner)).sum(),
     };
     block.iter().map(of).sum()
-}
-
-fn is_always_true(condition: &Expr) -> bool {
-    matches!(condition.kind, ExprKind::Bool(true) | ExprKind::Num(_))
 }
 
 /// A number as RAPID text that reads back as the same number.

@@ -277,7 +277,10 @@ impl Executor<'_> {
     ) -> Waited {
         let routine = self.frame().routine.clone();
         let (duration, signal, other) = match length {
-            Length::Stated(duration) => (Some(duration), None, None),
+            Length::Stated(duration) => {
+                self.waited_s += duration;
+                (Some(duration), None, None)
+            }
             Length::Until(signal) => (None, signal, None),
             Length::Unknown(what) => (None, None, Some(what)),
         };

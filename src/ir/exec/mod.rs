@@ -14,6 +14,7 @@ mod external;
 mod flow;
 mod functions;
 mod instruction;
+mod loops;
 mod motion;
 mod polling;
 
@@ -39,10 +40,6 @@ pub trait Machine {
     fn repeats(&mut self) {}
     /// The loop that seemed endless was left.
     fn leaves_loop(&mut self) {}
-    /// Time since the start, s, as far as it is known.
-    fn clock(&self) -> f64 {
-        0.0
-    }
     /// Whether an input has come, if it is known when it does. Once it has, its time counts
     /// again from here.
     fn has_come(&mut self, _signal: &str) -> Option<bool> {
@@ -171,6 +168,8 @@ struct Executor<'a> {
     changed_outside: u64,
     /// Number of movements.
     moves: u64,
+    /// Length of the waits whose length the program states, s.
+    waited_s: f64,
     /// The conditions on inputs of the loops that are watched.
     polls: Vec<polling::Poll>,
     /// Number of loops that are watched for what they ask.
@@ -200,6 +199,7 @@ impl<'a> Executor<'a> {
             stamp: 0,
             changed_outside: 0,
             moves: 0,
+            waited_s: 0.0,
             polls: Vec::new(),
             watchers: 0,
             forced: None,

@@ -29,7 +29,7 @@ pub(super) struct Mark {
     polls: usize,
     stamp: u64,
     moves: u64,
-    clock: f64,
+    waited_s: f64,
     passes: u32,
     waits: u32,
 }
@@ -62,7 +62,7 @@ impl Executor<'_> {
             polls: self.polls.len(),
             stamp: self.stamp,
             moves: self.moves,
-            clock: self.machine.clock(),
+            waited_s: self.waited_s,
             passes: 0,
             waits: 0,
         }
@@ -80,7 +80,7 @@ impl Executor<'_> {
         let polls = self.polls.split_off(mark.polls.min(self.polls.len()));
         let moved = self.moves != mark.moves;
         let changed = self.changed_outside.max(self.frame().changed) > mark.stamp;
-        let took = self.machine.clock() - mark.clock;
+        let took = self.waited_s - mark.waited_s;
         *mark = Mark { passes: mark.passes + 1, waits: mark.waits, ..self.mark() };
         let counts = changed && mark.passes < MAX_COUNTED && decided.is_none();
         let mut asked: Vec<Poll> = decided.into_iter().collect();
