@@ -2,6 +2,7 @@
 
 pub mod html;
 pub mod json;
+mod mark;
 pub mod place;
 pub mod standstill;
 pub mod svg;
