@@ -8,6 +8,8 @@ pub mod diagnostics;
 pub mod dynamics;
 pub mod emit;
 pub mod energy;
+pub mod excite;
+pub mod identify;
 pub mod ir;
 pub mod kinematics;
 pub mod log;

@@ -1,12 +1,18 @@
 //! Measured logs: what a robot did, as columns of numbers. Knows no robot.
 
+mod bandwidth;
 mod channel;
 mod csv;
 mod error;
+mod low_pass;
+mod uniform;
 
+pub use bandwidth::bandwidth;
 pub use channel::Channel;
 pub use csv::read_csv;
 pub use error::LogError;
+pub use low_pass::LowPass;
+pub use uniform::{Section, median_step, sections};
 
 use channel::Family;
 
