@@ -21,4 +21,15 @@ pub enum IdentifyError {
         /// Columns.
         unknowns: usize,
     },
+    /// What is not free is not known.
+    #[error(
+        "{name} has no dynamics to start from: give its links, [[link]], in a robot file, or identify all with --free all"
+    )]
+    NoDynamics {
+        /// The robot.
+        name: String,
+    },
+    /// No body fits.
+    #[error("no physically consistent model was found: the links of the robot file are no bodies, leave them out")]
+    Inconsistent,
 }

@@ -93,13 +93,10 @@ pub fn fit(
     })
 }
 
-impl Fit {
-    /// Root mean square of each joint's residuals on other samples \[Nm\].
-    #[must_use]
-    pub fn validate(&self, equations: &Equations<'_>, samples: &Samples) -> Vec<f64> {
-        let factors = Factors::of(equations, samples, 1);
-        root_mean(&factors.residual_squares(&self.solution.beta, None), &factors.rows_without(None))
-    }
+/// Root mean square of each joint's residuals in a fit without anything else \[Nm\].
+pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
+    let (solution, _) = reweighted(factors, Weighting::Joint, None, unknowns);
+    root_mean(&factors.residual_squares(&solution.beta, None), &factors.rows_without(None))
 }
 
 /// Root mean squares.

@@ -1,6 +1,12 @@
 //! From measured logs to a robot's dynamic model, with standard errors.
+//!
+//! [`prepare`] makes instants of a log, [`Equations`] the rows of the equations of motion,
+//! [`fit`] the base parameters, [`identify`] a model that can be.
+
+mod consistent;
 mod equations;
 mod error;
+mod essential;
 mod factors;
 mod fit;
 mod least_squares;
@@ -8,9 +14,15 @@ mod noise;
 mod prepare;
 mod samples;
 mod triangle;
+mod work;
+mod wrist;
 
-pub use equations::{Equations, Layout};
+pub use equations::{Equations, Instant, Known, Layout};
 pub use error::IdentifyError;
+pub use essential::{Collinear, collinear, essential};
+pub use factors::Factors;
 pub use fit::{Fit, Weighting, fit};
+pub use least_squares::{Condition, Solution};
 pub use prepare::prepare;
 pub use samples::{Block, Samples, Source};
+pub use work::{Free, Identified, Misses, Settings, identify};

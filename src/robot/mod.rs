@@ -28,6 +28,7 @@ mod toml_text;
 mod tree;
 mod urdf;
 mod wrist;
+mod write;
 
 pub use catalogue::{find, names};
 pub use controller::Controller;
@@ -47,6 +48,7 @@ pub use provenance::{Origin, Provenance};
 pub use readiness::lacking;
 pub use urdf::import_urdf;
 pub use wrist::Wrist;
+pub use write::to_toml;
 
 /// The largest number of joints a model may have.
 pub const MAX_DOF: usize = 7;
