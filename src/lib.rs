@@ -10,6 +10,7 @@ pub mod emit;
 pub mod energy;
 pub mod excite;
 pub mod identify;
+pub mod generate;
 pub mod ir;
 pub mod kinematics;
 pub mod log;

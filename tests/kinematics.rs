@@ -6,9 +6,9 @@
 use insta::assert_snapshot;
 use joulepath::kinematics::{
     Conf, IkError, conf_of, fk, ik_all, ik_conf, ik_near, jacobian, jacobian_dot, limits_ok,
-    singularity,
+    radical_inverse, singularity,
 };
-use joulepath::robot::{Model, find, from_toml};
+use joulepath::robot::{Coupling, Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -180,6 +180,60 @@ fn singular_poses_have_finite_solutions() {
             let pose = fk(&model, &deg(degrees));
             for q in ik_all(&model, &pose).unwrap() {
                 assert!(distance(&fk(&model, &q), &pose) < 1e-7, "{}: {q:?}", model.name);
+            }
+        }
+    }
+}
+
+/// Random arms of the whole catalogue in one, two or three singularities at once, and at the
+/// edge of their reach.
+#[test]
+fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
+    for name in joulepath::robot::names() {
+        let model = find(name).unwrap();
+        if model.dof != 6 {
+            continue;
+        }
+        for n in 1..=24 {
+            let turn = |base: u32| 6.0 * radical_inverse(n, base) - 3.0;
+            let mut q = [turn(2), turn(3), turn(5), turn(7), turn(11), turn(13)];
+            if n % 2 == 0 {
+                q[4] = 0.0;
+            }
+            if n % 3 == 0 {
+                // Stretched: the forearm goes on where the upper arm ends.
+                let bend = model
+                    .kinematics
+                    .opw
+                    .as_ref()
+                    .map_or(0.0, |opw| -opw.a2.atan2(opw.c3) + opw.signs[2] * opw.offsets[2]);
+                q[2] = bend + if model.kinematics.coupling == Coupling::None { 0.0 } else { q[1] };
+            }
+            if n % 5 == 0 {
+                q[1] = 0.0;
+            }
+            let pose = fk(&model, &q);
+            for found in ik_all(&model, &pose).unwrap_or_default() {
+                assert!(found.iter().all(|x| x.is_finite()), "{name} {q:?}: {found:?}");
+                assert!(distance(&fk(&model, &found), &pose) < 1e-6, "{name} {q:?}: {found:?}");
+            }
+            let near = ik_near(&model, &pose, &q);
+            assert!(
+                near.is_ok_and(|found| found.iter().all(|x| x.is_finite()))
+                    || limits_ok(&model, &q).is_err(),
+                "{name} {q:?}"
+            );
+            // With the wrist centre on axis 1 the quarter turns of the others hang on its angle.
+            let on_axis = singularity(&model, &q).is_some_and(|found| found.shoulder < 1e-6);
+            match ik_conf(&model, &pose, conf_of(&model, &q)) {
+                Ok(found) => assert!(found.iter().all(|x| x.is_finite()), "{name} {q:?}"),
+                Err(why) => {
+                    assert!(on_axis || limits_ok(&model, &q).is_err(), "{name} {q:?}: {why}");
+                }
+            }
+            if let Some(measures) = singularity(&model, &q) {
+                let all = [measures.wrist, measures.elbow, measures.shoulder];
+                assert!(all.iter().all(|x| x.is_finite()), "{name} {q:?}");
             }
         }
     }

@@ -136,10 +136,12 @@ fn base_arm_loads_and_effects() {
     let text = "extends = \"irb 1600-10/1.45\"\nname = \"hung\"\n\
                 [kinematics.base]\norigin = [1, 0, 2]\nrpy = [3.141592653589793, 0, 0]\n\
                 [[arm_load]]\njoint = 3\nmass = 4\ncom = [0.1, 0, 0.2]\ninertia = [0, 0, 0, 0, 0, 0]\n\
-                [effects.stribeck]\nvelocity = [0.01, 0.02]\njoint = 2\n";
+                [effects.stribeck]\njoint = 2\nstiction = 3\nvelocity = 0.05\n";
     let hung = from_toml("hung.toml", text).unwrap();
     assert!((hung.kinematics.up() + nalgebra::Vector3::z()).norm() < 1e-12);
-    let expected = [("joint".to_owned(), vec![2.0]), ("velocity".to_owned(), vec![0.01, 0.02])];
+    let of_joint_2 = |value| vec![0.0, value, 0.0, 0.0, 0.0, 0.0];
+    let expected =
+        [("stiction".to_owned(), of_joint_2(3.0)), ("velocity".to_owned(), of_joint_2(0.05))];
     assert_eq!(
         (hung.effects[0].id.as_str(), hung.effects[0].values.as_slice()),
         ("stribeck", &expected[..])
@@ -185,7 +187,7 @@ fn files_extend_files_beside_them() {
     let message = load(&circle).unwrap_err().to_string();
     assert!(message.ends_with("nested more than 8 deep; remove the circle"), "{message}");
     let broken = write("broken.toml", "extends = \"absent.toml\"\n");
-    assert!(matches!(load(&broken).unwrap_err(), RobotError::Io { .. }));
+    assert!(matches!(load(&broken).unwrap_err(), RobotError::Base { .. }));
     let other = write("robot.json", "{}");
     assert!(matches!(load(&other).unwrap_err(), RobotError::Format { .. }));
     assert!(matches!(load("nowhere.toml").unwrap_err(), RobotError::Io { .. }));
@@ -222,6 +224,17 @@ fn wrong_files_name_the_place_and_the_way_out() {
         with("[motors]\nratio = [1,1]\nresistance = [1,1]\n"),
         with("[[limits.position_if]]\njoint = 3\n"),
         changed("[kinematics]", "[kinematics]\ncoupling = \"parallelogram\""),
+        // Other units: degrees, millimetres, degrees per second, grams.
+        changed("[-2.0, 2.0]", "[-115, 115]"),
+        changed("axis = [0, 1, 0]", "axis = [0, 1, 0]\nrpy = [0, 90, 0]"),
+        second_link("com = [0,0,0]", "com = [0,0,120]"),
+        changed("[2, 3]", "[180, 175]"),
+        second_link("mass = 1", "mass = 310000"),
+        second_link("mass = 1", "mass = 1e400"),
+        second_link("mass = 1", "mass = 99999999999999999999999"),
+        second_link("mass = 1", "mass_g = 1000"),
+        changed("axis = [0, 1, 0]", "axis = [0, 1e300, 0]"),
+        changed("axis = [0, 1, 0]", "axis = [0, 1e-300, 0]"),
         format!("name=\"x\"\n{}", "[[joint]]\norigin=[0,0,0]\naxis=[0,0,1]\n".repeat(8)),
     ];
     let messages: Vec<String> = texts.iter().map(|text| error(text).to_string()).collect();

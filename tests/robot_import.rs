@@ -212,6 +212,24 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
         changed("name=\"valve\"", "name=\"fore\""),
         changed("<robot name=\"arm\">", "<robot name=\"arm\"><xacro:property name=\"a\"/>"),
         arm()[..900].to_owned(),
+        // Wrong attributes: not there, no numbers, in other units.
+        changed("<robot name=\"arm\">", "<robot>"),
+        changed("<mass value=\"2\"/>", "<mass/>"),
+        changed("value=\"2\"", "value=\"2,5 kg\""),
+        changed("value=\"2\"", "value=\"1e400\""),
+        changed("ixx=\"0.02\"", "ixx=\"nan\""),
+        changed("ixx=\"0.02\" ", ""),
+        changed("<origin xyz=\"0 0 0.3\"/>", "<origin xyz=\"0 0 300\"/>"),
+        changed("<origin xyz=\"0 0 0.3\"/>", "<origin xyz=\"0 0 0.3\" rpy=\"0 90 0\"/>"),
+        changed("<origin xyz=\"0 0 0.3\"/>", "<origin xyz=\"0 nan 0.3\"/>"),
+        changed("<origin xyz=\"0 0 0.3\"/>", "<origin xyz=\"0 0.3\"/>"),
+        changed("lower=\"-2\" upper=\"2.5\"", "lower=\"-115\" upper=\"115\""),
+        changed("lower=\"-2\"", "lower=\"nan\""),
+        changed("velocity=\"3\"", "velocity=\"-3\""),
+        changed("type=\"revolute\"", "type=\"revolve\""),
+        changed("<parent link=\"base\"/>", ""),
+        changed("<joint name=\"j1\"", "<joint"),
+        changed("</robot>", &format!("{}{}</robot>", "<a>".repeat(9000), "</a>".repeat(9000))),
         "<model/>".to_owned(),
         String::new(),
         "<robot name=\"empty\"><link name=\"base\"/></robot>".to_owned(),
@@ -276,6 +294,13 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
         two.clone(),
         "EIO:CFG_1.0:6:0::\n".to_owned(),
         String::new(),
+        // Cut at the end of a line, between sections and inside one.
+        whole.replace(
+            "MOTION_PLANNER:",
+            "MOTION_SYSTEM:\r\n\r\n -name \"s\"\r\n#\r\nMOTION_PLANNER:",
+        ),
+        whole[..whole.find("      -name \"r1_CFric_5\"").unwrap()].to_owned(),
+        whole.replace("-upper_joint_bound 2.0944", "-upper_joint_bound -2.0944"),
     ];
     let messages: Vec<String> = texts
         .iter()
@@ -311,7 +336,10 @@ fn every_known_robot_passes_the_check() {
     let of = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
     assert_eq!(of("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
     let lacks = &of("IRB52-7/1.2")["lacks"]["simulate"];
-    assert!(lacks.as_array().unwrap().contains(&"joint speeds".into()), "{lacks}");
+    assert!(
+        lacks.as_array().unwrap().contains(&"joint speeds (limits.velocity)".into()),
+        "{lacks}"
+    );
 }
 
 #[test]

@@ -3,8 +3,11 @@
 pub mod backup;
 pub mod choice;
 pub mod common;
+pub mod generate;
+pub mod identify;
 pub mod input;
 pub mod listing;
+pub mod load;
 pub mod optimize;
 pub mod output;
 pub mod parse;
@@ -31,7 +34,9 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
+    Generate(generate::GenerateArgs),
     Standstill(standstill::StandstillArgs),
+    Identify(Box<identify::IdentifyArgs>),
     Predict(predict::PredictArgs),
     Robots(robots::RobotsArgs),
 }
@@ -43,7 +48,9 @@ pub fn main() -> ExitCode {
         Command::Parse(args) => parse::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
+        Command::Generate(args) => generate::run(&args),
         Command::Standstill(args) => standstill::run(&args),
+        Command::Identify(args) => identify::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Robots(args) => robots::run(&args),
     };

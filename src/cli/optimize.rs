@@ -170,10 +170,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         (None, Some(factor)) => Budget::Factor(positive(factor, "--time-factor")?),
         (None, None) => Budget::AsBefore,
     };
-    let spacing_s = args.spacing.or(job.config.spacing_s).unwrap_or(SPACING_S);
-    if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
-        bail!("--spacing {spacing_s}: give {LEAST_SPACING_S} to {LARGEST_SPACING_S} s");
-    }
+    let spacing_s = spacing(args.spacing.or(job.config.spacing_s))?;
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),
@@ -185,6 +182,18 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         spacing_s,
         ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
     })
+}
+
+/// Least time between two points of a stream, s.
+///
+/// # Errors
+/// A time that no controller or user can mean.
+pub fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
+    let spacing_s = asked.unwrap_or(SPACING_S);
+    if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
+        bail!("--spacing {spacing_s}: give {LEAST_SPACING_S} to {LARGEST_SPACING_S} s");
+    }
+    Ok(spacing_s)
 }
 
 fn progress(quiet: bool) -> ProgressBar {

@@ -9,11 +9,11 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::{common, output};
+use super::{common, load, output};
 use crate::dynamics::{Data, Load};
 use crate::energy::power::{power_at, supply_w};
-use crate::log::{Channel, Log, read_csv};
-use crate::robot::{self, Model};
+use crate::log::{self, ColumnMap, Motion};
+use crate::robot::{self, Model, Use, ready};
 
 /// Torques and powers that a model predicts for a logged motion, as CSV.
 #[derive(Debug, Args)]
@@ -25,9 +25,18 @@ pub struct PredictArgs {
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
 
-    /// The motion: columns `t`, `q1…`, `qd1…`, `qdd1…` (or `q1_deg…`).
-    #[arg(long, value_name = "FILE.csv")]
+    /// The motion, CSV or Parquet: columns `t`, `q1…` (or `q1_deg…`), and `qd1…`, `qdd1…`,
+    /// which are differentiated where they are not there.
+    #[arg(long, value_name = "FILE")]
     log: PathBuf,
+
+    /// Columns under other names, such as `q1_deg=J1,q2_deg=J2`.
+    #[arg(long, value_name = "CHANNEL=COLUMN,…", default_value = "", hide_default_value = true)]
+    map: String,
+
+    /// What the flange carries: KG, KG,X,Y,Z (mm) or a loaddata of RAPID.
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    load: Option<String>,
 
     /// Where the prediction goes, instead of standard output.
     #[arg(long, value_name = "FILE.csv")]
@@ -44,21 +53,34 @@ pub struct PredictArgs {
 /// A model without dynamics, a log that can't be used, or output that can't be written.
 pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let model = robot::load(&args.robot)?;
-    if !model.has_dynamics() {
-        let name = &model.name;
-        bail!("{name} has no dynamics: give its links, [[link]], in a robot file with --robot");
-    }
+    ready(&model, Use::Predict)?;
+    let load = load::of_option(args.load.as_deref())?;
+    let map = ColumnMap::parse(&args.map)?;
     let shown = args.log.display();
-    let bytes = fs::read(&args.log).with_context(|| format!("can't read '{shown}'"))?;
-    let log = read_csv(&bytes).with_context(|| shown.to_string())?;
-    for rejected in &log.rejected {
+    let bytes = fs::read(&args.log)
+        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
+    let log = log::read(&bytes, &map).with_context(|| shown.to_string())?;
+    if log.joints() != model.dof {
+        let (name, dof) = (&model.name, model.dof);
+        bail!(
+            "{shown}: positions of {} joints are logged, {name} has {dof}; give a log with q1 to \
+             q{dof}, or another --robot",
+            log.joints()
+        );
+    }
+    let motion = log.motion();
+    for rejected in log.rejected.iter().chain(&motion.left_out) {
         let text = format!("{shown}: row {} left out: {}", rejected.row, rejected.reason);
         common::note(args.quiet, &text);
+    }
+    if !motion.differentiated.is_empty() {
+        let what = motion.differentiated.join(" and ");
+        common::note(args.quiet, &format!("{shown}: {what} are not logged, but differentiated"));
     }
     for text in model.assumed() {
         common::note(args.quiet, &text);
     }
-    let csv = prediction(&model, &log).with_context(|| shown.to_string())?;
+    let csv = prediction(&model, &load, &motion);
     match &args.out {
         Some(path) => output::write(path, csv.as_bytes())?,
         None => std::io::stdout().lock().write_all(csv.as_bytes())?,
@@ -66,39 +88,32 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `t,tau1..taun,p_mech,p_elec`, numbers in shortest round-trip form.
-fn prediction(model: &Model, log: &Log) -> anyhow::Result<String> {
+/// `t,tau1..taun,p_mech,p_elec`, numbers in shortest round-trip form. Torques are as a log
+/// would have them, powers those of the robot.
+fn prediction(model: &Model, load: &Load, motion: &Motion) -> String {
     let n = model.dof;
-    if log.joints() != n {
-        let name = &model.name;
-        bail!("positions of {} joints are logged, {name} has {n}", log.joints());
-    }
-    let columns = |channel: fn(usize) -> Channel, name: &str| {
-        log.of_joints(channel).with_context(|| {
-            format!("a prediction needs the columns {name}1 to {name}{n} beside q1 to q{n}")
-        })
-    };
-    let q = columns(Channel::Position, "q")?;
-    let qd = columns(Channel::Velocity, "qd")?;
-    let qdd = columns(Channel::Acceleration, "qdd")?;
-
     let mut csv = String::from("t");
     for joint in 1..=n {
         let _ = write!(csv, ",tau{joint}");
     }
     csv.push_str(",p_mech,p_elec\n");
-    let (mut data, load) = (Data::new(), Load::none());
-    for (row, t) in log.time().iter().enumerate() {
-        let at = |columns: &[&[f64]]| columns.iter().map(|column| column[row]).collect::<Vec<_>>();
-        let [q, qd, qdd] = [at(&q), at(&qd), at(&qdd)];
+    let mut data = Data::new();
+    let sensors = &model.sensors;
+    for (row, t) in motion.time.iter().enumerate() {
+        let at = |columns: &[Vec<f64>]| columns.iter().map(|column| column[row]).collect();
+        let [mut q, qd, qdd]: [Vec<f64>; 3] = [at(&motion.q), at(&motion.qd), at(&motion.qdd)];
+        for (q, offset) in q.iter_mut().zip(&sensors.position_offset) {
+            *q += offset;
+        }
         let state: [&[f64]; 3] = [&q, &qd, &qdd];
-        let power = power_at(model, &mut data, &load, state);
-        let supply = supply_w(model, &mut data, &load, state, &power);
+        let power = power_at(model, &mut data, load, state);
+        let supply = supply_w(model, &mut data, load, state, &power);
         let _ = write!(csv, "{t}");
-        for tau in &power.tau[..n] {
-            let _ = write!(csv, ",{tau}");
+        let logged = sensors.torque_error.iter().zip(&sensors.torque_offset);
+        for (tau, (error, offset)) in power.tau.iter().zip(logged) {
+            let _ = write!(csv, ",{}", tau * (1.0 + error) + offset);
         }
         let _ = writeln!(csv, ",{},{supply}", power.mechanical_w());
     }
-    Ok(csv)
+    csv
 }

@@ -7,7 +7,7 @@ use anyhow::bail;
 use clap::Args;
 
 use super::common::{self, Format, ProgramArgs};
-use crate::dynamics::Load;
+use super::load;
 use crate::kinematics::limits_ok;
 use crate::motion;
 use crate::optimize::idle::dwells;
@@ -17,7 +17,7 @@ use crate::report::place::Places;
 use crate::report::standstill::{self, Pose};
 use crate::report::text;
 use crate::retrofit::read_program;
-use crate::robot::Model;
+use crate::robot::{Model, Use, ready};
 
 /// Holding power at rest, when a brake pays, and the cheapest pose nearby.
 #[derive(Debug, Args)]
@@ -29,10 +29,14 @@ pub struct StandstillArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
-    /// A pose, axes in degrees, nothing at the flange; may be repeated. Without it the dwells of
+    /// A pose, axes in degrees; may be repeated. Without it the dwells of
     /// a program are looked at.
     #[arg(long, value_name = "DEG,…", allow_hyphen_values = true, conflicts_with = "paths")]
     pose: Vec<String>,
+
+    /// What the flange carries at the poses: KG, KG,X,Y,Z (mm) or a loaddata of RAPID.
+    #[arg(long, value_name = "LOAD", requires = "pose", allow_hyphen_values = true)]
+    load: Option<String>,
 
     /// How far each joint may go to a better pose, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 15.0)]
@@ -76,14 +80,15 @@ fn of_poses(
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
     let model = common::robot(&args.program)?;
-    check(&model)?;
+    ready(&model, Use::Standstill)?;
+    let load = load::of_option(args.load.as_deref())?;
     let mut poses = Vec::new();
     for text in &args.pose {
         let q = common::six_degrees("--pose", text)?;
         if let Err(violation) = limits_ok(&model, &q) {
             bail!("--pose {text}: {violation}");
         }
-        let standing = standing(&model, &Load::none(), &q, distance);
+        let standing = standing(&model, &load, &q, distance);
         poses.push(Pose { standing, dwell: None });
     }
     let assumed = model.assumed();
@@ -95,7 +100,7 @@ fn of_program(
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
     let job = common::prepare(&args.program)?;
-    check(&job.model)?;
+    ready(&job.model, Use::Standstill)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);
     let sources = job.sources();
@@ -112,23 +117,4 @@ fn of_program(
         .collect();
     let assumed = assumed(&job.model, &simulation);
     Ok((job.model, poses, assumed))
-}
-
-/// Whether holding powers can be computed.
-fn check(model: &Model) -> anyhow::Result<()> {
-    let name = &model.name;
-    if model.dof != 6 {
-        bail!("{name} has {} joints; standstill is for robots with 6", model.dof);
-    }
-    if !model.has_dynamics() {
-        bail!("{name} has no dynamics: give its links, [[link]], in a robot file with --robot");
-    }
-    let losses = model.motors.as_ref().map_or(&[][..], |motors| &motors.loss_constant);
-    if losses.iter().all(|loss| *loss == 0.0) {
-        bail!(
-            "{name} has no copper losses: give motors.loss_constant or motors.resistance \
-             in a robot file with --robot"
-        );
-    }
-    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::power::{Power, power, supply_w};
 use crate::dynamics::{Data, Load};
-use crate::kinematics::{fk, jacobian};
+use crate::kinematics::{Tcp, fk};
 use crate::motion::timed::JointState;
 use crate::motion::timeline::{Simulation, What};
 use crate::path::joint_path::Joints;
@@ -34,7 +34,7 @@ pub struct Sample {
 /// Samples of the cycle, at most 2 ms apart and at every event.
 pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
     let mut sampler = Sampler { model, data: Data::new(), rows: Vec::new() };
-    let mut tool = nalgebra::Isometry3::identity();
+    let mut tool = Tcp::default();
     let mut rest: Option<Joints> = None;
     for event in &simulation.events {
         match &event.what {
@@ -100,20 +100,13 @@ struct Sampler<'a> {
 }
 
 impl Sampler<'_> {
-    fn push(
-        &mut self,
-        t: f64,
-        state: JointState,
-        load: &Load,
-        tool: &nalgebra::Isometry3<f64>,
-        span: Option<Span>,
-    ) {
+    fn push(&mut self, t: f64, state: JointState, load: &Load, tool: &Tcp, span: Option<Span>) {
         let model = self.model;
         let power = model.has_dynamics().then(|| power(model, &mut self.data, load, &state));
         let motion: [&[f64]; 3] = [&state.q, &state.qd, &state.qdd];
         let electrical_w = power.map(|p| supply_w(model, &mut self.data, load, motion, &p));
-        let tcp = (fk(model, &state.q) * tool).translation.vector;
-        let rate = jacobian(model, &state.q, tool) * nalgebra::Vector6::from(state.qd);
+        let tcp = tool.pose(&fk(model, &state.q)).translation.vector;
+        let rate = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
         let tcp_speed = rate.fixed_rows::<3>(0).norm();
         let row = Sample { t, state, power, electrical_w, tcp: tcp.into(), tcp_speed, span };
         match self.rows.last_mut() {

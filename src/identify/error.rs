@@ -32,4 +32,92 @@ pub enum IdentifyError {
     /// No body fits.
     #[error("no physically consistent model was found: the links of the robot file are no bodies, leave them out")]
     Inconsistent,
+    /// Degrees where radians are meant.
+    #[error(
+        "q{joint} reaches {reach:.1} and changes by {fast:.1} per s, which are no radians: it seems to be in degrees; name the column q{joint}_deg"
+    )]
+    Degrees {
+        /// From 1.
+        joint: usize,
+        /// Largest value.
+        reach: f64,
+        /// Nearly the largest rate.
+        fast: f64,
+    },
+    /// Rates that are not those of the positions.
+    #[error(
+        "qd{joint} is {factor:.3} times the rate of q{joint}{}",
+        rates_hint(*factor, *joint)
+    )]
+    Rates {
+        /// From 1.
+        joint: usize,
+        /// Logged over differentiated.
+        factor: f64,
+    },
+    /// Torques of the motors.
+    #[error(
+        "the torques seem to be those of the motors: joint {joint} holds its weight with a torque that is smaller by its gear ratio {ratio}; multiply each tau by its ratio, or give currents as i1…"
+    )]
+    MotorSide {
+        /// A joint, from 1.
+        joint: usize,
+        /// Its gear ratio.
+        ratio: f64,
+    },
+    /// Another number of joints.
+    #[error("the log has a column {column}, the robot has {joints} joints: is it another robot's?")]
+    Joints {
+        /// A column too many.
+        column: String,
+        /// The robot's joints.
+        joints: usize,
+    },
+    /// A column is missing among others.
+    #[error("the log has no column {column}, which a robot of {joints} joints needs")]
+    Column {
+        /// Its name.
+        column: String,
+        /// The robot's joints.
+        joints: usize,
+    },
+    /// Nothing to identify from.
+    #[error(
+        "the log has no torques: give tau1…tau{joints} (Nm, at the joint), i1… (A rms, motor) or ia1,ib1,ic1… (A)"
+    )]
+    NoTorque {
+        /// The robot's joints.
+        joints: usize,
+    },
+    /// Currents without torque constants.
+    #[error(
+        "{name} has no torque constants: give motors.torque_constant and motors.ratio in the robot file, or log torques"
+    )]
+    NoConstants {
+        /// The robot.
+        name: String,
+    },
+    /// Amplitudes of which nothing tells the sign.
+    #[error(
+        "nothing tells the sign of the current of joint {joint}: its phases do not turn with the motor (gear ratio?) and the model has no dynamics to compare with"
+    )]
+    Sign {
+        /// From 1.
+        joint: usize,
+    },
+}
+
+/// What a factor between rates seems to be.
+fn rates_hint(factor: f64, joint: usize) -> String {
+    let degrees = 180.0 / std::f64::consts::PI;
+    let near = |x: f64| (factor / x).ln().abs() < 0.2;
+    if factor > 0.0 && near(degrees) {
+        format!(": it seems to be in degrees; name the column qd{joint}_deg")
+    } else if factor > 0.0 && near(1.0 / degrees) {
+        format!(": the positions seem to be in degrees; name the column q{joint}_deg")
+    } else if factor < 0.0 {
+        ": it has the other sense; turn it, or leave the column out".into()
+    } else {
+        ": its unit can't be right; leave the column out and it is differentiated".into()
+    }
 }

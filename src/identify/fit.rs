@@ -17,6 +17,8 @@ const ROUNDS: usize = 20;
 const SETTLED: f64 = 1e-4;
 /// Instants from which the effect of coloured noise on the parameters is computed.
 const INSTANTS: usize = 6000;
+/// Residuals with this many times the variance of the noise have more in them.
+const MISSES: f64 = 1.5;
 /// Length of the pieces that they are taken in, in lags of the noise.
 const PIECE: usize = 12;
 
@@ -231,12 +233,17 @@ fn errors(
         }
     });
     let lost = lost(factors, solution, weights);
-    let noise: Vec<Vec<f64>> = match &samples.noise {
-        Some(known) => known.clone(),
-        None => {
-            residuals.iter().zip(&lost).map(|(e, lost)| autocovariance(e, *lost)).collect()
+    let mut noise: Vec<Vec<f64>> =
+        residuals.iter().zip(&lost).map(|(e, lost)| autocovariance(e, *lost)).collect();
+    if let Some(known) = &samples.noise {
+        for (found, known) in noise.iter_mut().zip(known) {
+            // What repetitions tell is free of what was fitted; where much more is left, the
+            // model misses something, and that counts.
+            if found[0] < MISSES * known[0] {
+                found.clone_from(known);
+            }
         }
-    };
+    }
     drop(residuals);
     let memory = noise
         .iter()

@@ -3,6 +3,7 @@
 //! [`prepare`] makes instants of a log, [`Equations`] the rows of the equations of motion,
 //! [`fit`] the base parameters, [`identify`] a model that can be.
 
+mod clean;
 mod consistent;
 mod equations;
 mod error;
@@ -13,16 +14,21 @@ mod least_squares;
 mod noise;
 mod prepare;
 mod samples;
+mod torque;
 mod triangle;
+mod units;
 mod work;
 mod wrist;
 
+pub use clean::cleaned;
 pub use equations::{Equations, Instant, Known, Layout};
 pub use error::IdentifyError;
 pub use essential::{Collinear, collinear, essential};
 pub use factors::Factors;
 pub use fit::{Fit, Weighting, fit};
 pub use least_squares::{Condition, Solution};
-pub use prepare::prepare;
+pub use prepare::{Hints, prepare};
 pub use samples::{Block, Samples, Source};
+pub use torque::{Torques, torques};
+pub use units::{check_angles, check_torques};
 pub use work::{Free, Identified, Misses, Settings, identify};

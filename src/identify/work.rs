@@ -138,7 +138,9 @@ pub fn identify(
     let (validation, unconstrained_validation) =
         (on_held_out(&of_model), on_held_out(&fit.solution.beta));
 
-    let (identified, payload) = assembled(&nominal, settings, &values, training, coupling);
+    let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
+    // They are in the numbers now.
+    identified.effects.clear();
     let physically_consistent = identified.links.iter().all(|link| margin(&link_parameters(link)) > 0.0);
     Ok(Identified {
         model: identified,
@@ -340,12 +342,13 @@ fn assembled(
         let zero = vec![0.0; n];
         model.friction.viscous = kept(column(1), &before.viscous);
         model.friction.coulomb = kept(column(2), &before.coulomb);
-        let asymmetry = before.coulomb_asymmetry.as_ref().unwrap_or(&zero);
-        model.friction.coulomb_asymmetry = Some(kept(column(3), asymmetry));
+        model.friction.coulomb_asymmetry = None;
+        model.sensors.torque_offset = kept(column(3), &zero);
         model.friction.viscous_asymmetry = None;
         model.friction.stribeck = None;
         model.friction.load_friction = None;
         tables.push("friction".into());
+        tables.push("effects.torque_offset".into());
         if settings.free == Free::All {
             let inertia = column(0);
             let inertia = match &nominal.motors {
@@ -365,10 +368,10 @@ fn assembled(
         !tables.iter().any(part) && !origin.table.starts_with("arm_load")
     });
     for table in &tables {
-        let keys: &[&str] = if table == "friction" {
-            &["coulomb", "viscous", "coulomb_asymmetry"]
-        } else {
-            &["mass", "com", "inertia"]
+        let keys: &[&str] = match table.as_str() {
+            "friction" => &["coulomb", "viscous"],
+            "effects.torque_offset" => &["offset"],
+            _ => &["mass", "com", "inertia"],
         };
         model.origins.extend(keys.iter().map(|key| origin(table, key, &settings.source)));
     }
@@ -383,8 +386,8 @@ fn assembled(
                 source: Some("not known: rotor inertias are given at the joint".into()),
             });
         }
-        model.effects.clear();
-        model.origins.retain(|o| !o.table.starts_with("effects"));
+        model.sensors.position_offset.fill(0.0);
+        model.sensors.torque_error.fill(0.0);
     }
     if coupling.is_some() {
         model.origins.retain(|o| o.table != "wrist");

@@ -59,15 +59,20 @@ pub(super) struct Shape {
 impl Shape {
     pub(super) fn at(model: &Model, q: &[f64; 6]) -> Shape {
         let frames = Frames::at(model, q);
-        // Where the wrist axes do not meet, axis 5 stands for the wrist centre.
-        let wrist = match &model.kinematics.opw {
+        let geometry = &model.kinematics;
+        let offset = geometry.offset_wrist.as_ref();
+        let arm = geometry.opw.as_ref().or(offset.map(|offset| &offset.arm));
+        // Where the wrist axes do not meet, axes 4 and 5 do, or axis 5 stands for them.
+        let along = offset
+            .map_or(0.0, |offset| offset.crossing.translation.vector.dot(&geometry.joints[4].axis));
+        let wrist = match &geometry.opw {
             Some(opw) => {
                 let flange = frames.flange(model);
                 flange.translation.vector - flange.rotation * Vector3::z() * opw.c4
             }
-            None => frames.origin[4],
+            None => frames.origin[4] + frames.axis[4] * along,
         };
-        let signs = model.kinematics.opw.as_ref().map_or([1.0; 6], |opw| opw.signs);
+        let signs = arm.map_or([1.0; 6], |opw| opw.signs);
         let up = frames.axis[0] * signs[0];
         let across = frames.axis[2] * signs[2];
         let upper_arm = frames.origin[2] - frames.origin[1];

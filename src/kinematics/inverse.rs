@@ -9,13 +9,17 @@ use crate::robot::{Coupling, Model, Opw};
 
 use super::conf::Shape;
 use super::error::{IkError, Side};
-use super::numeric;
+use super::{numeric, offset_wrist};
 
 /// Lengths by which a pose at the edge of the reach may miss it \[m\]: rounding
 /// of targets that are written with few digits is left to the caller.
 const REACH_SLACK: f64 = 1e-9;
-/// |sin θ5| below which axes 4 and 6 count as one.
-pub(super) const WRIST_SINGULAR: f64 = 1e-8;
+/// |sin θ5| below which axes 4 and 6 count as one: where the arm is stretched as well, θ5 has
+/// half the digits.
+const WRIST_SINGULAR: f64 = 1e-7;
+
+/// Distance from axis 1 below which a wrist centre lies on it \[m\].
+const ON_AXIS: f64 = 1e-9;
 
 /// One branch of the inverse.
 #[derive(Clone, Copy, Debug)]
@@ -39,16 +43,22 @@ pub(super) struct Locked {
 
 /// All solutions of the pose, each angle in (−π, π]; position limits are not looked
 /// at. Of an OPW arm at most eight, where joint 4 is at its zero in a wrist
-/// singularity; of another arm at most sixteen, of which one may be missed.
+/// singularity; of another arm at most sixteen, which are searched: one next to a
+/// singularity may be missed.
 ///
 /// # Errors
 /// The pose is out of reach or not finite, or the robot has not six joints.
 pub fn ik_all(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<[f64; 6]>, IkError> {
-    Ok(branches(model, pose)?.iter().map(|branch| branch.q).collect())
+    Ok(branches(model, pose, 0.0)?.iter().map(|branch| branch.q).collect())
 }
 
-/// The branches behind [`ik_all`]; never empty.
-pub(super) fn branches(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
+/// The branches behind [`ik_all`]; never empty. `q1` \[rad\] is the angle of joint 1 where any
+/// will do: with the wrist centre on its axis.
+pub(super) fn branches(
+    model: &Model,
+    pose: &Isometry3<f64>,
+    q1: f64,
+) -> Result<Vec<Branch>, IkError> {
     if model.dof != 6 {
         return Err(IkError::NoInverse { robot: model.name.clone() });
     }
@@ -56,13 +66,16 @@ pub(super) fn branches(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branc
         return Err(IkError::NotFinite);
     }
     match &model.kinematics.opw {
-        Some(opw) => closed(model, opw, pose),
+        Some(opw) => closed(model, opw, pose, q1),
         None => searched(model, pose),
     }
 }
 
 fn searched(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
-    let found = numeric::solutions(model, pose);
+    let found = match &model.kinematics.offset_wrist {
+        Some(wrist) => offset_wrist::solutions(model, wrist, pose),
+        None => numeric::solutions(model, pose),
+    };
     if found.is_empty() {
         return Err(IkError::NotFound { robot: model.name.clone() });
     }
@@ -73,25 +86,21 @@ fn searched(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError
     Ok(found.into_iter().map(branch).collect())
 }
 
-fn closed(model: &Model, opw: &Opw, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
+fn closed(
+    model: &Model,
+    opw: &Opw,
+    pose: &Isometry3<f64>,
+    q1: f64,
+) -> Result<Vec<Branch>, IkError> {
     let rotation = pose.rotation.to_rotation_matrix().into_inner();
     let centre = pose.translation.vector - opw.c4 * rotation.column(2);
-    let beyond_b = centre.xy().norm_squared() - opw.b * opw.b;
-    if beyond_b < -REACH_SLACK * opw.b.abs() {
-        let distance = opw.b.abs() - centre.xy().norm();
-        return Err(IkError::Unreachable { distance, side: Side::Inside });
-    }
-    let radius = beyond_b.max(0.0).sqrt();
-
     let mut found = Vec::with_capacity(8);
     let mut nearest: Option<(f64, Side)> = None;
-    for (reach, back) in [(radius, false), (-radius, true)] {
-        let theta1 = centre.y.atan2(centre.x) - opw.b.atan2(reach);
-        let (u, v) = (reach - opw.a1, centre.z - opw.c1);
-        match arm(opw, u, v) {
-            Ok(poses) => {
-                for [theta2, theta3, elbow] in poses {
-                    wrist(model, opw, &rotation, [theta1, theta2, theta3], |q, locked| {
+    for (facing, back) in facings(opw, &centre, q1).into_iter().zip([false, true]) {
+        match facing {
+            Ok(arms) => {
+                for Arm { theta, elbow } in arms {
+                    wrist(model, opw, &rotation, theta, |q, locked| {
                         found.push(Branch { q, back, elbow, locked });
                     });
                 }
@@ -106,9 +115,42 @@ fn closed(model: &Model, opw: &Opw, pose: &Isometry3<f64>) -> Result<Vec<Branch>
     }
 }
 
+/// The first three angles of one branch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arm {
+    /// θ1 to θ3 \[rad\].
+    pub(super) theta: [f64; 3],
+    /// Signed elbow angle \[rad\].
+    elbow: f64,
+}
+
+/// How a wrist centre is missed: distance \[m\] and side.
+type Miss = (f64, Side);
+
+/// Both elbows with axis 1 facing the wrist centre, then with it facing away; `q1` as of
+/// [`branches`].
+pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm; 2], Miss>; 2] {
+    let beyond_b = centre.xy().norm_squared() - opw.b * opw.b;
+    if beyond_b < -REACH_SLACK * opw.b.abs() {
+        let miss = (opw.b.abs() - centre.xy().norm(), Side::Inside);
+        return [Err(miss), Err(miss)];
+    }
+    let radius = beyond_b.max(0.0).sqrt();
+    [radius, -radius].map(|reach| {
+        let towards = if centre.xy().norm() < ON_AXIS {
+            opw.signs[0] * q1 - opw.offsets[0]
+        } else {
+            centre.y.atan2(centre.x)
+        };
+        let theta1 = towards - opw.b.atan2(reach);
+        let elbows = arm(opw, reach - opw.a1, centre.z - opw.c1)?;
+        Ok(elbows.map(|[theta2, theta3, elbow]| Arm { theta: [theta1, theta2, theta3], elbow }))
+    })
+}
+
 /// θ2, θ3 and the elbow angle of both elbows for a wrist centre at (u, v) from
 /// axis 2, u forward and v up; else the distance to the reachable ring.
-fn arm(opw: &Opw, u: f64, v: f64) -> Result<[[f64; 3]; 2], (f64, Side)> {
+fn arm(opw: &Opw, u: f64, v: f64) -> Result<[[f64; 3]; 2], Miss> {
     let k = opw.a2.hypot(opw.c3);
     let psi3 = opw.a2.atan2(opw.c3);
     let distance = u.hypot(v);
@@ -134,9 +176,7 @@ fn wrist(
     [theta1, theta2, theta3]: [f64; 3],
     mut push: impl FnMut([f64; 6], Option<Locked>),
 ) {
-    let forearm = Rotation3::from_axis_angle(&Vector3::z_axis(), theta1)
-        * Rotation3::from_axis_angle(&Vector3::y_axis(), theta2 + theta3);
-    let r = forearm.matrix().transpose() * rotation;
+    let r = forearm([theta1, theta2, theta3]).matrix().transpose() * rotation;
     let sin = r.m13.hypot(r.m23);
     let theta5 = sin.atan2(r.m33);
     if sin < WRIST_SINGULAR {
@@ -159,7 +199,14 @@ fn wrist(
     }
 }
 
-fn to_joints(model: &Model, opw: &Opw, theta: [f64; 6]) -> [f64; 6] {
+/// Rotation of the forearm, its z along axis 4.
+pub(super) fn forearm([theta1, theta2, theta3]: [f64; 3]) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::z_axis(), theta1)
+        * Rotation3::from_axis_angle(&Vector3::y_axis(), theta2 + theta3)
+}
+
+/// The joint angles of OPW angles, each in (−π, π] \[rad\].
+pub(super) fn to_joints(model: &Model, opw: &Opw, theta: [f64; 6]) -> [f64; 6] {
     let mut q = theta;
     for (i, angle) in q.iter_mut().enumerate() {
         *angle = opw.signs[i] * (*angle + opw.offsets[i]);

@@ -36,10 +36,32 @@ pub fn jacobian_dot<const N: usize>(
     qd: &[f64; N],
     tool: &Isometry3<f64>,
 ) -> SMatrix<f64, 6, N> {
+    rate_of(model, q, qd, Tip::Held(tool))
+}
+
+/// A point that a Jacobian is taken at.
+#[derive(Clone, Copy)]
+pub(super) enum Tip<'a> {
+    /// The origin of a frame in tool0.
+    Held(&'a Isometry3<f64>),
+    /// A point of the base frame \[m\], which the robot moves past.
+    Fixed(Vector3<f64>),
+}
+
+/// [`jacobian_dot`] at either kind of point.
+pub(super) fn rate_of<const N: usize>(
+    model: &Model,
+    q: &[f64; N],
+    qd: &[f64; N],
+    at: Tip<'_>,
+) -> SMatrix<f64, 6, N> {
     let dof = N.min(model.dof);
     let frames = Frames::at(model, q);
     let rates = model.kinematics.to_serial(qd);
-    let tip = (frames.flange(model) * tool).translation.vector;
+    let tip = match at {
+        Tip::Held(tool) => (frames.flange(model) * tool).translation.vector,
+        Tip::Fixed(point) => point,
+    };
 
     // Velocities of the joints' origins and of their axes.
     let mut turning = Vector3::zeros();
@@ -54,7 +76,10 @@ pub fn jacobian_dot<const N: usize>(
         axis_rate[i] = turning.cross(&frames.axis[i]);
         turning += frames.axis[i] * rates[i];
     }
-    let tip_rate = moving + turning.cross(&(tip - last));
+    let tip_rate = match at {
+        Tip::Held(_) => moving + turning.cross(&(tip - last)),
+        Tip::Fixed(_) => Vector3::zeros(),
+    };
 
     let mut j = SMatrix::zeros();
     for i in 0..dof {

@@ -4,8 +4,9 @@ use crate::robot::Model;
 
 use super::error::LimitViolation;
 
-/// By how much rounding may carry an angle over its limit \[rad\].
-const ROUNDING: f64 = 1e-9;
+/// By how much rounding may carry an angle over its limit \[rad\]: where the arm is stretched,
+/// its angles have half the digits.
+const ROUNDING: f64 = 1e-7;
 
 /// Whether every joint angle of `q` \[rad\] is inside its range.
 ///

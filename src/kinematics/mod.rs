@@ -11,9 +11,11 @@ mod inverse;
 mod jacobian;
 mod limits;
 mod numeric;
+mod offset_wrist;
 mod radical_inverse;
 mod select;
 mod singularity;
+mod tcp;
 
 pub use conf::{Conf, conf_of};
 pub use error::{IkError, LimitViolation, Side};
@@ -24,3 +26,4 @@ pub use limits::limits_ok;
 pub use radical_inverse::radical_inverse;
 pub use select::{ik_conf, ik_near};
 pub use singularity::{Singularity, singularity};
+pub use tcp::Tcp;

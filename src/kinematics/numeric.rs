@@ -61,18 +61,24 @@ pub(super) fn solutions(model: &Model, pose: &Isometry3<f64>) -> Vec<[f64; 6]> {
     let mut found: Vec<[f64; 6]> = Vec::new();
     for n in 1..=STARTS {
         let start = BASES.map(|base| PI * (2.0 * radical_inverse(n, base) - 1.0));
-        let Some(q) = refine(model, pose, &start) else { continue };
-        let same = |known: &[f64; 6]| {
-            known.iter().zip(&q).all(|(a, b)| {
-                let d = (a - b).rem_euclid(TAU);
-                d.min(TAU - d) < SAME
-            })
-        };
-        if !found.iter().any(same) {
-            found.push(q.map(wrap));
+        if let Some(q) = refine(model, pose, &start) {
+            add(&mut found, &q);
         }
     }
     found
+}
+
+/// Adds a solution that is not there yet.
+pub(super) fn add(found: &mut Vec<[f64; 6]>, q: &[f64; 6]) {
+    let same = |known: &[f64; 6]| {
+        known.iter().zip(q).all(|(a, b)| {
+            let d = (a - b).rem_euclid(TAU);
+            d.min(TAU - d) < SAME
+        })
+    };
+    if !found.iter().any(same) {
+        found.push(q.map(wrap));
+    }
 }
 
 /// What lacks to the pose: displacement over rotation vector, in the base frame.

@@ -8,7 +8,7 @@ use crate::robot::{Coupling, Model};
 
 use super::conf::{Conf, conf_of};
 use super::error::IkError;
-use super::inverse::{Branch, branches};
+use super::inverse::{Branch, Locked, branches};
 use super::limits::limits_ok;
 use super::numeric::refine;
 
@@ -28,7 +28,8 @@ const TURN: f64 = 2.0 * PI;
 /// The pose is out of reach; its solution with this configuration breaks a
 /// position limit; no solution has the configuration.
 pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64; 6], IkError> {
-    let branches = branches(model, pose)?;
+    let low1 = f64::from(conf.cf1) * FRAC_PI_2;
+    let branches = branches(model, pose, 0.0_f64.clamp(low1, low1 + FRAC_PI_2))?;
     let mut best: Option<(f64, [f64; 6])> = None;
     let mut outside = None;
     for branch in &branches {
@@ -55,7 +56,8 @@ pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64;
 }
 
 /// The solution nearest to `q_ref` (least sum of squared differences), whole
-/// turns included; in a wrist singularity joint 4 stays where it is. It follows a
+/// turns included; in a wrist singularity joint 4 stays where it is, and joint 1 with the
+/// wrist centre on its axis. It follows a
 /// path without jumps when `q_ref` is the solution a small step before.
 ///
 /// # Errors
@@ -74,7 +76,7 @@ pub fn ik_near(
         return Ok(q);
     }
     let mut best = (f64::INFINITY, *q_ref);
-    for branch in branches(model, pose)? {
+    for branch in branches(model, pose, q_ref[0])? {
         let mut q = branch.q;
         if let Some(locked) = branch.locked {
             q[3] = q_ref[3];
@@ -103,9 +105,7 @@ fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6
     }
     let mut q = into_limits(model, branch.q);
     if let Some(locked) = branch.locked {
-        // Any q4 solves the pose: the one of least size in its quarter turn.
-        let low = f64::from(conf.cf4) * FRAC_PI_2;
-        q[3] = 0.0_f64.clamp(low, low + FRAC_PI_2);
+        q[3] = locked_fourth(&locked, conf);
         q[5] = locked.offset - locked.slope * q[3];
     }
     for (joint, quarter) in [(0, conf.cf1), (3, conf.cf4), (5, conf.cf6)] {
@@ -118,6 +118,19 @@ fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6
         excess += miss;
     }
     Some((excess, q))
+}
+
+/// In a wrist singularity any q4 solves the pose: the one of least size in its quarter turn
+/// with which q6 is in its own, if there is one.
+fn locked_fourth(locked: &Locked, conf: Conf) -> f64 {
+    let [low, low6] = [conf.cf4, conf.cf6].map(|quarter| f64::from(quarter) * FRAC_PI_2);
+    let high = low + FRAC_PI_2;
+    // The middle of the range of q4 that brings q6 into its quarter turn, less whole turns.
+    let middle = (locked.offset - low6 - FRAC_PI_4) / locked.slope;
+    let turns = ((low + FRAC_PI_4 - middle) / TURN).round();
+    let middle = middle + TURN * turns;
+    let (from, to) = (low.max(middle - FRAC_PI_4), high.min(middle + FRAC_PI_4));
+    if from <= to { 0.0_f64.clamp(from, to) } else { 0.0_f64.clamp(low, high) }
 }
 
 /// 0 where both bits agree, the distance to the border of the two where that is

@@ -3,15 +3,52 @@
 use thiserror::Error;
 
 /// A log that can't be read.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum LogError {
     /// No header, or none that is understood.
     #[error(
-        "no column t in the header '{header}': the first row names the columns, such as t,q1,q2,tau1,tau2"
+        "no column t in the header '{header}': the first row names the columns, such as t,q1,q2,tau1,tau2, or --map says which is which"
     )]
     NoTime {
         /// The first row.
         header: String,
+    },
+    /// A part of a column map that is none.
+    #[error("--map {part}: write it as CHANNEL=COLUMN, such as tau1=MotorTorque_1,q1_deg=J1")]
+    Map {
+        /// The part.
+        part: String,
+    },
+    /// A column map names a channel that there is not.
+    #[error(
+        "--map {name}=…: no such channel; give t, q1…, qd1…, qdd1… (or q1_deg…), tau1…, i1…, \
+         ia1…, ib1…, ic1…, temp1…, power, sync, cycle, line or cmd"
+    )]
+    UnknownChannel {
+        /// As given.
+        name: String,
+    },
+    /// A column map names a channel twice.
+    #[error("--map names {name} twice: leave one out")]
+    MappedTwice {
+        /// The channel.
+        name: String,
+    },
+    /// A column map names a column that the file does not have.
+    #[error("--map {channel}={column}: the file has no column '{column}' but {header}")]
+    NoColumn {
+        /// The channel.
+        channel: String,
+        /// The column asked for.
+        column: String,
+        /// The columns that are there.
+        header: String,
+    },
+    /// A Parquet file that can't be read.
+    #[error("the Parquet file can't be read ({reason}): write it again, or as CSV")]
+    Parquet {
+        /// Why.
+        reason: String,
     },
     /// Two columns for one quantity.
     #[error("the columns {first} and {second} are the same quantity: leave one out")]
@@ -38,5 +75,25 @@ pub enum LogError {
         needed: usize,
         /// What is wrong with the first one left out.
         why: String,
+    },
+    /// Two recorders without marks in common.
+    #[error(
+        "the marks (column sync) change {here} times beside the positions and {there} times beside the currents: both need the same changes, two at least"
+    )]
+    Marks {
+        /// Changes beside the positions.
+        here: usize,
+        /// Changes beside the currents.
+        there: usize,
+    },
+    /// Marks of two recorders that are not those of one run.
+    #[error(
+        "the marks of the two logs miss each other by up to {worst:.3} s (a row is {step:.4} s): are they of one run?"
+    )]
+    Unaligned {
+        /// Largest distance \[s\].
+        worst: f64,
+        /// Interval of the slower one \[s\].
+        step: f64,
     },
 }

@@ -2,17 +2,32 @@
 
 mod bandwidth;
 mod channel;
+mod columns;
 mod csv;
+mod differentiate;
 mod error;
 mod low_pass;
+mod marks;
+mod motion;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod periods;
+mod rows;
+mod three_phase;
 mod uniform;
 
 pub use bandwidth::bandwidth;
 pub use channel::Channel;
+pub use columns::ColumnMap;
 pub use csv::read_csv;
+pub use differentiate::derivatives;
 pub use error::LogError;
 pub use low_pass::LowPass;
-pub use uniform::{Section, median_step, sections};
+pub use marks::{aligned, are_halves};
+pub use motion::Motion;
+pub use periods::{Averaged, Periods, averaged, find_periods};
+pub use three_phase::{Signed, Vectors, signed, vectors};
+pub use uniform::{Section, interpolated, median_step, sections};
 
 use channel::Family;
 
@@ -26,6 +41,8 @@ pub struct Log {
     pub channels: Vec<Channel>,
     /// A column for each channel, all of the same length.
     pub values: Vec<Vec<f64>>,
+    /// Line of the file of each usable row; the header is 1.
+    pub rows: Vec<u64>,
     /// Rows that were left out.
     pub rejected: Vec<Rejected>,
 }
@@ -37,6 +54,20 @@ pub struct Rejected {
     pub row: u64,
     /// Why.
     pub reason: String,
+}
+
+/// The log in the bytes of a file, CSV or Parquet by its content.
+///
+/// # Errors
+/// Columns that can't be understood, fewer than [`MIN_ROWS`] usable rows, a damaged file.
+pub fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
+    if bytes.starts_with(b"PAR1") {
+        #[cfg(feature = "parquet")]
+        return parquet::read_parquet(bytes, map);
+        #[cfg(not(feature = "parquet"))]
+        return Err(LogError::Parquet { reason: "this build does not read them".into() });
+    }
+    read_csv(bytes, map)
 }
 
 impl Log {

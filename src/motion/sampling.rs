@@ -2,7 +2,6 @@
 
 use super::timing::grid::{GridError, PathGrid, PathPoint};
 use crate::dynamics::{Data, Load, rnea};
-use crate::kinematics::jacobian;
 use crate::path::joint_path::{DOF, Extent, JointPath, Joints, Piece, PieceKind};
 use crate::robot::Model;
 
@@ -121,7 +120,7 @@ fn point(
             }
         }
     }
-    let twist = jacobian(model, &at.q, &extent.tool) * nalgebra::Vector6::from(at.q1);
+    let twist = extent.tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q1);
     let tcp_rate = twist.fixed_rows::<3>(0).norm();
     let turn_rate = twist.fixed_rows::<3>(3).norm();
     let mut limit = |rate: f64, speed: f64| {

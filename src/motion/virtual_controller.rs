@@ -16,7 +16,7 @@ use crate::ir::exec::{Machine, Note, execute};
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::{LoadData, Movement, Output, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
-use crate::kinematics::{Conf, fk, ik_conf, ik_near, limits_ok};
+use crate::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
 use crate::path::{Leg, LegKind, build};
 use crate::robot::Model;
@@ -118,7 +118,7 @@ impl Machine for VirtualController<'_> {
         match self.leg(&movement) {
             Ok(leg) => {
                 self.q = leg.end;
-                self.tool = Some(movement.tool.clone());
+                self.tool = Some(gripping(&movement));
                 let fine = leg.zone.fine;
                 self.pending.push(Pending { movement, leg });
                 if fine {
@@ -207,28 +207,32 @@ impl VirtualController<'_> {
 
     /// Solves where a movement goes.
     fn leg(&self, movement: &Movement) -> Result<Leg, String> {
-        if movement.wobj.robhold || !movement.tool.robhold {
-            return Err("a stationary tool is not simulated".into());
+        if movement.wobj.robhold == movement.tool.robhold {
+            let both = if movement.tool.robhold { "both tool and work" } else { "neither" };
+            return Err(format!("the robot holds {both}: robhold of tool or work object is wrong"));
         }
         if !movement.wobj.fixed {
             return Err("a work object on a moving mechanical unit is not simulated".into());
         }
-        // Targets are stated in the world, solved in the robot's base frame.
-        let base = self.model.kinematics.base.inverse()
-            * movement.settings.displacement.unwrap_or_else(Isometry3::identity)
+        // What does not move with the robot is stated in the world, solved in its base frame.
+        let world = self.model.kinematics.base.inverse();
+        let held = movement.tool.robhold;
+        let object = movement.settings.displacement.unwrap_or_else(Isometry3::identity)
             * movement.wobj.frame;
-        let tool = movement.tool.frame;
+        let base = if held { world * object } else { object };
+        let frame = movement.tool.frame;
+        let tool = if held { Tcp::Held(frame) } else { Tcp::Stationary(world * frame) };
         let near = |pose: &Isometry3<f64>| {
             ik_near(self.model, pose, &self.q).map_err(|error| error.to_string())
         };
         let (kind, end, target) = match &movement.target {
             Target::Joints(q) => {
                 limits_ok(self.model, q).map_err(|error| error.to_string())?;
-                (LegKind::Joint, *q, fk(self.model, q) * tool)
+                (LegKind::Joint, *q, tool.pose(&fk(self.model, q)))
             }
             Target::Pose(target) => {
                 let pose = base * target.pose;
-                let flange = pose * tool.inverse();
+                let flange = tool.flange(&pose);
                 let linear = movement.form != MoveForm::Joint;
                 let stated = if linear {
                     movement.settings.conf_linear
@@ -452,14 +456,20 @@ pub fn effective_load(movement: &Movement) -> Load {
     if let Some(total) = &movement.total_load {
         return load(total, &Isometry3::identity());
     }
-    gripped(&movement.tool, movement.settings.grip_load.as_ref())
+    gripped(&gripping(movement), movement.settings.grip_load.as_ref())
+}
+
+/// The tool with the frame in which `GripLoad` states a load: that of the tool, or of the work
+/// object where the robot holds that.
+fn gripping(movement: &Movement) -> Tool {
+    let tool = movement.tool.clone();
+    if tool.robhold { tool } else { Tool { frame: movement.wobj.frame, ..tool } }
 }
 
 /// A tool with what `GripLoad` says that it holds.
 fn gripped(tool: &Tool, grip: Option<&LoadData>) -> Load {
     let alone = load(&tool.load, &Isometry3::identity());
     match grip {
-        // GripLoad's load is given in the tool's frame.
         Some(grip) => alone.with(&load(grip, &tool.frame)),
         None => alone,
     }

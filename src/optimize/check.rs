@@ -3,7 +3,7 @@
 use super::corridor::Corridor;
 use crate::dynamics::{Data, Load};
 use crate::energy::power::power;
-use crate::kinematics::{fk, jacobian, limits_ok};
+use crate::kinematics::{Tcp, fk, limits_ok};
 use crate::motion::stream::Stream;
 use crate::motion::timed::JointState;
 use crate::path::joint_path::{DOF, Joints};
@@ -91,7 +91,7 @@ impl Check {
 pub fn check(
     model: &Model,
     load: &Load,
-    tool: &nalgebra::Isometry3<f64>,
+    tool: &Tcp,
     stream: &Stream,
     corridor: &Corridor,
     end: &Joints,
@@ -123,10 +123,10 @@ pub fn check(
                 0.0
             };
             result.torque = result.torque.max(torque);
-            let offset = corridor.offset(&(fk(model, &q) * tool), &mut at);
+            let offset = corridor.offset(&tool.pose(&fk(model, &q)), &mut at);
             result.deviation_m = result.deviation_m.max(offset.distance);
             result.deviation = result.deviation.max(offset.distance / offset.tolerance);
-            let rate = jacobian(model, &q, tool) * nalgebra::Vector6::from(qd);
+            let rate = tool.jacobian(model, &q) * nalgebra::Vector6::from(qd);
             let speed = rate.fixed_rows::<3>(0).norm() / offset.ceiling;
             result.tcp_speed = result.tcp_speed.max(speed);
         }

@@ -84,7 +84,7 @@ impl Corridor {
             let n = (piece.length * share / SPACING).ceil().max(1.0) as usize;
             for i in 0..=n {
                 let s = piece.s + piece.length * i as f64 / n as f64;
-                let pose = fk(model, &piece.eval(s).q) * extent.tool;
+                let pose = extent.tool.pose(&fk(model, &piece.eval(s).q));
                 places.push(Place { pose, ceiling, tolerance });
             }
         }

@@ -19,5 +19,5 @@ pub mod stream_limits;
 mod stream_points;
 pub mod stream_polish;
 pub mod stream_reference;
-mod stream_rounding;
+pub mod stream_rounding;
 pub mod stream_spacing;

@@ -19,7 +19,7 @@ use super::stream_spacing::{Spacing, adaptive_intervals};
 use crate::dynamics::{Data, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::kinematics::{fk, jacobian};
+use crate::kinematics::fk;
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
@@ -443,7 +443,7 @@ impl<'a> Work<'a> {
     /// Time in which the TCP goes no farther than the zones of two points reach, s.
     fn zone_time(&self, reference: &Reference, duration: f64) -> f64 {
         let tool = &self.task.run.legs[0].tool;
-        let tcp = |t: f64| (fk(self.task.model, &reference.at(t).0) * tool).translation.vector;
+        let tcp = |t: f64| tool.pose(&fk(self.task.model, &reference.at(t).0)).translation.vector;
         let n = (reference.duration() / REFERENCE_STEP).ceil().max(1.0) as usize;
         let step = reference.duration() / n as f64;
         let farthest = (0..n)
@@ -524,9 +524,9 @@ impl Plant for RobotPlant<'_> {
     fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> [f64; 2] {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
-        let pose = fk(task.model, q) * tool;
+        let pose = tool.pose(&fk(task.model, q));
         let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
-        let rate = jacobian(task.model, q, tool) * nalgebra::Vector6::from(*qd);
+        let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
         let speed = rate.fixed_rows::<3>(0).norm();
         [speed / (self.margins.speed * ceiling), distance / self.margins.distance]
     }
@@ -579,7 +579,7 @@ fn levers(model: &Model, run: &Run) -> Joints {
     let mut lever = [MIN_LEVER; DOF];
     for leg in &run.legs {
         for q in [&leg.start, &leg.end] {
-            let j = crate::kinematics::jacobian(model, q, &leg.tool);
+            let j = leg.tool.jacobian(model, q);
             for (i, lever) in lever.iter_mut().enumerate() {
                 *lever = lever.max(j.fixed_view::<3, 1>(0, i).norm());
             }

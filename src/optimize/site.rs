@@ -161,6 +161,9 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     for record in &run.moves {
         movement_is_eligible(&record.movement)?;
     }
+    if run.moves.iter().any(|record| !record.movement.tool.robhold) {
+        return Err(Reason::Setting("a stationary tool".into()));
+    }
     if run.moves.windows(2).any(|pair| pair[0].movement.tool != pair[1].movement.tool) {
         return Err(Reason::Setting("a change of tool".into()));
     }

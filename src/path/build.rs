@@ -6,7 +6,7 @@ use super::blend;
 use super::curve::{self, Curve};
 use super::joint_path::{DOF, Extent, JointPath, Joints, PathPoint, Piece, PieceKind};
 use super::leg::{Leg, LegKind, PathError, first_difference};
-use crate::kinematics::{fk, ik_near, jacobian, jacobian_dot, limits_ok};
+use crate::kinematics::{fk, ik_near, limits_ok};
 use crate::robot::Model;
 
 /// Parameter length of a turn of the tool or of a joint where the TCP hardly moves, m/rad.
@@ -73,7 +73,7 @@ fn measure<'a>(
     index: usize,
     start: &Joints,
 ) -> Result<Measured<'a>, PathError> {
-    let from = fk(model, start) * leg.tool;
+    let from = leg.tool.pose(&fk(model, start));
     let to = leg.target;
     let turn = curve::rotation_between(&from.rotation, &to.rotation);
     let angle = turn.norm();
@@ -83,7 +83,7 @@ fn measure<'a>(
             let mut last = from.translation.vector;
             for i in 1..=LENGTH_SAMPLES {
                 let q = along(start, &leg.end, i as f64 / LENGTH_SAMPLES as f64);
-                let here = (fk(model, &q) * leg.tool).translation.vector;
+                let here = leg.tool.pose(&fk(model, &q)).translation.vector;
                 length += (here - last).norm();
                 last = here;
             }
@@ -356,7 +356,7 @@ impl Builder<'_> {
         let at = curve.eval(x);
         let q = self.solve(leg, &at.pose, near, x)?;
         let singular = || PathError::Singular { leg: leg.index, percent: percent(leg, x) };
-        let j: Matrix6<f64> = jacobian(self.model, &q, &leg.leg.tool);
+        let j: Matrix6<f64> = leg.leg.tool.jacobian(self.model, &q);
         let lu = j.lu();
         let twist = stack(&at.linear, &at.angular);
         let q1 = lu.solve(&twist).ok_or_else(singular)?;
@@ -364,7 +364,7 @@ impl Builder<'_> {
             return Err(singular());
         }
         let q1: Joints = q1.into();
-        let rate: Matrix6<f64> = jacobian_dot(self.model, &q, &q1, &leg.leg.tool);
+        let rate: Matrix6<f64> = leg.leg.tool.jacobian_dot(self.model, &q, &q1);
         let bias = rate * Vector6::from(q1);
         let q2 =
             lu.solve(&(stack(&at.linear_rate, &at.angular_rate) - bias)).ok_or_else(singular)?;
@@ -380,7 +380,7 @@ impl Builder<'_> {
     ) -> Result<Joints, PathError> {
         // Between neighbouring points no joint turns by more than this, but for a branch change.
         const JUMP: f64 = 0.6;
-        let flange = pose * leg.leg.tool.inverse();
+        let flange = leg.leg.tool.flange(pose);
         let q = ik_near(self.model, &flange, near).map_err(|why| PathError::Unreachable {
             leg: leg.index,
             percent: percent(leg, x),

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use nalgebra::Isometry3;
+use crate::kinematics::Tcp;
 
 /// Joints of a robot that RAPID programs move.
 pub const DOF: usize = 6;
@@ -101,8 +101,8 @@ pub struct Extent {
     pub angle: f64,
     /// Length in the parameter s.
     pub extent: f64,
-    /// TCP in the flange's frame, m.
-    pub tool: Isometry3<f64>,
+    /// Where the TCP is fixed, m.
+    pub tool: Tcp,
 }
 
 /// A joint path over [0, length]: q and q′ are continuous, and q″ up to jumps that

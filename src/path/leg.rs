@@ -4,6 +4,7 @@ use nalgebra::Isometry3;
 
 use super::joint_path::{DOF, Joints};
 use crate::ir::movement::{Speed, Zone};
+use crate::kinematics::Tcp;
 
 /// The geometry of a leg.
 #[derive(Clone, Debug)]
@@ -26,9 +27,10 @@ pub struct Leg {
     /// Joints at its programmed end, rad. For a Cartesian leg the branch that is nearest
     /// along the path counts; this is the one that the program states.
     pub end: Joints,
-    /// TCP in the flange's frame, m.
-    pub tool: Isometry3<f64>,
-    /// Target pose of the TCP in the robot's base frame; for a joint leg the pose at `end`.
+    /// Where the TCP is fixed, m.
+    pub tool: Tcp,
+    /// Target pose of the TCP, seen from the robot's base frame or, of a stationary tool, from
+    /// tool0; for a joint leg the pose at `end`.
     pub target: Isometry3<f64>,
     /// Programmed speed.
     pub speed: Speed,

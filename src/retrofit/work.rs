@@ -17,7 +17,7 @@ use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest, retime, thriftiest};
 use crate::optimize::site::{Site, not_reached, sites};
-use crate::robot::Model;
+use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
 use crate::text::SourceFile;
 
@@ -133,17 +133,9 @@ pub enum RetrofitError {
         /// The entry routine.
         entry: String,
     },
-    /// The robot lacks what optimisation needs.
-    #[error(
-        "{robot} has no {what}: optimize needs it; give a robot file that adds it \
-         (--robot FILE.toml with extends = \"{robot}\")"
-    )]
-    Robot {
-        /// The robot.
-        robot: String,
-        /// What is missing.
-        what: &'static str,
-    },
+    /// The robot lacks something.
+    #[error(transparent)]
+    Robot(#[from] NotReady),
     /// A takt below the possible.
     #[error(
         "a takt of {takt:.3} s is below the possible: the cycle takes at least {least:.3} s with \
@@ -277,7 +269,7 @@ pub fn retrofit(
     settings: &Settings,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Retrofit, RetrofitError> {
-    check_robot(model)?;
+    ready(model, Use::Optimize)?;
     let (program, entry) = read_program(files, &settings.entry)?;
     let simulation = simulate(&program, entry, model, &settings.options);
     let before = account(model, &simulation);
@@ -339,26 +331,6 @@ fn figures(simulation: &Simulation, account: &Account) -> Figures {
         energy_j: account.total.energy_j(),
         motion_energy_j: account.total.motion_energy_j(),
     }
-}
-
-fn check_robot(model: &Model) -> Result<(), RetrofitError> {
-    let missing = |what| Err(RetrofitError::Robot { robot: model.name.clone(), what });
-    if !model.has_dynamics() {
-        return missing("dynamics (masses, inertias)");
-    }
-    if model.limits.velocity.is_none() {
-        return missing("joint speed limits");
-    }
-    if model.limits.acceleration.is_none() {
-        return missing("joint acceleration limits");
-    }
-    if model.limits.torque.is_none() {
-        return missing("joint torque limits");
-    }
-    if model.motors.is_none() {
-        return missing("motor data");
-    }
-    Ok(())
 }
 
 /// The run of a variant.

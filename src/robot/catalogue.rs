@@ -3,7 +3,7 @@
 use super::error::RobotError;
 use super::load::resolve;
 use super::model::Model;
-use super::names::{Name, nearest};
+use super::names::{Name, distance, nearest, nearest_kind};
 use super::tree::{self, Node};
 
 /// Full name and document of each robot, by name.
@@ -121,8 +121,17 @@ pub(super) fn document(name: &str) -> Result<Node, RobotError> {
     }
 }
 
-/// The nearest robot of the same type, else of all.
+/// The nearest robot.
 fn suggestion(name: &str, asked: &Name) -> Option<&'static str> {
-    let of_type = names().filter(|full| Name::parse(full).same_type(asked));
-    nearest(name, of_type).or_else(|| nearest(name, names()))
+    // A mistyped type first: then the nearest figures of the nearest type.
+    let kind = nearest_kind(asked, names().map(Name::parse))?;
+    let written = [name.to_owned(), asked.written(), asked.reversed()];
+    let of_kind: Vec<&str> = names().filter(|full| Name::parse(full).kind() == kind).collect();
+    written
+        .iter()
+        .filter_map(|text| nearest(text, of_kind.iter().copied()))
+        .min_by_key(|full| {
+            written.iter().map(|text| distance(text, full)).min().unwrap_or(usize::MAX)
+        })
+        .or_else(|| nearest(name, names()))
 }

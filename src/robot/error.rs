@@ -26,12 +26,22 @@ pub enum RobotError {
         candidates: Vec<String>,
     },
     /// A file could not be read.
-    #[error("cannot read the robot file {path}: {source}")]
+    #[error("cannot read the robot file {path}: {reason}; check the path")]
     Io {
         /// Path as given.
         path: String,
         /// The system's reason.
-        source: std::io::Error,
+        reason: String,
+    },
+    /// The robot that a file extends is not to be had.
+    #[error("{place}: extends = \"{name}\": {reason}")]
+    Base {
+        /// `file:line`.
+        place: String,
+        /// As the file names it.
+        name: String,
+        /// Why, with the way out.
+        reason: String,
     },
     /// The file's kind is not supported.
     #[error("{path} is no robot file; give a Robot TOML that ends in .toml or a URDF in .urdf")]
@@ -78,7 +88,9 @@ pub enum RobotError {
     /// A key that must be there is not.
     #[error(
         "{place}: {table} lacks \"{key}\"; {}",
-        .instead.as_ref().map_or("add it".into(), |i| format!("rename \"{i}\""))
+        .instead.as_ref().map_or("add it".into(), |i| format!(
+            "write \"{i}\" as \"{key}\", in SI units and radians"
+        ))
     )]
     Missing {
         /// `file:line` of the table.
@@ -125,6 +137,22 @@ pub enum RobotError {
         value: String,
         /// What it must be.
         must: String,
+    },
+    /// An effect whose law the model does not have.
+    #[error(
+        "{place}: no law for the effect \"{id}\"{}; remove [effects.{id}], laws are known of {}",
+        .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?")),
+        .known.join(", ")
+    )]
+    Effect {
+        /// `file:line` of the table.
+        place: String,
+        /// Its id.
+        id: String,
+        /// The nearest known one, if one is near.
+        suggestion: Option<String>,
+        /// All known ones.
+        known: Vec<String>,
     },
     /// `extends` leads too deep, probably in a circle.
     #[error("{place}: \"extends\" is nested more than {limit} deep; remove the circle")]

@@ -16,6 +16,8 @@ pub(super) enum Accepts {
     Positive,
     /// 0 to 1.
     Share,
+    /// From the first to the second, as figures in SI units are; in words.
+    Between(f64, f64, &'static str),
 }
 
 impl Accepts {
@@ -26,6 +28,7 @@ impl Accepts {
                 Accepts::NonNegative => x >= 0.0,
                 Accepts::Positive => x > 0.0,
                 Accepts::Share => (0.0..=1.0).contains(&x),
+                Accepts::Between(least, most, _) => (least..=most).contains(&x),
             }
     }
 
@@ -35,9 +38,35 @@ impl Accepts {
             Accepts::NonNegative => "0 or more",
             Accepts::Positive => "more than 0",
             Accepts::Share => "between 0 and 1",
+            Accepts::Between(_, _, words) => words,
         }
     }
 }
+
+/// Lengths within a robot \[m\].
+pub(super) const LENGTH: Accepts = Accepts::Between(
+    -50.0,
+    50.0,
+    "a length in metres, at most 50 (in millimetres it would be 1000 times more)",
+);
+/// Angles of a placement \[rad\].
+pub(super) const ANGLE: Accepts = Accepts::Between(
+    -13.0,
+    13.0,
+    "an angle in radians, at most two turns (180 degrees are 3.14159)",
+);
+/// Bounds of a joint \[rad\]; an endless one turns a hundred times to either side.
+const TURN: Accepts = Accepts::Between(
+    -2000.0,
+    2000.0,
+    "an angle in radians, at most 50, or 628 for an endless joint (180 degrees are 3.14159)",
+);
+/// Numbers from this on are shown with an exponent.
+const HUGE: f64 = 1e9;
+/// Largest bound of a joint that is not endless \[rad\].
+const FARTHEST_TURN: f64 = 50.0;
+/// Least bound of an endless joint \[rad\].
+const ENDLESS: f64 = 600.0;
 
 /// One table, read key by key.
 pub(super) struct Fields {
@@ -91,6 +120,11 @@ impl Fields {
     pub(super) fn take(&mut self, key: &str) -> Option<Node> {
         self.known.push(key.to_owned());
         self.entries.remove(key)
+    }
+
+    /// Whether the key is there and not read yet.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
     }
 
     /// The keys that are not read yet.
@@ -183,8 +217,9 @@ impl Fields {
     pub(super) fn array<const N: usize>(
         &mut self,
         key: &str,
+        accepts: Accepts,
     ) -> Result<Option<[f64; N]>, RobotError> {
-        let list = self.numbers(key, N, &format!("{N} numbers"), Accepts::Finite)?;
+        let list = self.numbers(key, N, &format!("{N} numbers"), accepts)?;
         Ok(list.and_then(|list| <[f64; N]>::try_from(list).ok()))
     }
 
@@ -230,15 +265,6 @@ impl Fields {
             .collect()
     }
 
-    /// A number or a list of any length.
-    pub(super) fn any_numbers(&mut self, key: &str) -> Result<Option<Vec<f64>>, RobotError> {
-        let length = match self.entries.get(key).map(|node| &node.value) {
-            Some(Value::List(items)) => items.len(),
-            _ => return Ok(self.number(key, Accepts::Finite)?.map(|value| vec![value])),
-        };
-        self.numbers(key, length, "numbers", Accepts::Finite)
-    }
-
     fn numbers(
         &mut self,
         key: &str,
@@ -281,23 +307,27 @@ impl Fields {
         let Value::Number(value) = node.value else {
             return Err(self.wrong_type(key, &node.place, &node.value, "a number"));
         };
-        if accepts.holds(value) {
-            return Ok(value);
-        }
-        Err(RobotError::Value {
+        if accepts.holds(value) { Ok(value) } else { Err(self.refused(key, node, value, accepts)) }
+    }
+
+    fn refused(&self, key: &str, node: &Node, value: f64, accepts: Accepts) -> RobotError {
+        RobotError::Value {
             place: node.place.to_string(),
             key: self.path(key),
-            value: value.to_string(),
+            value: if value.abs() < HUGE { value.to_string() } else { format!("{value:e}") },
             must: accepts.words().into(),
-        })
+        }
     }
 
     fn as_interval(&self, key: &str, node: &Node) -> Result<[f64; 2], RobotError> {
         let items = self.as_list(key, node, 2, "2 numbers, [low, high]")?;
-        let [low, high] = [
-            self.as_number(key, &items[0], Accepts::Finite)?,
-            self.as_number(key, &items[1], Accepts::Finite)?,
-        ];
+        let [low, high] =
+            [self.as_number(key, &items[0], TURN)?, self.as_number(key, &items[1], TURN)?];
+        for (item, bound) in items.iter().zip([low, high]) {
+            if bound.abs() > FARTHEST_TURN && bound.abs() < ENDLESS {
+                return Err(self.refused(key, item, bound, TURN));
+            }
+        }
         if low < high {
             return Ok([low, high]);
         }

@@ -9,8 +9,8 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion
 
 use super::MAX_DOF;
 use super::error::RobotError;
-use super::fields::{Accepts, Fields};
-use super::ortho_parallel::recognise;
+use super::fields::{ANGLE, Accepts, Fields, LENGTH};
+use super::ortho_parallel::{offset_wrist, recognise};
 use super::provenance::Origin;
 
 /// Below this, a coordinate of an axis or an origin is rounding of a zero.
@@ -76,6 +76,16 @@ pub struct Opw {
     pub signs: [f64; 6],
 }
 
+/// An arm of the OPW form up to axis 5, which axis 6 passes at a distance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffsetWrist {
+    /// The arm if its axis 6 went through the crossing of axes 4 and 5, and its flange
+    /// lay there (`c4` = 0).
+    pub arm: Opw,
+    /// That flange, at angle 0 of that axis 6, in the frame of joint 5.
+    pub crossing: Isometry3<f64>,
+}
+
 /// How the joint angles that a controller reports turn the serial chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coupling {
@@ -96,6 +106,8 @@ pub struct Geometry {
     /// The OPW parameters of the chain, where it has that form; a chain that is given
     /// joint by joint may have it too.
     pub opw: Option<Opw>,
+    /// What else is known of a chain of six joints without that form.
+    pub offset_wrist: Option<OffsetWrist>,
     /// Coupling of joints 2 and 3.
     pub coupling: Coupling,
     /// The base frame in the world: where the robot stands, and how it is mounted.
@@ -170,7 +182,8 @@ impl Geometry {
         let base = base.unwrap_or_else(Isometry3::identity);
         if let Some(opw) = opw {
             let (joints, flange) = opw.chain();
-            return Ok(Some(Geometry { joints, flange, opw: Some(opw), coupling, base }));
+            let (opw, offset_wrist) = (Some(opw), None);
+            return Ok(Some(Geometry { joints, flange, opw, offset_wrist, coupling, base }));
         }
         let joints =
             joints.into_iter().map(|table| joint(table, origins)).collect::<Result<Vec<_>, _>>()?;
@@ -179,7 +192,8 @@ impl Geometry {
         }
         let flange = flange.unwrap_or_else(Isometry3::identity);
         let opw = recognise(&joints, &flange);
-        Ok(Some(Geometry { joints, flange, opw, coupling, base }))
+        let offset_wrist = if opw.is_none() { offset_wrist(&joints) } else { None };
+        Ok(Some(Geometry { joints, flange, opw, offset_wrist, coupling, base }))
     }
 }
 
@@ -216,7 +230,7 @@ impl Opw {
     fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Opw, RobotError> {
         let mut lengths = [0.0; 7];
         for (length, key) in lengths.iter_mut().zip(["a1", "a2", "b", "c1", "c2", "c3", "c4"]) {
-            let value = fields.number(key, Accepts::Finite)?;
+            let value = fields.number(key, LENGTH)?;
             *length = fields.required(key, value)?;
         }
         let [a1, a2, b, c1, c2, c3, c4] = lengths;
@@ -228,9 +242,9 @@ impl Opw {
                 must: "an arm with c2 > 0 and a forearm".into(),
             });
         }
-        let offsets = fields.array::<6>("offsets")?;
+        let offsets = fields.array::<6>("offsets", ANGLE)?;
         let offsets = fields.required("offsets", offsets)?;
-        let signs = fields.array::<6>("signs")?;
+        let signs = fields.array::<6>("signs", Accepts::Finite)?;
         let signs = fields.required("signs", signs)?;
         if signs.iter().any(|sign| sign.abs() != 1.0) {
             return Err(RobotError::Value {
@@ -250,12 +264,12 @@ fn tidy(v: Vector3<f64>) -> Vector3<f64> {
 }
 
 fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotError> {
-    let origin = fields.array::<3>("origin")?;
+    let origin = fields.array::<3>("origin", LENGTH)?;
     let origin = fields.required("origin", origin)?;
-    let [roll, pitch, yaw] = fields.array::<3>("rpy")?.unwrap_or_default();
-    let axis = fields.array::<3>("axis")?;
+    let [roll, pitch, yaw] = fields.array::<3>("rpy", ANGLE)?.unwrap_or_default();
+    let axis = fields.array::<3>("axis", Accepts::Between(-1e9, 1e9, "a direction"))?;
     let axis = fields.required("axis", axis)?;
-    let Some(axis) = Unit::try_new(Vector3::from(axis), f64::MIN_POSITIVE) else {
+    let Some(axis) = Unit::try_new(Vector3::from(axis), 1e-9) else {
         return Err(RobotError::Value {
             place: fields.place(),
             key: fields.path("axis"),
@@ -272,8 +286,8 @@ fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotEr
 }
 
 fn pose(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Isometry3<f64>, RobotError> {
-    let origin = fields.array::<3>("origin")?.unwrap_or_default();
-    let [roll, pitch, yaw] = fields.array::<3>("rpy")?.unwrap_or_default();
+    let origin = fields.array::<3>("origin", LENGTH)?.unwrap_or_default();
+    let [roll, pitch, yaw] = fields.array::<3>("rpy", ANGLE)?.unwrap_or_default();
     origins.extend(fields.finish()?);
     Ok(Isometry3::from_parts(
         Translation3::from(Vector3::from(origin)),

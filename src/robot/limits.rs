@@ -4,6 +4,19 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
+/// Speeds of joints \[rad/s\].
+const SPEED: Accepts = Accepts::Between(
+    f64::MIN_POSITIVE,
+    100.0,
+    "more than 0 and at most 100, in rad/s (180 deg/s are 3.14159)",
+);
+/// Accelerations of joints \[rad/s²\].
+const ACCELERATION: Accepts =
+    Accepts::Between(f64::MIN_POSITIVE, 2000.0, "more than 0 and at most 2000, in rad/s2");
+/// Speeds of the tool centre point \[m/s\].
+const TCP_SPEED: Accepts =
+    Accepts::Between(f64::MIN_POSITIVE, 50.0, "more than 0 and at most 50, in m/s (not mm/s)");
+
 /// Limits of the joints and of the tool centre point. A limit that no source
 /// gives is `None`.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,11 +94,11 @@ impl Limits {
             position,
             position_if,
             coupled: fields.interval("coupled")?,
-            velocity: fields.per_joint("velocity", dof, Accepts::Positive)?,
-            acceleration: fields.per_joint("acceleration", dof, Accepts::Positive)?,
+            velocity: fields.per_joint("velocity", dof, SPEED)?,
+            acceleration: fields.per_joint("acceleration", dof, ACCELERATION)?,
             jerk: fields.per_joint("jerk", dof, Accepts::Positive)?,
             torque: fields.per_joint("torque", dof, Accepts::Positive)?,
-            tcp_speed: fields.number("tcp_speed", Accepts::Positive)?,
+            tcp_speed: fields.number("tcp_speed", TCP_SPEED)?,
             tcp_acceleration: fields.number("tcp_acceleration", Accepts::Positive)?,
         };
         origins.extend(fields.finish()?);

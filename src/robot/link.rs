@@ -3,12 +3,15 @@
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 use super::error::RobotError;
-use super::fields::{Accepts, Fields};
+use super::fields::{Accepts, Fields, LENGTH};
 use super::provenance::Origin;
 
 /// Share of the largest principal moment by which one may miss being
 /// consistent: rounding of numbers printed with few digits.
 const ROUNDING: f64 = 1e-9;
+
+/// Masses \[kg\].
+const MASS: Accepts = Accepts::Between(0.0, 1e5, "0 or more and at most 100000, in kg");
 
 /// The rigid body behind one joint, in that joint's frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,11 +61,11 @@ impl Link {
     }
 
     pub(super) fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Link, RobotError> {
-        let mass = fields.number("mass", Accepts::NonNegative)?;
+        let mass = fields.number("mass", MASS)?;
         let mass = fields.required("mass", mass)?;
-        let com = fields.array::<3>("com")?;
+        let com = fields.array::<3>("com", LENGTH)?;
         let com = fields.required("com", com)?;
-        let inertia = fields.array::<6>("inertia")?;
+        let inertia = fields.array::<6>("inertia", Accepts::Finite)?;
         let moments = fields.required("inertia", inertia)?;
         let inertia = symmetric(moments);
         let principal = principal_moments(&inertia);

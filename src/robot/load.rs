@@ -1,6 +1,7 @@
 //! A model from a file or from the catalogue.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::catalogue;
@@ -58,13 +59,18 @@ pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result
         return Err(RobotError::Extends { place, limit: MAX_EXTENDS });
     }
     let beside: Option<PathBuf> = folder.map(|folder| folder.join(name));
-    let base = match beside {
-        Some(path) if kind(&path).is_some() => {
-            resolve(read_file(&path)?, path.parent(), depth + 1)?
-        }
-        _ => resolve(catalogue::document(name)?, None, depth + 1)?,
+    let (base, folder) = match &beside {
+        Some(path) if kind(path).is_some() => (read_file(path), path.parent()),
+        _ => (catalogue::document(name), None),
     };
-    Ok(tree::overlay(base, node))
+    let base = base.map_err(|error| match error {
+        RobotError::Io { .. } | RobotError::Unknown { .. } | RobotError::Ambiguous { .. } => {
+            let (name, reason) = (name.clone(), error.to_string());
+            RobotError::Base { place, name, reason }
+        }
+        other => other,
+    })?;
+    Ok(tree::overlay(resolve(base, folder, depth + 1)?, node))
 }
 
 /// Kinds of robot files.
@@ -86,8 +92,14 @@ fn kind(path: &Path) -> Option<Kind> {
 
 fn read_file(path: &Path) -> Result<Node, RobotError> {
     let shown = path.display().to_string();
-    let text = fs::read_to_string(path)
-        .map_err(|source| RobotError::Io { path: shown.clone(), source })?;
+    let text = fs::read_to_string(path).map_err(|error| {
+        let reason = match error.kind() {
+            ErrorKind::InvalidData => "it is not UTF-8 text, save it as that".to_owned(),
+            _ => error.to_string(),
+        };
+        RobotError::Io { path: shown.clone(), reason }
+    })?;
+    let text = text.strip_prefix('\u{feff}').map_or(text.as_str(), |rest| rest).to_owned();
     match kind(path) {
         Some(Kind::Urdf) => tree::parse(&shown, &import_urdf(&shown, &text)?),
         _ => tree::parse(&shown, &text),

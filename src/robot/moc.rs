@@ -14,6 +14,9 @@ use super::error::RobotError;
 use super::system_parameters::{Entry, break_off, section};
 use super::toml_text::{list, pose, quoted};
 
+/// Sections of a controller's own file: of the first ones, and of the last.
+const ENDS: [&str; 2] = ["MOTION_SYSTEM", "MOTOR_CALIB"];
+
 /// How every motion configuration begins.
 const HEADER: &str = "MOC:CFG_";
 
@@ -51,6 +54,12 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
             configuration.number(arm, "lower_joint_bound", joint)?,
             configuration.number(arm, "upper_joint_bound", joint)?,
         ];
+        if low >= high {
+            return Err(configuration.error(format!(
+                "{joint} turns from {low} to {high} rad; correct -lower_joint_bound and \
+                 -upper_joint_bound"
+            )));
+        }
         let _ = writeln!(out, "  {},", list(&[low, high]));
     }
     let _ = write!(out, "]\nposition_source = {source}\nposition_provenance = \"identified\"\n");
@@ -112,7 +121,12 @@ impl Configuration<'_> {
                 ),
             );
         }
-        match break_off(self.text) {
+        let broken = break_off(self.text).map(|(line, how)| (line, how.to_owned()));
+        // What a controller writes ends in other sections than it begins with.
+        let [begins, ends] = ENDS.map(|name| !section(self.text, name).is_empty());
+        let lacks = (begins && !ends)
+            .then(|| (self.text.lines().count(), format!("there is no section {}", ENDS[1])));
+        match broken.or(lacks) {
             Some((line, how)) => {
                 at(line, format!("the file breaks off here ({how}); take it from the backup again"))
             }
@@ -177,7 +191,12 @@ impl Configuration<'_> {
         let mut levels = Vec::with_capacity(dof);
         for joint in 1..=dof {
             let name = format!("r{}_CFric_{joint}", index + 1);
-            let Some(block) = find(&blocks, &name) else { return Ok(None) };
+            let Some(block) = find(&blocks, &name) else {
+                if levels.is_empty() {
+                    return Ok(None);
+                }
+                return self.named(&blocks, &name, "CFRIC_BLOCK").map(|_| None);
+            };
             if !block.contains_key("friction_ff_level") {
                 return Ok(None);
             }

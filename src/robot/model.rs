@@ -12,6 +12,7 @@ use super::limits::Limits;
 use super::link::{ArmLoad, Link};
 use super::motors::Motors;
 use super::provenance::{self, Origin};
+use super::sensors::Sensors;
 use super::tree::Node;
 use super::wrist::Wrist;
 
@@ -43,7 +44,9 @@ pub struct Model {
     pub standstill: Standstill,
     /// The motion planner.
     pub controller: Controller,
-    /// What identification or diagnosis added.
+    /// How its logs differ from it.
+    pub sensors: Sensors,
+    /// What identification or diagnosis added; the fields above contain it.
     pub effects: Vec<EffectParameters>,
     /// The origin of every number, in the order of the fields above.
     pub origins: Vec<Origin>,
@@ -71,9 +74,9 @@ impl Model {
         robot.text("extends")?;
 
         let joints = robot.tables("joint")?;
-        if joints.len() > MAX_DOF {
+        if let Some(beyond) = joints.get(MAX_DOF) {
             return Err(RobotError::Length {
-                place: robot.place(),
+                place: beyond.place(),
                 key: "joint".into(),
                 found: joints.len(),
                 expected: format!("at most {MAX_DOF}"),
@@ -132,13 +135,13 @@ impl Model {
             None => Controller::default(),
         };
         let effects = match robot.table("effects")? {
-            Some(table) => EffectParameters::read_all(table, &mut origins)?,
+            Some(table) => EffectParameters::read_all(table, dof, &mut origins)?,
             None => Vec::new(),
         };
         // How an identification came to its numbers is for people; nothing is computed from it.
         robot.take("identification");
         origins.extend(robot.finish()?);
-        Ok(Model {
+        let mut model = Model {
             name,
             dof,
             kinematics,
@@ -151,8 +154,14 @@ impl Model {
             brakes,
             standstill,
             controller,
-            effects,
+            sensors: Sensors::exact(dof),
+            effects: Vec::new(),
             origins,
-        })
+        };
+        for effect in &effects {
+            effect.apply(&mut model)?;
+        }
+        model.effects = effects;
+        Ok(model)
     }
 }

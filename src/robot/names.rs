@@ -68,9 +68,20 @@ impl Name {
         Name { kind, numbers, words }
     }
 
-    /// Whether both are of one type, such as `1600`.
-    pub(super) fn same_type(&self, other: &Name) -> bool {
-        self.kind == other.kind
+    /// The type, such as `1600`.
+    pub(super) fn kind(&self) -> &str {
+        &self.kind
+    }
+
+    /// Type and figures in the order of a full name.
+    pub(super) fn written(&self) -> String {
+        format!("irb{} {}", self.kind, self.numbers.join(" "))
+    }
+
+    /// The same with the figures turned round, as controllers have them.
+    pub(super) fn reversed(&self) -> String {
+        let numbers: Vec<&str> = self.numbers.iter().rev().map(String::as_str).collect();
+        format!("irb{} {}", self.kind, numbers.join(" "))
     }
 
     /// How `self`, as asked for, fits the full name `full`, if it does.
@@ -99,6 +110,17 @@ impl Name {
             _ => None,
         }
     }
+}
+
+/// The type among the names that is nearest to the one asked for, if one is near.
+pub(super) fn nearest_kind(asked: &Name, known: impl Iterator<Item = Name>) -> Option<String> {
+    let kinds: Vec<String> = known.map(|name| name.kind).collect();
+    nearest(&asked.kind, kinds.iter().map(String::as_str)).map(str::to_owned)
+}
+
+/// Letters by which two names differ.
+pub(super) fn distance(a: &str, b: &str) -> usize {
+    edit_distance(&compact(a), &compact(b))
 }
 
 /// The name among `known` that is nearest to `text`, if one is near.

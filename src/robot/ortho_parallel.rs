@@ -1,10 +1,10 @@
 //! Finding the OPW form of a chain that is given joint by joint.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, Unit, UnitQuaternion, Vector3};
 
-use super::geometry::{Joint, Opw};
+use super::geometry::{Joint, OffsetWrist, Opw};
 
 /// Largest difference of the two chains \[m\] and \[rad\]; a URDF rounds its numbers.
 const SAME: f64 = 1e-6;
@@ -69,6 +69,27 @@ pub(super) fn recognise(joints: &[Joint], flange: &Isometry3<f64>) -> Option<Opw
     is_same(&found, joints, flange).then_some(found)
 }
 
+/// The arm up to axis 5, if it has that form with another axis 6: one through the crossing
+/// of axes 4 and 5, at a right angle to axis 5.
+pub(super) fn offset_wrist(joints: &[Joint]) -> Option<OffsetWrist> {
+    let [_, _, _, fourth, fifth, _] = joints else { return None };
+    // Both axes in the frame of joint 5, at angle 0.
+    let into = fifth.rotation.inverse();
+    let origin4 = into * -fifth.translation;
+    let axis4 = into * fourth.axis.into_inner();
+    let axis5 = fifth.axis.into_inner();
+    let crossing = crossing(origin4, axis4, Vector3::zeros(), axis5)?;
+    let out = Unit::try_new(axis4 - axis5 * axis4.dot(&axis5), SAME)?;
+    let turn = Rotation3::rotation_between(&Vector3::z_axis(), &out)
+        .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
+    let sixth = Joint { translation: crossing, rotation: Rotation3::identity(), axis: out };
+    let flange =
+        Isometry3::from_parts(Vector3::zeros().into(), UnitQuaternion::from_rotation_matrix(&turn));
+    let chain: Vec<Joint> = joints[..5].iter().cloned().chain([sixth]).collect();
+    let arm = recognise(&chain, &flange)?;
+    Some(OffsetWrist { arm, crossing: Isometry3::from_parts(crossing.into(), flange.rotation) })
+}
+
 /// The axes of the joints and the flange in the base frame.
 struct Lines {
     origin: [Vector3<f64>; 6],
@@ -115,9 +136,9 @@ fn on_plane(point: Vector3<f64>, along: Vector3<f64>, normal: Vector3<f64>) -> V
 /// The angle, turned by half a turn into −π/2 … π/2.
 fn folded(angle: f64) -> f64 {
     if angle > FRAC_PI_2 {
-        angle - std::f64::consts::PI
+        angle - PI
     } else if angle < -FRAC_PI_2 {
-        angle + std::f64::consts::PI
+        angle + PI
     } else {
         angle
     }

@@ -198,8 +198,11 @@ impl Builder<'_> {
             DeValue::String(text) => Value::Text(text.to_string()),
             DeValue::Integer(number) => {
                 let digits = number.as_str().replace('_', "");
-                let value = i64::from_str_radix(&digits, number.radix()).unwrap_or(i64::MAX);
-                Value::Number(value as f64)
+                let value = match number.radix() {
+                    10 => digits.parse().unwrap_or(f64::NAN),
+                    radix => i64::from_str_radix(&digits, radix).map_or(f64::NAN, |n| n as f64),
+                };
+                Value::Number(value)
             }
             DeValue::Float(number) => {
                 Value::Number(number.as_str().replace('_', "").parse().unwrap_or(f64::NAN))

@@ -44,15 +44,17 @@ pub fn to_toml(model: &Model) -> String {
         out.table("[wrist]", "wrist", &[("coupling", number(model.wrist.coupling))]);
     }
     power(model, &mut out);
-    for effect in &model.effects {
-        let table = format!("effects.{}", effect.id);
-        let value = |values: &Vec<f64>| match values.as_slice() {
-            [one] => number(*one),
-            more => list(more),
-        };
-        let entries: Vec<(&str, String)> =
-            effect.values.iter().map(|(key, values)| (key.as_str(), value(values))).collect();
-        out.table(&format!("[{table}]"), &table, &entries);
+    // Effects are in the numbers above, but for those of the log.
+    let sensors = &model.sensors;
+    for (id, key, values) in [
+        ("encoder_offset", "offset", &sensors.position_offset),
+        ("torque_offset", "offset", &sensors.torque_offset),
+        ("torque_constant", "error", &sensors.torque_error),
+    ] {
+        if values.iter().any(|value| *value != 0.0) {
+            let table = format!("effects.{id}");
+            out.table(&format!("[{table}]"), &table, &[(key, list(values))]);
+        }
     }
     out.text
 }

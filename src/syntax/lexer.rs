@@ -315,11 +315,21 @@ fn letter(input: &[u8], high: High) -> usize {
     width.min(input.len())
 }
 
-/// Whether a dash or a typographic quotation mark is at the front (U+2010 to
-/// U+2027), which text processors make of RAPID's own characters. In other
-/// encodings than UTF-8 its bytes may be letters.
+/// Whether something is at the front that looks like one of RAPID's own
+/// characters: a dash or a typographic quotation mark (U+2010 to U+2027), which
+/// text processors make of them, or full-width punctuation (U+FF01 to U+FF20,
+/// U+3001, U+3002), which Chinese and Japanese keyboards write. In GBK only those
+/// are told whose bytes are no letters in other encodings.
 fn is_punctuation(input: &[u8], high: High) -> bool {
-    high == High::Utf8 && matches!(input, [0xE2, 0x80, 0x90..=0xA7, ..])
+    match high {
+        High::Utf8 => matches!(
+            input,
+            [0xE2, 0x80, 0x90..=0xA7, ..]
+                | [0xEF, 0xBC, 0x81..=0x8F | 0x9A..=0xA0, ..]
+                | [0xE3, 0x80, 0x81 | 0x82, ..]
+        ),
+        High::Legacy => matches!(input, [0xA3, 0xA8 | 0xA9 | 0xAC | 0xBA | 0xBB | 0xBD, ..]),
+    }
 }
 
 /// Bytes of the space from 0x80 at the front, if one is there: byte order
@@ -385,6 +395,8 @@ mod tests {
         assert_eq!(kinds("año".as_bytes()), [Identifier]);
         assert_eq!(kinds(b"a\xF1o"), [Identifier]);
         assert_eq!(kinds("位置1".as_bytes()), [Identifier]);
+        assert_eq!(kinds("a，".as_bytes()), [Identifier, Unknown]);
+        assert_eq!(kinds(b"a\xA3\xAC"), [Identifier, Unknown]);
         assert_eq!(kinds(b"IfX If endif"), [Identifier, Whitespace, If, Whitespace, EndIf]);
     }
 

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::cli::common::Format;
 use crate::kinematics::{fk, ik_near, limits_ok, radical_inverse};
-use crate::robot::{self, Link, Model, lacking};
+use crate::robot::{self, Lack, Link, Model, Use, lacking};
 
 /// Poses over the ranges of the joints at which forward and inverse kinematics
 /// are held against each other.
@@ -21,7 +21,7 @@ struct Finding {
     name: String,
     joints: usize,
     problems: Vec<String>,
-    lacks: Vec<(&'static str, Vec<&'static str>)>,
+    lacks: Vec<(Use, Vec<Lack>)>,
 }
 
 /// Checks the robots; all of the catalogue where none is named.
@@ -63,7 +63,8 @@ fn checked(model: &Model) -> Finding {
     if missed > 0 {
         problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));
     }
-    Finding { name: model.name.clone(), joints: model.dof, problems, lacks: lacking(model) }
+    let lacks = Use::ALL.map(|of| (of, lacking(model, of))).to_vec();
+    Finding { name: model.name.clone(), joints: model.dof, problems, lacks }
 }
 
 /// Whether the inverse of the `n`-th pose has that pose. Robots without six joints
@@ -98,16 +99,20 @@ fn text(finding: &Finding) -> String {
         let _ = writeln!(text, "  {problem}");
     }
     for (command, missing) in finding.lacks.iter().filter(|(_, missing)| !missing.is_empty()) {
-        let _ = writeln!(text, "  {command} lacks {}", missing.join(", "));
+        let _ = writeln!(text, "  {command} lacks {}", words(missing).join(", "));
     }
     text
+}
+
+fn words(lacks: &[Lack]) -> Vec<String> {
+    lacks.iter().map(ToString::to_string).collect()
 }
 
 fn document(finding: &Finding) -> Value {
     let lacks: Map<String, Value> = finding
         .lacks
         .iter()
-        .map(|(command, missing)| ((*command).into(), json!(missing)))
+        .map(|(command, missing)| (command.to_string(), json!(words(missing))))
         .collect();
     json!({
         "name": finding.name,

@@ -3,7 +3,7 @@
 use crate::dynamics::Data;
 use crate::energy::account::base;
 use crate::energy::power::{holding_w, power};
-use crate::kinematics::{fk, jacobian};
+use crate::kinematics::fk;
 use crate::motion::timeline::Run;
 use crate::optimize::corridor::Corridor;
 use crate::path::joint_path::{DOF, Joints};
@@ -55,8 +55,8 @@ pub(super) fn samples(model: &Model, run: &Run, corridor: Option<&Corridor>) -> 
         } else {
             holding_w(model, &run.load, &state.q).iter().sum()
         };
-        let rate = jacobian(model, &state.q, &tool) * nalgebra::Vector6::from(state.qd);
-        let pose = fk(model, &state.q) * tool;
+        let rate = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+        let pose = tool.pose(&fk(model, &state.q));
         rows.push(Sample {
             t,
             qd: state.qd,

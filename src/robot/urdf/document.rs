@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use urdf_rs::{Joint, Link, Robot};
 
+use super::values::{Wrong, check_joint, check_link, too_deep};
 use crate::robot::error::RobotError;
 
 /// A URDF with the places of its elements.
@@ -28,6 +29,9 @@ impl Document {
             let message = "it has xacro macros; expand them first: xacro FILE > robot.urdf";
             return Err(fail(line, message.into()));
         }
+        if let Some(line) = too_deep(text) {
+            return Err(fail(line, "not a URDF: elements are nested too deep".into()));
+        }
         let xml = roxmltree::Document::parse(text).map_err(|error| {
             let line = match error {
                 roxmltree::Error::UnexpectedEndOfStream => text.lines().count(),
@@ -41,6 +45,13 @@ impl Document {
         if root.tag_name().name() != "robot" {
             return Err(fail(line(&root), "not a URDF: the first element is not <robot>".into()));
         }
+        if root.attribute("name").is_none_or(|name| name.trim().is_empty()) {
+            return Err(fail(line(&root), "the <robot> has no name; give it one".into()));
+        }
+        if child(&root, "link").is_none() {
+            return Err(fail(line(&root), "the robot has no <link>; export it again".into()));
+        }
+        let wrong = |(node, message): Wrong<'_, '_>| fail(line(&node), message);
         let mut lines = BTreeMap::new();
         let mut with_inertial = Vec::new();
         let mut reductions = BTreeMap::new();
@@ -55,19 +66,12 @@ impl Document {
             }
             match tag {
                 "link" => {
-                    if let Some(inertial) = child(&node, "inertial") {
-                        for part in ["mass", "inertia"] {
-                            if child(&inertial, part).is_none() {
-                                let message = format!(
-                                    "the <inertial> of link \"{name}\" has no <{part}>; add it, \
-                                     or leave <inertial> out of every link"
-                                );
-                                return Err(fail(line(&inertial), message));
-                            }
-                        }
+                    check_link(node).map_err(wrong)?;
+                    if child(&node, "inertial").is_some() {
                         with_inertial.push(name.to_owned());
                     }
                 }
+                "joint" => check_joint(node).map_err(wrong)?,
                 "transmission" => {
                     if let Some((joint, ratio)) = reduction(&node) {
                         let message = || {

@@ -6,6 +6,7 @@
 mod bodies;
 mod chain;
 mod document;
+mod values;
 mod write;
 
 use super::error::RobotError;

@@ -48,8 +48,15 @@ impl Parser<'_> {
         let keyword = self.tokens.kind(opener).describe();
         let related = self.related(opener, format!("this {keyword} is not closed"));
         let range = self.tokens.range(self.position);
-        let end = if before { range.start } else { range.end };
-        self.push_error(range.start, end, message, Some(related));
+        match (before, self.at(TokenKind::EndOfFile)) {
+            // Not on the empty line behind the last one.
+            (true, true) => {
+                let place = self.end_before(self.position);
+                self.push_error(place, place, message, Some(related));
+            }
+            (true, false) => self.push_error(range.start, range.start, message, Some(related)),
+            (false, _) => self.push_error(range.start, range.end, message, Some(related)),
+        }
     }
 
     /// Whether a misspelling of the keyword that closes the innermost block

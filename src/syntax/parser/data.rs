@@ -27,15 +27,19 @@ impl Parser<'_> {
         if self.at(TokenKind::LeftBrace) {
             self.dimensions();
         }
+        let mut expected = "an operator or ';'";
         if self.eat(TokenKind::Assign) {
             self.expression();
         } else if !self.quiet && self.at(TokenKind::Equal) {
             self.wrong_token(TokenKind::Assign);
             self.expression();
-        } else if constant && !self.quiet {
-            self.tolerate(Tolerance::ConstWithoutValue, keyword);
+        } else {
+            if constant && !self.quiet {
+                self.tolerate(Tolerance::ConstWithoutValue, keyword);
+            }
+            expected = "':=' or ';'";
         }
-        self.end_statement("':=' or ';'");
+        self.end_statement(expected);
         self.finish(mark, NodeKind::DataDeclaration);
     }
 

@@ -111,7 +111,11 @@ impl Parser<'_> {
                 }
                 related = true;
             }
+            let comparing = self.at(TokenKind::Equal);
             self.bump();
+            if comparing {
+                self.skip_doubled_equal();
+            }
             let right = self.binary(level.tighter(), "an expression");
             height = self.taller(mark, NodeKind::BinaryExpression, height.max(right));
         }

@@ -153,4 +153,58 @@ impl Parser<'_> {
             self.bump();
         }
     }
+
+    /// `==`: reads past its second half.
+    pub(super) fn skip_doubled_equal(&mut self) {
+        if self.at(TokenKind::Equal) && self.position == self.end {
+            self.error_at(self.position, "expected '=' to compare, found '=='".to_owned());
+            self.leaf(NodeKind::Error);
+        }
+    }
+
+    /// `i++;`, `i--;`, `i += 2;` as a statement.
+    pub(super) fn foreign_increment(&mut self) -> bool {
+        let first = self.after(self.position);
+        let second = self.after(first);
+        let kinds = (self.tokens.kind(first), self.tokens.kind(second));
+        let doubled = kinds.0 == kinds.1;
+        let third = self.after(second);
+        let alone = matches!(self.tokens.kind(third), TokenKind::Semicolon | TokenKind::EndOfFile);
+        if !(kinds.1 == TokenKind::Equal || doubled && alone) || second != first + 1 {
+            return false;
+        }
+        let name = super::excerpt(self.text(self.position));
+        let sign = if kinds.0 == TokenKind::Plus { '+' } else { '-' };
+        let operator = if doubled { format!("{sign}{sign}") } else { format!("{sign}=") };
+        let amount = if doubled { "1" } else { "…" };
+        let mark = self.mark();
+        self.bump();
+        self.error_at(
+            first,
+            format!("expected ':=', found '{operator}'; write {name} := {name} {sign} {amount}"),
+        );
+        self.recover();
+        self.finish(mark, NodeKind::Error);
+        true
+    }
+
+    /// Reports a comment of another language.
+    pub(super) fn foreign_comment(&mut self) -> bool {
+        let second = self.tokens.kind(self.position + 1);
+        let slashes =
+            self.at(TokenKind::Slash) && matches!(second, TokenKind::Slash | TokenKind::Star);
+        let hash = self.at(TokenKind::Unknown) && self.text(self.position) == b"#";
+        if slashes || hash {
+            let found = if hash {
+                "#"
+            } else if second == TokenKind::Slash {
+                "//"
+            } else {
+                "/*"
+            };
+            let message = format!("expected a statement, found '{found}'; comments start with '!'");
+            self.error_at(self.position, message);
+        }
+        slashes || hash
+    }
 }

@@ -1,7 +1,7 @@
 //! Routines: `grammar/routines.ebnf`.
 
-use super::Parser;
 use super::recovery::{ends_block, starts_data};
+use super::{Parser, excerpt};
 use crate::syntax::node::NodeKind;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tolerance::Tolerance;
@@ -22,9 +22,19 @@ impl Parser<'_> {
         self.bump();
         self.skip_doubled(keyword);
         if keyword == TokenKind::Func {
+            let first = self.position;
             self.type_name();
+            if self.at(TokenKind::LeftParen) && !self.quiet {
+                let name = excerpt(self.text(first));
+                self.error_at(first, format!("expected a type before the name '{name}'"));
+                self.quiet = false;
+                self.missing();
+            } else {
+                self.name();
+            }
+        } else {
+            self.name();
         }
-        self.name();
         match (keyword, self.at(TokenKind::LeftParen)) {
             (TokenKind::Trap, true) => {
                 self.error_at(self.position, "a TRAP has no parameters".to_owned());

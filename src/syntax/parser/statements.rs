@@ -81,7 +81,9 @@ impl Parser<'_> {
             TokenKind::Identifier => self.name_statement(),
             _ => {
                 let mark = self.mark();
-                self.error_unexpected("a statement");
+                if !self.foreign_comment() {
+                    self.error_unexpected("a statement");
+                }
                 self.bump();
                 self.recover();
                 self.finish(mark, NodeKind::Error);
@@ -102,6 +104,7 @@ impl Parser<'_> {
                 self.assignment();
             }
             TokenKind::LeftBracket if self.assigns_to_brackets() => self.assignment(),
+            TokenKind::Plus | TokenKind::Minus if self.foreign_increment() => {}
             _ => self.call_statement(),
         }
     }

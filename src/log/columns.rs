@@ -1,0 +1,102 @@
+//! Which columns of a file are which channels.
+
+use super::channel::{Channel, Named};
+use super::error::LogError;
+
+/// Other names of columns, as `--map` gives them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ColumnMap {
+    /// Name of a channel, such as `tau1` or `q1_deg`, and the column that has it.
+    pairs: Vec<(String, String)>,
+}
+
+impl ColumnMap {
+    /// Reads `tau1=MotorTorque_1,q1_deg=J1`.
+    ///
+    /// # Errors
+    /// A part that is not `CHANNEL=COLUMN`, an unknown channel, or one that is there twice.
+    pub fn parse(text: &str) -> Result<ColumnMap, LogError> {
+        let mut pairs: Vec<(String, String)> = Vec::new();
+        for part in text.split(',').filter(|part| !part.trim().is_empty()) {
+            let Some((channel, column)) = part.split_once('=') else {
+                return Err(LogError::Map { part: part.trim().to_owned() });
+            };
+            let (channel, column) = (channel.trim().to_owned(), column.trim().to_owned());
+            if column.is_empty() {
+                return Err(LogError::Map { part: part.trim().to_owned() });
+            }
+            if Channel::named(&channel).is_none() {
+                return Err(LogError::UnknownChannel { name: channel });
+            }
+            if pairs.iter().any(|(known, _)| known.eq_ignore_ascii_case(&channel)) {
+                return Err(LogError::MappedTwice { name: channel });
+            }
+            pairs.push((channel, column));
+        }
+        Ok(ColumnMap { pairs })
+    }
+
+    /// The channel of a column's name.
+    fn named(&self, column: &str) -> Option<Named> {
+        if let Some((channel, _)) = self.pairs.iter().find(|(_, known)| known == column) {
+            return Channel::named(channel);
+        }
+        let named = Channel::named(column)?;
+        // A channel that another column is named for is not this one.
+        let taken = |(channel, _): &(String, String)| {
+            Channel::named(channel).is_some_and(|other| other.channel == named.channel)
+        };
+        if self.pairs.iter().any(taken) { None } else { Some(named) }
+    }
+}
+
+/// A recognised column.
+pub(super) struct Column {
+    pub(super) index: usize,
+    pub(super) name: String,
+    pub(super) named: Named,
+}
+
+/// The recognised ones of some columns.
+pub(super) fn recognised(names: &[String], map: &ColumnMap) -> Vec<Column> {
+    let column = |(index, name): (usize, &String)| {
+        let name = name.trim().to_owned();
+        Some(Column { index, named: map.named(&name)?, name })
+    };
+    names.iter().enumerate().filter_map(column).collect()
+}
+
+/// Whether the columns make a log; `names` are all that the file has.
+///
+/// # Errors
+/// No time, two columns of one channel, a joint left out, or a mapped column that is not
+/// there.
+pub(super) fn check(columns: &[Column], names: &[String], map: &ColumnMap) -> Result<(), LogError> {
+    let header = || {
+        let joined: String = names.join(",").chars().take(80).collect();
+        joined.trim_end_matches('\r').to_owned()
+    };
+    for (channel, column) in &map.pairs {
+        if !names.iter().any(|name| name.trim() == column) {
+            let (channel, column) = (channel.clone(), column.clone());
+            return Err(LogError::NoColumn { channel, column, header: header() });
+        }
+    }
+    if !columns.iter().any(|column| column.named.channel == Channel::Time) {
+        return Err(LogError::NoTime { header: header() });
+    }
+    for (i, column) in columns.iter().enumerate() {
+        let channel = column.named.channel;
+        if let Some(other) = columns[..i].iter().find(|other| other.named.channel == channel) {
+            return Err(LogError::Twice { first: other.name.clone(), second: column.name.clone() });
+        }
+        let Some(joint) = channel.joint() else { continue };
+        let of_family = columns.iter().map(|other| other.named.channel);
+        let of_family = of_family.filter(|other| other.family() == channel.family());
+        let joints: Vec<usize> = of_family.filter_map(Channel::joint).collect();
+        if let Some(missing) = (0..joint).find(|before| !joints.contains(before)) {
+            return Err(LogError::Gap { found: column.name.clone(), missing: missing + 1 });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,22 @@
+//! How a log differs from the robot itself.
+
+/// Differences that a diagnosis found; a log of the robot has them, the robot has not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensors {
+    /// True minus logged position of each joint \[rad\].
+    pub position_offset: Vec<f64>,
+    /// Added to the logged torque of each joint \[Nm\].
+    pub torque_offset: Vec<f64>,
+    /// Logged over true torque of each joint, minus 1.
+    pub torque_error: Vec<f64>,
+}
+
+impl Sensors {
+    pub(super) fn exact(dof: usize) -> Sensors {
+        Sensors {
+            position_offset: vec![0.0; dof],
+            torque_offset: vec![0.0; dof],
+            torque_error: vec![0.0; dof],
+        }
+    }
+}

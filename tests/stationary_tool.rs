@@ -1,0 +1,150 @@
+//! A tool that stands still while the robot moves the work.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::process::Command;
+
+use joulepath::kinematics::{Tcp, fk, jacobian};
+use joulepath::robot::{Model, find, from_toml};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use proptest::prelude::*;
+
+/// Largest difference of poses that count as one \[m\] and \[rad\].
+const SAME_POSE: f64 = 1e-10;
+/// Largest distance of the TCP from the programmed line on the work \[m\].
+const ON_LINE: f64 = 1e-6;
+/// Share by which the TCP's speed along the work may differ from the programmed one.
+const SPEED: f64 = 1e-3;
+
+fn stationary() -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Translation3::new(1.1, -0.2, 0.6),
+        UnitQuaternion::from_euler_angles(0.3, 0.5, -0.2),
+    )
+}
+
+fn robots() -> [Model; 2] {
+    let rods = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
+                [kinematics]\ncoupling = \"parallelogram\"\n";
+    [find("IRB1600-10/1.45").unwrap(), from_toml("rods.toml", rods).unwrap()]
+}
+
+fn difference(a: &Isometry3<f64>, b: &Isometry3<f64>) -> [Vector3<f64>; 2] {
+    [a.translation.vector - b.translation.vector, (a.rotation * b.rotation.inverse()).scaled_axis()]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn either_side_sees_the_other(q in prop::array::uniform6(-2.5..2.5)) {
+        let flange = fk(&robots()[0], &q);
+        for tcp in [Tcp::Held(stationary()), Tcp::Stationary(stationary())] {
+            let [linear, angular] = difference(&tcp.flange(&tcp.pose(&flange)), &flange);
+            prop_assert!(linear.norm() < SAME_POSE && angular.norm() < SAME_POSE);
+        }
+        // The work sees the tool where the base sees it.
+        let seen = flange * Tcp::Stationary(stationary()).pose(&flange);
+        let [linear, angular] = difference(&seen, &stationary());
+        prop_assert!(linear.norm() < SAME_POSE && angular.norm() < SAME_POSE);
+    }
+
+    #[test]
+    fn jacobian_is_the_change_of_pose(
+        q in prop::array::uniform6(-2.5..2.5),
+        qd in prop::array::uniform6(-3.0..3.0),
+        which in 0usize..2,
+    ) {
+        let model = &robots()[which];
+        let h = 1e-6;
+        for tcp in [Tcp::Held(stationary()), Tcp::Stationary(stationary())] {
+            let at = |t: f64| -> [f64; 6] { std::array::from_fn(|i| q[i] + t * qd[i]) };
+            let pose = |t: f64| tcp.pose(&fk(model, &at(t)));
+            let [linear, angular] = difference(&pose(h), &pose(-h)).map(|x| x / (2.0 * h));
+            let twist = tcp.jacobian(model, &q) * nalgebra::Vector6::from(qd);
+            prop_assert!((twist.fixed_rows::<3>(0) - linear).norm() < 1e-7);
+            prop_assert!((twist.fixed_rows::<3>(3) - angular).norm() < 1e-7);
+            let change =
+                (tcp.jacobian(model, &at(h)) - tcp.jacobian(model, &at(-h))) / (2.0 * h);
+            let found = tcp.jacobian_dot(model, &q, &qd);
+            prop_assert!((found - change).amax() < 1e-6, "{found} {change}");
+        }
+        prop_assert!(
+            Tcp::Held(stationary()).jacobian(model, &q) == jacobian(model, &q, &stationary())
+        );
+    }
+}
+
+/// A glue gun beside the robot, which moves a plate under it along two lines.
+const GLUE: &str = "MODULE M\n\
+    PERS tooldata tGlue:=[FALSE,[[900,100,700],[1,0,0,0]],[2,[0,0,50],[1,0,0,0],0,0,0]];\n\
+    PERS wobjdata wPlate:=[TRUE,TRUE,\"\",[[0,0,120],[0.7071067812,0,-0.7071067812,0]],\
+    [[0,0,0],[1,0,0,0]]];\n\
+    CONST robtarget pA:=[[0,0,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST robtarget pB:=[[0,150,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST robtarget pC:=[[80,150,0],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    PROC main()\n\
+    ConfL\\Off;\nConfJ\\Off;\n\
+    MoveJ pA,v200,fine,tGlue\\WObj:=wPlate;\n\
+    MoveL pB,v100,z20,tGlue\\WObj:=wPlate;\n\
+    MoveL pC,v100,fine,tGlue\\WObj:=wPlate;\n\
+    ENDPROC\nENDMODULE\n";
+
+#[test]
+fn the_work_moves_along_the_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let (program, motion) = (folder.path().join("m.mod"), folder.path().join("motion.csv"));
+    fs::write(&program, GLUE).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["simulate", program.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
+        .args(["--start", "0,0,0,0,30,0", "--trajectory", motion.to_str().unwrap()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    assert!(!said.contains("not simulated"), "{said}");
+
+    let model = find("IRB1600-10/1.45").unwrap();
+    let tool = Isometry3::translation(0.9, 0.1, 0.7);
+    let plate = Isometry3::from_parts(
+        Translation3::new(0.0, 0.0, 0.12),
+        UnitQuaternion::from_euler_angles(0.0, -std::f64::consts::FRAC_PI_2, 0.0),
+    );
+    let text = fs::read_to_string(&motion).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|known| *known == name).unwrap();
+    let (mut along, mut cruising) = (0, 0);
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
+        // The first line of the program, before its zone.
+        if cells[column("line")] != "11" {
+            continue;
+        }
+        let q: [f64; 6] = std::array::from_fn(|i| number(&format!("q{}", i + 1)));
+        let seen = plate.inverse() * (fk(&model, &q).inverse() * tool);
+        let t = seen.translation.vector;
+        if t.y < 0.129 {
+            assert!(t.x.hypot(t.z) < ON_LINE && seen.rotation.angle() < ON_LINE, "{seen}");
+            along += 1;
+            let speed = number("tcp_speed");
+            assert!(speed < 0.1 * (1.0 + SPEED), "{speed}");
+            cruising += usize::from(speed > 0.1 * (1.0 - SPEED));
+        }
+    }
+    assert!(along > 100 && cruising > 100, "{along} {cruising}");
+}
+
+#[test]
+fn what_both_or_neither_hold_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("m.mod");
+    fs::write(&program, GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE")).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["simulate", program.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("the robot holds neither"), "{said}");
+}
