@@ -4,6 +4,7 @@
 //! every byte of it stays.
 
 mod brake_note;
+mod excitation;
 mod generated;
 pub mod names;
 pub mod stream_module;
@@ -13,5 +14,6 @@ pub use generated::{
     GeneratedMove, GeneratedNames, egm_module, generated_module, jointtarget, main_module,
     stream_time,
 };
+pub use excitation::{Excitation, ExcitationModules, Points, excitation};
 pub use names::{Names, missing_streams};
 pub use stream_module::{EmitError, Emitted, EmittedStream, Site, can_guard, emit, end_of_line};
