@@ -251,8 +251,9 @@ fn of_design(
     if blends.is_none() {
         bail!("no way from rest into the motion keeps the limits: give another --seed");
     }
-    // A period is a whole number of points.
-    let points = (series.period() / args.spacing).round().max(3.0) as usize;
+    // A period is a whole number of points; a slow motion needs no more of them.
+    let slower = args.base_frequency / settings.base_frequency;
+    let points = (series.period() / (slower * args.spacing)).round().max(3.0) as usize;
     let cycles = if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
     Ok(Motion {
         period: series.period(),
@@ -264,6 +265,9 @@ fn of_design(
         checked: found.checked,
     })
 }
+
+/// How much further apart the points of straight moves may be.
+const EVEN: f64 = 10.0;
 
 /// Repetitions that take a robot from cold to warm.
 const WARMING: usize = 120;
@@ -283,7 +287,7 @@ fn of_plateaus(
     Motion {
         period: plateaus.duration(),
         cycles: 1,
-        points: plateaus.sampled(args.spacing),
+        points: plateaus.sampled(EVEN * args.spacing),
         blends: None,
         information: None,
         checked: check(model, body, &settings.load, &states),
@@ -302,8 +306,9 @@ fn write(
     let of = |states: &[State]| states.iter().map(six).collect::<Vec<_>>();
     let mut lists = Vec::new();
     let (mut start, mut stop) = (motion.points.first().map(six), motion.points.last().map(six));
-    let into = motion.blends.as_ref().map(|[into, _]| into.sampled(args.spacing));
-    let out = motion.blends.as_ref().map(|[_, out]| out.sampled(args.spacing));
+    let spacing = motion.period / motion.points.len().max(1) as f64;
+    let into = motion.blends.as_ref().map(|[into, _]| into.sampled(spacing));
+    let out = motion.blends.as_ref().map(|[_, out]| out.sampled(spacing));
     if let Some(into) = &into {
         start = into.first().map(six);
         let points = of(&into[1..]);
@@ -330,7 +335,7 @@ fn write(
         robot: model.name.clone(),
         cycles: motion.cycles,
         period: motion.period,
-        spacing: motion.period / motion.points.len().max(1) as f64,
+        spacing,
         start: start.unwrap_or_default(),
         lists,
         stop: stop.unwrap_or_default(),

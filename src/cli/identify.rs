@@ -16,6 +16,7 @@ use crate::identify::{
     cleaned, identify, prepare, torques,
 };
 use crate::log::{self, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
+use crate::report::html::{Traces, identify_report};
 use crate::report::identify as report;
 use crate::robot::{self, Model};
 use crate::text;
@@ -173,7 +174,42 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     for text in doubts(&found) {
         tell(args, &mut basis, text);
     }
-    write(args, &found, &samples, &basis)
+    if let Some(path) = &args.report {
+        let (shown, title) = match (validation.first(), basis.validation.first()) {
+            (Some(samples), Some(log)) => (samples, log.0.clone()),
+            _ => (&samples, "the data of the fit".to_owned()),
+        };
+        let page = identify_report(&found, &basis, &traces(&found, &model, shown, title))?;
+        output::write(path, page.as_bytes())?;
+    }
+    write(args, &found, &basis)
+}
+
+/// Torques and powers for the plots.
+fn traces(found: &Identified, model: &Model, samples: &Samples, title: String) -> Traces {
+    let n = model.dof;
+    let mut traces = Traces {
+        title,
+        measured: vec![Vec::new(); n],
+        predicted: vec![Vec::new(); n],
+        ..Traces::default()
+    };
+    for (t, [measured, predicted, rate]) in found.traces(model, samples) {
+        traces.t.push(t);
+        let mut power = [0.0; 2];
+        for joint in 0..n {
+            traces.measured[joint].push(measured[joint]);
+            traces.predicted[joint].push(predicted[joint]);
+            // A joint at rest has no power.
+            if measured[joint].is_finite() {
+                power[0] += measured[joint] * rate[joint];
+                power[1] += predicted[joint] * rate[joint];
+            }
+        }
+        traces.power[0].push(power[0]);
+        traces.power[1].push(power[1]);
+    }
+    traces
 }
 
 fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
@@ -323,10 +359,8 @@ fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
 fn write(
     args: &IdentifyArgs,
     found: &Identified,
-    samples: &Samples,
     basis: &report::Basis,
 ) -> anyhow::Result<ExitCode> {
-    let _ = samples;
     let path = args.out.as_ref().map_or_else(String::new, |path| path.display().to_string());
     if let Some(path) = &args.out {
         output::write(path, report::toml(found, basis).as_bytes())?;

@@ -11,7 +11,7 @@ const NEGLIGIBLE: f64 = 0.005;
 pub type Residual = (usize, usize, f64);
 
 /// Autocovariances of the residuals, which are in the order of time, at lag 0, 1, … of the
-/// instants: of the autoregressive model that Akaike's criterion chooses. `lost` is the
+/// instants: of the autoregressive model that Schwarz's criterion chooses. `lost` is the
 /// number of parameters that were fitted to them.
 #[must_use]
 pub fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
@@ -20,7 +20,7 @@ pub fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
         return vec![0.0];
     }
     let correction = n / (n - lost).max(1.0);
-    let orders = MAX_ORDER.min(residuals.len() / 10);
+    let orders = MAX_ORDER.min(residuals.len() / 20);
     let sample = sample(residuals, orders, correction);
     let model = levinson(&sample, n);
     extended(&sample, &model)
@@ -41,7 +41,8 @@ fn sample(residuals: &[Residual], lags: usize, correction: f64) -> Vec<f64> {
     sums.iter().map(|sum| correction * sum / n).collect()
 }
 
-/// Coefficients a of e(t) = Σ aₖ e(t − k) + white noise, of the order with the least AIC.
+/// Coefficients a of e(t) = Σ aₖ e(t − k) + white noise, of the order with the least BIC: one
+/// that is too high takes what the fit took for memory.
 fn levinson(covariance: &[f64], n: f64) -> Vec<f64> {
     let mut variance = covariance[0];
     let mut a: Vec<f64> = Vec::new();
@@ -58,7 +59,7 @@ fn levinson(covariance: &[f64], n: f64) -> Vec<f64> {
         next.push(reflection);
         a = next;
         variance *= 1.0 - reflection * reflection;
-        let criterion = n * variance.max(f64::MIN_POSITIVE).ln() + 2.0 * order as f64;
+        let criterion = n * variance.max(f64::MIN_POSITIVE).ln() + n.ln() * order as f64;
         if criterion < best.0 {
             best = (criterion, a.clone());
         }

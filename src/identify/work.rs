@@ -178,6 +178,44 @@ fn misses(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
     }
 }
 
+impl Identified {
+    /// Time, usable torques (not a number where a joint rests) and those of the model, of each
+    /// instant of samples, and the rates: `[measured, predicted, rate]` by joint.
+    #[must_use]
+    pub fn traces(&self, nominal: &Model, samples: &Samples) -> Vec<(f64, [Vec<f64>; 3])> {
+        let all = spread(&self.parameters, &self.among, (RIGID + JOINT) * nominal.dof);
+        let beta = self.base.of_parameters(&all);
+        let known = match self.payload {
+            Some(_) => Known::All,
+            None if self.among.len() < all.len() => Known::Rigid,
+            None => Known::Nothing,
+        };
+        let mut model = nominal.clone();
+        model.wrist = self.model.wrist.clone();
+        let equations = Equations { model: &model, base: &self.base, known };
+        let layout = equations.layout();
+        let mut rows = Vec::new();
+        equations.each(samples, &layout, &mut |instant| {
+            let n = layout.columns.len();
+            let mut parts = [Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n)];
+            let mut from = 0;
+            for (joint, columns) in layout.columns.iter().enumerate() {
+                let to = from + columns.len();
+                let of = instant.x[from..to].iter().zip(columns);
+                let free: f64 = of.map(|(x, column)| x * beta[*column]).sum();
+                let predicted = free + instant.tau[joint] - instant.y[joint];
+                let shown = |value: f64| if instant.usable[joint] { value } else { f64::NAN };
+                parts[0].push(shown(instant.tau[joint]));
+                parts[1].push(shown(predicted));
+                parts[2].push(instant.qd[joint]);
+                from = to;
+            }
+            rows.push((instant.t, parts));
+        });
+        rows
+    }
+}
+
 /// Values at their indices, the rest 0.
 fn spread(values: &[f64], among: &[usize], count: usize) -> Vec<f64> {
     let mut all = vec![0.0; count];

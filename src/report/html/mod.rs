@@ -3,6 +3,7 @@
 
 mod energy_time;
 mod format;
+mod identify;
 mod movements;
 mod proof;
 mod samples;
@@ -11,6 +12,8 @@ mod source;
 mod standstill;
 mod summary;
 mod ways;
+
+pub use identify::{Traces, identify_report};
 
 use tera::{Context, Tera};
 
