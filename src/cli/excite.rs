@@ -16,8 +16,8 @@ use super::{load, output};
 use crate::dynamics::{Data, Load, torque};
 use crate::emit::{Excitation, Points, excitation};
 use crate::excite::{
-    Blend, Body, Checked, Design, Focus, Information, Plane, Plateaus, Series, State, blends, check,
-    design, friction_plateaus, wrist_plateaus,
+    Blend, Body, Checked, Design, Focus, Information, Plane, Plateaus, Series, State, blends,
+    check, design, friction_plateaus, wrist_plateaus,
 };
 use crate::robot::{self, Model};
 
@@ -168,7 +168,9 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     harmonics.sort_unstable();
     harmonics.dedup();
     if harmonics.is_empty() || harmonics[0] == 0 || harmonics[harmonics.len() - 1] > 100 {
-        bail!("--harmonics: give whole multiples of the base frequency from 1 to 100, such as 1,4,7");
+        bail!(
+            "--harmonics: give whole multiples of the base frequency from 1 to 100, such as 1,4,7"
+        );
     }
     let mut planes = Vec::new();
     for text in &args.planes {
@@ -254,7 +256,8 @@ fn of_design(
     // A period is a whole number of points; a slow motion needs no more of them.
     let slower = args.base_frequency / settings.base_frequency;
     let points = (series.period() / (slower * args.spacing)).round().max(3.0) as usize;
-    let cycles = if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
+    let cycles =
+        if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
     Ok(Motion {
         period: series.period(),
         cycles,
@@ -343,9 +346,7 @@ fn write(
     })?;
     let mut outputs = Vec::new();
     let table = table(model, load, motion);
-    for (name, text) in
-        [modules.motion, modules.logger, ("excitation.csv".to_owned(), table)]
-    {
+    for (name, text) in [modules.motion, modules.logger, ("excitation.csv".to_owned(), table)] {
         let path = args.out.join(name);
         output::write(&path, text.as_bytes())?;
         outputs.push(path.display().to_string());

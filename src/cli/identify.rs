@@ -217,6 +217,11 @@ fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
     basis.notes.push(text);
 }
 
+/// Share of a torque that no good model misses.
+const MISSED: f64 = 0.35;
+/// Share of a torque that is as good as nothing.
+const NOTHING: f64 = 1e-3;
+
 /// What a reader should not overlook.
 fn doubts(found: &Identified) -> Vec<String> {
     let mut texts = Vec::new();
@@ -225,7 +230,16 @@ fn doubts(found: &Identified) -> Vec<String> {
         _ => (&found.training.rms, &found.fit.rms),
     };
     for (joint, (with, without)) in with.iter().zip(without).enumerate() {
-        if with / without > 1.02 {
+        let relative = found.training.relative[joint];
+        if relative > MISSED {
+            texts.push(format!(
+                "joint {}: the model misses {:.0} % of the torque: are the columns of one time and \
+                 one robot?",
+                joint + 1,
+                100.0 * relative
+            ));
+        }
+        if with / without > 1.02 && relative > NOTHING {
             texts.push(format!(
                 "joint {}: residuals of the physically consistent model are {:.1} % larger than \
                  those of the free fit",
@@ -249,9 +263,9 @@ fn read_all(paths: &[PathBuf], map: &ColumnMap) -> anyhow::Result<Vec<Read>> {
     let mut logs: Vec<Read> = Vec::new();
     for path in paths {
         let read = read(path, map)?;
-        let half = logs.iter_mut().find(|other| {
-            are_halves(&other.log, &read.log) || are_halves(&read.log, &other.log)
-        });
+        let half = logs
+            .iter_mut()
+            .find(|other| are_halves(&other.log, &read.log) || are_halves(&read.log, &other.log));
         let Some(other) = half else {
             logs.push(read);
             continue;
@@ -350,8 +364,7 @@ fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
         }
         samples.blocks.extend(next.blocks);
         samples.resting.retain(|joint| next.resting.contains(joint));
-        samples.rest =
-            samples.rest.iter().zip(&next.rest).map(|(a, b)| a.max(*b)).collect();
+        samples.rest = samples.rest.iter().zip(&next.rest).map(|(a, b)| a.max(*b)).collect();
     }
     Ok(samples)
 }

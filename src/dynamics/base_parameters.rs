@@ -120,11 +120,7 @@ pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
 
 /// The base parameters of those at the indices `among` (ascending), the others being known.
 #[must_use]
-pub fn base_parameters_among(
-    model: &Model,
-    which: Parameters,
-    among: &[usize],
-) -> BaseParameters {
+pub fn base_parameters_among(model: &Model, which: Parameters, among: &[usize]) -> BaseParameters {
     let n = model.dof;
     let count = which.count(n);
     let mut stacked = DMatrix::zeros(STATES * n, count);

@@ -24,17 +24,16 @@ impl Blend {
     pub fn at(&self, t: f64) -> State {
         let mut state = [[0.0; MAX_DOF]; 3];
         for (joint, c) in self.coefficients.iter().enumerate() {
-            for (power, value) in c.iter().enumerate() {
-                let p = power as f64;
-                let n = power as i32;
-                state[0][joint] += value * t.powi(n);
-                if power > 0 {
-                    state[1][joint] += value * p * t.powi(n - 1);
-                }
-                if power > 1 {
-                    state[2][joint] += value * p * (p - 1.0) * t.powi(n - 2);
-                }
+            // Horner's scheme for value, first and half the second derivative.
+            let [mut value, mut rate, mut bend] = [0.0; 3];
+            for coefficient in c.iter().rev() {
+                bend = bend * t + rate;
+                rate = rate * t + value;
+                value = value * t + coefficient;
             }
+            state[0][joint] = value;
+            state[1][joint] = rate;
+            state[2][joint] = 2.0 * bend;
         }
         state
     }
@@ -82,7 +81,8 @@ fn blend(model: &Model, edge: &State, duration: f64, sense: f64) -> Blend {
             let inside = 0.5 * (rest + q);
             let rest = if rest <= low || rest >= high { inside } else { rest };
             let moving = [q, v, a];
-            let ends = if sense > 0.0 { [[rest, 0.0, 0.0], moving] } else { [moving, [rest, 0.0, 0.0]] };
+            let ends =
+                if sense > 0.0 { [[rest, 0.0, 0.0], moving] } else { [moving, [rest, 0.0, 0.0]] };
             quintic(ends, duration)
         })
         .collect();

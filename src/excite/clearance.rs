@@ -9,7 +9,7 @@ use crate::robot::{MAX_DOF, Model};
 
 /// Radii over the length of the arm: upper links, wrist, tool.
 const RADII: [f64; 3] = [0.09, 0.05, 0.03];
-/// Links of which no point is nearer to the base than this share of the arm are the arm.
+/// Points nearer to each other than this share of the arm are one.
 const APART: f64 = 1e-6;
 
 /// A half space that every point of arm and tool stays in: n · x ≥ d, in the base frame.
@@ -71,26 +71,27 @@ impl<'a> Body<'a> {
         [to_planes, to_itself]
     }
 
+    /// Adds a point that is not the last one.
+    fn add(&self, points: &mut Vec<Point3<f64>>, point: Point3<f64>) {
+        if points.last().is_none_or(|last| (point - last).norm() > APART * self.length) {
+            points.push(point);
+        }
+    }
+
     fn capsules(&self, q: &[f64]) -> Vec<Capsule> {
         let geometry = &self.model.kinematics;
         let angles = geometry.to_serial(q);
         let mut frame = Isometry3::identity();
         let mut points = vec![Point3::origin()];
-        let mut add = |point: Point3<f64>| {
-            if points.last().is_none_or(|last| (point - last).norm() > APART * self.length) {
-                points.push(point);
-            }
-        };
         for (joint, angle) in geometry.joints.iter().take(MAX_DOF).zip(angles) {
             let rotation = nalgebra::Rotation3::from_matrix_unchecked(joint.rotation_at(angle));
             let rotation = nalgebra::UnitQuaternion::from_rotation_matrix(&rotation);
             frame *= Isometry3::from_parts(joint.translation.into(), rotation);
-            add(frame.translation.vector.into());
+            self.add(&mut points, frame.translation.vector.into());
         }
         let flange = frame * geometry.flange;
-        add(flange.translation.vector.into());
+        self.add(&mut points, flange.translation.vector.into());
         let links = points.len();
-        let mut points = points;
         if self.tool.norm() > 0.0 {
             points.push(flange.transform_point(&self.tool.into()));
         }

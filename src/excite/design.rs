@@ -9,7 +9,9 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
-use crate::dynamics::{BaseParameters, Load, Parameters, RIGID, base_parameters, base_parameters_among};
+use crate::dynamics::{
+    BaseParameters, Load, Parameters, RIGID, base_parameters, base_parameters_among,
+};
 use crate::robot::Model;
 
 use super::clearance::{Body, Plane};
@@ -113,8 +115,7 @@ pub fn design(
 ) -> Result<Designed, ExciteError> {
     let problem = Problem::new(model, settings)?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
-    let tried: Vec<DVector<f64>> =
-        (0..TRIED).map(|_| problem.random(&mut random)).collect();
+    let tried: Vec<DVector<f64>> = (0..TRIED).map(|_| problem.random(&mut random)).collect();
     let mut rated: Vec<(f64, DVector<f64>)> =
         tried.into_par_iter().map(|x| (problem.rate(&x), x)).collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -323,7 +324,12 @@ impl<'a> Problem<'a> {
 const MOST: f64 = 6.0;
 
 /// Least and largest value, largest rate and acceleration of one joint's series.
-fn extremes(pairs: &[[f64; 2]], harmonics: &[usize], w0: f64, states: usize) -> ([f64; 2], f64, f64) {
+fn extremes(
+    pairs: &[[f64; 2]],
+    harmonics: &[usize],
+    w0: f64,
+    states: usize,
+) -> ([f64; 2], f64, f64) {
     let (mut reach, mut fast, mut hard) = ([0.0_f64; 2], 0.0_f64, 0.0_f64);
     for i in 0..2 * states {
         let turn = std::f64::consts::TAU * i as f64 / (2 * states) as f64;
@@ -342,7 +348,7 @@ fn extremes(pairs: &[[f64; 2]], harmonics: &[usize], w0: f64, states: usize) -> 
     (reach, fast, hard)
 }
 
-/// The scaled condition of W, from WᵀW.
+/// The scaled condition of W, from `WᵀW`.
 fn condition(normal: &DMatrix<f64>) -> f64 {
     let lengths: Vec<f64> = normal.diagonal().iter().map(|x| x.sqrt().max(1e-150)).collect();
     let scaled = DMatrix::from_fn(normal.nrows(), normal.ncols(), |a, b| {

@@ -65,11 +65,8 @@ pub fn check(model: &Model, body: &Body<'_>, load: &Load, states: &[State]) -> C
     let n = model.dof;
     let limits = &model.limits;
     let mut data = Data::new();
-    let mut found = Checked {
-        ratios: Ratios::default(),
-        to_planes: f64::INFINITY,
-        to_itself: f64::INFINITY,
-    };
+    let mut found =
+        Checked { ratios: Ratios::default(), to_planes: f64::INFINITY, to_itself: f64::INFINITY };
     let torques = limits.torque.as_ref().filter(|_| model.has_dynamics());
     for [q, qd, qdd] in states {
         let ratios = &mut found.ratios;

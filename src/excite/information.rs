@@ -2,9 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::dynamics::{
-    BaseParameters, JOINT, RIGID, Regressor, motor_rates, regressor,
-};
+use crate::dynamics::{BaseParameters, JOINT, RIGID, Regressor, motor_rates, regressor};
 use crate::robot::{MAX_DOF, Model};
 
 use super::series::State;
@@ -21,13 +19,13 @@ pub struct Information {
     pub scaled: f64,
     /// Condition number of W in SI units.
     pub raw: f64,
-    /// log det WᵀW.
+    /// `log det WᵀW`.
     pub log_det: f64,
 }
 
-/// The sums WᵀW of base regressors.
+/// The sums `WᵀW` of base regressors.
 #[derive(Clone, Debug)]
-pub struct Normal<'a> {
+pub(super) struct Normal<'a> {
     model: &'a Model,
     base: &'a BaseParameters,
     /// Of each joint, the base parameters in its equation.
@@ -39,7 +37,7 @@ pub struct Normal<'a> {
 impl<'a> Normal<'a> {
     /// For the base parameters `base` of a robot.
     #[must_use]
-    pub fn new(model: &'a Model, base: &'a BaseParameters) -> Normal<'a> {
+    pub(super) fn new(model: &'a Model, base: &'a BaseParameters) -> Normal<'a> {
         let n = model.dof;
         let mut shares = [[0.0; MAX_DOF]; MAX_DOF];
         for (joint, share) in shares.iter_mut().enumerate().take(n) {
@@ -64,9 +62,9 @@ impl<'a> Normal<'a> {
         normal
     }
 
-    /// WᵀW of a motion.
+    /// `WᵀW` of a motion.
     #[must_use]
-    pub fn of(&mut self, states: &[State]) -> DMatrix<f64> {
+    pub(super) fn of(&mut self, states: &[State]) -> DMatrix<f64> {
         let rank = self.base.rank();
         let mut sum = DMatrix::zeros(rank, rank);
         let mut row = Vec::with_capacity(rank);
@@ -116,7 +114,7 @@ impl<'a> Normal<'a> {
 
 /// log det of a positive definite matrix; `None` where it is not.
 #[must_use]
-pub fn log_det(normal: &DMatrix<f64>) -> Option<f64> {
+pub(super) fn log_det(normal: &DMatrix<f64>) -> Option<f64> {
     let factor = normal.clone().cholesky()?;
     Some(2.0 * factor.l_dirty().diagonal().map(f64::ln).sum())
 }

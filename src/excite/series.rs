@@ -1,7 +1,10 @@
 //! A periodic motion as a Fourier series of each joint.
 //!
-//! q_i(t) = q_i0 + Σ_k a_ik sin(k ω t) + b_ik cos(k ω t), Paes et al. 2014, equation 3, with
-//! the phases as sine and cosine.
+//! ```text
+//! q_i(t) = q_i0 + Σ_k a_ik sin(k ω t) + b_ik cos(k ω t)
+//! ```
+//!
+//! Paes et al. 2014, equation 3, with the phases as sine and cosine.
 
 use std::f64::consts::TAU;
 

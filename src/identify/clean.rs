@@ -32,7 +32,7 @@ pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
         };
         for (why, value) in why.iter_mut().zip(values) {
             if why.is_none() && value.abs() > limit {
-                *why = Some(format!("{name} is {value}, which no robot has"));
+                *why = Some(format!("{name} is {value:e}, which no robot has"));
             }
         }
     }

@@ -39,7 +39,7 @@ const GROWTH: f64 = 1.003;
 
 /// What may be changed, each with its prior.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Piece {
+pub(super) enum Piece {
     /// Ten parameters of a rigid body, in the order of
     /// [`link_parameters`](crate::dynamics::link_parameters).
     Body(Matrix4<f64>),
@@ -59,7 +59,7 @@ impl Piece {
 }
 
 /// The data: |factor (combination · π − beta)|² more than the least sum of squares.
-pub struct Target<'a> {
+pub(super) struct Target<'a> {
     /// G.
     pub combination: &'a DMatrix<f64>,
     /// R, in units of the noise.
@@ -73,7 +73,7 @@ pub struct Target<'a> {
 /// The parameters, piece after piece; `None` where no point was found, which takes a prior
 /// that is not positive definite.
 #[must_use]
-pub fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVector<f64>> {
+pub(super) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVector<f64>> {
     let through = target.factor * target.combination;
     let goal = target.factor * target.beta;
     let mut point = start(pieces);
@@ -188,10 +188,8 @@ impl Problem<'_> {
                 }
                 hessian[(a, a)] += f64::EPSILON;
             }
-            let scaled = DVector::from_iterator(
-                size.len(),
-                gradient.iter().zip(&size).map(|(g, s)| g / s),
-            );
+            let scaled =
+                DVector::from_iterator(size.len(), gradient.iter().zip(&size).map(|(g, s)| g / s));
             let Some(factor) = hessian.cholesky() else { return point };
             let mut step = factor.solve(&scaled);
             step.iter_mut().zip(&size).for_each(|(x, s)| *x /= s);
@@ -202,7 +200,8 @@ impl Problem<'_> {
             let mut share = 1.0;
             loop {
                 let next = &point - &step * share;
-                if let Some(found) = self.value(&next).filter(|v| *v <= value - 0.1 * share * decrement)
+                if let Some(found) =
+                    self.value(&next).filter(|v| *v <= value - 0.1 * share * decrement)
                 {
                     point = next;
                     value = found;
@@ -220,7 +219,7 @@ impl Problem<'_> {
 
 /// P of the ten parameters of a body.
 #[must_use]
-pub fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
+pub(super) fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
     let mut p = Matrix4::zeros();
     for (k, value) in parameters.iter().enumerate().take(RIGID) {
         p += direction(k) * *value;
@@ -253,7 +252,7 @@ fn direction(k: usize) -> Matrix4<f64> {
 
 /// The ten parameters of a body with the pseudo-inertia `p`.
 #[must_use]
-pub fn parameters(p: &Matrix4<f64>) -> [f64; RIGID] {
+pub(super) fn parameters(p: &Matrix4<f64>) -> [f64; RIGID] {
     let [x, y, z] = [p[(0, 0)], p[(1, 1)], p[(2, 2)]];
     [
         p[(3, 3)],
@@ -271,7 +270,7 @@ pub fn parameters(p: &Matrix4<f64>) -> [f64; RIGID] {
 
 /// The link of ten parameters.
 #[must_use]
-pub fn link(parameters: &[f64]) -> Link {
+pub(super) fn link(parameters: &[f64]) -> Link {
     let [m, mx, my, mz, xx, yy, zz, xy, xz, yz] =
         std::array::from_fn(|k| parameters.get(k).copied().unwrap_or_default());
     let com = if m > 0.0 { Vector3::new(mx, my, mz) / m } else { Vector3::zeros() };
@@ -282,7 +281,7 @@ pub fn link(parameters: &[f64]) -> Link {
 
 /// The least eigenvalue of a body's pseudo-inertia, over the largest.
 #[must_use]
-pub fn margin(parameters: &[f64]) -> f64 {
+pub(super) fn margin(parameters: &[f64]) -> f64 {
     let values = SymmetricEigen::new(pseudo_inertia(parameters)).eigenvalues;
     values.min() / values.max()
 }

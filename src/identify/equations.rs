@@ -185,8 +185,7 @@ impl Equations<'_> {
         y: &mut [f64],
     ) {
         let n = self.model.dof;
-        let [q, qd, qdd] =
-            [&block.q, &block.qd, &block.qdd].map(|series| Block::at(series, index));
+        let [q, qd, qdd] = [&block.q, &block.qd, &block.qdd].map(|series| Block::at(series, index));
         rows.write(&q[..n], &qd[..n], &qdd[..n]);
         let known = self.known_torque(&mut rows.data, &q[..n], &qd[..n], &qdd[..n]);
         let mut to = x.iter_mut();
@@ -200,13 +199,7 @@ impl Equations<'_> {
         }
     }
 
-    fn known_torque(
-        &self,
-        data: &mut Data,
-        q: &[f64],
-        qd: &[f64],
-        qdd: &[f64],
-    ) -> [f64; MAX_DOF] {
+    fn known_torque(&self, data: &mut Data, q: &[f64], qd: &[f64], qdd: &[f64]) -> [f64; MAX_DOF] {
         let none = Load::none();
         match self.known {
             Known::Nothing => [0.0; MAX_DOF],
@@ -242,7 +235,7 @@ impl Equations<'_> {
 
 /// Of so many samples one is kept behind the filter.
 #[must_use]
-pub fn thinning(step: f64, cutoff: f64) -> usize {
+pub(super) fn thinning(step: f64, cutoff: f64) -> usize {
     (1.0 / (KEPT_PER_PERIOD * cutoff * step)).floor().max(1.0) as usize
 }
 

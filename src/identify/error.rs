@@ -30,7 +30,9 @@ pub enum IdentifyError {
         name: String,
     },
     /// No body fits.
-    #[error("no physically consistent model was found: the links of the robot file are no bodies, leave them out")]
+    #[error(
+        "no physically consistent model was found: the links of the robot file are no bodies, leave them out"
+    )]
     Inconsistent,
     /// Degrees where radians are meant.
     #[error(

@@ -44,10 +44,8 @@ impl Factors {
             }
         });
         let rows = triangles.iter().map(|of| of.iter().map(Triangle::rows).collect()).collect();
-        let parts = triangles
-            .iter_mut()
-            .map(|of| of.iter_mut().map(Triangle::factor).collect())
-            .collect();
+        let parts =
+            triangles.iter_mut().map(|of| of.iter_mut().map(Triangle::factor).collect()).collect();
         Factors { layout, parts, rows, squares }
     }
 

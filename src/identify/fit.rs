@@ -74,9 +74,8 @@ pub fn fit(
     }
     let (solution, sigma) = reweighted(&factors, weighting, None, unknowns);
     let squares = factors.residual_squares(&solution.beta, None);
-    let torque: Vec<f64> = (0..rows.len())
-        .map(|joint| factors.squares.iter().map(|part| part[joint]).sum())
-        .collect();
+    let torque: Vec<f64> =
+        (0..rows.len()).map(|joint| factors.squares.iter().map(|part| part[joint]).sum()).collect();
     let cross = cross_squares(&factors, weighting, unknowns);
     let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
     let Errors { covariance, memory } =
@@ -103,7 +102,7 @@ pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
 
 /// Root mean squares.
 #[must_use]
-pub fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
+pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
     squares.iter().zip(rows).map(|(sum, n)| (sum / (*n).max(1) as f64).sqrt()).collect()
 }
 
@@ -144,8 +143,7 @@ fn reweighted(
                 found.max(1e-9 * (scale[joint] / n.max(1.0)).sqrt()).max(1e-12)
             })
             .collect();
-        let change =
-            next.iter().zip(&sigma).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        let change = next.iter().zip(&sigma).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         sigma = next;
         let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
         solution = solve(&factors.stacked(&weights, without, unknowns));
@@ -349,4 +347,3 @@ fn add_piece(
         from += columns.len();
     }
 }
-

@@ -68,7 +68,7 @@ fn condition(factor: &DMatrix<f64>) -> f64 {
 
 /// Minimises |A x − b| with b the last column of `stacked`.
 #[must_use]
-pub fn solve(stacked: &DMatrix<f64>) -> Solution {
+pub(super) fn solve(stacked: &DMatrix<f64>) -> Solution {
     let unknowns = stacked.ncols() - 1;
     let mut basis: Vec<DVector<f64>> = Vec::new();
     let mut determined = Vec::new();

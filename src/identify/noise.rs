@@ -8,13 +8,13 @@ const MAX_LAG: usize = 300;
 const NEGLIGIBLE: f64 = 0.005;
 
 /// A residual with its place: piece of the log, number of the instant, value.
-pub type Residual = (usize, usize, f64);
+pub(super) type Residual = (usize, usize, f64);
 
 /// Autocovariances of the residuals, which are in the order of time, at lag 0, 1, … of the
 /// instants: of the autoregressive model that Schwarz's criterion chooses. `lost` is the
 /// number of parameters that were fitted to them.
 #[must_use]
-pub fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
+pub(super) fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
     let n = residuals.len() as f64;
     if residuals.len() < 2 {
         return vec![0.0];
@@ -51,8 +51,7 @@ fn levinson(covariance: &[f64], n: f64) -> Vec<f64> {
         if variance <= 0.0 {
             break;
         }
-        let predicted: f64 =
-            a.iter().enumerate().map(|(k, a)| a * covariance[order - 1 - k]).sum();
+        let predicted: f64 = a.iter().enumerate().map(|(k, a)| a * covariance[order - 1 - k]).sum();
         let reflection = (covariance[order] - predicted) / variance;
         let mut next: Vec<f64> =
             a.iter().zip(a.iter().rev()).map(|(a, b)| a - reflection * b).collect();
@@ -117,7 +116,7 @@ mod tests {
         let found = autocovariance(&noise(200_000, 0.8), 0.0);
         let variance = 1.0 / (1.0 - 0.8 * 0.8);
         for (lag, value) in found.iter().enumerate().take(10) {
-            let expected = variance * 0.8_f64.powi(lag as i32);
+            let expected = variance * 0.8_f64.powf(lag as f64);
             assert!((value - expected).abs() < SAMPLED * variance, "{lag}: {value} {expected}");
         }
     }

@@ -1,7 +1,8 @@
 //! From a log to the instants at which equations are written down.
 
 use crate::log::{
-    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step, sections,
+    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step,
+    sections,
 };
 
 use super::error::IdentifyError;
@@ -28,6 +29,8 @@ const FASTEST: f64 = 1200.0;
 const THINNED: f64 = 400.0;
 /// Cut-off frequency before thinning, relative to the rate after it.
 const PASSED: f64 = 0.4;
+/// Periods of that cut-off frequency over which its kernel spreads a step.
+const SMEARED: f64 = 1.0;
 /// A first repetition that misses the others by this much more than they do each other is
 /// still settling.
 const SETTLING: f64 = 4.0;
@@ -107,7 +110,12 @@ fn differentiated(
     let joints = q.len();
     let all: Vec<&[f64]> =
         q.iter().chain(tau).chain(qd.unwrap_or_default()).map(Vec::as_slice).collect();
-    let sections: Vec<Section> = sections(log.time(), &all).iter().map(thinned).collect();
+    let sections = sections(log.time(), &all);
+    // How long a thinned torque remembers that a joint turned back \[s\].
+    let smeared = sections.first().map_or(0.0, |section| {
+        thinning(section).map_or(0.0, |every| SMEARED * every as f64 * section.step / PASSED)
+    });
+    let sections: Vec<Section> = sections.iter().map(thinned).collect();
     let Some(longest) = sections.iter().max_by_key(|section| section.len()) else {
         return Err(IdentifyError::Short { seconds: 0.0 });
     };
@@ -117,7 +125,12 @@ fn differentiated(
     if hints.cutoff.is_none()
         && let Some(periods) = find_periods(&positions, step, known)
     {
-        return Ok(periodic(longest, &periods, joints, resting));
+        let mut samples = periodic(longest, &periods, joints, resting);
+        for (joint, rest) in samples.rest.iter_mut().enumerate() {
+            let hard = samples.blocks[0].qdd[joint].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            *rest = rest.max(hard * smeared);
+        }
+        return Ok(samples);
     }
     let moving = (0..joints).filter(|joint| !resting.contains(joint));
     let fastest = moving
@@ -145,12 +158,15 @@ fn differentiated(
     Ok(Samples { blocks, source: Source::Filtered { cutoff }, step, rest, resting, noise: None })
 }
 
+/// Of so many samples one is kept; `None` where all are.
+fn thinning(section: &Section) -> Option<usize> {
+    let fast = section.step * FASTEST <= 1.0;
+    fast.then(|| (1.0 / (section.step * THINNED)).floor().max(2.0) as usize)
+}
+
 /// The section at a rate that is worth computing with.
 fn thinned(section: &Section) -> Section {
-    if section.step * FASTEST > 1.0 {
-        return section.clone();
-    }
-    let every = (1.0 / (section.step * THINNED)).floor().max(2.0) as usize;
+    let Some(every) = thinning(section) else { return section.clone() };
     let step = section.step * every as f64;
     let filter = LowPass::new(PASSED / step, section.step);
     if section.len() < 2 * filter.width() {
@@ -245,11 +261,8 @@ fn block(section: &Section, joints: usize, filter: &LowPass) -> Block {
         section.series[from..from + joints].iter().map(|x| filter.filtered(x, order)).collect()
     };
     let rates = section.series.len() == 3 * joints;
-    let (qd, qdd) = if rates {
-        (all(2 * joints, 0), all(2 * joints, 1))
-    } else {
-        (all(0, 1), all(0, 2))
-    };
+    let (qd, qdd) =
+        if rates { (all(2 * joints, 0), all(2 * joints, 1)) } else { (all(0, 1), all(0, 2)) };
     let q = all(0, 0);
     let count = q.first().map_or(0, Vec::len);
     let tau = section.series[joints..2 * joints]

@@ -104,42 +104,43 @@ fn of_phases(
         let angle = motor_angle(model, log, joint, ratio[joint]);
         // Amplitude to rms: the torque constant is per A rms.
         let scale = per_ampere[joint] * std::f64::consts::FRAC_1_SQRT_2;
-        let mut current = match signed(&all, &angle) {
-            Some(found) => {
-                let order = if found.pole_pairs < 0 { ", phases in reverse order" } else { "" };
-                notes.push(format!(
-                    "joint {}: {} pole pairs{order}, {:.1} % of the current vector stands still \
+        let mut current = if let Some(found) = signed(&all, &angle) {
+            let order = if found.pole_pairs < 0 { ", phases in reverse order" } else { "" };
+            notes.push(format!(
+                "joint {}: {} pole pairs{order}, {:.1} % of the current vector stands still \
                      from the rotor",
-                    joint + 1,
-                    found.pole_pairs.abs(),
-                    100.0 * found.coherence
-                ));
-                found.current
-            }
-            None => {
-                let lengths = all.re.iter().zip(&all.im).map(|(x, y)| x.hypot(*y));
-                let lengths: Vec<f64> = lengths.collect();
-                let Some(signs) = rough.signs(joint) else {
-                    return Err(IdentifyError::Sign { joint: joint + 1 });
-                };
-                notes.push(format!(
-                    "joint {}: the current vector does not turn with the rotor; its sign is that \
+                joint + 1,
+                found.pole_pairs.abs(),
+                100.0 * found.coherence
+            ));
+            found.current
+        } else {
+            let lengths = all.re.iter().zip(&all.im).map(|(x, y)| x.hypot(*y));
+            let lengths: Vec<f64> = lengths.collect();
+            let Some(signs) = rough.signs(joint) else {
+                return Err(IdentifyError::Sign { joint: joint + 1 });
+            };
+            notes.push(format!(
+                "joint {}: the current vector does not turn with the rotor; its sign is that \
                      of the rough model, change by change",
-                    joint + 1
-                ));
-                by_segments(&lengths, &signs)
-            }
+                joint + 1
+            ));
+            by_segments(&lengths, &signs)
         };
-        current.iter_mut().for_each(|i| *i *= scale);
+        for value in &mut current {
+            *value *= scale;
+        }
         if rough.is_reversed(joint, &current) {
-            current.iter_mut().for_each(|i| *i = -*i);
+            for value in &mut current {
+                *value = -*value;
+            }
         }
         tau.push(current);
     }
     let (factor, said) = rough.factor(&tau);
     notes.push(said);
-    for joint in &mut tau {
-        joint.iter_mut().for_each(|value| *value *= factor);
+    for value in tau.iter_mut().flatten() {
+        *value *= factor;
     }
     let mut origin = String::from("phase currents x 2/3 / sqrt(2) x torque constant x gear ratio");
     if factor != 1.0 {
@@ -277,8 +278,7 @@ impl Rough {
         ];
         let of_root = clarke.map(|(factor, prior, what)| (root * factor, 2.0 * prior, what));
         let all = clarke.iter().map(|f| (f, false)).chain(of_root.iter().map(|f| (f, true)));
-        let score =
-            |(f, p, _): &Factor| p - 0.5 * ((needed / f).ln() / DEVIATION).powi(2);
+        let score = |(f, p, _): &Factor| p - 0.5 * ((needed / f).ln() / DEVIATION).powi(2);
         let best = all.max_by(|a, b| score(a.0).total_cmp(&score(b.0)));
         let Some(((factor, _, what), peak)) = best else { return (1.0, String::new()) };
         if !agree || (needed / factor).ln().abs() > UNKNOWN {

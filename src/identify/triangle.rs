@@ -7,7 +7,7 @@ const ROWS_PER_COLUMN: usize = 3;
 
 /// The triangular factor of all rows so far; the last column is the right side.
 #[derive(Clone, Debug)]
-pub struct Triangle {
+pub(super) struct Triangle {
     columns: usize,
     /// R, in the upper rows; new rows below it.
     work: DMatrix<f64>,
@@ -18,7 +18,7 @@ pub struct Triangle {
 impl Triangle {
     /// Without rows; `unknowns` columns and a right side.
     #[must_use]
-    pub fn new(unknowns: usize) -> Triangle {
+    pub(super) fn new(unknowns: usize) -> Triangle {
         let columns = unknowns + 1;
         let work = DMatrix::zeros(columns * (1 + ROWS_PER_COLUMN), columns);
         Triangle { columns, work, waiting: 0, rows: 0 }
@@ -26,12 +26,12 @@ impl Triangle {
 
     /// Number of rows that went in.
     #[must_use]
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.rows
     }
 
     /// Adds the row `x` with the right side `y`.
-    pub fn push(&mut self, x: &[f64], y: f64) {
+    pub(super) fn push(&mut self, x: &[f64], y: f64) {
         let row = self.columns + self.waiting;
         for (column, value) in x.iter().enumerate() {
             self.work[(row, column)] = *value;
@@ -46,7 +46,7 @@ impl Triangle {
 
     /// The factor: `unknowns + 1` rows and columns, upper triangular.
     #[must_use]
-    pub fn factor(&mut self) -> DMatrix<f64> {
+    pub(super) fn factor(&mut self) -> DMatrix<f64> {
         self.reduce();
         self.work.rows(0, self.columns).into_owned()
     }

@@ -41,9 +41,8 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
         let reach = q.iter().fold(0.0, |m: f64, q| m.max(q.abs()));
         let [low, high] = model.limits.position[joint];
         let range = low.abs().max(high.abs());
-        let beyond = |scale: f64| {
-            reach * scale > FAR * range.max(1.0) || fast * scale > FAR * limit
-        };
+        let beyond =
+            |scale: f64| reach * scale > FAR * range.max(1.0) || fast * scale > FAR * limit;
         if beyond(1.0) && !beyond(1.0 / DEGREES) {
             return Err(IdentifyError::Degrees { joint: joint + 1, reach, fast });
         }
@@ -94,9 +93,7 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
     let carrying: Vec<usize> = (0..n).filter(|j| own[*j] > 0.01 * largest).collect();
     let on_motor_side = |joint: &usize| {
         let factor = both[*joint] / own[*joint] * motors.ratio[*joint];
-        motors.ratio[*joint] > ROUGHLY * ROUGHLY
-            && factor > 1.0 / ROUGHLY
-            && factor < ROUGHLY
+        motors.ratio[*joint] > ROUGHLY * ROUGHLY && factor > 1.0 / ROUGHLY && factor < ROUGHLY
     };
     if !carrying.is_empty() && carrying.iter().all(on_motor_side) {
         let ratio = motors.ratio[carrying[0]];

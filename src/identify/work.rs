@@ -13,6 +13,7 @@ use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
 use super::fit::{Fit, Weighting, fit, root_mean};
+use super::least_squares::solve;
 use super::samples::{Samples, Source};
 use super::wrist::wrist_coupling;
 
@@ -97,9 +98,10 @@ pub fn identify(
     let rigid = RIGID * n;
     let (among, known): (Vec<usize>, Known) = match settings.free {
         Free::All => ((0..rigid + JOINT * n).collect(), Known::Nothing),
-        Free::Friction => {
-            ((rigid..rigid + JOINT * n).filter(|i| (i - rigid) % JOINT != 0).collect(), Known::Rigid)
-        }
+        Free::Friction => (
+            (rigid..rigid + JOINT * n).filter(|i| !(i - rigid).is_multiple_of(JOINT)).collect(),
+            Known::Rigid,
+        ),
         Free::Payload => ((rigid - RIGID..rigid).collect(), Known::All),
     };
     let mut nominal = model.clone();
@@ -112,7 +114,8 @@ pub fn identify(
     let base = among_base(&nominal);
     let equations = Equations { model: &nominal, base: &base, known };
     let fit = fit(&equations, training, settings.weighting)?;
-    let undetermined: Vec<usize> = fit.solution.dependent.iter().map(|(column, _)| *column).collect();
+    let undetermined: Vec<usize> =
+        fit.solution.dependent.iter().map(|(column, _)| *column).collect();
 
     let pieces = pieces(&nominal, settings.free, &fit, &base, &among);
     let combination = combination(&base, &fit, &among);
@@ -120,11 +123,22 @@ pub fn identify(
         fit.solution.determined.len(),
         fit.solution.determined.iter().map(|k| fit.solution.beta[*k]),
     );
-    // In units of each joint's noise, also where joints were not weighted.
-    let least: f64 =
-        fit.rms.iter().zip(&fit.rows).zip(&fit.sigma).map(|((e, n), s)| e * e * *n as f64 / (s * s)).sum();
-    let target =
-        Target { combination: &combination, factor: &fit.solution.factor, beta: &beta, least };
+    // In units of each joint's residuals, also where joints were not weighted; data without
+    // noise would ask for more digits than there are.
+    let weights: Vec<f64> = fit
+        .rms
+        .iter()
+        .zip(&fit.relative_rms)
+        .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
+        .collect();
+    let weighted = solve(&fit.factors.stacked(&weights, None, base.rank()));
+    let factor = if weighted.determined == fit.solution.determined {
+        &weighted.factor
+    } else {
+        &fit.solution.factor
+    };
+    let least = fit.rows.iter().sum::<usize>() as f64;
+    let target = Target { combination: &combination, factor, beta: &beta, least };
     let found = consistent(&pieces, &target).ok_or(IdentifyError::Inconsistent)?;
     let values: Vec<f64> = found.iter().copied().collect();
 
@@ -141,7 +155,8 @@ pub fn identify(
     let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
     // They are in the numbers now.
     identified.effects.clear();
-    let physically_consistent = identified.links.iter().all(|link| margin(&link_parameters(link)) > 0.0);
+    let physically_consistent =
+        identified.links.iter().all(|link| margin(&link_parameters(link)) > 0.0);
     Ok(Identified {
         model: identified,
         parameters: values,
@@ -162,7 +177,8 @@ pub fn identify(
 
 fn misses(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
     let joints = factors.first().map_or(0, |of| of.layout.columns.len());
-    let (mut squares, mut torque, mut rows) = (vec![0.0; joints], vec![0.0; joints], vec![0; joints]);
+    let (mut squares, mut torque, mut rows) =
+        (vec![0.0; joints], vec![0.0; joints], vec![0; joints]);
     for of in factors {
         let missed = of.residual_squares(beta, None);
         let counted = of.rows_without(None);
@@ -293,6 +309,8 @@ fn pieces(
     pieces
 }
 
+/// Residuals smaller than this share of the torque are as good as none.
+const DIGITS: f64 = 1e-4;
 /// Size of a parameter of which nothing is known, in its SI unit.
 const SMALL: f64 = 1e-3;
 /// Density of an arm, with what is hollow in it \[kg/m³\].

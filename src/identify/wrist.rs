@@ -23,7 +23,11 @@ const INSTANTS: usize = 6000;
 
 /// The coupling that the samples show; `None` where they show none.
 #[must_use]
-pub fn wrist_coupling(model: &Model, base: &BaseParameters, samples: &Samples) -> Option<f64> {
+pub(super) fn wrist_coupling(
+    model: &Model,
+    base: &BaseParameters,
+    samples: &Samples,
+) -> Option<f64> {
     if model.dof != 6 || samples.resting.iter().any(|joint| *joint >= 4) {
         return None;
     }
@@ -39,8 +43,8 @@ pub fn wrist_coupling(model: &Model, base: &BaseParameters, samples: &Samples) -
     let none = miss(0.0);
     let tried = TRIED.map(|coupling| (coupling, miss(coupling)));
     let (near, best) = tried.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    // Not a number is no improvement either.
-    if !(none - best > TOLD) {
+    let gain = none - best;
+    if gain.is_nan() || gain <= TOLD {
         return None;
     }
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);

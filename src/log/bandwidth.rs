@@ -17,11 +17,7 @@ pub fn bandwidth(x: &[f64], step: f64, share: f64) -> f64 {
     let count = (octaves * f64::from(PER_OCTAVE)).ceil() as i32;
     let frequency = |k: i32| highest * 2.0_f64.powf(-f64::from(k) / f64::from(PER_OCTAVE));
     let all = passed(x, highest * step);
-    (0..=count)
-        .rev()
-        .map(frequency)
-        .find(|f| passed(x, f * step) >= share * all)
-        .unwrap_or(highest)
+    (0..=count).rev().map(frequency).find(|f| passed(x, f * step) >= share * all).unwrap_or(highest)
 }
 
 /// Power behind a Butterworth low-pass of second order; `cutoff` per sample.
@@ -48,7 +44,8 @@ mod tests {
     #[test]
     fn a_sine_is_as_fast_as_its_frequency() {
         for f in [0.5, 3.0, 11.0] {
-            let x: Vec<f64> = (0..5000).map(|i| (2.0 * PI * f * 0.005 * f64::from(i)).sin()).collect();
+            let x: Vec<f64> =
+                (0..5000).map(|i| (2.0 * PI * f * 0.005 * f64::from(i)).sin()).collect();
             let found = bandwidth(&x, 0.005, 0.5);
             assert!((0.6..1.7).contains(&(found / f)), "{f}: {found}");
         }

@@ -24,21 +24,26 @@ impl LowPass {
     pub fn new(cutoff: f64, step: f64) -> LowPass {
         let half = (PERIODS / (cutoff * step)).ceil().max(3.0) as usize;
         let length = (half as f64 + 1.0) * step;
-        let times: Vec<f64> =
-            (0..=2 * half).map(|i| (i as f64 - half as f64) * step).collect();
+        let times: Vec<f64> = (0..=2 * half).map(|i| (i as f64 - half as f64) * step).collect();
         let orders: Vec<[f64; 3]> = times.iter().map(|t| kernel(*t, cutoff, length)).collect();
         let of = |order: usize| orders.iter().map(|all| all[order]).collect::<Vec<f64>>();
         let (mut value, mut first, mut second) = (of(0), of(1), of(2));
 
         let sum: f64 = value.iter().sum();
-        value.iter_mut().for_each(|w| *w /= sum);
+        for weight in &mut value {
+            *weight /= sum;
+        }
         // The weighted sum over past samples of −t is the rate of a straight line.
         let slope: f64 = first.iter().zip(&times).map(|(w, t)| -w * t).sum();
-        first.iter_mut().for_each(|w| *w /= slope);
+        for weight in &mut first {
+            *weight /= slope;
+        }
         let mean: f64 = second.iter().sum();
         second.iter_mut().zip(&value).for_each(|(w, v)| *w -= mean * v);
         let bend: f64 = second.iter().zip(&times).map(|(w, t)| 0.5 * w * t * t).sum();
-        second.iter_mut().for_each(|w| *w /= bend);
+        for weight in &mut second {
+            *weight /= bend;
+        }
         // The kernel runs backwards over the samples.
         first.reverse();
         LowPass { half, weights: [value, first, second] }
@@ -73,18 +78,10 @@ fn kernel(t: f64, cutoff: f64, length: f64) -> [f64; 3] {
     let [s, ds, dds] = if x.abs() < 1e-2 {
         // sin x / x to the fourth order, where the quotients cancel.
         let x2 = x * x;
-        [
-            1.0 - x2 / 6.0 + x2 * x2 / 120.0,
-            x * (-1.0 / 3.0 + x2 / 30.0),
-            -1.0 / 3.0 + x2 / 10.0,
-        ]
+        [1.0 - x2 / 6.0 + x2 * x2 / 120.0, x * (-1.0 / 3.0 + x2 / 30.0), -1.0 / 3.0 + x2 / 10.0]
     } else {
         let (sin, cos) = x.sin_cos();
-        [
-            sin / x,
-            (cos - sin / x) / x,
-            -sin / x - 2.0 * (cos - sin / x) / (x * x),
-        ]
+        [sin / x, (cos - sin / x) / x, -sin / x - 2.0 * (cos - sin / x) / (x * x)]
     };
     let b = PI / length;
     let (sin, cos) = (b * t).sin_cos();

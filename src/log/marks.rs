@@ -43,8 +43,7 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Log, LogError> {
     let pace = pairs().map(|(h, t)| h * t).sum::<f64>() / pairs().map(|(_, t)| t * t).sum::<f64>();
     let step = median_step(positions.time()).max(median_step(other.time()));
     let worst = pairs().map(|(h, t)| (h - pace * t).abs()).fold(0.0, f64::max);
-    // Not a number is not near either.
-    if !(worst <= OFF * step) {
+    if worst.is_nan() || worst > OFF * step {
         return Err(LogError::Unaligned { worst, step });
     }
     let clock: Vec<f64> = other.time().iter().map(|t| to + pace * (t - from)).collect();
@@ -54,11 +53,7 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Log, LogError> {
         (0..clock.len()).filter(|i| (first..=last).contains(&clock[*i])).collect();
     let mut log = Log {
         channels: other.channels.clone(),
-        values: other
-            .values
-            .iter()
-            .map(|x| kept.iter().map(|i| x[*i]).collect())
-            .collect(),
+        values: other.values.iter().map(|x| kept.iter().map(|i| x[*i]).collect()).collect(),
         rows: kept.iter().map(|i| other.rows[*i]).collect(),
         rejected: positions.rejected.iter().chain(&other.rejected).cloned().collect(),
     };

@@ -135,9 +135,9 @@ fn longest_run(q: &[&[f64]], lag: f64) -> Option<(usize, usize)> {
     let ranges: Vec<f64> = q
         .iter()
         .map(|x| {
-            let (low, high) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                (l.min(*x), h.max(*x))
-            });
+            let (low, high) = x
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
             high - low
         })
         .collect();
@@ -204,7 +204,8 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
     }
     let mut motion: [Vec<Vec<f64>>; 3] = Default::default();
     for series in &fits {
-        let values = evaluated(&series[..=harmonics.min(series.len() - 1)], samples, periods.period);
+        let values =
+            evaluated(&series[..=harmonics.min(series.len() - 1)], samples, periods.period);
         for (to, values) in motion.iter_mut().zip(values) {
             to.push(values);
         }
@@ -283,11 +284,7 @@ mod tests {
         let w = TAU / 5.0;
         let (s1, c1) = (w * t).sin_cos();
         let (s4, c4) = (4.0 * w * t).sin_cos();
-        [
-            0.7 * s1 + 0.2 * c4,
-            0.7 * w * c1 - 0.8 * w * s4,
-            -0.7 * w * w * s1 - 3.2 * w * w * c4,
-        ]
+        [0.7 * s1 + 0.2 * c4, 0.7 * w * c1 - 0.8 * w * s4, -0.7 * w * w * s1 - 3.2 * w * w * c4]
     }
 
     /// Rest, a ramp, five and a half periods, rest.

@@ -1,6 +1,6 @@
 //! Three phase currents as one vector.
 //!
-//! i = i_a + i_b e^{j2π/3} + i_c e^{j4π/3} turns with the rotor; its length is one and a half
+//! `i = i_a + i_b e^{j2π/3} + i_c e^{j4π/3}` turns with the rotor; its length is one and a half
 //! times the amplitude. With the torque angle kept at ±90°, the vector seen from the rotor
 //! stands still and its sign is the torque's. The electrical angle is the joint's times gear
 //! ratio and pole pairs, in a sense that depends on the order of the phases.
@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 
 /// Pole pairs that are tried, in both senses.
-const POLE_PAIRS: u32 = 12;
+const POLE_PAIRS: i32 = 12;
 /// How much of the vector has to stand still from the rotor.
 const STANDS: f64 = 0.7;
 /// Vectors from which the pole pairs are told.
@@ -50,7 +50,7 @@ pub fn vectors(a: &[f64], b: &[f64], c: &[f64]) -> Vectors {
 pub fn signed(vectors: &Vectors, angle: &[f64]) -> Option<Signed> {
     let n = vectors.re.len().min(angle.len());
     let every = n.div_ceil(TOLD_FROM).max(1);
-    let best = (1..=POLE_PAIRS as i32)
+    let best = (1..=POLE_PAIRS)
         .flat_map(|pairs| [pairs, -pairs])
         .map(|pairs| {
             let (x, y, length) = doubled(vectors, angle, pairs, every);
@@ -97,7 +97,8 @@ mod tests {
     #[test]
     fn the_current_comes_back_for_every_order_of_the_phases() {
         let angle: Vec<f64> = (0..4000).map(|i| 130.0 * (0.002 * f64::from(i)).sin()).collect();
-        let current: Vec<f64> = (0..4000).map(|i| 3.0 * (0.005 * f64::from(i) + 1.0).cos()).collect();
+        let current: Vec<f64> =
+            (0..4000).map(|i| 3.0 * (0.005 * f64::from(i) + 1.0).cos()).collect();
         for pairs in [2.0, 3.0, 5.0] {
             let phase = |k: f64| -> Vec<f64> {
                 let of = |(i, angle): (&f64, &f64)| i * (pairs * angle + 0.7 - k * TAU / 3.0).cos();

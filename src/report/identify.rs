@@ -46,9 +46,7 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
     let held_out = found.validation.as_ref();
     let names = |rows: &[usize]| rows.iter().map(|row| found.base.name(*row)).collect::<Vec<_>>();
     let logs = |logs: &[(String, String, usize, usize)]| -> Vec<Value> {
-        let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| {
-            json!({"path": path, "sha256": hash, "rows": rows, "left_out": left_out})
-        };
+        let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| json!({"path": path, "sha256": hash, "rows": rows, "left_out": left_out});
         logs.iter().map(log).collect()
     };
     json!({

@@ -117,8 +117,7 @@ fn geometry(model: &Model, out: &mut Writer<'_>) {
     if let Some(opw) = as_opw {
         let lengths = [opw.a1, opw.a2, opw.b, opw.c1, opw.c2, opw.c3, opw.c4];
         let names = ["a1", "a2", "b", "c1", "c2", "c3", "c4"];
-        let mut entries: Vec<(&str, String)> =
-            names.into_iter().zip(lengths.map(number)).collect();
+        let mut entries: Vec<(&str, String)> = names.into_iter().zip(lengths.map(number)).collect();
         entries.push(("offsets", list(&opw.offsets)));
         entries.push(("signs", list(&opw.signs)));
         out.table("[kinematics.opw]", "kinematics.opw", &entries);

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use joulepath::identify::torques;
+use joulepath::dynamics::{Load, Parameters, parameters};
+use joulepath::identify::{Free, Hints, Settings, Source, Weighting, identify, prepare, torques};
 use joulepath::log::{Channel, Log};
 use joulepath::robot::Model;
 
@@ -49,6 +50,40 @@ fn phases(model: &Model, log: &Log, scale: f64, random: &mut fastrand::Rng) -> L
     wired
 }
 
+/// The paper's chain: seven periods of phase currents, to the parameters of its table 2.
+#[test]
+fn parameters_come_back_from_phase_currents() {
+    let model = irb1600();
+    let mut random = fastrand::Rng::with_seed(12);
+    let truth = log(&model, &series(12), [70.0, 0.005], With::Positions, [0.0, 0.0], &mut random);
+    let log = phases(&model, &truth, 1.5, &mut random);
+    let torque = torques(&model, &log).unwrap();
+    let samples = prepare(&log, &torque.tau, Hints::default()).unwrap();
+    assert!(matches!(samples.source, Source::Periodic { periods: 7 | 6, .. }));
+    let settings =
+        Settings { free: Free::All, weighting: Weighting::Joint, source: "a test".into() };
+    let found = identify(&model, &samples, &[], &settings).unwrap();
+    let all = parameters(&model, &Load::none(), Parameters::WithJoints);
+    let expected = found.base.of_parameters(&all);
+    let deviations: Vec<f64> = found
+        .fit
+        .solution
+        .determined
+        .iter()
+        .enumerate()
+        .map(|(k, column)| {
+            let off = found.fit.solution.beta[*column] - expected[*column];
+            off.abs() / found.fit.covariance[(k, k)].sqrt()
+        })
+        .collect();
+    assert_eq!(deviations.len(), 58);
+    // One in 370 lies further away than three deviations.
+    let far = deviations.iter().filter(|d| **d > 3.0).count();
+    let largest = deviations.iter().fold(0.0, |m: f64, d| m.max(*d));
+    eprintln!("58 parameters from phase currents: the furthest is {largest:.2} sd away");
+    assert!(far <= 1 && largest < 4.0, "{deviations:?}");
+}
+
 #[test]
 fn sign_and_scale_are_right_in_two_hundred_random_cases() {
     let model = irb1600();
@@ -57,8 +92,7 @@ fn sign_and_scale_are_right_in_two_hundred_random_cases() {
     for case in 0..200 {
         let scale = [1.0, 2.0 / 3.0, 1.5, 1.5_f64.sqrt()][case % 4];
         let motion = series(1000 + case as u64);
-        let truth =
-            log(&model, &motion, [10.0, 0.01], With::Positions, [0.0, 0.0], &mut random);
+        let truth = log(&model, &motion, [10.0, 0.01], With::Positions, [0.0, 0.0], &mut random);
         let found = torques(&model, &phases(&model, &truth, scale, &mut random)).unwrap();
         for joint in 0..6 {
             let expected = truth.column(Channel::Torque(joint)).unwrap();
@@ -68,7 +102,12 @@ fn sign_and_scale_are_right_in_two_hundred_random_cases() {
                 all += expected * expected;
             }
             if (off / all).sqrt() > RIGHT {
-                wrong.push(format!("{case}.{}: {:.3} {:?}", joint + 1, (off / all).sqrt(), found.notes.last()));
+                wrong.push(format!(
+                    "{case}.{}: {:.3} {:?}",
+                    joint + 1,
+                    (off / all).sqrt(),
+                    found.notes.last()
+                ));
             }
         }
     }

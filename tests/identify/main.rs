@@ -205,8 +205,7 @@ fn friction_alone_and_a_payload_are_found() {
         log(robot, &series(8), [10.0, 0.01], With::Rates, noisy, random)
     };
     let worn = samples(&log_of(&other, &mut random), &model);
-    let found =
-        identify(&model, &worn, &[], &settings(Free::Friction, Weighting::Joint)).unwrap();
+    let found = identify(&model, &worn, &[], &settings(Free::Friction, Weighting::Joint)).unwrap();
     for joint in 0..6 {
         let (a, b) = (found.model.friction.viscous[joint], other.friction.viscous[joint]);
         assert!((a / b - 1.0).abs() < 0.03, "{a} {b}");

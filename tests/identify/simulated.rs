@@ -22,8 +22,11 @@ pub(crate) fn series(seed: u64) -> Series {
             let raw: Vec<f64> =
                 harmonics.iter().map(|k| (0.4 + random.f64()) / *k as f64).collect();
             let reach: f64 = raw.iter().sum();
-            let fast: f64 =
-                raw.iter().zip(&harmonics).map(|(a, k)| a * 0.2 * std::f64::consts::PI * *k as f64).sum();
+            let fast: f64 = raw
+                .iter()
+                .zip(&harmonics)
+                .map(|(a, k)| a * 0.2 * std::f64::consts::PI * *k as f64)
+                .sum();
             let scale = (limits[joint] / reach).min(speeds[joint] / fast);
             raw.iter()
                 .map(|a| {
@@ -85,8 +88,8 @@ pub(crate) fn log(
     channels.extend(of(Channel::Acceleration));
     channels.extend(of(Channel::Torque));
     if with == With::Positions {
-        values.drain(1 + n..1 + 3 * n);
-        channels.drain(1 + n..1 + 3 * n);
+        values.drain(1 + n..=3 * n);
+        channels.drain(1 + n..=3 * n);
     }
     Log { channels, values, rows: (2..count as u64 + 2).collect(), rejected: Vec::new() }
 }

@@ -106,7 +106,10 @@ pub fn identify_report(
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", &found.model.name);
-    context.insert("basis", if found.validation.is_some() { "held-out logs" } else { "cross-validated" });
+    context.insert(
+        "basis",
+        if found.validation.is_some() { "held-out logs" } else { "cross-validated" },
+    );
     context.insert("rank", &fit.solution.determined.len());
     context.insert("scaled", &fixed(fit.condition.scaled, 1));
     context.insert("raw", &fixed(fit.condition.raw, 0));
@@ -140,17 +143,12 @@ fn plots(traces: &Traces) -> Vec<String> {
     let joints = traces.measured.iter().zip(&traces.predicted).enumerate();
     let mut plots: Vec<String> = joints
         .map(|(joint, (measured, predicted))| {
-            let residual: Vec<f64> =
-                measured.iter().zip(predicted).map(|(a, b)| a - b).collect();
+            let residual: Vec<f64> = measured.iter().zip(predicted).map(|(a, b)| a - b).collect();
             let plot = Plot {
                 name: &format!("torque of joint {}", joint + 1),
                 x_title: "time (s)",
                 y_title: &format!("joint {} (Nm)", joint + 1),
-                curves: vec![
-                    curve("j1", measured),
-                    curve("j2", predicted),
-                    curve("j3", &residual),
-                ],
+                curves: vec![curve("j1", measured), curve("j2", predicted), curve("j3", &residual)],
                 rules: Vec::new(),
             };
             plot.svg(SIZE)
