@@ -49,6 +49,32 @@ impl Factors {
         Factors { layout, parts, rows, squares }
     }
 
+    /// All parts but `without` as one.
+    #[must_use]
+    pub fn merged(&self, without: Option<usize>) -> Factors {
+        let joints = self.layout.columns.len();
+        let merge = |joint: usize| {
+            let unknowns = self.layout.columns[joint].len();
+            let mut triangle = Triangle::new(unknowns);
+            for (part, of) in self.parts.iter().enumerate() {
+                if Some(part) == without {
+                    continue;
+                }
+                for row in of[joint].row_iter() {
+                    let values: Vec<f64> = row.iter().copied().collect();
+                    triangle.push(&values[..unknowns], values[unknowns]);
+                }
+            }
+            triangle.factor()
+        };
+        Factors {
+            layout: self.layout.clone(),
+            parts: vec![(0..joints).map(merge).collect()],
+            rows: vec![self.rows_without(without)],
+            squares: vec![self.sum(without, |part, joint| self.squares[part][joint])],
+        }
+    }
+
     /// Usable equations of each joint, in all parts but `without`.
     #[must_use]
     pub fn rows_without(&self, without: Option<usize>) -> Vec<usize> {
@@ -84,27 +110,18 @@ impl Factors {
             .collect()
     }
 
-    /// The weighted equations of all joints and parts but `without`, `unknowns` columns and
-    /// the right side.
+    /// The weighted equations of all joints and parts, `unknowns` columns and the right side.
     #[must_use]
-    pub fn stacked(
-        &self,
-        weights: &[f64],
-        without: Option<usize>,
-        unknowns: usize,
-    ) -> DMatrix<f64> {
-        let kept: Vec<(&Vec<usize>, &DMatrix<f64>, f64)> = self
-            .parts
-            .iter()
-            .enumerate()
-            .filter(|(part, _)| Some(*part) != without)
-            .flat_map(|(_, joints)| joints.iter().zip(&self.layout.columns).zip(weights))
-            .map(|((factor, columns), weight)| (columns, factor, *weight))
-            .collect();
-        let height = kept.iter().map(|(_, factor, _)| factor.nrows()).sum();
+    pub fn stacked(&self, weights: &[f64], unknowns: usize) -> DMatrix<f64> {
+        let all = || {
+            self.parts
+                .iter()
+                .flat_map(|joints| joints.iter().zip(&self.layout.columns).zip(weights))
+        };
+        let height = all().map(|((factor, _), _)| factor.nrows()).sum();
         let mut stacked = DMatrix::zeros(height, unknowns + 1);
         let mut row = 0;
-        for (columns, factor, weight) in kept {
+        for ((factor, columns), weight) in all() {
             for (from, values) in factor.column_iter().enumerate() {
                 let to = columns.get(from).copied().unwrap_or(unknowns);
                 for (k, value) in values.iter().enumerate() {

@@ -72,14 +72,15 @@ pub fn fit(
     if count < unknowns {
         return Err(IdentifyError::TooFew { equations: count, unknowns });
     }
-    let (solution, sigma) = reweighted(&factors, weighting, None, unknowns);
+    let merged = factors.merged(None);
+    let (solution, sigma) = reweighted(&merged, weighting, unknowns);
     let squares = factors.residual_squares(&solution.beta, None);
     let torque: Vec<f64> =
         (0..rows.len()).map(|joint| factors.squares.iter().map(|part| part[joint]).sum()).collect();
     let cross = cross_squares(&factors, weighting, unknowns);
     let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
     let Errors { covariance, memory } =
-        errors(equations, samples, &factors, &solution, &weights, weighting);
+        errors(equations, samples, &merged, &solution, &weights, weighting);
     Ok(Fit {
         condition: solution.condition(),
         rms: root_mean(&squares, &rows),
@@ -96,7 +97,7 @@ pub fn fit(
 
 /// Root mean square of each joint's residuals in a fit without anything else \[Nm\].
 pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
-    let (solution, _) = reweighted(factors, Weighting::Joint, None, unknowns);
+    let (solution, _) = reweighted(factors, Weighting::Joint, unknowns);
     root_mean(&factors.residual_squares(&solution.beta, None), &factors.rows_without(None))
 }
 
@@ -106,47 +107,31 @@ pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
     squares.iter().zip(rows).map(|(sum, n)| (sum / (*n).max(1) as f64).sqrt()).collect()
 }
 
-/// The solution without one part, and the deviation of each joint \[Nm\].
-fn reweighted(
-    factors: &Factors,
-    weighting: Weighting,
-    without: Option<usize>,
-    unknowns: usize,
-) -> (Solution, Vec<f64>) {
-    let rows = factors.rows_without(without);
+/// The solution, and the deviation of each joint \[Nm\].
+fn reweighted(factors: &Factors, weighting: Weighting, unknowns: usize) -> (Solution, Vec<f64>) {
+    let rows = factors.rows_without(None);
     let mut sigma = vec![1.0; rows.len()];
-    let mut solution = solve(&factors.stacked(&sigma, without, unknowns));
+    let mut solution = solve(&factors.stacked(&sigma, unknowns));
     if weighting == Weighting::Ordinary {
         return (solution, sigma);
     }
     for _ in 0..ROUNDS {
         let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
-        let mut squares = factors.residual_squares(&solution.beta, None);
-        if let Some(part) = without {
-            for (all, of) in
-                squares.iter_mut().zip(factors.residual_squares(&solution.beta, Some(part)))
-            {
-                *all -= of;
-            }
-        }
+        let squares = factors.residual_squares(&solution.beta, None);
         let lost = lost(factors, &solution, &weights);
-        let torque = factors.squares.iter();
-        let mut scale = vec![0.0; rows.len()];
-        for part in torque {
-            scale.iter_mut().zip(part).for_each(|(sum, of)| *sum += of);
-        }
         let next: Vec<f64> = (0..rows.len())
             .map(|joint| {
                 let n = rows[joint] as f64;
-                let found = (squares[joint].max(0.0) / (n - lost[joint]).max(1.0)).sqrt();
+                let torque: f64 = factors.squares.iter().map(|part| part[joint]).sum();
+                let found = (squares[joint] / (n - lost[joint]).max(1.0)).sqrt();
                 // Data without noise have rounding errors left.
-                found.max(1e-9 * (scale[joint] / n.max(1.0)).sqrt()).max(1e-12)
+                found.max(1e-9 * (torque / n.max(1.0)).sqrt()).max(1e-12)
             })
             .collect();
         let change = next.iter().zip(&sigma).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         sigma = next;
         let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
-        solution = solve(&factors.stacked(&weights, without, unknowns));
+        solution = solve(&factors.stacked(&weights, unknowns));
         if change < SETTLED {
             break;
         }
@@ -191,7 +176,7 @@ fn lost(factors: &Factors, solution: &Solution, weights: &[f64]) -> Vec<f64> {
 fn cross_squares(factors: &Factors, weighting: Weighting, unknowns: usize) -> Vec<f64> {
     let mut sums = vec![0.0; factors.layout.columns.len()];
     for part in 0..factors.parts.len() {
-        let (solution, _) = reweighted(factors, weighting, Some(part), unknowns);
+        let (solution, _) = reweighted(&factors.merged(Some(part)), weighting, unknowns);
         let squares = factors.residual_squares(&solution.beta, Some(part));
         sums.iter_mut().zip(squares).for_each(|(sum, of)| *sum += of);
     }

@@ -131,7 +131,7 @@ pub fn identify(
         .zip(&fit.relative_rms)
         .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
         .collect();
-    let weighted = solve(&fit.factors.stacked(&weights, None, base.rank()));
+    let weighted = solve(&fit.factors.stacked(&weights, base.rank()));
     let factor = if weighted.determined == fit.solution.determined {
         &weighted.factor
     } else {
