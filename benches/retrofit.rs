@@ -5,7 +5,7 @@ use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::motion::Options;
-use joulepath::optimize::corridor::Ceilings;
+use joulepath::optimize::corridor::Freedom;
 use joulepath::retrofit::{Budget, Objective, Settings, Source, retrofit};
 use joulepath::robot;
 use joulepath::text::{FileId, SourceFile};
@@ -32,7 +32,7 @@ fn pick_place(c: &mut Criterion) {
         objective: Objective::Energy,
         budget: Budget::AsBefore,
         spacing_s: 0.05,
-        ceilings: Ceilings::Programmed,
+        freedom: Freedom::none(),
     };
     let mut group = c.benchmark_group("retrofit");
     group.sample_size(10);

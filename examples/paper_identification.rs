@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release --example paper_identification -- DIR`
 
+#![expect(clippy::print_stdout, reason = "an example shows what it does")]
+
 use std::f64::consts::{SQRT_2, TAU};
 use std::fmt::Write as _;
 use std::path::PathBuf;

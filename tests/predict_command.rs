@@ -114,7 +114,13 @@ fn seven_joints_in_any_form_of_csv() {
         })
         .collect();
     let turned = written(&folder, "degrees.csv", &turned.join("\n"));
-    for path in [plain, excel, tabs, turned] {
+    let wide: Vec<u8> = format!("\u{feff}{}", fs::read_to_string(&plain).unwrap())
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    let utf_16 = folder.path().join("utf16.csv");
+    fs::write(&utf_16, wide).unwrap();
+    for path in [plain, excel, tabs, turned, utf_16] {
         let text = succeeded(&predict(SEVEN, &path, &[]));
         let (names, rows) = table(&text);
         assert_eq!((names.len(), rows.len()), (1 + 7 + 2, 12));
@@ -227,11 +233,17 @@ fn bad_rows_are_named_and_left_out() {
 fn unusable_logs_are_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let good = log_of_seven(",", "", |x| x.to_string());
+    // Each interval is ten times the one before.
+    let mut sparse = "t,q1,q2,q3,q4,q5,q6,q7\n".to_owned();
+    for i in 0..14 {
+        sparse += &[10_i64.pow(i).to_string().as_str(), "0,0,0,0,0,0,0\n"].join(",");
+    }
     let cut = |count: usize| good.lines().take(count).collect::<Vec<_>>().join("\n");
     for (text, way_out) in [
         (String::new(), "the first row names the columns"),
         (good.replacen('t', "time", 1), "the first row names the columns"),
         (cut(10), "only 9 usable rows, 10 are needed"),
+        (sparse, "rows have others near enough to differentiate"),
         (good.replacen("q7", "p7", 1), "positions of 6 joints are logged, seven has 7"),
         (good.replacen("q3", "p3", 1), "none for joint 3"),
         (good.replacen("q3", "q2_deg", 1), "same quantity"),

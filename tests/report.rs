@@ -9,7 +9,7 @@ use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::optimize::check::Check;
-use joulepath::optimize::corridor::Ceilings;
+use joulepath::optimize::corridor::Freedom;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{
@@ -56,7 +56,7 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         objective: Objective::Energy,
         budget: Budget::AsBefore,
         spacing_s: 0.05,
-        ceilings: Ceilings::Programmed,
+        freedom: Freedom::none(),
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();
@@ -90,7 +90,7 @@ const HEAD: &str = "MODULE Cell
     PROC rFront()
 ";
 const ORIGINAL: &str = "        MoveAbsJ jAside,v1000,z50,tool0;
-        MoveL pFront,v500,fine,tool0;
+        MoveL pFront,v300,fine,tool0;
 ";
 const TAIL: &str = "    ENDPROC
 ENDMODULE
@@ -455,7 +455,7 @@ fn executions_of_one_stream_share_their_plots() {
     let page = small_page("Cell.mod");
     assert_eq!(page.matches("<details class=\"way\"").count(), 1);
     assert!(page.contains("<summary>2 runs: "));
-    // The programmed 500 mm/s of the line.
+    // The programmed 300 mm/s of the line.
     assert!(page.contains("class=\"ceiling\""));
 }
 

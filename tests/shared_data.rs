@@ -4,6 +4,9 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 #![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
 
+#[path = "shared_data/controller_runs.rs"]
+mod controller_runs;
+
 use std::fs;
 use std::path::Path;
 

@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use joulepath::motion::Options;
-use joulepath::optimize::corridor::Ceilings;
+use joulepath::optimize::corridor::Freedom;
 use joulepath::retrofit::{
     Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
 };
@@ -47,7 +47,7 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
         objective: Objective::Energy,
         budget: Budget::AsBefore,
         spacing_s: 0.05,
-        ceilings: Ceilings::Programmed,
+        freedom: Freedom::none(),
     };
     let model = find("IRB1600-10/1.45").unwrap();
     let result = retrofit(&files, &model, &settings, &|_, _| ());

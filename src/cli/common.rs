@@ -44,6 +44,22 @@ pub struct ProgramArgs {
     #[arg(long = "input", value_name = "SIGNAL=SECONDS")]
     pub inputs: Vec<String>,
 
+    /// The level of an input that the program asks for, such as di1=1; otherwise 0.
+    #[arg(long = "assume", value_name = "SIGNAL=LEVEL")]
+    pub levels: Vec<String>,
+
+    /// Override of all speeds in %, as on the operator's panel.
+    #[arg(long = "speed-override", value_name = "PERCENT")]
+    pub speed_override: Option<f64>,
+
+    /// How often the loop that never ends runs.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub passes: Option<u32>,
+
+    /// End the simulation after this time, s.
+    #[arg(long = "max-time", value_name = "SECONDS")]
+    pub max_time: Option<f64>,
+
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
@@ -165,7 +181,23 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     if let Some((name, t)) = times.iter().find(|(_, t)| !(t.is_finite() && *t >= 0.0)) {
         bail!("the input {name} comes after {t} s; give a time of 0 or more");
     }
+    let mut levels = config.assume.clone();
+    for text in &args.levels {
+        let (name, level) = input_level(text)?;
+        levels.retain(|known, _| known.to_lowercase() != name.to_lowercase());
+        levels.insert(name, level);
+    }
+    if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
+        bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
+    }
+    if let Some(limit) = args.max_time.filter(|t| !(t.is_finite() && *t > 0.0)) {
+        bail!("--max-time {limit}: give a time in seconds above 0");
+    }
     let options = Options {
+        levels: levels.iter().map(|(name, level)| (name.to_lowercase(), *level)).collect(),
+        speed_override: args.speed_override.map(|percent| percent / 100.0),
+        passes: args.passes,
+        max_time: args.max_time,
         start: args.start.as_deref().map(|text| six_degrees("--start", text)).transpose()?,
         inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
     };
@@ -244,6 +276,13 @@ fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
         }
     }
     Ok((Config::default(), PathBuf::new()))
+}
+
+fn input_level(text: &str) -> anyhow::Result<(String, f64)> {
+    let wrong = || format!("--assume {text}: write it as SIGNAL=LEVEL, such as di1=1");
+    let (name, level) = text.split_once('=').with_context(wrong)?;
+    let level: f64 = level.trim().parse().map_err(|_| anyhow::anyhow!(wrong()))?;
+    Ok((name.trim().to_owned(), level))
 }
 
 fn input_time(text: &str) -> anyhow::Result<(String, f64)> {

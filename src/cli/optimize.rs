@@ -12,11 +12,13 @@ use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::{listing, output};
-use crate::optimize::corridor::Ceilings;
+use crate::optimize::corridor::{Ceilings, Freedom};
 use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
-use crate::retrofit::{Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, retrofit};
+use crate::retrofit::{
+    Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, freed, retrofit,
+};
 use crate::text::charset;
 
 /// Retrofit a program: the same work with less energy in no more time.
@@ -70,6 +72,15 @@ pub struct OptimizeArgs {
     #[arg(long)]
     allow_faster_tcp: bool,
 
+    /// Let joint movements leave their path, and lines and arcs whose statement has the comment
+    /// `! joulepath: free` on its line.
+    #[arg(long)]
+    free_path: bool,
+
+    /// How far a free movement may leave its path, mm.
+    #[arg(long, value_name = "MM", requires = "free_path", allow_negative_numbers = true)]
+    deviation: Option<f64>,
+
     /// Exit with 1 if some movement was refused.
     #[arg(long)]
     strict: bool,
@@ -90,6 +101,11 @@ const LEAST_SPACING_S: f64 = 0.004;
 const LARGEST_SPACING_S: f64 = 1.0;
 /// Spacing of the points that a controller plans in time, s.
 const SPACING_S: f64 = 0.05;
+
+/// How far a free movement may leave its path where nothing is said, mm.
+const DEVIATION_MM: f64 = 50.0;
+/// Beyond this a path says nothing any more, mm.
+const LARGEST_DEVIATION_MM: f64 = 1000.0;
 
 /// Runs the command.
 ///
@@ -180,8 +196,21 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         },
         budget,
         spacing_s,
-        ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
+        freedom: Freedom {
+            ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
+            deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
+            freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
+        },
     })
+}
+
+/// How far free movements may leave their path, m.
+fn deviation(asked: Option<f64>) -> anyhow::Result<f64> {
+    let mm = asked.unwrap_or(DEVIATION_MM);
+    if !(mm > 0.0 && mm <= LARGEST_DEVIATION_MM) {
+        bail!("--deviation {mm}: give more than 0 and at most {LARGEST_DEVIATION_MM} mm");
+    }
+    Ok(mm * 1e-3)
 }
 
 /// Least time between two points of a stream, s.

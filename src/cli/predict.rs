@@ -12,8 +12,12 @@ use clap::Args;
 use super::{common, load, output};
 use crate::dynamics::{Data, Load};
 use crate::energy::power::{power_at, supply_w};
-use crate::log::{self, ColumnMap, Motion};
+use crate::log::{self, ColumnMap, MIN_ROWS, Motion};
 use crate::robot::{self, Model, Use, ready};
+use crate::text::{FileId, SourceFile};
+
+/// Marks of texts as spreadsheets export them.
+const UTF_16: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 
 /// Torques and powers that a model predicts for a logged motion, as CSV.
 #[derive(Debug, Args)]
@@ -59,6 +63,11 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let shown = args.log.display();
     let bytes = fs::read(&args.log)
         .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
+    let bytes = if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
+        SourceFile::new(FileId(0), shown.to_string(), bytes).bytes
+    } else {
+        bytes
+    };
     let log = log::read(&bytes, &map).with_context(|| shown.to_string())?;
     if log.joints() != model.dof {
         let (name, dof) = (&model.name, model.dof);
@@ -69,6 +78,13 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
         );
     }
     let motion = log.motion();
+    if motion.time.len() < MIN_ROWS {
+        bail!(
+            "{shown}: only {} rows have others near enough to differentiate, {MIN_ROWS} are needed; \
+             give a log with qd1… and qdd1…, or one that is sampled more evenly",
+            motion.time.len()
+        );
+    }
     for rejected in log.rejected.iter().chain(&motion.left_out) {
         let text = format!("{shown}: row {} left out: {}", rejected.row, rejected.reason);
         common::note(args.quiet, &text);

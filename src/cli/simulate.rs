@@ -11,6 +11,7 @@ use super::output;
 use crate::energy::account;
 use crate::energy::trajectory::trajectory;
 use crate::motion;
+use crate::report::html::simulate_report;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::read_program;
@@ -27,6 +28,10 @@ pub struct SimulateArgs {
     /// Write the planned motion as CSV, at most 2 ms apart.
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Option<PathBuf>,
+
+    /// Write a report as one HTML file: the cycle over time, power, joints, the source with joules.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -40,9 +45,16 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let account = account(&job.model, &simulation);
     let sources = job.sources();
     let places = Places::new(&sources);
-    if let Some(path) = &args.trajectory {
+    if args.trajectory.is_some() || args.report.is_some() {
         let samples = trajectory(&job.model, &simulation);
-        output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;
+        if let Some(path) = &args.trajectory {
+            output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;
+        }
+        if let Some(path) = &args.report {
+            let (model, entry) = (&job.model, &job.entry);
+            let page = simulate_report(&simulation, &account, &samples, &sources, model, entry)?;
+            output::write(path, page.as_bytes())?;
+        }
     }
     let notes = job.unused_inputs(&simulation);
     for text in &notes {

@@ -23,6 +23,9 @@ pub struct Config {
     /// Seconds after which an input comes.
     #[serde(default)]
     pub inputs: BTreeMap<String, f64>,
+    /// Levels of inputs that the program asks for.
+    #[serde(default)]
+    pub assume: BTreeMap<String, f64>,
 }
 
 /// A configuration that can't be used.
@@ -39,7 +42,9 @@ pub enum ConfigError {
         reason: String,
     },
     /// It is wrong.
-    #[error("{path}: {reason}; known keys are robot, entry, takt_s, spacing_s and [inputs]")]
+    #[error(
+        "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs] and [assume]"
+    )]
     Wrong {
         /// Its path.
         path: String,

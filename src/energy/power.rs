@@ -1,7 +1,10 @@
 //! Power at one state of the robot, and its integral over a motion.
 
 use super::parts::EnergyParts;
-use crate::dynamics::{Data, Load, Torque, gravity, motor_rates, motor_torques, torque};
+use crate::dynamics::{
+    Data, Load, Torque, gravity, kinetic_energy, motor_rates, motor_torques, potential_energy,
+    torque,
+};
 use crate::motion::timed::{JointState, TimedMotion};
 use crate::path::joint_path::Joints;
 use crate::robot::{MAX_DOF, Model, Sharing};
@@ -118,7 +121,13 @@ pub fn motion_energy(
     knots.retain(|t| *t > from && *t < to);
     knots.insert(0, from);
     knots.push(to);
-    let mut sum = EnergyParts::default();
+    reversals(motion, &mut knots);
+    // The rigid work is what the robot has gained; the rest is integrated.
+    let ends = [from, to].map(|t| motion.at(t));
+    let [before, after] = ends.map(|JointState { q, qd, .. }| {
+        kinetic_energy(model, load, &q, &qd) + potential_energy(model, load, &q)
+    });
+    let mut sum = EnergyParts { mechanical_j: after - before, ..EnergyParts::default() };
     for pair in knots.windows(2) {
         let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
         let h = (pair[1] - pair[0]) / steps;
@@ -129,7 +138,6 @@ pub fn motion_energy(
                 let p = power(model, &mut data, load, &state);
                 let w = 0.5 * h * w;
                 sum += EnergyParts {
-                    mechanical_j: w * p.rigid_w,
                     friction_j: w * p.friction_w,
                     copper_j: w * p.copper_w,
                     drive_j: w * p.drive_w,
@@ -139,4 +147,36 @@ pub fn motion_energy(
         }
     }
     sum
+}
+
+/// Halvings of the search for the moment at which a joint turns.
+const HALVINGS: usize = 40;
+
+/// Adds the moments at which a joint turns, where dry friction jumps.
+fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
+    let mut found = Vec::new();
+    for pair in knots.windows(2) {
+        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
+        let h = (pair[1] - pair[0]) / steps;
+        let mut before = motion.at(pair[0]).qd;
+        for i in 0..steps as usize {
+            let (a, b) = (pair[0] + h * i as f64, pair[0] + h * (i + 1) as f64);
+            let after = motion.at(b).qd;
+            for j in 0..after.len() {
+                if before[j] * after[j] >= 0.0 {
+                    continue;
+                }
+                let (mut low, mut high) = (a, b);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    let same = motion.at(middle).qd[j] * before[j] > 0.0;
+                    *(if same { &mut low } else { &mut high }) = middle;
+                }
+                found.push(0.5 * (low + high));
+            }
+            before = after;
+        }
+    }
+    knots.extend(found);
+    knots.sort_by(f64::total_cmp);
 }

@@ -96,6 +96,14 @@ pub struct Settings {
     pub acceleration: f64,
     /// `AccSet` ramp, 1 = 100 %.
     pub ramp: f64,
+    /// `AccSet\FinePointRamp`, 1 = 100 %: the ramp towards stop points.
+    pub fine_point_ramp: f64,
+    /// `SpeedRefresh` override, 1 = 100 %.
+    pub refresh: f64,
+    /// `PathAccLim`: largest acceleration and deceleration along the path of the TCP, m/s².
+    pub path_acceleration: [f64; 2],
+    /// `WorldAccLim`: largest acceleration of the TCP, m/s².
+    pub world_acceleration: f64,
     /// `ConfJ`.
     pub conf_joint: bool,
     /// `ConfL`.
@@ -119,6 +127,10 @@ impl Default for Settings {
             speed_max: f64::INFINITY,
             acceleration: 1.0,
             ramp: 1.0,
+            fine_point_ramp: 1.0,
+            refresh: 1.0,
+            path_acceleration: [f64::INFINITY; 2],
+            world_acceleration: f64::INFINITY,
             conf_joint: true,
             conf_linear: true,
             displacement: None,

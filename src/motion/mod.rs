@@ -1,9 +1,9 @@
 //! The virtual controller: how a program becomes a timed joint trajectory.
 
+pub mod averaged;
 pub mod controller;
 pub mod planner;
 pub mod sampling;
-pub mod smooth;
 pub mod stream;
 pub mod timed;
 pub mod timeline;

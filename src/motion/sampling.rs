@@ -1,22 +1,39 @@
 //! From a joint path to the grid that the timing solvers see.
 
-use super::timing::grid::{GridError, PathGrid, PathPoint};
+use super::controller::interpolation_s;
+use super::timing::grid::{GridError, PathGrid, PathPoint, TCP_ROWS};
+use super::timing::limits::Row;
 use crate::dynamics::{Data, Load, rnea};
-use crate::path::joint_path::{DOF, Extent, JointPath, Joints, Piece, PieceKind};
+use crate::kinematics::Tcp;
+use crate::path::joint_path::{
+    DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
+};
 use crate::robot::Model;
 
-/// Speed limits of one leg.
+/// Limits that the program sets for one leg.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedCap {
     /// TCP speed, m/s.
     pub tcp: f64,
     /// Reorientation speed, rad/s.
     pub orientation: f64,
+    /// Share of the robot's accelerations.
+    pub acceleration: f64,
+    /// Acceleration and deceleration of the TCP along its path, m/s².
+    pub path_acceleration: [f64; 2],
+    /// Acceleration of the TCP, m/s².
+    pub world_acceleration: f64,
 }
 
 impl SpeedCap {
     /// No limit but the robot's own.
-    pub const NONE: SpeedCap = SpeedCap { tcp: f64::INFINITY, orientation: f64::INFINITY };
+    pub const NONE: SpeedCap = SpeedCap {
+        tcp: f64::INFINITY,
+        orientation: f64::INFINITY,
+        acceleration: 1.0,
+        path_acceleration: [f64::INFINITY; 2],
+        world_acceleration: f64::INFINITY,
+    };
 }
 
 /// Robot and load of a run.
@@ -32,8 +49,10 @@ pub struct Loaded<'a> {
 const LEG_INTERVALS: usize = 4;
 /// Intervals of a zone.
 const ZONE_INTERVALS: usize = 8;
-/// Nodes nearer to each other than this share of the path are one.
-const NODE_DISTANCE: f64 = 1e-4;
+/// Halvings of the first and the last interval: a slow motion gets to its speed early.
+const END_HALVINGS: i32 = 8;
+/// Nodes nearer to each other than this are one, m of the path or share of a short one.
+const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
 /// Nodes in s: about `count` intervals in all, closer towards the ends of the legs, where speeds
 /// change; and the edges and kinks of the zones.
@@ -50,24 +69,18 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
         }));
         begin = end;
     }
-    // Evenly in each zone, whatever pieces it happens to be made of.
-    let mut zone: Option<(f64, f64)> = None;
-    let is_zone = |kind: PieceKind| matches!(kind, PieceKind::CartesianZone | PieceKind::JointZone);
-    for piece in path.pieces() {
-        let end = piece.s + piece.length;
-        zone = match (zone, is_zone(piece.kind)) {
-            (Some((begin, _)), true) => Some((begin, end)),
-            (None, true) => Some((piece.s, end)),
-            (found, false) => {
-                nodes.extend(found.into_iter().flat_map(zone_nodes));
-                None
-            }
-        };
+    let ends = [nodes[1], length - nodes[nodes.len() - 2]];
+    for k in 1..=END_HALVINGS {
+        let [first, last] = ends.map(|interval| interval * 0.5_f64.powi(k));
+        nodes.extend([first, length - last]);
     }
+    // Evenly in each zone, whatever pieces it happens to be made of.
+    nodes.extend(zones(path).into_iter().flat_map(zone_nodes));
     nodes.sort_by(f64::total_cmp);
+    let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * length);
     let mut kept: Vec<f64> = Vec::with_capacity(nodes.len());
     for node in nodes {
-        if kept.last().is_none_or(|last| node - last > NODE_DISTANCE * length) {
+        if kept.last().is_none_or(|last| node - last > apart) {
             kept.push(node);
         }
     }
@@ -75,6 +88,27 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
         *last = length;
     }
     kept
+}
+
+/// Begin and end of each zone.
+fn zones(path: &JointPath) -> Vec<(f64, f64)> {
+    let is_zone =
+        |piece: &Piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone);
+    let mut zones: Vec<(f64, f64)> = Vec::new();
+    let mut corner = None;
+    for piece in path.pieces().iter().filter(|piece| is_zone(piece)) {
+        let end = piece.s + piece.length;
+        // Zones may touch: one lies around the end of each leg.
+        let before = piece.leg.checked_sub(1).map_or(0.0, |leg| path.leg_end(leg));
+        let starts = piece.s - before < path.leg_end(piece.leg) - end;
+        let around = if starts { piece.leg.saturating_sub(1) } else { piece.leg };
+        match zones.last_mut() {
+            Some(zone) if corner == Some(around) => zone.1 = end,
+            _ => zones.push((piece.s, end)),
+        }
+        corner = Some(around);
+    }
+    zones
 }
 
 /// The edges of a zone and nodes between them.
@@ -93,14 +127,40 @@ pub fn grid(
     caps: &[SpeedCap],
 ) -> Result<PathGrid, GridError> {
     let mut data = Data::new();
+    let mut zones = zones(path).into_iter().peekable();
     let mut ends = Vec::with_capacity(nodes.len());
+    let mut last = None;
     for pair in nodes.windows(2) {
-        let piece = path.piece_at(0.5 * (pair[0] + pair[1]));
-        let extent = path.extent(piece.leg);
-        let cap = &caps[piece.leg];
-        ends.push([pair[0], pair[1]].map(|s| point(loaded, &mut data, piece, s, cap, extent)));
+        let middle = 0.5 * (pair[0] + pair[1]);
+        while zones.peek().is_some_and(|(_, end)| *end < middle) {
+            zones.next();
+        }
+        let zone = zones.peek().filter(|(begin, _)| *begin <= middle);
+        let piece = path.piece_at(middle);
+        let limits = Bounds {
+            cap: &caps[piece.leg],
+            extent: path.extent(piece.leg),
+            zone: zone.map(|(begin, end)| end - begin),
+        };
+        // Within a leg and a zone a path is smooth: a node looks the same from both sides.
+        let stretch = (piece.leg, piece.kind, limits.zone);
+        let begin = match last {
+            Some((before, end)) if before == stretch => end,
+            _ => point(loaded, &mut data, piece, pair[0], &limits),
+        };
+        let end = point(loaded, &mut data, piece, pair[1], &limits);
+        last = Some((stretch, end));
+        ends.push([begin, end]);
     }
     PathGrid::new(nodes.to_vec(), ends)
+}
+
+/// What bounds the speed on an interval besides the joints.
+struct Bounds<'a> {
+    cap: &'a SpeedCap,
+    extent: Extent,
+    /// Length of the zone that holds it.
+    zone: Option<f64>,
 }
 
 fn point(
@@ -108,8 +168,7 @@ fn point(
     data: &mut Data,
     piece: &Piece,
     s: f64,
-    cap: &SpeedCap,
-    extent: Extent,
+    Bounds { cap, extent, zone }: &Bounds<'_>,
 ) -> PathPoint {
     let at = piece.eval(s);
     let mut v_max = f64::INFINITY;
@@ -137,7 +196,21 @@ fn point(
         limit(tcp_rate, cap.tcp);
         limit(turn_rate, cap.orientation);
     }
+    if let Some(zone) = zone {
+        // The interpolator takes at least one step in each zone: runs with z1 show it.
+        v_max = v_max.min(zone / interpolation_s(model));
+    }
     let mut point = PathPoint::kinematic(at.q, at.q1, at.q2, v_max);
+    if let (Some(by_pose), Some(limits)) =
+        (&model.limits.acceleration_by_pose, &model.limits.acceleration)
+    {
+        for (j, capability) in by_pose.at(&at.q).into_iter().enumerate() {
+            point.capability[j] = capability.acceleration / limits[j];
+            point.bias[j] = capability.weight;
+        }
+    }
+    point.capability = point.capability.map(|share| share * cap.acceleration);
+    point.tcp_rows = tcp_rows(model, &at, &extent.tool, &twist, cap);
     if model.has_dynamics() {
         let zero = [0.0; DOF];
         let tau = |data: &mut Data, qd: &Joints, qdd: &Joints| -> Joints {
@@ -156,6 +229,59 @@ fn point(
     }
     point
 }
+
+/// Inner radius of a regular octagon around the unit circle, and of its corners.
+const OCTAGON: [f64; 2] = [0.923_879_532_511_286_7, 1.306_562_964_876_376_5];
+
+/// The rows of `PathAccLim` and `WorldAccLim`: with p' and p'' of the TCP the acceleration is
+/// p' s̈ + p'' ṡ², split into its part along the path and across it.
+fn tcp_rows(
+    model: &Model,
+    at: &PiecePoint,
+    tool: &Tcp,
+    twist: &nalgebra::Vector6<f64>,
+    cap: &SpeedCap,
+) -> [Row; TCP_ROWS] {
+    let mut rows = [Row::default(); TCP_ROWS];
+    let [up, down] = cap.path_acceleration;
+    let world = cap.world_acceleration;
+    if !(up.is_finite() || down.is_finite() || world.is_finite()) {
+        return rows;
+    }
+    let rate = twist.fixed_rows::<3>(0).into_owned();
+    let speed = rate.norm();
+    if speed == 0.0 {
+        return rows;
+    }
+    let bend = tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q2)
+        + tool.jacobian_dot(model, &at.q, &at.q1) * nalgebra::Vector6::from(at.q1);
+    let bend = bend.fixed_rows::<3>(0).into_owned();
+    let along = bend.dot(&rate) / speed;
+    let across = (bend - rate * (along / speed)).norm();
+    let row = |t: f64, n: f64, limit: f64, constant: f64| Row {
+        u: t * speed / limit,
+        b: (t * along + n * across) / limit,
+        constant,
+        ..Row::default()
+    };
+    if up.is_finite() || down.is_finite() {
+        // One side without a limit is as good as a very large one.
+        let [up, down] = [up, down].map(|x| x.min(NO_ACCELERATION_LIMIT));
+        let half = 0.5 * (up + down);
+        rows[0] = row(1.0, 0.0, half, 0.5 * (down - up) / half);
+    }
+    if world.is_finite() {
+        let [flat, corner] = OCTAGON.map(|x| x * world);
+        rows[1] = row(1.0, 0.0, flat, 0.0);
+        rows[2] = row(0.0, 1.0, flat, 0.0);
+        rows[3] = row(1.0, 1.0, corner, 0.0);
+        rows[4] = row(1.0, -1.0, corner, 0.0);
+    }
+    rows
+}
+
+/// An acceleration that no robot has, m/s².
+const NO_ACCELERATION_LIMIT: f64 = 1e3;
 
 fn sign(x: f64) -> f64 {
     if x > 0.0 {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::controller::Planning;
-use super::planner::{MotionLimits, plan};
+use super::controller::{Planning, assumed, motion_limits};
+use super::planner::plan;
 use super::sampling::{Loaded, SpeedCap};
 use super::stream::Stream;
 use super::timed::TimedMotion;
@@ -30,7 +30,18 @@ pub struct Options {
     /// Seconds after which an input comes, by lower-case name: counted from the start of the
     /// cycle or from the end of the last wait for it.
     pub inputs: BTreeMap<String, f64>,
+    /// Levels of inputs, by lower-case name.
+    pub levels: BTreeMap<String, f64>,
+    /// Override of all speeds, 1 = 100 %.
+    pub speed_override: Option<f64>,
+    /// How often the loop that never ends runs; once where it is not said.
+    pub passes: Option<u32>,
+    /// Time after which the simulation ends, s.
+    pub max_time: Option<f64>,
 }
+
+/// Time after which a simulation ends where nothing else is said, s: ten hours.
+pub const MAX_TIME: f64 = 36_000.0;
 
 /// Runs a program on the virtual controller.
 pub fn simulate(
@@ -55,6 +66,8 @@ pub fn simulate(
     };
     let execution = execute(program, entry, &mut machine);
     machine.flush();
+    let mut assumptions = execution.assumed;
+    assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
     unresolved.sort_by_key(|note| note.span);
@@ -63,7 +76,7 @@ pub fn simulate(
         cycle_s: machine.time,
         repeats_from: machine.repeats_from,
         unresolved,
-        assumed: execution.assumed,
+        assumed: assumptions,
     }
 }
 
@@ -187,12 +200,40 @@ impl Machine for VirtualController<'_> {
         self.repeats_from.get_or_insert(self.events.len());
     }
 
+    fn passes(&self) -> u32 {
+        self.options.passes.unwrap_or(1)
+    }
+
+    fn stated_level(&self, signal: &str) -> Option<f64> {
+        self.options.levels.get(signal).copied()
+    }
+
     fn is_full(&self) -> bool {
-        self.events.len() + self.pending.len() > MAX_EVENTS
+        self.events.len() + self.pending.len() > MAX_EVENTS || self.is_late()
+    }
+
+    fn full_because(&self) -> Option<String> {
+        let limit = self.options.max_time.unwrap_or(MAX_TIME);
+        self.is_late().then(|| format!("the cycle lasts longer than {limit} s (--max-time)"))
     }
 }
 
 impl VirtualController<'_> {
+    fn is_late(&self) -> bool {
+        self.time > self.options.max_time.unwrap_or(MAX_TIME)
+    }
+
+    /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
+    fn speed_override(&self, movement: &Movement) -> f64 {
+        let settings = &movement.settings;
+        settings.speed_override * settings.refresh * self.options.speed_override.unwrap_or(1.0)
+    }
+
+    /// `\T` under the overrides: 50 % takes twice the time.
+    fn timed(&self, movement: &Movement) -> Option<f64> {
+        movement.time.map(|t| t / self.speed_override(movement))
+    }
+
     fn note(&mut self, span: crate::text::Span, reason: &str) {
         let note = Note { span, reason: reason.to_owned() };
         if !self.notes.contains(&note) {
@@ -255,8 +296,9 @@ impl VirtualController<'_> {
             }
         };
         let mut speed = movement.speed;
-        speed.tcp = (speed.tcp * movement.settings.speed_override).min(movement.settings.speed_max);
-        speed.orientation *= movement.settings.speed_override;
+        let factor = self.speed_override(movement);
+        speed.tcp = (speed.tcp * factor).min(movement.settings.speed_max);
+        speed.orientation *= factor;
         Ok(Leg { kind, start: self.q, end, tool, target, speed, zone: movement.zone })
     }
 
@@ -273,21 +315,17 @@ impl VirtualController<'_> {
         let movements: Vec<Movement> = pending.into_iter().map(|p| p.movement).collect();
         let loaded = Loaded { model: self.model, load: &load };
 
-        let (motions, durations, problem) = match as_stream(&start, &legs, &movements) {
+        let (motions, durations, problem) = match self.as_stream(&start, &legs, &movements) {
             Some(stream) => self.realise(stream, &movements),
             None => self.plan_run(loaded, &legs, &movements, &planning),
         };
         if let Some((leg, reason)) = &problem {
             self.note(movements[*leg].span, reason);
         }
-        // Settling belongs to the last move that moves.
         let moved = durations.iter().sum::<f64>() > 0.0;
-        let settling = if moved { planning.settling_s } else { 0.0 };
         let mut records = Vec::with_capacity(movements.len());
         let mut t = 0.0;
-        let count = movements.len();
-        for (i, movement) in movements.into_iter().enumerate() {
-            let duration = durations[i] + if i + 1 == count { settling } else { 0.0 };
+        for (movement, duration) in movements.into_iter().zip(durations) {
             records.push(MoveRecord { movement, t_start: t, duration });
             t += duration;
         }
@@ -298,14 +336,50 @@ impl VirtualController<'_> {
             load,
             start,
             end,
-            settling,
+            settling: 0.0,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
         };
         // An output between fly-by movements was noted when the run was not planned yet: it
         // keeps its place in the order before the run's event.
         self.certain = run.problem.is_none();
+        if moved {
+            self.settle(planning.settling_s);
+        }
         self.push(t, What::Run(Box::new(run)));
+    }
+
+    /// Between two movements the robot rests at the stop point. A wait takes that time too.
+    fn settle(&mut self, settling: f64) {
+        let Some(Event { duration, what: What::Run(before), .. }) = self.events.last_mut() else {
+            return;
+        };
+        let Some(last) = before.moves.last_mut().filter(|_| *duration > 0.0) else { return };
+        before.settling += settling;
+        last.duration += settling;
+        *duration += settling;
+        self.time += settling;
+    }
+
+    /// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
+    fn as_stream(&self, start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
+        let mut intervals = Vec::with_capacity(legs.len());
+        for movement in movements {
+            if movement.form != MoveForm::AbsJ {
+                return None;
+            }
+            intervals.push(self.timed(movement)?);
+        }
+        // Distances between neighbouring points; the robot's own place does not count for zones
+        // of the points after it.
+        for pair in legs.windows(2) {
+            let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
+            if pair[0].zone.tcp < 0.5 * apart.norm() {
+                return None;
+            }
+        }
+        let points = legs.iter().map(|leg| leg.end).collect();
+        Stream::new(*start, points, intervals).ok()
     }
 
     fn realise(&self, stream: Stream, movements: &[Movement]) -> Planned {
@@ -355,7 +429,7 @@ impl VirtualController<'_> {
     ) -> Planned {
         let caps: Vec<SpeedCap> =
             legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
-        let limits = motion_limits(self.model, planning.acceleration);
+        let limits = motion_limits(self.model, 1.0);
         let (paths, problem) = match build(self.model, legs) {
             Ok(paths) => (paths, None),
             Err(error) => {
@@ -372,9 +446,15 @@ impl VirtualController<'_> {
         for path in paths {
             let path = Arc::new(path);
             let indices = path.legs();
-            let times: Option<f64> = indices.clone().map(|i| timed(&movements[i])).sum();
+            let times: Option<f64> = indices.clone().map(|i| self.timed(&movements[i])).sum();
             match plan(loaded, &path, &caps, &limits, planning, times) {
                 Ok(motion) => {
+                    // Where there is no room for a zone the robot stops as at a stop point.
+                    if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty())
+                    {
+                        durations[last] += planning.settling_s;
+                        t += planning.settling_s;
+                    }
                     let mut before = 0.0;
                     for leg in indices {
                         let at = motion.time_at(path.leg_end(leg));
@@ -400,55 +480,19 @@ const LATENESS_ROUNDING: f64 = 1e-3;
 /// Motions with their start in the run, duration of each move, and what went wrong at which leg.
 type Planned = (Vec<(f64, TimedMotion)>, Vec<f64>, Option<(usize, String)>);
 
-/// `\T` under `VelSet`: an override of 50 % takes twice the time.
-fn timed(movement: &Movement) -> Option<f64> {
-    movement.time.map(|t| t / movement.settings.speed_override)
-}
-
-/// The limits of the robot with a share of its accelerations.
-pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
-    let list = |values: &Option<Vec<f64>>, factor: f64| -> Joints {
-        std::array::from_fn(|j| {
-            values.as_ref().and_then(|v| v.get(j)).map_or(f64::INFINITY, |x| x * factor)
-        })
-    };
-    MotionLimits {
-        acceleration: list(&model.limits.acceleration, share),
-        torque: if model.has_dynamics() {
-            list(&model.limits.torque, 1.0)
-        } else {
-            [f64::INFINITY; DOF]
-        },
-    }
-}
-
 /// The programmed speed of a movement as a cap; a timed one has none but its time.
 fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
+    let settings = &movement.settings;
+    let limits = SpeedCap {
+        acceleration: settings.acceleration,
+        path_acceleration: settings.path_acceleration,
+        world_acceleration: settings.world_acceleration,
+        ..SpeedCap::NONE
+    };
     match movement.time {
-        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation },
-        Some(_) => SpeedCap::NONE,
+        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation, ..limits },
+        Some(_) => limits,
     }
-}
-
-/// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
-fn as_stream(start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
-    let mut intervals = Vec::with_capacity(legs.len());
-    for movement in movements {
-        if movement.form != MoveForm::AbsJ {
-            return None;
-        }
-        intervals.push(timed(movement)?);
-    }
-    // Distances between neighbouring points; the robot's own place does not count for zones
-    // of the points after it.
-    for pair in legs.windows(2) {
-        let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
-        if pair[0].zone.tcp < 0.5 * apart.norm() {
-            return None;
-        }
-    }
-    let points = legs.iter().map(|leg| leg.end).collect();
-    Stream::new(*start, points, intervals).ok()
 }
 
 /// Tool and payload at the flange.

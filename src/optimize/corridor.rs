@@ -1,13 +1,17 @@
 //! Where a realised motion may be and how fast: the programmed path with its tolerances.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{Isometry3, Vector4};
 
+use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Movement;
 use crate::kinematics::fk;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::path::PieceKind;
 use crate::robot::Model;
+use crate::text::Span;
 
 /// Distance of the samples of the path, m.
 const SPACING: f64 = 0.002;
@@ -50,9 +54,8 @@ pub struct Offset {
 }
 
 impl Corridor {
-    /// The corridor of a run along one path; `None` for streams. `faster_tcp` lifts the
-    /// programmed speeds of lines and arcs.
-    pub fn new(model: &Model, run: &Run, ceilings: Ceilings) -> Option<Corridor> {
+    /// The corridor of a run along one path; `None` for streams.
+    pub fn new(model: &Model, run: &Run, freedom: &Freedom) -> Option<Corridor> {
         let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return None };
         let mut places = Vec::new();
         let robot = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
@@ -61,6 +64,7 @@ impl Corridor {
             let next = run.moves.get(piece.leg + 1).map(|record| &record.movement);
             let zone = &run.legs[piece.leg].zone;
             let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
+            let ceilings = freedom.ceilings;
             let (ceiling, tolerance) = match piece.kind {
                 PieceKind::Joint => (robot, JOINT_TOLERANCE),
                 PieceKind::Cartesian => (ceilings.of(movement).min(robot), LINE_TOLERANCE),
@@ -79,6 +83,18 @@ impl Corridor {
                     (ceiling.min(robot), LINE_TOLERANCE.max(ZONE_TOLERANCE * size))
                 }
             };
+            // A corner is free where both of its movements are.
+            let corner = match piece.kind {
+                PieceKind::CartesianZone | PieceKind::JointZone => {
+                    let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
+                    if after { piece.leg.checked_sub(1) } else { Some(piece.leg + 1) }
+                }
+                PieceKind::Joint | PieceKind::Cartesian => None,
+            };
+            let other = corner.and_then(|leg| run.moves.get(leg)).map(|record| &record.movement);
+            let movements = std::iter::once(movement).chain(other);
+            let free = movements.map(|movement| freedom.of(movement)).fold(f64::INFINITY, f64::min);
+            let tolerance = tolerance.max(free);
             let extent = path.extent(piece.leg);
             let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
             let n = (piece.length * share / SPACING).ceil().max(1.0) as usize;
@@ -202,6 +218,30 @@ fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
 }
 
+/// What a stream may do that its movements did not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Freedom {
+    /// Which programmed speeds are ceilings.
+    pub ceilings: Ceilings,
+    /// How far free movements may leave their path, m; 0 where none is free.
+    pub deviation: f64,
+    /// Statements of lines and arcs that the user made free; joint movements are.
+    pub freed: BTreeSet<Span>,
+}
+
+impl Freedom {
+    /// None.
+    pub fn none() -> Freedom {
+        Freedom { ceilings: Ceilings::Programmed, deviation: 0.0, freed: BTreeSet::new() }
+    }
+
+    /// How far a movement may leave its path, m, more than the least that is always allowed.
+    pub fn of(&self, movement: &Movement) -> f64 {
+        let free = movement.form == MoveForm::Joint || self.freed.contains(&movement.span);
+        if free { self.deviation } else { 0.0 }
+    }
+}
+
 /// Which programmed speeds are ceilings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ceilings {
@@ -214,9 +254,8 @@ pub enum Ceilings {
 impl Ceilings {
     /// The largest TCP speed of a movement, m/s.
     pub fn of(self, movement: &Movement) -> f64 {
-        use crate::ir::instructions::MoveForm::{Circular, Linear};
         match (self, movement.form) {
-            (Ceilings::Programmed, Linear | Circular) => {
+            (Ceilings::Programmed, MoveForm::Linear | MoveForm::Circular) => {
                 movement.speed.tcp.min(movement.settings.speed_max)
             }
             _ => f64::INFINITY,

@@ -5,8 +5,10 @@
 //! tightens the margins and is tried again.
 
 use super::check::{Check, check};
-use super::corridor::{Ceilings, Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
+use super::margins::Margins;
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::Plant;
 use super::reason::Reason;
@@ -16,10 +18,11 @@ use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
-use crate::dynamics::{Data, rnea};
+use crate::dynamics::{Data, potential_energy, rnea};
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
 use crate::kinematics::fk;
+use crate::motion::controller::motion_limits;
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
@@ -28,7 +31,6 @@ use crate::motion::timing::grid::PathGrid;
 use crate::motion::timing::limits::PathLimits;
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
-use crate::motion::virtual_controller::motion_limits;
 use crate::path::joint_path::{DOF, JointPath, Joints};
 use crate::robot::{self, Model};
 
@@ -43,8 +45,8 @@ pub struct Task<'a> {
     pub energy_before: EnergyParts,
     /// Least time between two points, s.
     pub spacing_s: f64,
-    /// Which programmed speeds are ceilings.
-    pub ceilings: Ceilings,
+    /// What the stream may do that the run did not.
+    pub freedom: &'a Freedom,
 }
 
 /// The time of a run, settling included.
@@ -79,26 +81,16 @@ pub struct Retiming {
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
 const ATTEMPTS: usize = 6;
-/// Margin to acceleration and torque limits at first: what a stream between nodes needs.
-const FIRST_MARGIN: f64 = 0.98;
-/// Margin to speed ceilings at first.
-const FIRST_SPEED_MARGIN: f64 = 0.995;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
 /// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
 const EASING: f64 = 10.0;
-/// Reach of lower ceilings at first, m.
-const FIRST_REACH: f64 = 0.006;
 /// Rounding between two integrations of the same energy, relative.
 const BOUND_ROUNDING: f64 = 1e-5;
-/// Placing of the points at first, share of the tolerance of the path.
-const FIRST_SPACING: f64 = 0.1;
 /// Share of the reach of the zones that two points may use up.
 const ZONE_SHARE: f64 = 0.95;
 /// The share that is asked for where they would not keep that: they are placed by other rules too.
 const CLOSER: f64 = 0.6;
-/// Share of the allowed distance from the path that the polishing may use at first.
-const FIRST_DISTANCE: f64 = 0.95;
 /// Distance from the path that costs the polishing a share of the energy, in units of the
 /// tolerance of the path.
 const CORRIDOR: f64 = 0.3;
@@ -108,22 +100,6 @@ const NEARLY: f64 = 2.0;
 const WORTHWHILE: f64 = 1e-3;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
-
-/// Margins and tolerances of one attempt.
-#[derive(Clone)]
-struct Margins {
-    /// Share of acceleration and torque limits that the intended motion may use.
-    load: f64,
-    /// Share of the speed ceilings.
-    speed: f64,
-    /// Distance before and behind a lower ceiling from which it holds, m: a stream is shaped at
-    /// places some way apart.
-    reach: f64,
-    /// Tolerance of the points' placing, m.
-    spacing: f64,
-    /// Share of the allowed distance from the path that the polishing may use.
-    distance: f64,
-}
 
 /// A realised stream with its faults.
 struct Attempt {
@@ -144,6 +120,47 @@ struct Intended {
 /// # Errors
 /// The reason why the run stays as it is.
 pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
+    let mut moves = task.run.moves.iter();
+    if !moves.any(|record| task.freedom.of(&record.movement) > 0.0) {
+        return on_path(task, goal);
+    }
+    // What is free is never worse than what keeps to the path.
+    let strict = Freedom { deviation: 0.0, ..task.freedom.clone() };
+    let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
+    match (kept, on_path(task, goal)) {
+        (Ok(kept), Ok(free)) => {
+            let bound = free_bound(task, free.duration_s - task.run.settling);
+            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+            let better = match goal {
+                Goal::Fastest => free.duration_s < kept.duration_s,
+                _ => free.energy.energy_j() < kept.energy.energy_j(),
+            };
+            Ok(if better { Retiming { lower_bound_j: bound + idle, ..free } } else { kept })
+        }
+        (Ok(only), Err(_)) => Ok(only),
+        (Err(_), Ok(free)) => {
+            let bound = free_bound(task, free.duration_s - task.run.settling);
+            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+            Ok(Retiming { lower_bound_j: bound + idle, ..free })
+        }
+        (Err(reason), Err(_)) => Err(reason),
+    }
+}
+
+/// No motion between the ends of a run in this time (s) takes less, J: what it gains in height,
+/// dry friction over the way, and viscous friction of the same speed all the time.
+fn free_bound(task: &Task<'_>, time: f64) -> f64 {
+    let Task { model, run, .. } = task;
+    let height = |q: &Joints| potential_energy(model, &run.load, q);
+    let friction: f64 = (0..DOF)
+        .map(|j| (run.end[j] - run.start[j]).abs())
+        .enumerate()
+        .map(|(j, way)| way * (model.friction.coulomb[j] + model.friction.viscous[j] * way / time))
+        .sum();
+    height(&run.end) - height(&run.start) + friction
+}
+
+fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     let work = Work::new(task)?;
     match goal {
         Goal::Within(time) => {
@@ -179,12 +196,36 @@ pub const SLOWEST: f64 = 10.0;
 /// power does not count: the rest of a takt has to be waited for anyway.
 pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&work.first_margins()).ok()?;
+    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
     let fast = fastest_profile(&grid, &limits).ok()?;
     let longest = SLOWEST * task.run.duration();
     let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
     Some(optimum.profile.duration() + task.run.settling)
 }
+
+/// What a run takes over the time that it gets, settling included: the energies are of the
+/// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
+pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
+    let work = Work::new(task).ok()?;
+    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
+    let fast = fastest_profile(&grid, &limits).ok()?;
+    let settling = task.run.settling;
+    let shortest = shortest.max(RESERVE * fast.duration() + settling);
+    let known = |time: f64| {
+        let outcome =
+            minimize_energy_from(&grid, &limits, &work.model, &fast, time - settling, None);
+        let optimum = outcome.into_optimum()?;
+        Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
+    };
+    let before = task.run.duration().max(shortest);
+    let far = if longest > FAR * before { Some(known(longest)?) } else { None };
+    TradeOff::about(known(before)?, shortest, longest.max(before), far)
+}
+
+/// A stream needs this much more time than the fastest profile, at least.
+const RESERVE: f64 = 1.05;
+/// Times this much longer than before are worth a look of their own.
+const FAR: f64 = 1.5;
 
 struct Work<'a> {
     task: &'a Task<'a>,
@@ -201,7 +242,7 @@ impl<'a> Work<'a> {
             return Err(Reason::SharpCorner);
         };
         let corridor =
-            Corridor::new(task.model, task.run, task.ceilings).ok_or(Reason::SharpCorner)?;
+            Corridor::new(task.model, task.run, task.freedom).ok_or(Reason::SharpCorner)?;
         let robot = task.model;
         let list = |values: &Option<Vec<f64>>| -> Joints {
             std::array::from_fn(|j| {
@@ -230,7 +271,7 @@ impl<'a> Work<'a> {
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
-        let mut margins = self.first_margins();
+        let mut margins = Margins::first(self.tolerance());
         let mut problem = None;
         let mut begun: Option<Intended> = None;
         let mut worst = NEARLY;
@@ -263,7 +304,7 @@ impl<'a> Work<'a> {
                     }
                 }
                 Err(Reason::NoStream(why)) => {
-                    margins.load *= FIRST_MARGIN;
+                    margins.lighten();
                     problem = Some(why);
                 }
                 Err(other) => return Err(other),
@@ -296,7 +337,7 @@ impl<'a> Work<'a> {
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
     fn least_time(&self) -> Result<Retiming, Reason> {
-        let mut margins = self.first_margins();
+        let mut margins = Margins::first(self.tolerance());
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = Reason::NoSaving;
         for _ in 0..ATTEMPTS {
@@ -319,7 +360,7 @@ impl<'a> Work<'a> {
             }
             match best {
                 Some(attempt) => margins.tighten(&attempt.check),
-                None => margins.load *= FIRST_MARGIN,
+                None => margins.lighten(),
             }
         }
         Err(problem)
@@ -335,21 +376,18 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// How far the motion may leave the path somewhere, m, before the polishing minds.
+    fn looseness(&self) -> f64 {
+        let moves = self.task.run.moves.iter();
+        let free = moves.map(|record| self.task.freedom.of(&record.movement)).fold(0.0, f64::max);
+        if free > 0.0 { free } else { CORRIDOR * self.tolerance() }
+    }
+
     /// The smallest tolerance on the path, m.
     fn tolerance(&self) -> f64 {
         let line =
             self.task.run.legs.iter().any(|leg| !matches!(leg.kind, crate::path::LegKind::Joint));
         if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
-    }
-
-    fn first_margins(&self) -> Margins {
-        Margins {
-            load: FIRST_MARGIN,
-            speed: FIRST_SPEED_MARGIN,
-            reach: FIRST_REACH,
-            spacing: FIRST_SPACING * self.tolerance(),
-            distance: FIRST_DISTANCE,
-        }
     }
 
     /// The problem on the path, shaped so that a stream can follow its solution.
@@ -365,8 +403,9 @@ impl<'a> Work<'a> {
             .moves
             .iter()
             .map(|record| SpeedCap {
-                tcp: margins.speed * self.task.ceilings.of(&record.movement),
+                tcp: margins.speed * self.task.freedom.ceilings.of(&record.movement),
                 orientation: f64::INFINITY,
+                ..SpeedCap::NONE
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
@@ -421,7 +460,7 @@ impl<'a> Work<'a> {
             margins,
             ceilings: self.corridor.eased(margins.reach, EASING),
         };
-        let corridor = PolishCorridor { tolerance: CORRIDOR * self.tolerance(), lever: self.lever };
+        let corridor = PolishCorridor { tolerance: self.looseness(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
@@ -534,39 +573,6 @@ impl Plant for RobotPlant<'_> {
 
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
-
-impl Margins {
-    /// The limits themselves.
-    fn none() -> Margins {
-        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0 }
-    }
-
-    /// Tighter for another attempt from the begin.
-    fn tighten(&mut self, check: &Check) {
-        let load = check.torque.max(check.acceleration);
-        if load > 1.0 {
-            self.load *= FIRST_MARGIN / load;
-        }
-        if check.velocity > 1.0 {
-            self.speed *= FIRST_SPEED_MARGIN / check.velocity;
-        }
-        if check.tcp_speed > 1.0 {
-            self.reach *= 2.0;
-        }
-        if check.deviation > 1.0 {
-            self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
-            self.spacing *= 0.7;
-        }
-    }
-
-    /// Tighter for more polishing of a stream that nearly holds.
-    fn tighten_a_little(&mut self, check: &Check) {
-        let over = |share: f64| share.max(1.0);
-        self.load /= over(check.torque);
-        self.speed /= over(check.tcp_speed);
-        self.distance /= over(check.deviation);
-    }
-}
 
 fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)

@@ -178,6 +178,9 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
         [(_, TimedMotion::Path(path, _))] if passes_singularity(path) => {
             Err(Reason::Path("a line passes close to a singularity".into()))
         }
+        [(_, TimedMotion::Path(path, _))] if path.legs().any(|leg| path.extent(leg).flat_arc) => {
+            Err(Reason::Path("the three points of an arc lie on a line".into()))
+        }
         [(_, TimedMotion::Path(..))] => Ok(()),
         [(_, TimedMotion::Stream(_))] => Err(Reason::Timed),
         _ => Err(Reason::SharpCorner),
@@ -243,6 +246,18 @@ fn settings_allow(settings: &Settings) -> Result<(), Reason> {
     }
     if settings.acceleration != 1.0 || settings.ramp != 1.0 {
         return setting("AccSet");
+    }
+    if settings.fine_point_ramp != 1.0 {
+        return setting("AccSet\\FinePointRamp");
+    }
+    if settings.refresh != 1.0 {
+        return setting("SpeedRefresh");
+    }
+    if settings.path_acceleration.iter().any(|limit| limit.is_finite()) {
+        return setting("PathAccLim");
+    }
+    if settings.world_acceleration.is_finite() {
+        return setting("WorldAccLim");
     }
     if settings.displacement.is_some() {
         return setting("PDispSet");

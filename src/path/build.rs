@@ -89,34 +89,29 @@ fn measure<'a>(
             }
             (length, None)
         }
-        LegKind::Line => {
-            let chord = to.translation.vector - from.translation.vector;
-            let length = chord.norm();
-            let extent = length.max(METRES_PER_RADIAN * angle);
-            let curve = (extent >= NOWHERE).then(|| Curve::Line {
-                start: from,
-                direction: chord / extent,
-                turn: turn / extent,
-                length: extent,
-            });
-            (length, curve)
-        }
+        LegKind::Line => line(&from, &to, &turn),
         LegKind::Arc(via) => {
             let (a, b) = (from.translation.vector, to.translation.vector);
-            let (center, normal, arc) = curve::circle(&a, &via.translation.vector, &b)
-                .ok_or(PathError::FlatArc { leg: index })?;
-            let length = arc * (a - center).norm();
-            let extent = length.max(METRES_PER_RADIAN * angle);
-            let curve = Curve::Arc {
-                start: from.rotation,
-                center,
-                radius: a - center,
-                normal,
-                rate: arc / extent,
-                turn: turn / extent,
-                length: extent,
-            };
-            (length, Some(curve))
+            let via = via.translation.vector;
+            if let Some((center, normal, arc)) = curve::circle(&a, &via, &b) {
+                let length = arc * (a - center).norm();
+                let extent = length.max(METRES_PER_RADIAN * angle);
+                let curve = Curve::Arc {
+                    start: from.rotation,
+                    center,
+                    radius: a - center,
+                    normal,
+                    rate: arc / extent,
+                    turn: turn / extent,
+                    length: extent,
+                };
+                (length, Some(curve))
+            } else if (via - a).dot(&(b - via)) > 0.0 {
+                // A circle point on the straight way is no circle: runs show the line.
+                line(&from, &to, &turn)
+            } else {
+                return Err(PathError::FlatArc { leg: index });
+            }
         }
     };
     let extent = if let Some(curve) = &curve {
@@ -126,6 +121,20 @@ fn measure<'a>(
         length.max(METRES_PER_RADIAN * widest)
     };
     Ok(Measured { leg, index, length, angle, extent, curve })
+}
+
+/// TCP length of a line (m) and its curve; none if it goes nowhere.
+fn line(from: &Isometry3<f64>, to: &Isometry3<f64>, turn: &Vector3<f64>) -> (f64, Option<Curve>) {
+    let chord = to.translation.vector - from.translation.vector;
+    let length = chord.norm();
+    let extent = length.max(METRES_PER_RADIAN * turn.norm());
+    let curve = (extent >= NOWHERE).then(|| Curve::Line {
+        start: *from,
+        direction: chord / extent,
+        turn: turn / extent,
+        length: extent,
+    });
+    (length, curve)
 }
 
 fn along(a: &Joints, b: &Joints, share: f64) -> Joints {
@@ -176,7 +185,15 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
     let last = legs[legs.len() - 1].index;
     let extents = (first..=last).map(|index| {
         let leg = legs.iter().rfind(|leg| leg.index <= index).unwrap_or(&legs[0]);
-        Extent { length: leg.length, angle: leg.angle, extent: leg.extent, tool: leg.leg.tool }
+        let flat_arc = matches!(leg.leg.kind, LegKind::Arc(_))
+            && matches!(leg.curve, Some(Curve::Line { .. }));
+        Extent {
+            length: leg.length,
+            angle: leg.angle,
+            extent: leg.extent,
+            tool: leg.leg.tool,
+            flat_arc,
+        }
     });
     Ok(JointPath::new(builder.pieces, first, extents.collect()))
 }

@@ -76,6 +76,13 @@ impl Piece {
         Piece { s, length, leg, kind, coefficients }
     }
 
+    /// q at s, which must lie in the piece.
+    pub fn position(&self, s: f64) -> Joints {
+        let u = (s - self.s) / self.length;
+        self.coefficients
+            .map(|[c0, c1, c2, c3, c4, c5]| c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5)))))
+    }
+
     /// Values at s, which must lie in the piece.
     pub fn eval(&self, s: f64) -> PathPoint {
         let h = self.length;
@@ -103,6 +110,8 @@ pub struct Extent {
     pub extent: f64,
     /// Where the TCP is fixed, m.
     pub tool: Tcp,
+    /// True for an arc whose three points lie on a line, along which it is followed.
+    pub flat_arc: bool,
 }
 
 /// A joint path over [0, length]: q and q′ are continuous, and q″ up to jumps that

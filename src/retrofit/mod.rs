@@ -4,6 +4,8 @@
 //! that, and compare. What does not hold keeps its original moves.
 
 pub mod figures;
+mod freed;
+mod goals;
 mod notes;
 mod outputs;
 mod segments;
@@ -11,4 +13,5 @@ mod verify;
 mod work;
 
 pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
+pub use freed::freed;
 pub use work::{Budget, Objective, RetrofitError, Settings, Source, read_program, retrofit};

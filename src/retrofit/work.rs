@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::figures::{Figures, Retrofit, Verification};
+use super::goals::{Plan, goals};
 use super::{notes, outputs, segments, verify};
 use crate::emit::{self, Names};
 use crate::energy::{Account, EnergyParts, account};
@@ -12,14 +13,17 @@ use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
-use crate::optimize::corridor::Ceilings;
+use crate::optimize::corridor::Freedom;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest, retime, thriftiest};
+use crate::optimize::retime::{Goal, Retiming, Task, retime};
 use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
 use crate::text::SourceFile;
+
+/// Rounding of a time, s.
+const TIME_TOLERANCE: f64 = 1e-6;
 
 /// A file of the program.
 #[derive(Clone, Debug)]
@@ -64,8 +68,8 @@ pub struct Settings {
     pub budget: Budget,
     /// Least time between two points of a stream, s.
     pub spacing_s: f64,
-    /// Which programmed speeds are ceilings.
-    pub ceilings: Ceilings,
+    /// What streams may do that the movements did not.
+    pub freedom: Freedom,
 }
 
 /// Why a program can't be retrofitted at all.
@@ -384,23 +388,30 @@ fn retime_all(
                 run,
                 energy_before: energy,
                 spacing_s: settings.spacing_s,
-                ceilings: settings.ceilings,
+                freedom: &settings.freedom,
             };
             Some((*i, task))
         })
         .collect();
-    let goals = goals(settings, simulation, sites, &ways, &tasks)?;
+    let plan = goals(model, settings, simulation, sites, &ways, &tasks)?;
     let done = Arc::new(std::sync::atomic::AtomicUsize::new(0));
-    let outcomes: Vec<(usize, Outcome)> = tasks
+    let mut outcomes: Vec<(usize, Outcome)> = tasks
         .par_iter()
-        .zip(&goals)
+        .zip(&plan.goals)
         .map(|((i, task), goal)| {
-            let outcome = retime(task, *goal);
+            let outcome = if settings.budget == Budget::AsBefore {
+                useful(task, *goal)
+            } else {
+                retime(task, *goal)
+            };
             let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
             progress(count, tasks.len());
             (*i, outcome)
         })
         .collect();
+    if settings.budget == Budget::AsBefore {
+        keep_to_the_cycle(&plan, &tasks, &mut outcomes);
+    }
     if let Budget::Factor(factor) = settings.budget {
         let share = |(outcome, task): (&Outcome, &Task<'_>)| match outcome {
             Err(Reason::TooShort(least)) => Some(least / task.run.duration()),
@@ -420,62 +431,37 @@ fn retime_all(
     Ok(ways)
 }
 
-/// Up to the next figure with three decimals: what a message tells to give has to do.
-fn rounded_up(x: f64) -> f64 {
-    (x * 1e3).ceil() / 1e3
+/// A stream in the run's share of the cycle; where there is none, in its time before.
+fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
+    let before = task.run.duration();
+    if let Ok(retiming) = retime(task, goal) {
+        let quicker = retiming.duration_s < before - TIME_TOLERANCE;
+        if quicker || retiming.energy.energy_j() < retiming.energy_before_j {
+            return Ok(retiming);
+        }
+    }
+    retime(task, Goal::Within(before))
 }
 
-/// The goal of each task: its share of the time.
-fn goals(
-    settings: &Settings,
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
-    tasks: &[(usize, Task<'_>)],
-) -> Result<Vec<Goal>, RetrofitError> {
-    if settings.objective == Objective::Time {
-        return Ok(vec![Goal::Fastest; tasks.len()]);
+/// Where a run did not get quicker as it should have, so that the others were given too much time,
+/// every run goes back to its time before.
+fn keep_to_the_cycle(plan: &Plan, tasks: &[(usize, Task<'_>)], outcomes: &mut [(usize, Outcome)]) {
+    let time = |((_, task), (_, outcome)): (&(usize, Task<'_>), &(usize, Outcome))| match outcome {
+        Ok(retiming) => retiming.duration_s,
+        Err(_) => task.run.duration(),
+    };
+    let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
+    if plan.holds(&times) {
+        return;
     }
-    let before = |task: &Task<'_>| task.run.duration();
-    Ok(match settings.budget {
-        Budget::AsBefore => tasks.iter().map(|(_, t)| Goal::Within(before(t))).collect(),
-        Budget::Factor(x) => tasks.iter().map(|(_, t)| Goal::Exactly(x * before(t))).collect(),
-        Budget::Takt(takt) => {
-            let executions =
-                |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
-            let least: Vec<f64> =
-                tasks.par_iter().map(|(_, task)| fastest(task).unwrap_or(before(task))).collect();
-            let movable: f64 = tasks.iter().map(|(i, t)| executions(*i) * before(t)).sum();
-            let shortest: f64 =
-                tasks.iter().zip(&least).map(|((i, _), t)| executions(*i) * t).sum();
-            let fixed = simulation.cycle_s - movable;
-            if takt < fixed + shortest {
-                let least = rounded_up(fixed + shortest);
-                return Err(RetrofitError::Takt { takt, least, fixed });
-            }
-            let most: Vec<f64> = tasks
-                .par_iter()
-                .zip(&least)
-                .map(|((_, task), least)| thriftiest(task).unwrap_or(before(task)).max(*least))
-                .collect();
-            // One factor for all, but nobody below the least or slower than pays: found by
-            // bisection.
-            let time =
-                |i: usize, factor: f64| (factor * before(&tasks[i].1)).clamp(least[i], most[i]);
-            let total = |factor: f64| -> f64 {
-                (0..tasks.len()).map(|i| executions(tasks[i].0) * time(i, factor)).sum()
-            };
-            let (mut low, mut high) = (0.0, SLOWEST);
-            if total(high) <= takt - fixed {
-                low = high;
-            }
-            for _ in 0..60 {
-                let middle = 0.5 * (low + high);
-                if total(middle) < takt - fixed { low = middle } else { high = middle }
-            }
-            (0..tasks.len()).map(|i| Goal::Exactly(time(i, low))).collect()
-        }
-    })
+    outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
+        |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
+    );
+}
+
+/// Up to the next figure with three decimals: what a message tells to give has to do.
+pub(super) fn rounded_up(x: f64) -> f64 {
+    (x * 1e3).ceil() / 1e3
 }
 
 /// No verification was made: nothing was changed.

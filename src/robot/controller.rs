@@ -9,9 +9,16 @@ use super::provenance::Origin;
 pub struct Controller {
     /// Friction that the controller compensates at each motor \[Nm\]; motor side.
     pub friction_level: Option<Vec<f64>>,
-    /// Time in which the acceleration rises from 0 to its largest \[s\].
+    /// Time in which the acceleration rises from 0 to its largest: the joints follow the average
+    /// of the planned motion over this time \[s\].
     pub ramp_s: Option<f64>,
-    /// Time at a stop point until the robot counts as settled \[s\].
+    /// Share of that average that lies in the middle half of the time, besides what is spread all
+    /// over.
+    pub ramp_core: Option<f64>,
+    /// Share of the ramp time by which a motion ends before the average is complete; below 0.4,
+    /// or the end would need more acceleration than the rest.
+    pub closing: Option<f64>,
+    /// Time at a stop point until the next movement starts; waits take it too \[s\].
     pub settling_s: Option<f64>,
     /// Period of the path interpolator \[s\].
     pub interpolation_s: Option<f64>,
@@ -26,6 +33,8 @@ impl Controller {
         let controller = Controller {
             friction_level: fields.per_joint("friction_level", dof, Accepts::NonNegative)?,
             ramp_s: fields.number("ramp_s", Accepts::NonNegative)?,
+            ramp_core: fields.number("ramp_core", Accepts::Share)?,
+            closing: fields.number("closing", Accepts::Share)?,
             settling_s: fields.number("settling_s", Accepts::NonNegative)?,
             interpolation_s: fields.number("interpolation_s", Accepts::Positive)?,
         };

@@ -2,6 +2,7 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
+use super::pose_acceleration::PoseAcceleration;
 use super::provenance::Origin;
 
 /// Speeds of joints \[rad/s\].
@@ -31,6 +32,8 @@ pub struct Limits {
     pub velocity: Option<Vec<f64>>,
     /// Largest acceleration of each joint \[rad/s²\].
     pub acceleration: Option<Vec<f64>>,
+    /// How the accelerations of axes 1 to 3 depend on the pose; the constant ones hold everywhere.
+    pub acceleration_by_pose: Option<PoseAcceleration>,
     /// Largest jerk of each joint \[rad/s³\].
     pub jerk: Option<Vec<f64>>,
     /// Largest torque of each joint, at the joint \[Nm\].
@@ -90,7 +93,12 @@ impl Limits {
         for table in fields.tables("position_if")? {
             position_if.push(PositionIf::read(table, dof, origins)?);
         }
+        let acceleration_by_pose = match fields.table("acceleration_by_pose")? {
+            Some(table) => Some(PoseAcceleration::read(table, origins)?),
+            None => None,
+        };
         let limits = Limits {
+            acceleration_by_pose,
             position,
             position_if,
             coupled: fields.interval("coupled")?,

@@ -93,7 +93,9 @@ impl fmt::Display for Lack {
 #[must_use]
 pub fn lacking(model: &Model, of: Use) -> Vec<Lack> {
     let needs: &[Lack] = match of {
-        Use::Simulate | Use::Excite => &[Lack::SixJoints, Lack::Speeds, Lack::Accelerations],
+        // Accelerations are assumed where there are none.
+        Use::Simulate => &[Lack::SixJoints, Lack::Speeds],
+        Use::Excite => &[Lack::SixJoints, Lack::Speeds, Lack::Accelerations],
         Use::Optimize => &[
             Lack::SixJoints,
             Lack::Bodies,

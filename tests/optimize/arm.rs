@@ -171,15 +171,12 @@ pub(crate) fn point(path: &Path, s: f64, friction: f64) -> PathPoint {
     let rest = [0.0; DOF];
     let v_max = (0..DOF).map(|j| VELOCITY[j] / q1[j].abs()).fold(1e3, f64::min);
     PathPoint {
-        q,
-        q1,
-        q2,
         m: rigid_torque(&q, &rest, &q1, 0.0),
         c: rigid_torque(&q, &q1, &q2, 0.0),
         g: rigid_torque(&q, &rest, &rest, GRAVITY),
         coulomb: std::array::from_fn(|j| COULOMB[j] * q1[j].signum()),
         viscous: std::array::from_fn(|j| friction * VISCOUS[j] * q1[j]),
-        v_max,
+        ..PathPoint::kinematic(q, q1, q2, v_max)
     }
 }
 

@@ -86,7 +86,12 @@ impl Executor<'_> {
     /// A signal as a number; everything else as it is.
     pub(super) fn level(&mut self, value: Value) -> Value {
         let Datum::Signal(name) = &value.datum else { return value };
-        let level = self.signals.get(&name.to_lowercase()).copied();
+        let key = name.to_lowercase();
+        let stated = self.machine.stated_level(&key);
+        let level = self.signals.get(&key).copied().or(stated);
+        if let (None, Some(level)) = (self.signals.get(&key), stated) {
+            self.assume(format!("{name} is {level} (stated by --assume)"));
+        }
         if level.is_none() {
             self.assume(format!("{name} is 0 (not declared in the program: taken as an input)"));
         }

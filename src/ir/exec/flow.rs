@@ -57,7 +57,9 @@ impl Executor<'_> {
     fn statement(&mut self, stmt: &Stmt) -> Flow {
         self.statements += 1;
         if self.machine.is_full() || self.statements > MAX_STATEMENTS {
-            self.unresolved(stmt.span, "the program does not end: the cycle is shown up to here");
+            let why = self.machine.full_because();
+            let why = why.unwrap_or_else(|| "the program does not end".into());
+            self.unresolved(stmt.span, format!("{why}: the cycle is shown up to here"));
             return Flow::Exit;
         }
         match &stmt.kind {
@@ -111,8 +113,13 @@ impl Executor<'_> {
     fn if_statement(&mut self, branches: &[(Expr, Block)], otherwise: Option<&Block>) -> Flow {
         for (condition, block) in branches {
             match self.condition(condition) {
-                Condition::Known(false) | Condition::Assumed(false) => {}
-                Condition::Known(true) | Condition::Assumed(true) => return self.block(block),
+                Condition::Known(false) => {}
+                Condition::Assumed(false) => self.note_branch(condition, "FALSE", Some(block)),
+                Condition::Known(true) => return self.block(block),
+                Condition::Assumed(true) => {
+                    self.note_branch(condition, "TRUE", otherwise);
+                    return self.block(block);
+                }
                 Condition::Unknown(why) => {
                     self.unresolved(
                         condition.span,
@@ -125,6 +132,27 @@ impl Executor<'_> {
             Some(block) => self.block(block),
             None => Flow::Next,
         }
+    }
+
+    /// Tells which way an `IF` on inputs went and what the other way holds, if anything moves or
+    /// waits there.
+    fn note_branch(&mut self, condition: &Expr, taken: &str, left_out: Option<&Block>) {
+        let calls = left_out.map_or(0, |block| calls(block));
+        if calls == 0 {
+            return;
+        }
+        let what = if calls == 1 { "instruction" } else { "instructions" };
+        let state = match self.first_signal(condition) {
+            Some(signal) => format!("--assume {signal}=LEVEL states another"),
+            None => "--assume SIGNAL=LEVEL states another".to_owned(),
+        };
+        self.unresolved(
+            condition.span,
+            format!(
+                "depends on inputs, taken as {taken}: the other branch ({calls} {what}) was not \
+                 run; {state}"
+            ),
+        );
     }
 
     fn condition(&mut self, expr: &Expr) -> Condition {
@@ -197,13 +225,24 @@ impl Executor<'_> {
             match self.condition(condition) {
                 Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
                 Condition::Known(true) if is_always_true(condition) => {
-                    self.unresolved(stmt.span, ENDLESS);
+                    let passes = self.machine.passes().max(1);
+                    if passes == 1 {
+                        self.unresolved(stmt.span, ENDLESS);
+                    } else {
+                        let text = format!("an endless loop: simulated for {passes} passes");
+                        self.unresolved(stmt.span, text);
+                    }
                     self.machine.repeats();
+                    for _ in 0..passes {
+                        let depth = self.frame().names.len();
+                        let flow = self.block(body);
+                        self.frame_mut().names.truncate(depth);
+                        if !matches!(flow, Flow::Next) {
+                            return flow;
+                        }
+                    }
                     // What stands behind the loop never runs.
-                    return match self.block(body) {
-                        Flow::Next => Flow::Exit,
-                        left => left,
-                    };
+                    return Flow::Exit;
                 }
                 Condition::Known(true) => {}
                 Condition::Assumed(true) => {
@@ -287,6 +326,15 @@ fn never_leaves(block: &[Stmt]) -> bool {
         | StmtKind::Broken => false,
         kind => kind.blocks().into_iter().all(|inner| never_leaves(inner)),
     })
+}
+
+/// Number of instructions and calls in a block, inner blocks included.
+fn calls(block: &[Stmt]) -> usize {
+    let of = |stmt: &Stmt| match &stmt.kind {
+        StmtKind::Call(_) => 1,
+        kind => kind.blocks().into_iter().map(|inner| calls(inner)).sum(),
+    };
+    block.iter().map(of).sum()
 }
 
 fn is_always_true(condition: &Expr) -> bool {

@@ -47,8 +47,11 @@ impl<'e> Arguments<'e> {
     }
 }
 
+/// Least limit of `PathAccLim` and `WorldAccLim`, m/s²: lower ones are raised.
+const LEAST_ACCELERATION: f64 = 0.1;
+
 /// How long a wait lasts.
-enum Length {
+pub(super) enum Length {
     /// s.
     Stated(f64),
     /// Until an input comes, or a condition holds that names none.
@@ -88,14 +91,17 @@ impl Executor<'_> {
                     return Flow::Exit;
                 }
             }
-            "velset" | "accset" | "confj" | "confl" | "gripload" | "pdispset" | "pdispoff" => {
+            "velset" | "accset" | "confj" | "confl" | "gripload" | "pdispset" | "pdispoff"
+            | "speedrefresh" => {
                 self.setting(key, text, &arguments);
             }
+            "pathacclim" => self.path_acceleration(text, &arguments),
+            "worldacclim" => self.world_acceleration(text, &arguments),
             "singarea" => self.sing_area(text, &arguments),
             "waitrob" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
-            "eoffsset" | "eoffson" | "softact" | "pdispon" | "pathacclim" | "worldacclim"
-            | "speedrefresh" | "corrcon" | "speedlimaxis" | "egmreset" | "tuneservo" => {
-                self.unmodelled(key, text, &arguments);
+            "eoffsset" | "eoffson" | "softact" | "pdispon" | "corrcon" | "speedlimaxis"
+            | "egmreset" | "tuneservo" => {
+                self.unmodelled(key, text);
             }
             "eoffsoff" => self.clear_unmodelled(&["eoffsset", "eoffson"]),
             "softdeact" => self.clear_unmodelled(&["softact"]),
@@ -215,7 +221,7 @@ impl Executor<'_> {
         }
     }
 
-    fn wait(&mut self, stmt: &Stmt, text: &str, length: Length) {
+    pub(super) fn wait(&mut self, stmt: &Stmt, text: &str, length: Length) {
         let routine = self.frame().routine.clone();
         let (duration, signal, other) = match length {
             Length::Stated(duration) => (Some(duration), None, None),
@@ -298,8 +304,19 @@ impl Executor<'_> {
             "accset" => match (num(0), num(1)) {
                 // The controller raises lower values to 20 % and 10 %.
                 (Some(acc), Some(ramp)) => {
+                    let fine = arguments.option_value("finepointramp");
+                    let fine = fine.and_then(|expr| self.eval(expr).datum.num());
+                    settings.fine_point_ramp = fine.unwrap_or(100.0).clamp(10.0, 100.0) / 100.0;
                     settings.acceleration = acc.clamp(20.0, 100.0) / 100.0;
                     settings.ramp = ramp.clamp(10.0, 100.0) / 100.0;
+                    false
+                }
+                _ => true,
+            },
+            "speedrefresh" => match num(0) {
+                // The controller takes 0 to 100 %; at 0 nothing moves.
+                Some(percent) if percent > 0.0 => {
+                    settings.refresh = percent.min(100.0) / 100.0;
                     false
                 }
                 _ => true,
@@ -353,23 +370,52 @@ impl Executor<'_> {
         self.settings = Arc::new(settings);
     }
 
-    /// A setting that changes movements in a way that is not modelled.
-    fn unmodelled(&mut self, key: &str, text: &str, arguments: &Arguments<'_>) {
+    /// `PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`.
+    fn path_acceleration(&mut self, text: &str, arguments: &Arguments<'_>) {
+        let mut limits = [f64::INFINITY; 2];
+        let mut known = arguments.positional.len() == 2;
+        let options = ["accmax", "decelmax"];
+        for (i, (expr, option)) in arguments.positional.iter().zip(options).enumerate() {
+            match self.eval(expr).datum {
+                Datum::Bool(false) => {}
+                Datum::Bool(true) => {
+                    let value = arguments.option_value(option);
+                    match value.and_then(|expr| self.eval(expr).datum.num()) {
+                        Some(limit) => limits[i] = limit.max(LEAST_ACCELERATION),
+                        None => known = false,
+                    }
+                }
+                _ => known = false,
+            }
+        }
         let mut settings = Settings::clone(&self.settings);
         settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        let off = match key {
-            // The limit is lifted by FALSE, FALSE or \Off; an override of 100 is none.
-            "pathacclim" => {
-                arguments.positional.iter().all(|expr| self.eval(expr).datum == Datum::Bool(false))
-            }
-            "worldacclim" => arguments.has_option("off"),
-            "speedrefresh" => arguments
-                .positional
-                .first()
-                .is_some_and(|expr| self.eval(expr).datum == Datum::Num(100.0)),
-            "egmreset" => true,
-            _ => false,
-        };
+        if known {
+            settings.path_acceleration = limits;
+        } else {
+            settings.other.push(text.into());
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    /// `WorldAccLim \On := m/s²` or `\Off`.
+    fn world_acceleration(&mut self, text: &str, arguments: &Arguments<'_>) {
+        let on = arguments.option_value("on").map(|expr| self.eval(expr).datum.num());
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        match on {
+            None if arguments.has_option("off") => settings.world_acceleration = f64::INFINITY,
+            Some(Some(limit)) => settings.world_acceleration = limit.max(LEAST_ACCELERATION),
+            _ => settings.other.push(text.into()),
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    /// A setting that changes movements in a way that is not modelled.
+    fn unmodelled(&mut self, key: &str, text: &str) {
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        let off = key == "egmreset";
         if !off {
             settings.other.push(text.into());
         }

@@ -10,6 +10,7 @@ mod call;
 mod constant;
 mod displacement;
 mod eval;
+mod external;
 mod flow;
 mod functions;
 mod instruction;
@@ -35,10 +36,22 @@ pub trait Machine {
     fn sets(&mut self, output: Output);
     /// An endless loop begins: what comes from here on comes again and again.
     fn repeats(&mut self) {}
+    /// How often the loop that never ends is to run.
+    fn passes(&self) -> u32 {
+        1
+    }
+    /// The level of an input that the user states, by lower-case name.
+    fn stated_level(&self, _signal: &str) -> Option<f64> {
+        None
+    }
     /// Axis positions in rad, if the robot stands and its position is known.
     fn joints(&mut self) -> Option<[f64; 6]>;
     /// True once the machine wants no more (limits of time or of length).
     fn is_full(&self) -> bool;
+    /// Why it wants no more, where the user can change that.
+    fn full_because(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Something that was not followed exactly, with the place.
@@ -107,6 +120,8 @@ struct Executor<'a> {
     /// Level of each signal that the program has set or waited for.
     signals: BTreeMap<String, f64>,
     settings: Arc<Settings>,
+    /// Where the external axes stand, in RAPID's units, once a movement of theirs has told.
+    external_axes: Option<Vec<f64>>,
     statements: u64,
     execution: Execution,
 }
@@ -122,6 +137,7 @@ impl<'a> Executor<'a> {
             frames: Vec::new(),
             signals: BTreeMap::new(),
             settings: Arc::new(Settings::default()),
+            external_axes: None,
             statements: 0,
             execution: Execution::default(),
         }

@@ -37,11 +37,14 @@ impl Executor<'_> {
         arguments: &Arguments<'_>,
         args: &[Arg],
     ) {
+        if signature.form == MoveForm::ExternalJoint {
+            self.external(stmt, text, signature, arguments);
+            return;
+        }
         let movement = self.resolve(stmt, text, signature, arguments);
         let movement = movement.map_err(|reason| {
             self.unresolved(stmt.span, reason.clone());
-            // The robot's own axes stand while an external one moves.
-            Unresolved { span: stmt.span, reason, moves: signature.form != MoveForm::ExternalJoint }
+            Unresolved { span: stmt.span, reason, moves: true }
         });
         if !signature.plain {
             self.forget_targets(args);
@@ -71,9 +74,6 @@ impl Executor<'_> {
         signature: MoveSignature,
         arguments: &Arguments<'_>,
     ) -> Result<Movement, String> {
-        if signature.form == MoveForm::ExternalJoint {
-            return Err("external axes are not simulated".into());
-        }
         let mut origin = Origin::default();
         let mut positional = arguments.positional.iter().copied().skip(signature.before);
         let mut take = |name: &str, what: &str| {

@@ -7,10 +7,14 @@
 //!
 //! m = M q', c = RNEA(q, q', q'') − g: Bobrow, Dubowsky, Gibson (1985); Verscheure et al. (2009).
 
+use super::limits::Row;
 use crate::motion::stream::Joints;
 
 /// Fewest intervals of a path that starts and ends at rest: one cannot move from 0 to 0.
 pub const MIN_INTERVALS: usize = 2;
+
+/// Rows of a place for the acceleration of the TCP at most.
+pub const TCP_ROWS: usize = 5;
 
 /// Why numbers do not make a path grid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -62,16 +66,25 @@ pub struct PathPoint {
     pub coulomb: Joints,
     /// Viscous friction per ṡ, `f_v` q', Nm.
     pub viscous: Joints,
+    /// Acceleration that each joint can have here, in units of its limit.
+    pub capability: Joints,
+    /// Share of the acceleration limit that each joint needs at rest: gravity.
+    pub bias: Joints,
+    /// Limits on the acceleration of the TCP; rows of zeros are none.
+    pub tcp_rows: [Row; TCP_ROWS],
     /// Bound on ṡ from joint and TCP speeds; positive and finite.
     pub v_max: f64,
 }
 
 impl PathPoint {
-    /// A place without dynamics: all torques are zero.
+    /// A place without dynamics: all torques are zero, the acceleration limits are everywhere the
+    /// same.
     pub fn kinematic(q: Joints, q1: Joints, q2: Joints, v_max: f64) -> PathPoint {
         let zero = Joints::default();
-        let (m, c, g, coulomb, viscous) = (zero, zero, zero, zero, zero);
-        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, v_max }
+        let (m, c, g, coulomb, viscous, bias) = (zero, zero, zero, zero, zero, zero);
+        let capability = [1.0; 6];
+        let tcp_rows = [Row::default(); TCP_ROWS];
+        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, capability, bias, tcp_rows, v_max }
     }
 
     /// m u + c b + g: the torque without friction, Nm.
@@ -98,6 +111,9 @@ impl PathPoint {
             g: mix(&self.g, &other.g),
             coulomb: mix(&self.coulomb, &other.coulomb),
             viscous: mix(&self.viscous, &other.viscous),
+            capability: mix(&self.capability, &other.capability),
+            bias: mix(&self.bias, &other.bias),
+            tcp_rows: std::array::from_fn(|i| self.tcp_rows[i].toward(&other.tcp_rows[i], x)),
             v_max: self.v_max + x * (other.v_max - self.v_max),
         }
     }
@@ -112,6 +128,8 @@ impl PathPoint {
             self.g,
             self.coulomb,
             self.viscous,
+            self.capability,
+            self.bias,
             [self.v_max; 6],
         ];
         self.v_max > 0.0 && rows.as_flattened().iter().all(|x| x.is_finite())

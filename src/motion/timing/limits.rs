@@ -52,14 +52,29 @@ impl PathLimits {
 
 /// |u · `u` + b · `b` + √b · `root` + `constant`| ≤ 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) u: f64,
-    pub(crate) b: f64,
-    pub(crate) root: f64,
-    pub(crate) constant: f64,
+pub struct Row {
+    /// Factor of s̈.
+    pub u: f64,
+    /// Factor of ṡ².
+    pub b: f64,
+    /// Factor of ṡ.
+    pub root: f64,
+    /// The rest.
+    pub constant: f64,
 }
 
 impl Row {
+    /// The row at the share `x` of the way to `other`.
+    pub(crate) fn toward(&self, other: &Row, x: f64) -> Row {
+        let mix = |a: f64, b: f64| a + x * (b - a);
+        Row {
+            u: mix(self.u, other.u),
+            b: mix(self.b, other.b),
+            root: mix(self.root, other.root),
+            constant: mix(self.constant, other.constant),
+        }
+    }
+
     /// The left side without the absolute value.
     pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
         self.u * u + self.b * b + self.root * b.sqrt() + self.constant
@@ -71,8 +86,8 @@ pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item
     let point = *point;
     let limits = *limits;
     let acceleration = move |j: usize| {
-        let w = 1.0 / limits.acceleration[j];
-        Row { u: w * point.q1[j], b: w * point.q2[j], ..Row::default() }
+        let w = 1.0 / (limits.acceleration[j] * point.capability[j]);
+        Row { u: w * point.q1[j], b: w * point.q2[j], constant: point.bias[j], ..Row::default() }
     };
     let torque = move |j: usize| {
         let w = 1.0 / limits.torque[j];
@@ -83,7 +98,8 @@ pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item
             constant: w * (point.g[j] + point.coulomb[j]),
         }
     };
-    (0..DOF).flat_map(move |j| [acceleration(j), torque(j)]).filter(|row| *row != Row::default())
+    let joints = (0..DOF).flat_map(move |j| [acceleration(j), torque(j)]);
+    joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
 }
 
 /// The largest share of a limit that the profile b (one per node) uses at the ends of the

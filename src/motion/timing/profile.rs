@@ -82,11 +82,36 @@ impl Profile {
         if t.is_nan() || t < 0.0 {
             return (self.s[0], self.b[0].sqrt(), 0.0);
         }
-        let k = self.t.partition_point(|node| *node <= t) - 1;
+        self.in_interval(self.t.partition_point(|node| *node <= t) - 1, t)
+    }
+
+    /// (s, ṡ, s̈) at the time `t` (s), which lies in the interval k.
+    pub(crate) fn in_interval(&self, k: usize, t: f64) -> (f64, f64, f64) {
         let (piece, tau) = (self.piece(k), t - self.t[k]);
         let speed = piece.speed + piece.acceleration * tau;
         let s = self.s[k] + tau * 0.5 * (piece.speed + speed);
         (s.min(self.s[k + 1]), speed.max(0.0), piece.acceleration)
+    }
+
+    /// When the motion passes `at`, s; its ends outside.
+    pub fn time_at(&self, at: f64) -> f64 {
+        let last = self.s.len() - 1;
+        if at >= self.s[last] {
+            return self.duration();
+        }
+        let after = self.s.partition_point(|node| *node <= at);
+        after.checked_sub(1).map_or(0.0, |k| self.time_in(k, at))
+    }
+
+    /// When the motion passes `at`, which lies in the interval k, s.
+    pub(crate) fn time_in(&self, k: usize, at: f64) -> f64 {
+        let piece = self.piece(k);
+        let distance = (at - self.s[k]).max(0.0);
+        // The speed there by energy; the mean of both speeds takes the time.
+        let square = piece.speed.powi(2) + 2.0 * piece.acceleration * distance;
+        let sum = piece.speed + square.max(0.0).sqrt();
+        let time = if sum > 0.0 { 2.0 * distance / sum } else { 0.0 };
+        self.t[k] + time.min(piece.duration)
     }
 
     /// The same path in `duration` seconds, uniformly slower or faster.

@@ -8,12 +8,14 @@ mod movements;
 mod proof;
 mod samples;
 mod segments;
+mod simulation;
 mod source;
 mod standstill;
 mod summary;
 mod ways;
 
 pub use identify::{Traces, identify_report};
+pub use simulation::simulate_report;
 
 use tera::{Context, Tera};
 

@@ -7,7 +7,7 @@ use super::samples::{Sample, samples};
 use super::segments::numbered;
 use super::ways::{Way, ways};
 use crate::energy::{Account, EnergyParts};
-use crate::optimize::corridor::{Ceilings, Corridor};
+use crate::optimize::corridor::{Corridor, Freedom};
 use crate::path::joint_path::{DOF, Joints};
 use crate::report::place::Places;
 use crate::report::svg::{Curve, NEAR, Plot, Rule, Size};
@@ -105,7 +105,7 @@ fn way_plots(
     index: usize,
     all: usize,
 ) -> WayPlots {
-    let corridor = Corridor::new(model, way.before, Ceilings::Programmed);
+    let corridor = Corridor::new(model, way.before, &Freedom::none());
     let sides = [way.before, way.after].map(|run| samples(model, run, corridor.as_ref()));
     let [energy_before, energy_after] = energies(retrofit, way).map(joules);
     WayPlots {

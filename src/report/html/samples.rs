@@ -77,7 +77,7 @@ mod tests {
     use crate::energy::account::run_energy;
     use crate::motion::timeline::What;
     use crate::motion::{Options, simulate};
-    use crate::optimize::corridor::Ceilings;
+    use crate::optimize::corridor::Freedom;
     use crate::retrofit::{Source, read_program};
     use crate::text::{FileId, SourceFile};
 
@@ -102,7 +102,7 @@ ENDMODULE";
         let (program, entry) = read_program(&files, "main").unwrap();
         let simulation = simulate(&program, entry, &model, &Options::default());
         let What::Run(run) = &simulation.events[1].what else { panic!("no run") };
-        let corridor = Corridor::new(&model, run, Ceilings::Programmed);
+        let corridor = Corridor::new(&model, run, &Freedom::none());
         let samples = samples(&model, run, corridor.as_ref());
 
         let area: f64 = samples

@@ -175,7 +175,7 @@ fn annotated(file: &SourceFile, costs: &Costs) -> Annotated {
 }
 
 /// A line without its end and without control characters, cut where it is very long.
-fn text(file: &SourceFile, number: u32) -> String {
+pub(super) fn text(file: &SourceFile, number: u32) -> String {
     let range = file.lines.range(number);
     let span = Span { file: file.id, start: range.start, end: range.end };
     let text = file.text(span);

@@ -1,0 +1,78 @@
+//! The virtual controller: the shipped cell, and how its time grows with the movements.
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the bench")]
+
+use std::fmt::Write;
+use std::path::Path;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use joulepath::energy::account;
+use joulepath::motion::{Options, simulate};
+use joulepath::retrofit::{Source, read_program};
+use joulepath::robot;
+use joulepath::text::{FileId, SourceFile};
+
+fn sources(folder: &str) -> Vec<Source> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let source = |(i, path): (usize, &std::path::PathBuf)| {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let file = SourceFile::new(FileId(i as u32), name.clone(), std::fs::read(path).unwrap());
+        Source { file, relative: name }
+    };
+    paths.iter().enumerate().map(source).collect()
+}
+
+/// Throughput: simulated milliseconds ("elements") per second of the clock.
+fn pick_place(c: &mut Criterion) {
+    let model = robot::find("IRB1600-10/1.45").unwrap();
+    let files = sources("fixtures/pick_place");
+    let (program, entry) = read_program(&files, "main").unwrap();
+    let options = Options::default();
+    let cycle = simulate(&program, entry, &model, &options).cycle_s;
+    let mut group = c.benchmark_group("simulate pick_place");
+    group.throughput(Throughput::Elements((1e3 * cycle) as u64));
+    group.bench_function("motion", |b| b.iter(|| simulate(&program, entry, &model, &options)));
+    group.bench_function("motion and energy", |b| {
+        b.iter(|| account(&model, &simulate(&program, entry, &model, &options)));
+    });
+    group.finish();
+}
+
+fn movements(c: &mut Criterion) {
+    let model = robot::find("IRB1600-10/1.45").unwrap();
+    let mut group = c.benchmark_group("simulate movements");
+    group.sample_size(10);
+    for count in [100_u32, 1_000, 10_000] {
+        let mut text = String::from(
+            "MODULE M\nPROC main()\nMoveAbsJ [[0,0,0,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,\
+             fine,tool0;\nConfL\\Off;\n",
+        );
+        for i in 0..count {
+            let turn = f64::from(i);
+            let x = 700.0 + 200.0 * (0.7 * turn).sin();
+            let y = 250.0 * (1.3 * turn).cos();
+            let z = 700.0 + 100.0 * (0.37 * turn).sin();
+            let zone = if i % 50 == 49 { "fine" } else { "z10" };
+            writeln!(
+                text,
+                "MoveL [[{x:.2},{y:.2},{z:.2}],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],\
+                 v500,{zone},tool0;"
+            )
+            .unwrap();
+        }
+        text.push_str("ENDPROC\nENDMODULE\n");
+        let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
+        let files = [Source { file, relative: "M.mod".into() }];
+        let (program, entry) = read_program(&files, "main").unwrap();
+        group.throughput(Throughput::Elements(u64::from(count)));
+        group.bench_with_input(BenchmarkId::from_parameter(count), &count, |b, _| {
+            b.iter(|| account(&model, &simulate(&program, entry, &model, &Options::default())));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, pick_place, movements);
+criterion_main!(benches);

@@ -1,0 +1,58 @@
+//! Movements of external axes: their time, during which the robot stands.
+
+use super::super::hir::Stmt;
+use super::super::instructions::MoveSignature;
+use super::super::value::Datum;
+use super::Executor;
+use super::instruction::{Arguments, Length};
+
+/// Values from here on stand for an axis that is not there (RAPID: 9E9).
+const ABSENT: f64 = 8.9e9;
+/// Where the speed of turning external axes stands in a `speeddata`.
+const TURNING: usize = 3;
+
+impl Executor<'_> {
+    /// `MoveExtJ target, speed …`: as long as the slowest axis takes at its speed.
+    pub(super) fn external(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        signature: MoveSignature,
+        arguments: &Arguments<'_>,
+    ) {
+        let mut positional = arguments.positional.iter().copied().skip(signature.before);
+        let target = arguments.option_value("tojointpos").or_else(|| positional.next());
+        let speed = arguments.option_value("speed").or_else(|| positional.next());
+        let target = target.and_then(|expr| axes(&self.eval(expr).datum));
+        let speed = speed.and_then(|expr| match self.eval(expr).datum {
+            Datum::List(items) => items.get(TURNING).and_then(Datum::num),
+            _ => None,
+        });
+        let stated = arguments.option_value("t").and_then(|expr| self.eval(expr).datum.num());
+        let from = std::mem::replace(&mut self.external_axes, target.clone());
+        let length = match (stated, from.zip(target), speed) {
+            (Some(time), _, _) if time >= 0.0 && time.is_finite() => Length::Stated(time),
+            (None, Some((from, to)), Some(speed)) if speed > 0.0 => {
+                let ways = from.iter().zip(&to).filter(|(a, b)| **a < ABSENT && **b < ABSENT);
+                let longest = ways.map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+                self.assume(
+                    "external axes turn at the speed of their movement, without acceleration"
+                        .to_owned(),
+                );
+                Length::Stated(longest / speed)
+            }
+            _ => Length::Unknown(
+                "external axes, of which it is not known where they stood or how fast they are"
+                    .into(),
+            ),
+        };
+        self.wait(stmt, text, length);
+    }
+}
+
+/// The external axes of a `jointtarget`.
+fn axes(datum: &Datum) -> Option<Vec<f64>> {
+    let Datum::List(parts) = datum else { return None };
+    let Datum::List(axes) = parts.get(1)? else { return None };
+    axes.iter().map(Datum::num).collect()
+}

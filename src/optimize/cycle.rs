@@ -1,0 +1,269 @@
+//! The time of a cycle, shared among its runs so that the whole takes least energy.
+//!
+//! Each run has a convex trade-off of energy over time; at the optimum one more second saves the
+//! same in each of them. A wait whose signal comes at a known time is used up by slower arrival.
+//! With piecewise linear trade-offs all of it is one linear program.
+
+use super::cone::{Affine, ConeProgram, ConeStatus};
+
+/// Energy of a run over its time: points of rising time (s) on a convex curve (J).
+#[derive(Clone, Debug, PartialEq)]
+pub struct TradeOff {
+    points: Vec<(f64, f64)>,
+}
+
+/// What is known of a run at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// s.
+    pub time: f64,
+    /// J.
+    pub energy: f64,
+    /// What one more second costs, W.
+    pub slope: f64,
+}
+
+/// Points of a curve for each stretch of it.
+const REFINEMENT: usize = 12;
+/// What one more second saves falls with this power of the time. Measured on the runs of
+/// `fixtures/pick_place`: 3.6 to 4.6 for longer times than before, 4 to 7.6 for shorter ones.
+const LONGER: i32 = 4;
+const SHORTER: i32 = 6;
+
+impl TradeOff {
+    /// The curve from `shortest` to `longest` (s) about a time at which it is known, and another
+    /// one, the longest, if that is known too. `None` where a figure is not finite.
+    pub fn about(here: Known, shortest: f64, longest: f64, far: Option<Known>) -> Option<TradeOff> {
+        // ∫ slope (T/t)^k dt from T to t
+        let power = |t: f64, k: i32| {
+            let fall = 1.0 - (here.time / t).powi(k - 1);
+            here.energy + here.slope * here.time / f64::from(k - 1) * fall
+        };
+        let slow = |t: f64| match far {
+            Some(far) => hermite(here, far, t),
+            None => power(t, LONGER),
+        };
+        let between = |from: f64, to: f64| {
+            (0..=REFINEMENT).map(move |i| from + (to - from) * i as f64 / REFINEMENT as f64)
+        };
+        let quicker = between(shortest.min(here.time), here.time).map(|t| (t, power(t, SHORTER)));
+        let slower = between(here.time, longest.max(here.time)).map(|t| (t, slow(t)));
+        TradeOff::new(quicker.chain(slower).collect())
+    }
+
+    /// The lower convex hull of some points; `None` without any.
+    pub fn new(mut points: Vec<(f64, f64)>) -> Option<TradeOff> {
+        points.retain(|(t, e)| t.is_finite() && e.is_finite());
+        points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        points.dedup_by(|later, earlier| later.0 == earlier.0);
+        let mut hull: Vec<(f64, f64)> = Vec::with_capacity(points.len());
+        for point in points {
+            while let [.., a, b] = hull.as_slice()
+                && slope(*a, *b) >= slope(*b, point)
+            {
+                hull.pop();
+            }
+            hull.push(point);
+        }
+        (!hull.is_empty()).then_some(TradeOff { points: hull })
+    }
+
+    /// Shortest and longest time, s.
+    pub fn range(&self) -> (f64, f64) {
+        (self.points[0].0, self.points[self.points.len() - 1].0)
+    }
+
+    /// The lines of which the curve is the maximum: slope (W) and energy at time 0 (J).
+    fn lines(&self) -> Vec<(f64, f64)> {
+        match self.points.as_slice() {
+            [(_, energy)] => vec![(0.0, *energy)],
+            points => points
+                .windows(2)
+                .map(|pair| (slope(pair[0], pair[1]), pair))
+                .map(|(slope, pair)| (slope, pair[0].1 - slope * pair[0].0))
+                .collect(),
+        }
+    }
+}
+
+/// Between two known times.
+fn hermite(a: Known, b: Known, time: f64) -> f64 {
+    let h = b.time - a.time;
+    let x = (time - a.time) / h;
+    let (v0, v1) = (h * a.slope, h * b.slope);
+    let step = b.energy - a.energy;
+    let cubic = v0 + v1 - 2.0 * step;
+    a.energy + x * (v0 + x * (step - v0 - cubic + x * cubic))
+}
+
+fn slope(a: (f64, f64), b: (f64, f64)) -> f64 {
+    (b.1 - a.1) / (b.0 - a.0)
+}
+
+/// A part of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// A run, by the index of its trade-off.
+    Run(usize),
+    /// Time that nothing changes, s.
+    Fixed(f64),
+    /// A wait for a signal.
+    Arrival {
+        /// The part after whose end the delay counts; `None` for the start of the cycle.
+        since: Option<usize>,
+        /// s.
+        delay: f64,
+        /// What standing there takes, W.
+        holding_w: f64,
+    },
+}
+
+/// Unit of energy of the program, J.
+const UNIT: f64 = 10.0;
+/// Share of the takt that rounding may take.
+const ROUNDING: f64 = 1e-9;
+
+/// The time of each run, s, with least energy in all, so that the cycle takes no longer than
+/// `takt` (s). `None` if that is not possible.
+pub fn share(curves: &[TradeOff], parts: &[Part], takt: f64) -> Option<Vec<f64>> {
+    let arrivals = parts.iter().filter(|part| matches!(part, Part::Arrival { .. })).count();
+    let runs = curves.len();
+    let (time, energy) = (|run: usize| Some(run), |run: usize| Some(runs + run));
+    let wait = |index: usize| Some(2 * runs + index);
+    let mut program = ConeProgram::new(2 * runs + arrivals);
+
+    // The time at the end of each part, as it is written down.
+    let mut ends: Vec<Affine> = Vec::with_capacity(parts.len());
+    let mut now = Affine::constant(0.0);
+    let mut arrival = 0;
+    for part in parts {
+        match part {
+            Part::Run(run) => {
+                now.add(time(*run), 1.0);
+                program.minimize(&Affine::constant(0.0).plus(energy(*run), 1.0));
+            }
+            Part::Fixed(seconds) => now = now.shift(*seconds),
+            Part::Arrival { since, delay, holding_w } => {
+                let from = since.map_or(Affine::constant(0.0), |part| ends[part].clone());
+                let late = from.shift(*delay).sum(&now.clone().times(-1.0));
+                // wait ≥ what is left of the delay, wait ≥ 0
+                program.at_most_zero(late.plus(wait(arrival), -1.0));
+                program.at_most_zero(Affine::constant(0.0).plus(wait(arrival), -1.0));
+                let holding = Affine::constant(0.0).plus(wait(arrival), holding_w / UNIT);
+                program.minimize(&holding);
+                now.add(wait(arrival), 1.0);
+                arrival += 1;
+            }
+        }
+        ends.push(now.clone());
+    }
+    program.at_most_zero(now.shift(-takt * (1.0 + ROUNDING)));
+    for (run, curve) in curves.iter().enumerate() {
+        let (shortest, longest) = curve.range();
+        program.at_most_zero(Affine::constant(shortest).plus(time(run), -1.0));
+        program.at_most_zero(Affine::constant(-longest).plus(time(run), 1.0));
+        for (slope, offset) in curve.lines() {
+            let line = Affine::constant(offset / UNIT).plus(time(run), slope / UNIT);
+            program.at_most_zero(line.plus(energy(run), -1.0));
+        }
+    }
+    let solution = program.solve();
+    match solution.status {
+        ConeStatus::Solved | ConeStatus::AlmostSolved => {
+            let within = |(t, curve): (&f64, &TradeOff)| {
+                let (shortest, longest) = curve.range();
+                t.clamp(shortest, longest)
+            };
+            Some(solution.x.iter().zip(curves).map(within).collect())
+        }
+        ConeStatus::Infeasible | ConeStatus::Failed => None,
+    }
+}
+
+/// The time of a cycle, s, whose runs take `times` (s).
+pub fn cycle_time(parts: &[Part], times: &[f64]) -> f64 {
+    let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
+    let mut now = 0.0_f64;
+    for part in parts {
+        now = match part {
+            Part::Run(run) => now + times[*run],
+            Part::Fixed(seconds) => now + seconds,
+            Part::Arrival { since, delay, .. } => {
+                now.max(since.map_or(0.0, |part| ends[part]) + delay)
+            }
+        };
+        ends.push(now);
+    }
+    now
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOLERANCE: f64 = 1e-3;
+
+    /// a / t: quick ones cost more.
+    fn curve(a: f64) -> TradeOff {
+        let times = (0..=400).map(|i| 1.0 + 0.01 * f64::from(i));
+        TradeOff::new(times.map(|t| (t, a / t)).collect()).expect("points")
+    }
+
+    #[test]
+    fn one_more_second_saves_the_same_everywhere() {
+        let curves = [curve(100.0), curve(400.0)];
+        let parts = [Part::Run(0), Part::Fixed(2.0), Part::Run(1)];
+        let times = share(&curves, &parts, 8.0).expect("possible");
+        // a / t² is the same for both: t goes with √a.
+        assert!((times[0] - 2.0).abs() < 0.02 && (times[1] - 4.0).abs() < 0.02, "{times:?}");
+        assert!((cycle_time(&parts, &times) - 8.0).abs() < TOLERANCE);
+    }
+
+    #[test]
+    fn one_known_time_makes_a_close_curve() {
+        // What one more second saves falls with the fourth power of the time.
+        let known = |t: f64| Known { time: t, energy: 90.0 / t.powi(3), slope: -270.0 / t.powi(4) };
+        for far in [None, Some(known(2.0))] {
+            let curve = TradeOff::about(known(1.0), 0.9, 2.0, far).expect("points");
+            assert_eq!(curve.range(), (0.9, 2.0));
+            for (t, energy) in curve.points.iter().filter(|(t, _)| *t >= 1.0) {
+                assert!((energy - 90.0 / t.powi(3)).abs() < 8.0, "{t}: {energy}");
+            }
+        }
+        let exact = TradeOff::about(known(1.0), 1.0, 1.3, None).expect("points");
+        assert!(exact.points.iter().all(|(t, e)| (e - 90.0 / t.powi(3)).abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_known_wait_is_used_up() {
+        let curves = [curve(100.0), curve(100.0)];
+        let wait = Part::Arrival { since: None, delay: 3.0, holding_w: 1.0 };
+        let parts = [Part::Run(0), wait, Part::Run(1)];
+        let times = share(&curves, &parts, 4.5).expect("possible");
+        assert!(
+            (times[0] - 3.0).abs() < TOLERANCE && (times[1] - 1.5).abs() < TOLERANCE,
+            "{times:?}"
+        );
+        assert!((cycle_time(&parts, &times) - 4.5).abs() < TOLERANCE);
+        // The second signal counts from the first one: only the way between has to wait for it.
+        let again = Part::Arrival { since: Some(1), delay: 2.5, holding_w: 1.0 };
+        let parts = [Part::Run(0), wait, Part::Run(1), again];
+        let times = share(&curves, &parts, 5.5).expect("possible");
+        assert!(
+            (times[0] - 3.0).abs() < TOLERANCE && (times[1] - 2.5).abs() < TOLERANCE,
+            "{times:?}"
+        );
+    }
+
+    #[test]
+    fn a_takt_below_the_possible_has_no_answer() {
+        assert_eq!(share(&[curve(1.0)], &[Part::Run(0), Part::Fixed(1.0)], 1.9), None);
+    }
+
+    #[test]
+    fn only_the_convex_hull_counts() {
+        let curve = TradeOff::new(vec![(1.0, 4.0), (2.0, 5.0), (3.0, 0.0), (2.5, 3.0)]);
+        assert_eq!(curve, Some(TradeOff { points: vec![(1.0, 4.0), (3.0, 0.0)] }));
+        assert_eq!(TradeOff::new(vec![(f64::NAN, 1.0)]), None);
+    }
+}

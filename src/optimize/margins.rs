@@ -1,0 +1,79 @@
+//! How far from the limits an attempt at a stream stays.
+
+use super::check::Check;
+
+/// Margin to acceleration and torque limits at first: what a stream between nodes needs.
+const FIRST_MARGIN: f64 = 0.98;
+/// Margin to speed ceilings at first.
+const FIRST_SPEED_MARGIN: f64 = 0.995;
+/// Reach of lower ceilings at first, m.
+const FIRST_REACH: f64 = 0.006;
+/// Placing of the points at first, share of the tolerance of the path.
+const FIRST_SPACING: f64 = 0.1;
+/// Share of the allowed distance from the path that the polishing may use at first.
+const FIRST_DISTANCE: f64 = 0.95;
+
+/// Margins and tolerances of one attempt.
+#[derive(Clone)]
+pub(super) struct Margins {
+    /// Share of acceleration and torque limits that the intended motion may use.
+    pub(super) load: f64,
+    /// Share of the speed ceilings.
+    pub(super) speed: f64,
+    /// Distance before and behind a lower ceiling from which it holds, m: a stream is shaped at
+    /// places some way apart.
+    pub(super) reach: f64,
+    /// Tolerance of the points' placing, m.
+    pub(super) spacing: f64,
+    /// Share of the allowed distance from the path that the polishing may use.
+    pub(super) distance: f64,
+}
+
+impl Margins {
+    /// Where the path has this tolerance, m.
+    pub(super) fn first(tolerance: f64) -> Margins {
+        Margins {
+            load: FIRST_MARGIN,
+            speed: FIRST_SPEED_MARGIN,
+            reach: FIRST_REACH,
+            spacing: FIRST_SPACING * tolerance,
+            distance: FIRST_DISTANCE,
+        }
+    }
+
+    /// Tighter where the loads left no stream.
+    pub(super) fn lighten(&mut self) {
+        self.load *= FIRST_MARGIN;
+    }
+
+    /// The limits themselves.
+    pub(super) fn none() -> Margins {
+        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0 }
+    }
+
+    /// Tighter for another attempt from the begin.
+    pub(super) fn tighten(&mut self, check: &Check) {
+        let load = check.torque.max(check.acceleration);
+        if load > 1.0 {
+            self.load *= FIRST_MARGIN / load;
+        }
+        if check.velocity > 1.0 {
+            self.speed *= FIRST_SPEED_MARGIN / check.velocity;
+        }
+        if check.tcp_speed > 1.0 {
+            self.reach *= 2.0;
+        }
+        if check.deviation > 1.0 {
+            self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
+            self.spacing *= 0.7;
+        }
+    }
+
+    /// Tighter for more polishing of a stream that nearly holds.
+    pub(super) fn tighten_a_little(&mut self, check: &Check) {
+        let over = |share: f64| share.max(1.0);
+        self.load /= over(check.torque);
+        self.speed /= over(check.tcp_speed);
+        self.distance /= over(check.deviation);
+    }
+}

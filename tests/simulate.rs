@@ -1,0 +1,375 @@
+//! What the virtual controller does with movements, settings and the flow of a program.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
+
+use std::collections::BTreeMap;
+
+use joulepath::dynamics::{Data, kinetic_energy, potential_energy, torque};
+use joulepath::energy::account;
+use joulepath::motion::timed::TimedMotion;
+use joulepath::motion::timeline::{Run, What};
+use joulepath::motion::{Options, Simulation, simulate};
+use joulepath::path::PieceKind;
+use joulepath::retrofit::{Source, read_program};
+use joulepath::robot::{Model, find};
+use joulepath::text::{FileId, SourceFile};
+
+/// A home and targets in front of an IRB1600, the tool pointing down.
+const DATA: &str = "CONST jointtarget home:=[[0,0,0,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget a:=[[700,-150,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget b:=[[700,150,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget c:=[[800,150,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget b25:=[[700,150,700],[0,0.2164396,0.9762960,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget d25:=[[1000,150,700],[0,0.2164396,0.9762960,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+VAR num n:=0;
+VAR num endless:=1;
+";
+
+fn irb1600() -> Model {
+    find("IRB1600-10/1.45").unwrap()
+}
+
+fn run_with(model: &Model, body: &str, options: &Options) -> Simulation {
+    let text = format!(
+        "MODULE M\n{DATA}PROC main()\nConfL\\Off;\nConfJ\\Off;\n{body}\nENDPROC\nENDMODULE"
+    );
+    let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
+    let files = [Source { file, relative: "M.mod".into() }];
+    let (program, entry) = read_program(&files, "main").unwrap();
+    simulate(&program, entry, model, options)
+}
+
+fn simulated(body: &str) -> Simulation {
+    run_with(&irb1600(), body, &Options::default())
+}
+
+fn runs(simulation: &Simulation) -> Vec<&Run> {
+    simulation
+        .events
+        .iter()
+        .filter_map(|event| match &event.what {
+            What::Run(run) if event.duration > 0.0 => Some(&**run),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The duration of the movements of a program, settling included, s.
+fn duration(body: &str) -> f64 {
+    runs(&simulated(body)).iter().map(|run| run.duration()).sum()
+}
+
+/// Where the first zone of the last run begins before its corner, m of the TCP's way.
+fn zone_size(body: &str) -> f64 {
+    let simulation = simulated(body);
+    assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
+    let all = runs(&simulation);
+    let TimedMotion::Path(path, _) = &all.last().unwrap().motions[0].1 else { panic!("no path") };
+    let zone = path.pieces().iter().find(|p| p.kind == PieceKind::CartesianZone).unwrap();
+    path.leg_end(path.legs().start) - zone.s
+}
+
+/// Rounding of lengths.
+const LENGTH: f64 = 1e-9;
+
+#[test]
+fn the_smallest_relative_size_decides_about_a_zone() {
+    // The example of the manual: a zone of 9 degrees in a turn of 25 degrees takes 9/25 of the
+    // way, though 130 of 300 mm were allowed.
+    let zone = "[FALSE,130,130,130,9,130,9]";
+    let body = format!(
+        "MoveJ a,v1000,fine,tool0;\nMoveL b25,v300,{zone},tool0;\nMoveL d25,v300,fine,tool0;"
+    );
+    let size = zone_size(&body);
+    assert!((size - 0.3 * 9.0 / 25.0).abs() < 1e-4, "{size}");
+    // Without the turn the size in mm holds.
+    let body = format!(
+        "MoveJ a,v1000,fine,tool0;\nMoveL b,v300,{zone},tool0;\nMoveL [[1000,150,700],[0,0,1,0],\
+         [0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v300,fine,tool0;"
+    );
+    assert!((zone_size(&body) - 0.13).abs() < LENGTH);
+}
+
+#[test]
+fn a_zone_takes_at_most_half_of_the_shorter_way() {
+    let body = "MoveJ a,v1000,fine,tool0;\nMoveL b,v300,z200,tool0;\nMoveL c,v300,fine,tool0;";
+    assert!((zone_size(body) - 0.05).abs() < LENGTH, "half of the 100 mm behind the corner");
+    let body = "MoveJ a,v1000,fine,tool0;\nMoveL b,v300,z30,tool0;\nMoveL c,v300,fine,tool0;";
+    assert!((zone_size(body) - 0.03).abs() < LENGTH);
+}
+
+/// What the bisection of a stated time leaves, s.
+const TIMED: f64 = 1e-6;
+
+#[test]
+fn a_stated_time_is_scaled_by_the_override_and_not_by_the_largest_speed() {
+    let time = |settings: &str, wanted: f64| {
+        let body = format!("MoveJ a,v1000,fine,tool0;\n{settings}MoveL b,v1000\\T:=5,fine,tool0;");
+        let simulation = simulated(&body);
+        let last = runs(&simulation).last().unwrap().duration();
+        assert!((last - wanted).abs() < TIMED, "{settings}: {last}");
+    };
+    time("", 5.0);
+    time("VelSet 50,5000;", 10.0);
+    time("VelSet 100,10;", 5.0);
+    time("SpeedRefresh 50;", 10.0);
+}
+
+#[test]
+fn less_acceleration_takes_longer() {
+    let time = |acc: u32| {
+        duration(&format!(
+            "MoveJ a,v1000,fine,tool0;\nAccSet {acc},100;\nMoveL b,v1000,z10,tool0;\n\
+             MoveJ c,v1000,fine,tool0;"
+        ))
+    };
+    let times: Vec<f64> = [20, 30, 40, 50, 60, 70, 80, 90, 100].map(time).to_vec();
+    assert!(times.windows(2).all(|pair| pair[0] > pair[1]), "{times:?}");
+    // Below 20 % the controller takes 20 %.
+    assert_eq!(time(5), times[0]);
+    let ramp = |settings: &str| {
+        duration(&format!("MoveJ a,v1000,fine,tool0;\n{settings}\nMoveL b,v1000,fine,tool0;"))
+    };
+    assert!(ramp("AccSet 100,50;") > ramp("AccSet 100,100;"));
+    assert!(ramp("AccSet 100,100\\FinePointRamp:=50;") > ramp("AccSet 100,100;"));
+}
+
+/// Largest acceleration of the TCP along and across its path in the last run, m/s².
+fn accelerations(model: &Model, body: &str) -> [f64; 2] {
+    const STEP: f64 = 1e-3;
+    let simulation = run_with(model, body, &Options::default());
+    let all = runs(&simulation);
+    let run = all.last().unwrap();
+    let tool = run.legs[0].tool;
+    let velocity = |t: f64| {
+        let state = run.at(t);
+        let twist = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+        twist.fixed_rows::<3>(0).into_owned()
+    };
+    let mut worst = [0.0_f64; 2];
+    let steps = (run.duration() / STEP) as usize;
+    for i in 1..steps {
+        let t = i as f64 * STEP;
+        let rate = (velocity(t + STEP) - velocity(t - STEP)) / (2.0 * STEP);
+        let direction = velocity(t).normalize();
+        let along = rate.dot(&direction);
+        worst[0] = worst[0].max(along.abs());
+        worst[1] = worst[1].max(rate.norm());
+    }
+    worst
+}
+
+/// What the ends of a motion may exceed a limit by, and what differences over time leave.
+const OVERSHOOT: f64 = 1.03;
+
+#[test]
+fn limits_of_the_acceleration_are_obeyed() {
+    let body = |settings: &str, zone: &str| {
+        format!(
+            "MoveJ a,v1000,fine,tool0;\n{settings}\nMoveL b,v1000,{zone},tool0;\n\
+             MoveL c,v1000,fine,tool0;"
+        )
+    };
+    let model = irb1600();
+    let [free, _] = accelerations(&model, &body("", "fine"));
+    assert!(free > 4.0, "the limits below would be none: {free}");
+    // Along a straight way: in a corner the average over time slows the TCP besides.
+    let limited = "PathAccLim TRUE\\AccMax:=2,TRUE\\DecelMax:=2;";
+    let [along, _] = accelerations(&model, &body(limited, "fine"));
+    assert!(along < 2.0 * OVERSHOOT, "{along}");
+    let [_, all] = accelerations(&model, &body("WorldAccLim\\On:=1.5;", "z30"));
+    assert!(all < 1.5 * OVERSHOOT, "{all}");
+    // Lifted again.
+    let lifted = body("PathAccLim TRUE\\AccMax:=2,FALSE;\nPathAccLim FALSE,FALSE;", "z30");
+    assert_eq!(duration(&lifted), duration(&body("", "z30")));
+}
+
+/// Measured on an IRC5 with an IRB6640 in a line of 500 mm at vmax: peak of the acceleration
+/// (m/s²), time in which it builds up (s), and the tolerance of both.
+const LINE: (f64, f64, f64) = (12.5, 0.1, 0.15);
+
+#[test]
+fn a_line_starts_as_measured() {
+    const STEP: f64 = 1e-3;
+    let model = find("IRB6640-180/2.55").unwrap();
+    let tool = "[TRUE,[[75,0,493.3],[0.965925826,0,0.258819045,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]";
+    let none = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+    let body = format!(
+        "MoveJ [[2200,500,1000],[0.382683432,0,0.923879533,0],[0,0,-1,1],{none}],v500,fine,{tool};\n\
+         MoveL [[2200,0,1000],[0.555570233,0,0.831469612,0],[0,-1,-1,1],{none}],\
+         [10000,9999999,9999999,9999999],fine,{tool};"
+    );
+    let simulation = run_with(&model, &body, &Options::default());
+    let all = runs(&simulation);
+    let run = all.last().unwrap();
+    let frame = run.legs[0].tool;
+    let speed = |t: f64| {
+        let state = run.at(t);
+        let twist = frame.jacobian(&model, &state.q) * nalgebra::Vector6::from(state.qd);
+        twist.fixed_rows::<3>(0).norm()
+    };
+    let acceleration = |i: usize| {
+        let t = i as f64 * STEP;
+        (speed(t + STEP) - speed((t - STEP).max(0.0))) / (2.0 * STEP)
+    };
+    let values: Vec<f64> = (0..250).map(acceleration).collect();
+    let peak = values.iter().copied().fold(0.0, f64::max);
+    let near = |x: f64, measured: f64| (x / measured - 1.0).abs() < LINE.2;
+    assert!(near(peak, LINE.0), "{peak} m/s²");
+    // From the start to where it is within a tenth of the peak.
+    let ramp = values.iter().position(|a| *a > 0.9 * peak).unwrap() as f64 * STEP;
+    assert!(near(ramp, LINE.1), "{ramp} s");
+}
+
+/// Programs with movements of all kinds, corners, changes of speed and of load.
+const MOVEMENTS: [&str; 3] = [
+    "MoveJ a,v1000,fine,tool0;\nMoveL b,v500,z30,tool0;\nMoveL c,v1000,fine,tool0;\n\
+     MoveAbsJ home,vmax,fine,tool0;",
+    "MoveJ a,v1000,fine,tool0;\nGripLoad [8,[0,0,60],[1,0,0,0],0.1,0.1,0.05];\n\
+     MoveC [[850,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],b,v300,z10,tool0;\n\
+     MoveJ home2,v1500,z50,tool0;\nMoveL a,v200,fine,tool0;",
+    "MoveAbsJ home,v500,fine,tool0;\nMoveJ b25,v800,z20,tool0;\nMoveJ a,v800,z20,tool0;\n\
+     MoveL c,v2000,z0,tool0;\nMoveL b,v2000,fine,tool0;",
+];
+/// Tolerance of the balance, relative to the work that is done without regard to its sign.
+const BALANCE: f64 = 1e-6;
+
+#[test]
+fn energy_is_balanced_in_every_move() {
+    let model = irb1600();
+    for body in MOVEMENTS {
+        let body =
+            body.replace("home2", "[[700,-150,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]");
+        let simulation = simulated(&body);
+        assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
+        let account = account(&model, &simulation);
+        for (event, parts) in simulation.events.iter().zip(&account.events) {
+            let What::Run(run) = &event.what else { continue };
+            for (i, (record, part)) in run.moves.iter().zip(parts).enumerate() {
+                let rest = if i + 1 == run.moves.len() { run.settling } else { 0.0 };
+                let (from, to) = (record.t_start, record.t_start + record.duration - rest);
+                let energy = |t: f64| {
+                    let state = run.at(t);
+                    kinetic_energy(&model, &run.load, &state.q, &state.qd)
+                        + potential_energy(&model, &run.load, &state.q)
+                };
+                let gained = energy(to) - energy(from);
+                // The work of the joints by Simpson's rule on a fine grid.
+                let mut data = Data::new();
+                let mut power = |t: f64| {
+                    let s = run.at(t);
+                    let tau = torque(&model, &mut data, &run.load, &s.q, &s.qd, &s.qdd);
+                    let of = |t: &[f64]| s.qd.iter().zip(t).map(|(v, t)| v * t).sum::<f64>();
+                    [of(&tau.rigid), of(&tau.friction)]
+                };
+                let steps = ((to - from) / 1e-4).ceil().max(1.0) as usize;
+                let h = (to - from) / steps as f64;
+                let (mut work, mut lost, mut scale) = (0.0, 0.0, f64::MIN_POSITIVE);
+                for k in 0..steps {
+                    let t = from + h * k as f64;
+                    let weights = [(0.0, 1.0), (0.5, 4.0), (1.0, 1.0)];
+                    for (share, weight) in weights {
+                        let [rigid, friction] = power(t + share * h);
+                        work += h / 6.0 * weight * (rigid + friction);
+                        lost += h / 6.0 * weight * friction;
+                        scale += h / 6.0 * weight * (rigid.abs() + friction.abs());
+                    }
+                }
+                let close = |a: f64, b: f64| (a - b).abs() < BALANCE * scale;
+                let name = &record.movement.instruction;
+                assert!(close(part.mechanical_j, gained), "{name}: {part:?}, gained {gained}");
+                assert!(close(part.friction_j, lost), "{name}: {part:?}, lost {lost}");
+                let sum = part.mechanical_j + part.friction_j;
+                assert!(close(work, sum), "{name}: {work} J of the joints, {sum} J");
+            }
+        }
+    }
+}
+
+#[test]
+fn joules_and_seconds_of_the_moves_and_waits_are_those_of_the_cycle() {
+    let model = irb1600();
+    let simulation = simulated(
+        "MoveJ a,v1000,fine,tool0;\nWaitTime 0.5;\nMoveL b,v500,z30,tool0;\nMoveL c,v1000,fine,tool0;",
+    );
+    let account = account(&model, &simulation);
+    let energy: f64 =
+        account.events.iter().flatten().map(joulepath::energy::EnergyParts::energy_j).sum();
+    assert!((energy - account.total.energy_j()).abs() < 1e-9 * energy);
+    let time: f64 = simulation.events.iter().map(|event| event.duration).sum();
+    assert!((time - simulation.cycle_s).abs() < 1e-12);
+}
+
+#[test]
+fn a_wait_takes_the_settling_of_the_stop_before_it() {
+    let direct = duration("MoveJ a,v1000,fine,tool0;\nMoveL b,v500,fine,tool0;");
+    let waiting = duration("MoveJ a,v1000,fine,tool0;\nWaitTime 0;\nMoveL b,v500,fine,tool0;");
+    assert!(direct > waiting + 0.02, "{direct} {waiting}");
+}
+
+#[test]
+fn what_depends_on_inputs_is_told_with_both_ways() {
+    let body = "MoveJ a,v1000,fine,tool0;\nIF diPart=1 THEN\nMoveL b,v500,fine,tool0;\n\
+                ELSE\nMoveL c,v500,fine,tool0;\nMoveL b,v500,fine,tool0;\nENDIF";
+    let low = simulated(body);
+    assert_eq!(runs(&low).len(), 3);
+    let note = &low.unresolved[0].reason;
+    assert!(note.contains("FALSE") && note.contains("1 instruction"), "{note}");
+    assert!(note.contains("--assume diPart"), "{note}");
+    let levels = BTreeMap::from([("dipart".to_owned(), 1.0)]);
+    let high = run_with(&irb1600(), body, &Options { levels, ..Options::default() });
+    assert_eq!(runs(&high).len(), 2);
+    assert!(high.unresolved[0].reason.contains("2 instructions"), "{:?}", high.unresolved);
+    assert!(high.assumed.iter().any(|text| text.contains("diPart is 1")), "{:?}", high.assumed);
+}
+
+#[test]
+fn passes_of_the_loop_that_never_ends() {
+    let body = "MoveJ a,v1000,fine,tool0;\nWHILE TRUE DO\nMoveL b,v500,fine,tool0;\n\
+                MoveL a,v500,fine,tool0;\nENDWHILE";
+    let moves = |passes: Option<u32>| {
+        let simulation = run_with(&irb1600(), body, &Options { passes, ..Options::default() });
+        runs(&simulation).len() - 1
+    };
+    assert_eq!([moves(None), moves(Some(1)), moves(Some(3))], [2, 2, 6]);
+}
+
+#[test]
+fn a_program_without_end_is_stopped_and_told() {
+    let body = "MoveJ a,v1000,fine,tool0;\nWHILE endless=1 DO\nMoveL b,v500,fine,tool0;\n\
+                MoveL a,v500,fine,tool0;\nENDWHILE";
+    let options = Options { max_time: Some(20.0), ..Options::default() };
+    let simulation = run_with(&irb1600(), body, &options);
+    assert!((20.0..25.0).contains(&simulation.cycle_s), "{}", simulation.cycle_s);
+    let reasons: Vec<&str> = simulation.unresolved.iter().map(|n| n.reason.as_str()).collect();
+    assert!(reasons.iter().any(|r| r.contains("--max-time")), "{reasons:?}");
+}
+
+#[test]
+fn the_override_slows_everything() {
+    let time = |speed_override: Option<f64>| {
+        let options = Options { speed_override, ..Options::default() };
+        let body = "MoveJ a,v1000,fine,tool0;\nMoveL b,v100,fine,tool0;";
+        let simulation = run_with(&irb1600(), body, &options);
+        runs(&simulation).last().unwrap().duration()
+    };
+    let way = 0.3 / 0.1;
+    assert!((time(Some(0.5)) - time(None) - way).abs() < 0.02 * way);
+}
+
+#[test]
+fn external_axes_take_their_time() {
+    let simulation = simulated(
+        "MoveJ a,v1000,fine,tool0;\nMoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[0,9E9,9E9,9E9,9E9,9E9]],\
+         vrot10,fine;\nMoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[30,9E9,9E9,9E9,9E9,9E9]],\
+         [0,0,0,10],fine;\nMoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[0,9E9,9E9,9E9,9E9,9E9]],\
+         [0,0,0,10]\\T:=7,fine;",
+    );
+    let waits: Vec<f64> = simulation
+        .events
+        .iter()
+        .filter(|event| matches!(event.what, What::Wait(_)))
+        .map(|event| event.duration)
+        .collect();
+    assert_eq!(waits, [0.0, 3.0, 7.0]);
+}

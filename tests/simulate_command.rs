@@ -1,0 +1,92 @@
+//! `joulepath simulate` as a user calls it.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
+
+use std::fs;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(args)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
+}
+
+const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
+
+fn json(args: &[&str]) -> Value {
+    let output = joulepath(args);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn the_report_is_one_page_with_everything_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("cycle.html");
+    let path = page.to_str().unwrap();
+    let [robot, name] = ROBOT;
+    let output = joulepath(&["simulate", "fixtures/hard/waits.mod", robot, name, "--report", path]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let html = fs::read_to_string(page).unwrap();
+    for part in
+        ["Cycle by instruction", "Electrical power", "Joint positions", "Source", "waits.mod"]
+    {
+        assert!(html.contains(part), "{part}");
+    }
+    assert!(!html.contains("<script") && !html.contains("http"), "nothing is loaded");
+    assert_eq!(html.matches("<svg").count(), html.matches("</svg>").count());
+}
+
+#[test]
+fn wrong_options_name_the_way_out() {
+    let [robot, name] = ROBOT;
+    let program = ["simulate", "fixtures/hard/waits.mod", robot, name];
+    for (option, value, hint) in [
+        ("--assume", "diPart", "SIGNAL=LEVEL"),
+        ("--speed-override", "0", "above 0"),
+        ("--max-time", "-1", "above 0"),
+        ("--input", "diPart", "SIGNAL=SECONDS"),
+        ("--passes", "0", "1.."),
+    ] {
+        let given = format!("{option}={value}");
+        let arguments = [&program[..], &[given.as_str()]].concat();
+        let output = joulepath(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains(hint), "{option}: {message}");
+    }
+}
+
+#[test]
+fn levels_and_passes_change_what_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("m.mod");
+    let none = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+    let program = format!(
+        "MODULE M\nPROC main()\nMoveAbsJ [[0,0,0,0,60,0],{none}],v1000,fine,tool0;\n\
+         WHILE TRUE DO\nIF diLeft=1 THEN\nMoveAbsJ [[20,0,0,0,60,0],{none}],v1000,fine,tool0;\n\
+         ENDIF\nMoveAbsJ [[0,0,0,0,60,0],{none}],v1000,fine,tool0;\nWaitTime 1;\nENDWHILE\n\
+         ENDPROC\nENDMODULE"
+    );
+    fs::write(&file, program).unwrap();
+    let path = file.to_str().unwrap();
+    let [robot, name] = ROBOT;
+    let moves = |options: &[&str]| {
+        let base = ["simulate", path, robot, name, "--format", "json"];
+        let result = json(&[&base[..], options].concat());
+        let places = result["unresolved"].as_array().unwrap().clone();
+        (result["moves"].as_array().unwrap().len(), places)
+    };
+    let (count, notes) = moves(&[]);
+    assert_eq!(count, 2);
+    assert!(notes.iter().any(|note| note["line"] == 5), "the other branch is named: {notes:?}");
+    assert_eq!(moves(&["--assume", "diLeft=1"]).0, 3);
+    assert_eq!(moves(&["--assume", "diLeft=1", "--passes", "4"]).0, 9);
+    let (_, notes) = moves(&["--passes", "1000", "--max-time", "30"]);
+    let stopped = notes.iter().any(|note| note["reason"].as_str().unwrap().contains("--max-time"));
+    assert!(stopped, "{notes:?}");
+}
