@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use joulepath::dynamics::{Data, Load, torque};
@@ -73,11 +73,11 @@ impl Bench {
         fs::write(&path, text).unwrap();
         path
     }
+}
 
-    fn identify(&self, log: &std::path::Path, more: &[&str]) -> Output {
-        let args = ["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()];
-        joulepath(&[&args[..], more].concat())
-    }
+fn identify(log: &Path, more: &[&str]) -> Output {
+    let args = ["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()];
+    joulepath(&[&args[..], more].concat())
 }
 
 fn cells(rows: &[Vec<f64>]) -> Vec<Vec<String>> {
@@ -91,7 +91,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
     let model = bench.folder.path().join("model.toml");
     let page = bench.folder.path().join("page.html");
     let out = ["--out", model.to_str().unwrap(), "--report", page.to_str().unwrap()];
-    let output = bench.identify(&log, &[&out[..], &["--format", "json"]].concat());
+    let output = identify(&log, &[&out[..], &["--format", "json"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(found["rank"], 58);
@@ -119,7 +119,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
         let told = found["rms"]["train"][joint].as_f64().unwrap();
         assert!((rms / told - 1.0).abs() < 1e-6, "{rms} {told}");
     }
-    let same = bench.identify(&log, &["--format", "json", "-q"]);
+    let same = identify(&log, &["--format", "json", "-q"]);
     let again: Value = serde_json::from_slice(&same.stdout).unwrap();
     assert_eq!(again["base_parameters"], found["base_parameters"]);
 }
@@ -136,7 +136,7 @@ fn what_is_repaired_is_said() {
         *cell = "1e200".into();
     }
     let log = bench.write(&header(), &broken, ",");
-    let output = bench.identify(&log, &[]);
+    let output = identify(&log, &[]);
     assert!(output.status.success());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     for text in [
@@ -150,13 +150,13 @@ fn what_is_repaired_is_said() {
     }
     // Semicolons and decimal commas change nothing.
     let plain = bench.write(&header(), &cells(&rows()), ",");
-    let expected = bench.identify(&plain, &["-q"]).stdout;
+    let expected = identify(&plain, &["-q"]).stdout;
     let commas: Vec<Vec<String>> = cells(&rows())
         .iter()
         .map(|row| row.iter().map(|cell| cell.replace('.', ",")).collect())
         .collect();
     let log = bench.write(&header(), &commas, ";");
-    assert_eq!(bench.identify(&log, &["-q"]).stdout, expected);
+    assert_eq!(identify(&log, &["-q"]).stdout, expected);
 }
 
 #[test]
@@ -202,7 +202,7 @@ fn what_can_not_be_used_ends_with_the_way_out() {
         ((header(), cells(&rows()[..3])), "3 usable rows"),
     ] {
         let log = bench.write(&header, &rows, ",");
-        let output = bench.identify(&log, &[]);
+        let output = identify(&log, &[]);
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{message}: {text}");
         assert!(text.contains(message), "{message}: {text}");
@@ -219,7 +219,7 @@ fn a_constant_joint_is_named() {
         row[16] = 0.0;
     }
     let log = bench.write(&header(), &cells(&all), ",");
-    let output = bench.identify(&log, &["--format", "json"]);
+    let output = identify(&log, &["--format", "json"]);
     assert!(output.status.success());
     assert!(String::from_utf8_lossy(&output.stderr).contains("joint 4 does not move"));
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
