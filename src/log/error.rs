@@ -78,7 +78,7 @@ pub enum LogError {
     },
     /// Two recorders without marks in common.
     #[error(
-        "the marks (column sync) change {here} times beside the positions and {there} times beside the currents: both need the same changes, two at least"
+        "the marks (column sync) change {here} times beside the positions and {there} times beside the currents: both need three of the same changes at least"
     )]
     Marks {
         /// Changes beside the positions.

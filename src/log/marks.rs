@@ -9,8 +9,10 @@ use super::error::LogError;
 use super::uniform::{interpolated, median_step};
 use super::{Channel, Log};
 
-/// Fewer changes than this say nothing of the speed of a clock.
-const MARKS: usize = 2;
+/// Fewer changes than this fit anything.
+const MARKS: usize = 3;
+/// By how much two clocks may differ in pace.
+const PACE: f64 = 0.02;
 /// How far a mark may lie off the line through all, in intervals of the slower recorder.
 const OFF: f64 = 2.5;
 
@@ -32,20 +34,22 @@ pub fn are_halves(positions: &Log, other: &Log) -> bool {
 pub fn aligned(positions: &Log, other: &Log) -> Result<Log, LogError> {
     let here = changes(positions);
     let there = changes(other);
-    if here.len() < MARKS || here.len() != there.len() {
-        return Err(LogError::Marks { here: here.len(), there: there.len() });
-    }
-    // Time of the first recorder = offset + pace × time of the other.
-    let n = here.len() as f64;
-    let mean = |x: &[f64]| x.iter().sum::<f64>() / n;
-    let (to, from) = (mean(&here), mean(&there));
-    let pairs = || here.iter().zip(&there).map(|(h, t)| (h - to, t - from));
-    let pace = pairs().map(|(h, t)| h * t).sum::<f64>() / pairs().map(|(_, t)| t * t).sum::<f64>();
     let step = median_step(positions.time()).max(median_step(other.time()));
-    let worst = pairs().map(|(h, t)| (h - pace * t).abs()).fold(0.0, f64::max);
-    if worst.is_nan() || worst > OFF * step {
-        return Err(LogError::Unaligned { worst, step });
-    }
+    // Recorders start and stop at times of their own, so that one may miss marks at its ends.
+    let shifts = -there.len().cast_signed()..=here.len().cast_signed();
+    let fits: Vec<Clock> = shifts.filter_map(|shift| Clock::of(&here, &there, shift)).collect();
+    let most = fits
+        .iter()
+        .filter(|clock| clock.worst <= OFF * step)
+        .max_by(|a, b| a.pairs.cmp(&b.pairs).then(b.worst.total_cmp(&a.worst)));
+    let Some(&Clock { pace, to, from, .. }) = most else {
+        let nearest = fits.iter().map(|clock| clock.worst).fold(f64::INFINITY, f64::min);
+        return Err(if nearest.is_finite() {
+            LogError::Unaligned { worst: nearest, step }
+        } else {
+            LogError::Marks { here: here.len(), there: there.len() }
+        });
+    };
     let clock: Vec<f64> = other.time().iter().map(|t| to + pace * (t - from)).collect();
     let t = positions.time();
     let (first, last) = (t[0], t[t.len() - 1]);
@@ -80,8 +84,43 @@ fn interpolated_at(t: &[f64], x: &[f64], at: f64) -> f64 {
     interpolated(&t[part.clone()], &x[part], at, 1.0, 1)[0]
 }
 
-/// Times at which the mark changes \[s\], between samples where it is a voltage.
-fn changes(log: &Log) -> Vec<f64> {
+/// How one clock goes by the other: `here = to + pace (there − from)`.
+struct Clock {
+    pace: f64,
+    to: f64,
+    from: f64,
+    pairs: usize,
+    /// Largest distance of a mark \[s\].
+    worst: f64,
+}
+
+impl Clock {
+    /// Where the first mark there is the one of number `shift` here; `None` where they do not
+    /// change in the same sense, are too few, or the clocks would differ too much.
+    fn of(here: &[Change], there: &[Change], shift: isize) -> Option<Clock> {
+        let (first, skipped) = (shift.max(0).cast_unsigned(), (-shift).max(0).cast_unsigned());
+        let pairs: Vec<(Change, Change)> =
+            here.iter().skip(first).copied().zip(there.iter().skip(skipped).copied()).collect();
+        if pairs.len() < MARKS || pairs.iter().any(|(a, b)| a.1 != b.1) {
+            return None;
+        }
+        let n = pairs.len() as f64;
+        let to = pairs.iter().map(|(here, _)| here.0).sum::<f64>() / n;
+        let from = pairs.iter().map(|(_, there)| there.0).sum::<f64>() / n;
+        let apart = || pairs.iter().map(|(here, there)| (here.0 - to, there.0 - from));
+        let squares: f64 = apart().map(|(_, t)| t * t).sum();
+        let pace = apart().map(|(h, t)| h * t).sum::<f64>() / squares;
+        let worst = apart().map(|(h, t)| (h - pace * t).abs()).fold(0.0, f64::max);
+        let same = (pace - 1.0).abs() < PACE;
+        same.then_some(Clock { pace, to, from, pairs: pairs.len(), worst })
+    }
+}
+
+/// When a mark changes \[s\], and whether it rises.
+type Change = (f64, bool);
+
+/// The changes of the mark, between samples where it is a voltage.
+fn changes(log: &Log) -> Vec<Change> {
     let Some(mark) = log.column(Channel::Sync) else { return Vec::new() };
     let (low, high) = mark
         .iter()
@@ -92,7 +131,7 @@ fn changes(log: &Log) -> Vec<f64> {
     for i in 1..mark.len() {
         let (a, b) = (mark[i - 1] - middle, mark[i] - middle);
         if (a < 0.0) != (b < 0.0) {
-            times.push(t[i - 1] + (t[i] - t[i - 1]) * a / (a - b));
+            times.push((t[i - 1] + (t[i] - t[i - 1]) * a / (a - b), b > a));
         }
     }
     times
@@ -115,7 +154,7 @@ mod tests {
 
     #[test]
     fn clocks_of_different_pace_are_brought_together() {
-        let on = |t: f64| f64::from(u8::from((t * 0.7) as i64 % 2 == 1));
+        let on = |t: f64| f64::from(u8::from((0.7 * t + 0.02 * t * t) as i64 % 2 == 1));
         let q = |t: f64| (0.9 * t).sin();
         let here = log("t,q1,sync", 0.01, 2000, |t| format!("{t},{},{}\n", q(t), on(t)));
         // The other clock is late by three seconds and a tenth of a percent slow.

@@ -11,10 +11,17 @@ use super::uniform::Section;
 
 /// Samples at which repetitions are compared, for the search.
 const COMPARED: usize = 3000;
-/// Share of the variance by which repetitions may differ.
-const SAME: f64 = 2e-3;
-/// Share by which the motion has to differ in between, or it stands still.
-const DIFFERENT: f64 = 0.3;
+/// Share of a joint's range by which repetitions may differ, and before the period is known
+/// to a sample.
+const SAME: f64 = 0.01;
+const NEARLY: f64 = 0.03;
+/// Share by which the motion has to differ in between.
+const DIFFERENT: f64 = 0.06;
+/// The part of the moving time that has to come back: a log has ways into the motion and out
+/// of it, too.
+const PART: f64 = 0.35;
+/// Share of the fastest step below which nothing moves.
+const RESTING: f64 = 0.01;
 /// Shortest period, in samples.
 const SHORTEST: usize = 20;
 /// Harmonics of the series at most.
@@ -70,13 +77,13 @@ fn search(q: &[&[f64]], step: f64) -> Option<f64> {
     let every = n.div_ceil(COMPARED).max(1);
     let thin: Vec<Vec<f64>> =
         q.iter().map(|x| x.iter().step_by(every).copied().collect()).collect();
-    let difference = differences(&thin)?;
+    let miss = Misses::of(&thin)?;
     let mut apart = false;
-    let mut best = None;
+    let mut best: Option<(usize, f64)> = None;
     for lag in 1..=thin[0].len() / 2 {
-        let value = difference(lag);
+        let value = miss.at(lag);
         apart |= value > DIFFERENT;
-        if !apart || value > SAME.max(1e-2) {
+        if !apart || value > NEARLY {
             if best.is_some() {
                 break;
             }
@@ -89,58 +96,83 @@ fn search(q: &[&[f64]], step: f64) -> Option<f64> {
     let (lag, _) = best?;
     // At the full rate, around what was found, and between samples by a parabola.
     let whole: Vec<Vec<f64>> = q.iter().map(|x| x.to_vec()).collect();
-    let difference = differences(&whole)?;
-    let around = (lag * every).saturating_sub(2 * every).max(1)..=(lag + 2) * every;
+    let miss = Misses::of(&whole)?;
+    let around = (lag * every).saturating_sub(2 * every).max(2)..=(lag + 2) * every;
     let (lag, least) = around
         .filter(|lag| 2 * lag <= n)
-        .map(|lag| (lag, difference(lag)))
+        .map(|lag| (lag, miss.at(lag)))
         .min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (before, after) = (difference(lag - 1), difference(lag + 1));
-    let bend = before + after - 2.0 * least;
+    if least > SAME {
+        return None;
+    }
+    let (before, after) = (miss.at(lag - 1).powi(2), miss.at(lag + 1).powi(2));
+    let bend = before + after - 2.0 * least * least;
     let shift = if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
     // Sampling at a whole number of samples per period is the rule.
     let shift = if shift.abs() < 0.05 { 0.0 } else { shift };
     Some((lag as f64 + shift.clamp(-0.5, 0.5)) * step)
 }
 
-/// Mean over the joints of half the squared differences at a lag, over the variance.
-fn differences(q: &[Vec<f64>]) -> Option<impl Fn(usize) -> f64> {
-    let variance = |x: &Vec<f64>| {
-        let mean = x.iter().sum::<f64>() / x.len() as f64;
-        x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64
-    };
-    let largest = q.iter().map(variance).fold(0.0, f64::max);
-    let moving: Vec<(Vec<f64>, f64)> = q
-        .iter()
-        .map(|x| (x.clone(), variance(x)))
-        .filter(|(_, variance)| *variance > 1e-6 * largest && *variance > 0.0)
-        .collect();
-    if moving.is_empty() {
-        return None;
-    }
-    Some(move |lag: usize| {
-        let of = |(x, variance): &(Vec<f64>, f64)| {
-            let pairs = x.iter().zip(&x[lag.min(x.len())..]);
-            let count = x.len().saturating_sub(lag).max(1) as f64;
-            pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / (2.0 * count * variance)
+/// How much a motion misses itself some time later, while it moves.
+struct Misses<'a> {
+    /// The moving joints, each with its range.
+    joints: Vec<(&'a [f64], f64)>,
+    /// Samples at which any of them moves.
+    moving: Vec<usize>,
+}
+
+impl Misses<'_> {
+    fn of(q: &[Vec<f64>]) -> Option<Misses<'_>> {
+        let ranges: Vec<f64> = q.iter().map(|x| range(x)).collect();
+        let largest = ranges.iter().fold(0.0, |m: f64, x| m.max(*x));
+        let joints: Vec<(&[f64], f64)> = q
+            .iter()
+            .zip(&ranges)
+            .filter(|(_, range)| **range > 1e-3 * largest && **range > 0.0)
+            .map(|(x, range)| (x.as_slice(), *range))
+            .collect();
+        let count = joints.first()?.0.len();
+        let step = |i: usize| {
+            joints.iter().map(|(x, range)| (x[i + 1] - x[i]).abs() / range).fold(0.0, f64::max)
         };
-        moving.iter().map(of).fold(0.0, f64::max)
-    })
+        let steps: Vec<f64> = (0..count - 1).map(step).collect();
+        let fast = steps.iter().fold(0.0, |m: f64, x| m.max(*x));
+        let moving = (0..count - 1).filter(|i| steps[*i] > RESTING * fast).collect();
+        Some(Misses { joints, moving })
+    }
+
+    /// The share of a joint's range by which [`PART`] of the samples miss at most.
+    fn at(&self, lag: usize) -> f64 {
+        let count = self.joints[0].0.len();
+        let mut all: Vec<f64> = self
+            .moving
+            .iter()
+            .filter(|i| **i + lag < count)
+            .map(|i| {
+                let miss = |(x, range): &(&[f64], f64)| (x[*i] - x[i + lag]).abs() / range;
+                self.joints.iter().map(miss).fold(0.0, f64::max)
+            })
+            .collect();
+        if all.is_empty() {
+            return f64::INFINITY;
+        }
+        let place = (PART * all.len() as f64) as usize;
+        *all.select_nth_unstable_by(place, f64::total_cmp).1
+    }
+}
+
+fn range(x: &[f64]) -> f64 {
+    let (low, high) = x
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    high - low
 }
 
 /// First sample and length of the longest run of samples that come back a period later.
 fn longest_run(q: &[&[f64]], lag: f64) -> Option<(usize, usize)> {
     let n = q[0].len();
     let whole = lag.round() as usize;
-    let ranges: Vec<f64> = q
-        .iter()
-        .map(|x| {
-            let (low, high) = x
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-            high - low
-        })
-        .collect();
+    let ranges: Vec<f64> = q.iter().map(|x| range(x)).collect();
     let back = |i: usize| {
         q.iter().zip(&ranges).all(|(x, range)| {
             // A lag between two samples leaves a part of a step.
