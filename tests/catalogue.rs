@@ -3,9 +3,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use joulepath::dynamics::Load;
 use joulepath::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
 use joulepath::robot::{Coupling, Link, Model, Provenance, find, names};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn robot(name: &str) -> Model {
     find(name).unwrap()
@@ -198,6 +201,40 @@ fn the_joints_of_a_yumi_are_in_the_order_of_the_chain() {
         assert_eq!(model.dof, 7);
         assert_eq!(range(&model, 3), [-168.5, 168.5]);
         assert_eq!(range(&model, 4), [-123.5, 80.0]);
+    }
+}
+
+/// The table of Denavit and Hartenberg that the files cite.
+#[test]
+fn a_yumi_turns_as_its_table_says() {
+    const SAME: f64 = 1e-12;
+    /// Offset of the angle [rad], d [m], a [m], alpha [rad].
+    const TABLE: [[f64; 4]; 7] = [
+        [0.0, 0.166, -0.03, -FRAC_PI_2],
+        [0.0, 0.0, 0.03, FRAC_PI_2],
+        [0.0, 0.2515, 0.0405, -FRAC_PI_2],
+        [-FRAC_PI_2, 0.0, 0.0405, -FRAC_PI_2],
+        [PI, 0.265, 0.027, -FRAC_PI_2],
+        [PI, 0.0, 0.027, -FRAC_PI_2],
+        [0.0, 0.036, 0.0, 0.0],
+    ];
+    for name in ["IRB14000 left", "IRB14000 right"] {
+        let model = robot(name);
+        for n in 0..20 {
+            let q: [f64; 7] =
+                std::array::from_fn(|i| (f64::from(n) * (1.3 + 0.4 * i as f64)).sin());
+            let expected = q.iter().zip(TABLE).fold(
+                Isometry3::identity(),
+                |pose, (angle, [offset, d, a, alpha])| {
+                    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle + offset);
+                    let twist = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), alpha);
+                    pose * turn * Translation3::new(a, 0.0, d) * twist
+                },
+            );
+            let miss = fk(&model, &q).inverse() * expected;
+            assert!(miss.translation.vector.norm() < SAME, "{name} at {q:?}");
+            assert!(miss.rotation.angle() < SAME, "{name} at {q:?}");
+        }
     }
 }
 

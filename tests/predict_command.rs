@@ -205,6 +205,54 @@ fn predictions_are_those_of_the_log() {
     }
 }
 
+/// What looks like other units is said, and predicted all the same.
+#[test]
+fn doubtful_units_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let notes = |text: &str, rows: usize| {
+        let output = predict(SEVEN, &written(&folder, "log.csv", text), &[]);
+        assert_eq!(table(&succeeded(&output)).1.len(), rows);
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let good = log_of_seven(",", "", |x| x.to_string());
+    let row = |t: f64, angle: f64| format!("{t}{}\n", format!(",{angle}").repeat(7));
+    let header = "t,q1,q2,q3,q4,q5,q6,q7\n";
+    let slow = |unit: f64, step: f64| -> String {
+        let rows = (0..12).map(|i| row(step * f64::from(i), unit * (0.015 * f64::from(i))));
+        [header.to_owned()].into_iter().chain(rows).collect()
+    };
+    let plain = notes(&slow(1.0, 0.04), 12);
+    assert!(!plain.contains("_deg") && !plain.contains("milliseconds"), "{plain}");
+    let degrees = notes(&slow(57.3, 0.04), 12);
+    assert!(degrees.contains("name the column q1_deg"), "{degrees}");
+    let milliseconds = notes(&slow(1.0, 40.0), 12);
+    assert!(milliseconds.contains("divide it by 1000"), "{milliseconds}");
+    // Rates that overflow have no prediction; the other rows have.
+    let mut lines: Vec<String> = good.lines().map(str::to_owned).collect();
+    let mut cells: Vec<&str> = lines[5].split(',').collect();
+    cells[8] = "1e200";
+    lines[5] = cells.join(",");
+    let beyond = notes(&lines.join("\n"), 11);
+    assert!(beyond.contains("row 6 left out"), "{beyond}");
+}
+
+/// What is logged of some joints only is used for those.
+#[test]
+fn accelerations_of_some_joints_are_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = log_of_seven(",", "", |x| x.to_string());
+    let whole = succeeded(&predict(SEVEN, &written(&folder, "a.csv", &good), &["-q"]));
+    let without = good.replacen("qdd6", "none6", 1).replacen("qdd7", "none7", 1);
+    let output = predict(SEVEN, &written(&folder, "b.csv", &without), &[]);
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(notes.contains("accelerations of joints 6, 7 are not logged"), "{notes}");
+    let none = (1..=7).fold(good, |text, n| text.replacen(&format!("qdd{n}"), "none", 1));
+    let none = succeeded(&predict(SEVEN, &written(&folder, "c.csv", &none), &["-q"]));
+    let tau1 = |text: &str| table(text).1[6][1].parse::<f64>().unwrap();
+    let (whole, some, none) = (tau1(&whole), tau1(&succeeded(&output)), tau1(&none));
+    assert!((some - whole).abs() < 0.1 * (none - whole).abs(), "{whole} {some} {none}");
+}
+
 #[test]
 fn bad_rows_are_named_and_left_out() {
     let mut lines: Vec<String> =

@@ -233,12 +233,43 @@ fn wrong_files_name_the_place_and_the_way_out() {
         second_link("mass = 1", "mass = 1e400"),
         second_link("mass = 1", "mass = 99999999999999999999999"),
         second_link("mass = 1", "mass_g = 1000"),
+        with(
+            "[[arm_load]]\njoint = 1\nmass = 4\ncom = [0,0,0]\ninertia = [3000,3000,3000,0,0,0]\n",
+        ),
+        with("[[arm_load]]\njoint = 1\nmass = 4\ncom = [0,0,0]\ninertia = [0,0.02,0,0,0,0]\n"),
+        with("[motors]\nratio = [1,1]\ntorque_constant = [470, 470]\n"),
+        with("[motors]\nratio = [1,1]\nrotor_inertia = [1, 1]\n"),
+        with("[brakes]\nenergy_per_release_j = 12\nrelease_s = 200\nengage_s = 0.1\n"),
+        with("[controller]\nramp_s = 100\n"),
+        with("[motors]\nratio = [1,1]\nloss_constant = [0,0]\nresistance = [1,1]\n"),
+        with(
+            "[[limits.position_if]]\njoint = 2\nposition = [-1, 1]\nif_joint = 2\n\
+             if_within = [-1, 1]\n",
+        ),
         changed("axis = [0, 1, 0]", "axis = [0, 1e300, 0]"),
         changed("axis = [0, 1, 0]", "axis = [0, 1e-300, 0]"),
         format!("name=\"x\"\n{}", "[[joint]]\norigin=[0,0,0]\naxis=[0,0,1]\n".repeat(8)),
     ];
     let messages: Vec<String> = texts.iter().map(|text| error(text).to_string()).collect();
     assert_snapshot!(messages.join("\n"));
+}
+
+#[test]
+fn an_overlay_says_the_losses_of_motors_its_own_way() {
+    let plain = irb1600();
+    let overlay = "extends = \"IRB1600-10/1.45\"\n[motors]\nresistance = [1, 1, 1, 1, 1, 1]\n";
+    let motors = from_toml("robot.toml", overlay).unwrap().motors.unwrap();
+    let per_ampere = motors.ratio[0] * motors.torque_constant.unwrap()[0];
+    assert!((motors.loss_constant[0] - 3.0 / per_ampere.powi(2)).abs() < 1e-15);
+    assert_eq!(motors.ratio, plain.motors.unwrap().ratio);
+}
+
+#[test]
+fn robots_without_published_lengths_are_no_typing_errors() {
+    for name in ["IRB6660", "IRB6660-205/1.9", "IRB 8700-800/3.5", "ROB1_8700_3.50_800"] {
+        let message = find(name).unwrap_err().to_string();
+        assert!(message.contains("not published") && !message.contains("mean"), "{message}");
+    }
 }
 
 proptest::proptest! {

@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 use insta::assert_snapshot;
 use joulepath::dynamics::{Data, Load, gravity};
 use joulepath::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
-use joulepath::robot::{Model, find, from_toml, import_moc, import_urdf, load};
+use joulepath::robot::{Model, Use, find, from_toml, import_moc, import_urdf, load, ready};
 use nalgebra::Vector3;
 
 const INERTIAL: &str = "<inertial><origin xyz=\"0 0 0.1\"/><mass value=\"2\"/>\
@@ -228,6 +228,14 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
         changed("velocity=\"3\"", "velocity=\"-3\""),
         changed("type=\"revolute\"", "type=\"revolve\""),
         changed("<parent link=\"base\"/>", ""),
+        changed(">80<", ">-80<"),
+        changed("<joint name=\"j2\"/>", "<joint name=\"j3\"/>"),
+        changed("izz=\"0.01\"", "izz=\"0.05\""),
+        changed("izz=\"0.01\"", "izz=\"10000\"").replacen("0.02", "10000", 2),
+        changed(
+            "<link name=\"flange\"/>",
+            "<link name=\"flange\"><visual><geometry><mesh/></geometry></visual></link>",
+        ),
         changed("<joint name=\"j1\"", "<joint"),
         changed("</robot>", &format!("{}{}</robot>", "<a>".repeat(9000), "</a>".repeat(9000))),
         "<model/>".to_owned(),
@@ -315,6 +323,121 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
     for end in (1..whole.len()).filter(|end| !whole[..*end].ends_with(['\n', '\r'])) {
         assert!(import_moc("MOC.cfg", &whole[..end], None).is_err(), "{end}");
     }
+}
+
+/// Every message has the line of the file, the key, and what it must be.
+#[test]
+fn figures_of_a_configuration_are_refused_where_they_stand() {
+    let whole = configuration();
+    let cut = |end: &str| whole[..whole.find(end).unwrap() + end.len()].to_owned();
+    let load = "-mass 4.5";
+    let uses = |name: &str| format!("-name \"rob1_2\" -use_customer_arm_load \"{name}\"");
+    for (text, place, words) in [
+        (
+            whole.replace("speed 5.5", "speed -5"),
+            5,
+            "-linear_max_speed of MOTION_PLANNER is \"-5\"",
+        ),
+        (
+            whole.replace("2.0944", "120"),
+            17,
+            "-upper_joint_bound of rob1_2 is \"120\"; it must be an",
+        ),
+        (whole.replace("-1.5708", "2.5"), 17, "rob1_2 turns from 2.5 to 2.0944 rad"),
+        (whole.replace(load, "-mass -4.5"), 36, "-mass of r1_load_3 is \"-4.5\""),
+        (whole.replace("-inertia_y 0.02", "-inertia_y 0.2"), 37, "r1_load_3: no body has"),
+        (
+            whole.replace("r1_load_1\"", "r1_load_9\" -mass 2"),
+            34,
+            "no arm carries the load r1_load_9",
+        ),
+        (whole.replace("-name \"rob1_2\"", &uses("valve")), 17, "is \"valve\", which the section"),
+        (cut("ARM_LOAD:\r\n"), 32, "breaks off here"),
+        (cut("CFRIC_BLOCK:\r\n"), 39, "breaks off here"),
+        (whole.replace("_1600_1.45_10", "_9999_1.45_10"), 9, "unknown robot"),
+        (whole.replace("-inertia_y", "-mass 3 -inertia_y"), 37, "a second -mass"),
+        (whole.repeat(2), 56, "a second \"motion_planner_1\" in MOTION_PLANNER"),
+        (
+            whole.replace(
+                "_pos_z 0.2",
+                "_pos_z 0.2 -base_frame_orient_u0 3 -base_frame_orient_u1 2",
+            ),
+            10,
+            "a quaternion of length 3.606",
+        ),
+    ] {
+        let message = import_moc("MOC.cfg", &text, None).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("MOC.cfg:{place}: ")), "{place}: {message}");
+        assert!(message.contains(words), "{words}: {message}");
+    }
+}
+
+#[test]
+fn a_load_hangs_once_where_its_arm_refers_to_it() {
+    let plain = find("IRB1600-10/1.45").unwrap();
+    let added = |text: &str| -> Vec<f64> {
+        let toml = import_moc("MOC.cfg", text, None).unwrap();
+        let model = from_toml("MOC.cfg", &toml).unwrap();
+        model.links.iter().zip(&plain.links).map(|(link, own)| link.mass - own.mass).collect()
+    };
+    let whole = configuration();
+    let uses = "-name \"rob1_2\" -use_customer_arm_load \"r1_load_3\"";
+    assert_eq!(added(&whole), [0.0, 0.0, 4.5, 0.0, 0.0, 0.0]);
+    let moved = whole.replace("-name \"rob1_2\"", uses);
+    assert_eq!(added(&moved), [0.0, 4.5, 0.0, 0.0, 0.0, 0.0]);
+}
+
+/// Units that no bound of a single figure tells are found by the check.
+#[test]
+fn the_check_doubts_figures_in_other_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("robot.toml").display().to_string();
+    let link =
+        "[[link]]\nmass = 31\ncom = [0, 0, 0]\ninertia = [530000, 540000, 120000, 0, 0, 0]\n";
+    for (more, place) in [
+        (link.repeat(6), "[[link]] 1"),
+        (
+            "[limits]\nacceleration = [859, 802, 1031, 2000, 2000, 2000]\n".into(),
+            "joint 1: 859 rad/s2",
+        ),
+        ("[limits]\nvelocity = [90, 90, 90, 90, 90, 90]\n".into(), "joint 1: 90 rad/s"),
+        (format!("[limits]\nposition = [{}]\n", "[-45, 45],".repeat(6)), "joint 1: up to 45 rad"),
+        ("[kinematics.opw]\na1 = 15\n".into(), "m long"),
+    ] {
+        fs::write(&path, format!("extends = \"IRB1600-10/1.45\"\n{more}")).unwrap();
+        let output = robots(&["check", &path]);
+        assert_eq!(output.status.code(), Some(1), "{more}");
+        assert!(stdout(&output).contains(place), "{}", stdout(&output));
+    }
+}
+
+#[test]
+fn what_a_file_lacks_is_added_by_extending_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.urdf").display().to_string();
+    fs::write(&path, arm().replace(INERTIAL, "")).unwrap();
+    let message = ready(&load(&path).unwrap(), Use::Predict).unwrap_err().to_string();
+    let extends = format!("extends = \"{path}\"");
+    assert!(message.contains(&extends), "{message}");
+    let overlay = folder.path().join("more.toml").display().to_string();
+    let link = "[[link]]\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1, 0, 0, 0]\n";
+    fs::write(&overlay, format!("{extends}\n{}", link.repeat(2))).unwrap();
+    assert!(ready(&load(&overlay).unwrap(), Use::Predict).is_ok());
+}
+
+#[test]
+fn ranges_are_shown_as_they_are() {
+    let shown = stdout(&robots(&["show", "IRB14000 right"]));
+    assert!(shown.contains("-143.5…43.5 ") && shown.contains("-123.5…80 "), "{shown}");
+}
+
+#[test]
+fn the_robot_of_the_backup_passes_the_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("cell.toml").display().to_string();
+    assert!(robots(&["import", "fixtures/backup", "--out", &out]).status.success());
+    let output = robots(&["check", &out]);
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
 
 fn robots(args: &[&str]) -> Output {

@@ -79,6 +79,27 @@ fn best_pose_is_cheaper_near_and_reachable() {
     }
 }
 
+/// Poses around which a descent from one start ends in a valley that is not the deepest.
+#[test]
+fn the_deepest_of_several_valleys_is_found() {
+    /// What a pose may cost more than the best that is known \[W\].
+    const MISSED_W: f64 = 0.05;
+    for (pose, within, more, known_w) in [
+        ("170.69,-71.86,-188.45,158.31,35.96,-283.17", "60", &["--load", "8,50,30,200"][..], 8.4),
+        ("126.88,99.48,27.37,170.73,81.16,186.47", "30", &[][..], 25.5),
+    ] {
+        let args = ["--robot", "IRB1600-10/1.45", "--pose", pose, "--within", within];
+        let result = json(&[&args[..], more].concat());
+        let best = &result["poses"][0]["best_nearby"];
+        assert!(best["holding_w"].as_f64().unwrap() < known_w + MISSED_W, "{pose}: {best}");
+        // It is a pose that the command takes.
+        let q: Vec<String> = numbers(&best["q_deg"]).iter().map(ToString::to_string).collect();
+        let there = json(&[&["--robot", "IRB1600-10/1.45", "--pose", &q.join(",")], more].concat());
+        let (a, b) = (&there["poses"][0]["holding_w"], &best["holding_w"]);
+        assert!((a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-6, "{a} {b}");
+    }
+}
+
 #[test]
 fn dwells_of_a_program_have_places() {
     let result = json(&["fixtures/pick_place"]);
@@ -96,7 +117,8 @@ fn what_is_missing_is_said() {
         (vec!["--robot", "IRB6640-180/2.55", "--pose", pose], "[[link]]"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0"], "six axis positions"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0,0,0,900"], "joint 6"),
-        (vec!["--robot", "IRB1600-10/1.45"], "<PATHS>"),
+        (vec!["--robot", "IRB1600-10/1.45", "--pose", "1e300,0,0,0,0,0"], "at 1.000e300 deg"),
+        (vec!["--robot", "IRB1600-10/1.45"], "--pose DEG"),
     ] {
         let output = standstill(&args);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -1,5 +1,7 @@
 //! `joulepath predict`: the torques and powers of a logged motion.
 
+mod doubts;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -9,6 +11,7 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::Args;
 
+use self::doubts::doubts;
 use super::{common, load, output};
 use crate::dynamics::{Data, Load};
 use crate::energy::power::{power_at, supply_w};
@@ -18,6 +21,9 @@ use crate::text::{FileId, SourceFile};
 
 /// Marks of texts as spreadsheets export them.
 const UTF_16: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
+
+/// Why a row has no prediction.
+const BEYOND: &str = "its motion is so large that torque or power is not finite";
 
 /// Torques and powers that a model predicts for a logged motion, as CSV.
 #[derive(Debug, Args)]
@@ -96,7 +102,16 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     for text in model.assumed() {
         common::note(args.quiet, &text);
     }
-    let csv = prediction(&model, &load, &motion);
+    for doubt in doubts(&model, &motion) {
+        common::note(args.quiet, &format!("{shown}: {doubt}"));
+    }
+    let (csv, beyond) = prediction(&model, &load, &motion);
+    if beyond.len() == motion.time.len() {
+        bail!("{shown}: {BEYOND} in every row; give positions in rad, rates in rad/s");
+    }
+    for row in beyond {
+        common::note(args.quiet, &format!("{shown}: row {row} left out: {BEYOND}"));
+    }
     match &args.out {
         Some(path) => output::write(path, csv.as_bytes())?,
         None => std::io::stdout().lock().write_all(csv.as_bytes())?,
@@ -105,8 +120,8 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// `t,tau1..taun,p_mech,p_elec`, numbers in shortest round-trip form. Torques are as a log
-/// would have them, powers those of the robot.
-fn prediction(model: &Model, load: &Load, motion: &Motion) -> String {
+/// would have them, powers those of the robot. With the rows of which they are not finite.
+fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>) {
     let n = model.dof;
     let mut csv = String::from("t");
     for joint in 1..=n {
@@ -114,6 +129,7 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> String {
     }
     csv.push_str(",p_mech,p_elec\n");
     let mut data = Data::new();
+    let mut beyond = Vec::new();
     let sensors = &model.sensors;
     for (row, t) in motion.time.iter().enumerate() {
         let at = |columns: &[Vec<f64>]| columns.iter().map(|column| column[row]).collect();
@@ -124,12 +140,23 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> String {
         let state: [&[f64]; 3] = [&q, &qd, &qdd];
         let power = power_at(model, &mut data, load, state);
         let supply = supply_w(model, &mut data, load, state, &power);
-        let _ = write!(csv, "{t}");
         let logged = sensors.torque_error.iter().zip(&sensors.torque_offset);
-        for (tau, (error, offset)) in power.tau.iter().zip(logged) {
-            let _ = write!(csv, ",{}", tau * (1.0 + error) + offset);
+        let values: Vec<f64> = power
+            .tau
+            .iter()
+            .zip(logged)
+            .map(|(tau, (error, offset))| tau * (1.0 + error) + offset)
+            .chain([power.mechanical_w(), supply])
+            .collect();
+        if !values.iter().all(|value| value.is_finite()) {
+            beyond.push(motion.rows[row]);
+            continue;
         }
-        let _ = writeln!(csv, ",{},{supply}", power.mechanical_w());
+        let _ = write!(csv, "{t}");
+        for value in values {
+            let _ = write!(csv, ",{value}");
+        }
+        csv.push('\n');
     }
-    csv
+    (csv, beyond)
 }

@@ -22,7 +22,7 @@ use crate::robot::{Model, Use, ready};
 /// Holding power at rest, when a brake pays, and the cheapest pose nearby.
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("paths", |paths| paths.required(false).required_unless_present("pose")),
+    mut_arg("paths", |paths| paths.required(false)),
     after_help = "Examples: joulepath standstill --robot IRB1600-10/1.45 --pose \"0,90,-90,0,0,0\"\n          joulepath standstill fixtures/pick_place"
 )]
 pub struct StandstillArgs {
@@ -50,6 +50,9 @@ pub struct StandstillArgs {
 pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
     if !(args.within.is_finite() && args.within >= 0.0) {
         bail!("--within {}: give a distance of 0 degrees or more", args.within);
+    }
+    if args.pose.is_empty() && args.program.paths.is_empty() {
+        bail!("nothing to look at: give poses with --pose DEG,…, or the PATH of a program");
     }
     let distance = args.within.to_radians();
     let (model, poses, assumed) =

@@ -12,10 +12,9 @@ use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::What;
 use crate::motion::{Options, Simulation, simulate};
 use crate::path::joint_path::DOF;
-use crate::retrofit::{OutputFile, OutputKind, Source, read_program};
+use crate::retrofit::{OutputFile, OutputKind, read_again, read_program};
 use crate::robot::Model;
 use crate::syntax;
-use crate::text::{FileId, SourceFile};
 
 /// Largest distance of a reached point from the one asked for, rad.
 const REACHED: f64 = 1e-4;
@@ -141,14 +140,7 @@ fn broken(what: impl Into<String>) -> GenerateError {
 /// The cycle of the emitted text.
 fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, GenerateError> {
     parses(outputs)?;
-    let files: Vec<Source> = outputs
-        .iter()
-        .enumerate()
-        .map(|(i, output)| Source {
-            file: SourceFile::new(FileId(i as u32), output.path.clone(), output.bytes.clone()),
-            relative: output.path.clone(),
-        })
-        .collect();
+    let files = read_again(outputs);
     let (program, entry) =
         read_program(&files, "main").map_err(|error| broken(error.to_string()))?;
     let simulation = simulate(&program, entry, model, &Options::default());

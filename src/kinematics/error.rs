@@ -4,11 +4,19 @@ use thiserror::Error;
 
 use super::conf::Conf;
 
+/// Degrees from which on the digits are no longer worth reading.
+const HUGE: f64 = 1e9;
+
+fn degrees(angle: f64) -> String {
+    let degrees = angle.to_degrees();
+    if degrees.abs() < HUGE { format!("{degrees:.3}") } else { format!("{degrees:.3e}") }
+}
+
 /// A joint angle outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "joint {} would be at {:.3} deg, outside {:.3} to {:.3} deg",
-    .joint + 1, .value.to_degrees(), .range[0].to_degrees(), .range[1].to_degrees()
+    "joint {} would be at {} deg, outside {:.3} to {:.3} deg",
+    .joint + 1, degrees(*.value), .range[0].to_degrees(), .range[1].to_degrees()
 )]
 pub struct LimitViolation {
     /// The joint, from 0.

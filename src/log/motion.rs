@@ -16,56 +16,53 @@ pub struct Motion {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations \[rad/s²\].
     pub qdd: Vec<Vec<f64>>,
-    /// What was not logged, but differentiated.
-    pub differentiated: Vec<&'static str>,
+    /// What was not logged, but differentiated, in words.
+    pub differentiated: Vec<String>,
     /// Rows that nothing can be differentiated at.
     pub left_out: Vec<Rejected>,
 }
 
 impl Log {
-    /// The motion: rates and accelerations as they were logged, else from the positions,
-    /// accelerations from the rates where those were logged.
+    /// The motion: rates and accelerations as they were logged, joint by joint, else from
+    /// the positions, accelerations from the rates where those were logged.
     #[must_use]
     pub fn motion(&self) -> Motion {
         let t = self.time();
-        let logged = |channel: fn(usize) -> Channel| -> Option<Vec<Vec<f64>>> {
-            let columns = self.of_joints(channel)?;
-            Some(columns.into_iter().map(<[f64]>::to_vec).collect())
-        };
-        let q = logged(Channel::Position).unwrap_or_default();
-        let (qd, qdd) = (logged(Channel::Velocity), logged(Channel::Acceleration));
-        let mut differentiated = Vec::new();
-        if qd.is_none() {
-            differentiated.push("rates");
-        }
-        if qdd.is_none() {
-            differentiated.push("accelerations");
-        }
+        let joints = self.joints();
         let mut usable = vec![true; t.len()];
-        let mut taken = |series: &[Vec<f64>]| -> [Vec<Vec<f64>>; 2] {
-            let mut orders = [Vec::new(), Vec::new()];
-            for x in series {
-                let found = derivatives(t, x);
-                for (usable, at) in usable.iter_mut().zip(&found) {
-                    *usable &= at.is_some();
-                }
-                for (order, out) in orders.iter_mut().enumerate() {
-                    out.push(found.iter().map(|at| at.map_or(0.0, |at| at[order])).collect());
-                }
+        let mut taken = |x: &[f64]| -> [Vec<f64>; 2] {
+            let found = derivatives(t, x);
+            for (usable, at) in usable.iter_mut().zip(&found) {
+                *usable &= at.is_some();
             }
-            orders
+            std::array::from_fn(|order| {
+                found.iter().map(|at| at.map_or(0.0, |at| at[order])).collect()
+            })
         };
-        let [qd, qdd] = match (qd, qdd) {
-            (Some(qd), Some(qdd)) => [qd, qdd],
-            (Some(qd), None) => {
-                let [first, _] = taken(&qd);
-                [qd, first]
-            }
-            (None, qdd) => {
-                let [first, second] = taken(&q);
-                [first, qdd.unwrap_or(second)]
-            }
-        };
+        let [mut q, mut qd, mut qdd]: [Vec<Vec<f64>>; 3] = Default::default();
+        for joint in 0..joints {
+            let logged = |channel| self.column(channel).map(<[f64]>::to_vec);
+            let position = logged(Channel::Position(joint)).unwrap_or_default();
+            let rate = logged(Channel::Velocity(joint));
+            let acceleration = logged(Channel::Acceleration(joint));
+            let (rate, acceleration) = match (rate, acceleration) {
+                (Some(rate), Some(acceleration)) => (rate, acceleration),
+                (Some(rate), None) => {
+                    let [first, _] = taken(&rate);
+                    (rate, first)
+                }
+                (None, acceleration) => {
+                    let [first, second] = taken(&position);
+                    (first, acceleration.unwrap_or(second))
+                }
+            };
+            q.push(position);
+            qd.push(rate);
+            qdd.push(acceleration);
+        }
+        let mut differentiated = Vec::new();
+        self.missing("rates", Channel::Velocity, &mut differentiated);
+        self.missing("accelerations", Channel::Acceleration, &mut differentiated);
         let kept = |x: &[f64]| -> Vec<f64> {
             x.iter().zip(&usable).filter(|(_, usable)| **usable).map(|(x, _)| *x).collect()
         };
@@ -85,6 +82,20 @@ impl Log {
                     reason: "too few rows around it to differentiate".into(),
                 })
                 .collect(),
+        }
+    }
+
+    /// Adds the words for the joints that a quantity is not logged of.
+    fn missing(&self, what: &str, channel: fn(usize) -> Channel, out: &mut Vec<String>) {
+        let joints = self.joints();
+        let lacks: Vec<String> = (0..joints)
+            .filter(|joint| self.column(channel(*joint)).is_none())
+            .map(|joint| (joint + 1).to_string())
+            .collect();
+        if lacks.len() == joints {
+            out.push(what.to_owned());
+        } else if !lacks.is_empty() {
+            out.push(format!("{what} of joints {}", lacks.join(", ")));
         }
     }
 }

@@ -14,4 +14,5 @@ mod work;
 
 pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
 pub use freed::freed;
+pub use outputs::read_again;
 pub use work::{Budget, Objective, RetrofitError, Settings, Source, read_program, retrofit};

@@ -9,7 +9,7 @@ use crate::motion::Simulation;
 use crate::optimize::idle::Dwell;
 use crate::optimize::site::Site;
 use crate::robot::Model;
-use crate::text;
+use crate::text::{self, FileId, SourceFile};
 
 /// Emits the ways that have streams; every other file stays as it was.
 pub(super) fn emit(
@@ -72,6 +72,15 @@ pub(super) fn emit(
         input: None,
     });
     Ok(outputs)
+}
+
+/// The files as a reader of the emitted program finds them.
+pub fn read_again(outputs: &[OutputFile]) -> Vec<Source> {
+    let file = |(i, output): (usize, &OutputFile)| Source {
+        file: SourceFile::new(FileId(i as u32), output.path.clone(), output.bytes.clone()),
+        relative: output.path.clone(),
+    };
+    outputs.iter().enumerate().map(file).collect()
 }
 
 fn unchanged(index: usize, source: &Source) -> OutputFile {

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{OutputFile, OutputKind, Verification};
+use super::outputs::read_again;
 use super::work::{Settings, Source, Way, nothing_to_verify, read_program};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, What};
@@ -14,7 +15,6 @@ use crate::optimize::site::Site;
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
 use crate::syntax;
-use crate::text::{FileId, SourceFile};
 
 /// Largest distance of an end point from the original one, rad.
 const ENDPOINT_TOLERANCE: f64 = 1e-4;
@@ -43,14 +43,7 @@ pub(super) fn verify(
     ways: &[Way],
 ) -> Attempt {
     let rewritten: Vec<usize> = (0..ways.len()).filter(|i| ways[*i].outcome.is_ok()).collect();
-    let emitted: Vec<Source> = outputs
-        .iter()
-        .enumerate()
-        .map(|(i, output)| Source {
-            file: SourceFile::new(FileId(i as u32), output.path.clone(), output.bytes.clone()),
-            relative: output.path.clone(),
-        })
-        .collect();
+    let emitted = read_again(outputs);
     let mut verification = nothing_to_verify();
     let mut note = |what: &str, held: bool| verification.checks.push((what.to_owned(), held));
     let everything = |why: &str| {

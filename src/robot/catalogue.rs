@@ -83,6 +83,9 @@ const ROBOTS: [(&str, &str); 73] = [
     ("IRB7600-500/2.55", include_str!("catalogue/irb7600_500_255.toml")),
 ];
 
+/// Types of which ranges are known, but no lengths.
+const UNPUBLISHED: [&str; 2] = ["6660", "8700"];
+
 /// The full names of the catalogue, sorted.
 pub fn names() -> impl Iterator<Item = &'static str> {
     ROBOTS.iter().map(|(name, _)| *name)
@@ -110,6 +113,9 @@ pub(super) fn document(name: &str) -> Result<Node, RobotError> {
         fits.iter().filter(|(fit, _)| Some(*fit) == best).map(|(_, robot)| **robot).collect();
     match fitting.as_slice() {
         [(full, text)] => tree::parse(full, text),
+        [] if UNPUBLISHED.contains(&asked.kind()) => {
+            Err(RobotError::Unpublished { name: name.to_owned() })
+        }
         [] => Err(RobotError::Unknown {
             name: name.to_owned(),
             suggestion: suggestion(name, &asked).map(str::to_owned),

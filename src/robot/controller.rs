@@ -4,6 +4,10 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
+/// Times of the planner \[s\].
+const PLANNER_TIME: Accepts =
+    Accepts::Between(0.0, 10.0, "0 or more and at most 10, in s (not milliseconds)");
+
 /// Figures of the motion planner; `None` where no source gives them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Controller {
@@ -32,10 +36,10 @@ impl Controller {
     ) -> Result<Controller, RobotError> {
         let controller = Controller {
             friction_level: fields.per_joint("friction_level", dof, Accepts::NonNegative)?,
-            ramp_s: fields.number("ramp_s", Accepts::NonNegative)?,
+            ramp_s: fields.number("ramp_s", PLANNER_TIME)?,
             ramp_core: fields.number("ramp_core", Accepts::Share)?,
             closing: fields.number("closing", Accepts::Share)?,
-            settling_s: fields.number("settling_s", Accepts::NonNegative)?,
+            settling_s: fields.number("settling_s", PLANNER_TIME)?,
             interpolation_s: fields.number("interpolation_s", Accepts::Positive)?,
         };
         origins.extend(fields.finish()?);

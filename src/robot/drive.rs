@@ -4,6 +4,10 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
+/// Times of brakes \[s\].
+const BRAKE_TIME: Accepts =
+    Accepts::Between(0.0, 10.0, "0 or more and at most 10, in s (not milliseconds)");
+
 /// What becomes of the negative mechanical power of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sharing {
@@ -61,8 +65,8 @@ impl Brakes {
         origins: &mut Vec<Origin>,
     ) -> Result<Brakes, RobotError> {
         let energy = fields.number("energy_per_release_j", Accepts::NonNegative)?;
-        let release = fields.number("release_s", Accepts::NonNegative)?;
-        let engage = fields.number("engage_s", Accepts::NonNegative)?;
+        let release = fields.number("release_s", BRAKE_TIME)?;
+        let engage = fields.number("engage_s", BRAKE_TIME)?;
         let power = fields.number("power_released_w", Accepts::NonNegative)?;
         let brakes = Brakes {
             energy_per_release_j: fields.required("energy_per_release_j", energy)?,

@@ -17,6 +17,15 @@ pub enum RobotError {
         /// The nearest name of the catalogue, if one is near.
         suggestion: Option<String>,
     },
+    /// A robot of which no lengths are published.
+    #[error(
+        "the geometry of the robot \"{name}\" is not published, so that the catalogue lacks it; give \
+         a robot TOML or URDF file that has it"
+    )]
+    Unpublished {
+        /// As asked for.
+        name: String,
+    },
     /// The name fits several robots.
     #[error("\"{name}\" fits several robots: {}; name one of them in full", .candidates.join(", "))]
     Ambiguous {

@@ -21,7 +21,7 @@ pub(super) enum Accepts {
 }
 
 impl Accepts {
-    fn holds(self, x: f64) -> bool {
+    pub(super) fn holds(self, x: f64) -> bool {
         x.is_finite()
             && match self {
                 Accepts::Finite => true,
@@ -32,7 +32,7 @@ impl Accepts {
             }
     }
 
-    fn words(self) -> &'static str {
+    pub(super) fn words(self) -> &'static str {
         match self {
             Accepts::Finite => "a finite number",
             Accepts::NonNegative => "0 or more",
@@ -56,7 +56,7 @@ pub(super) const ANGLE: Accepts = Accepts::Between(
     "an angle in radians, at most two turns (180 degrees are 3.14159)",
 );
 /// Bounds of a joint \[rad\]; an endless one turns a hundred times to either side.
-const TURN: Accepts = Accepts::Between(
+pub(super) const TURN: Accepts = Accepts::Between(
     -2000.0,
     2000.0,
     "an angle in radians, at most 50, or 628 for an endless joint (180 degrees are 3.14159)",
@@ -101,6 +101,11 @@ impl Fields {
     /// Where the table begins.
     pub(super) fn place(&self) -> String {
         self.place.to_string()
+    }
+
+    /// Where a key that is not read yet stands; the table if it is not there.
+    pub(super) fn place_of(&self, key: &str) -> String {
+        self.entries.get(key).map_or_else(|| self.place(), |node| node.place.to_string())
     }
 
     /// The origins of what was read; an error where a key is left over.
@@ -324,7 +329,7 @@ impl Fields {
         let [low, high] =
             [self.as_number(key, &items[0], TURN)?, self.as_number(key, &items[1], TURN)?];
         for (item, bound) in items.iter().zip([low, high]) {
-            if bound.abs() > FARTHEST_TURN && bound.abs() < ENDLESS {
+            if !is_turn(bound) {
                 return Err(self.refused(key, item, bound, TURN));
             }
         }
@@ -365,6 +370,16 @@ impl Fields {
             expected: expected.to_owned(),
         }
     }
+}
+
+/// Whether a joint may have the bound \[rad\]: as one that is not endless, or as one that is.
+pub(super) fn is_turn(bound: f64) -> bool {
+    bound.abs() <= FARTHEST_TURN || is_endless(bound)
+}
+
+/// Whether the bound \[rad\] stands for an endless joint.
+pub(super) fn is_endless(bound: f64) -> bool {
+    bound.abs() >= ENDLESS
 }
 
 fn per_joint_words(dof: usize) -> String {

@@ -15,7 +15,7 @@ const SPEED: Accepts = Accepts::Between(
 const ACCELERATION: Accepts =
     Accepts::Between(f64::MIN_POSITIVE, 2000.0, "more than 0 and at most 2000, in rad/s2");
 /// Speeds of the tool centre point \[m/s\].
-const TCP_SPEED: Accepts =
+pub(super) const TCP_SPEED: Accepts =
     Accepts::Between(f64::MIN_POSITIVE, 50.0, "more than 0 and at most 50, in m/s (not mm/s)");
 
 /// Limits of the joints and of the tool centre point. A limit that no source
@@ -123,7 +123,16 @@ impl PositionIf {
         let joint = fields.joint("joint", dof)?;
         let position = fields.interval("position")?;
         let position = fields.required("position", position)?;
+        let place = fields.place_of("if_joint");
         let if_joint = fields.joint("if_joint", dof)?;
+        if if_joint == joint {
+            return Err(RobotError::Value {
+                place,
+                key: fields.path("if_joint"),
+                value: (if_joint + 1).to_string(),
+                must: "another joint than the one whose range widens".into(),
+            });
+        }
         let if_within = fields.interval("if_within")?;
         let if_within = fields.required("if_within", if_within)?;
         origins.extend(fields.finish()?);

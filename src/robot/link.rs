@@ -10,8 +10,11 @@ use super::provenance::Origin;
 /// consistent: rounding of numbers printed with few digits.
 const ROUNDING: f64 = 1e-9;
 
+/// Largest radius of gyration of a robot's part \[m\].
+const FARTHEST_MASS: f64 = 5.0;
+
 /// Masses \[kg\].
-const MASS: Accepts = Accepts::Between(0.0, 1e5, "0 or more and at most 100000, in kg");
+pub(super) const MASS: Accepts = Accepts::Between(0.0, 1e5, "0 or more and at most 100000, in kg");
 
 /// The rigid body behind one joint, in that joint's frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +36,26 @@ impl Link {
         let moments = principal_moments(&self.inertia);
         let slack = ROUNDING * moments[2];
         self.mass >= 0.0 && moments[0] >= -slack && moments[2] <= moments[0] + moments[1] + slack
+    }
+
+    /// Why no body has this mass and inertia, if none has; in words that name the moments.
+    #[must_use]
+    pub fn impossible(&self) -> Option<String> {
+        let [a, b, c] = principal_moments(&self.inertia);
+        if !self.is_consistent() {
+            return Some(format!(
+                "no body has the principal moments {a:.3e}, {b:.3e} and {c:.3e} kg m2 (none is \
+                 negative or exceeds the sum of the other two)"
+            ));
+        }
+        let radius = (c / self.mass).sqrt();
+        (self.mass > 0.0 && radius > FARTHEST_MASS).then(|| {
+            format!(
+                "a moment of {c:.3e} kg m2 puts the {} kg at {radius:.1} m from the axis (kg mm2 \
+                 would be a million times more)",
+                self.mass
+            )
+        })
     }
 
     /// The body of a frame, seen from the frame that it is placed in.
@@ -101,7 +124,17 @@ impl ArmLoad {
         origins: &mut Vec<Origin>,
     ) -> Result<ArmLoad, RobotError> {
         let joint = fields.joint("joint", dof)?;
-        Ok(ArmLoad { joint, body: Link::read(fields, origins)? })
+        let (place, key) = (fields.place_of("inertia"), fields.path("inertia"));
+        let body = Link::read(fields, origins)?;
+        match body.impossible() {
+            None => Ok(ArmLoad { joint, body }),
+            Some(why) => Err(RobotError::Value {
+                place,
+                key,
+                value: "[…]".into(),
+                must: format!("that of a body: {why}"),
+            }),
+        }
     }
 }
 

@@ -23,7 +23,8 @@ const MAX_EXTENDS: usize = 8;
 pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     let path = Path::new(name_or_path);
     if kind(path).is_some() {
-        return Model::read(resolve(read_file(path)?, path.parent(), 0)?);
+        let model = Model::read(resolve(read_file(path)?, path.parent(), 0)?)?;
+        return Ok(Model { file: Some(name_or_path.to_owned()), ..model });
     }
     if path.is_file() {
         return Err(RobotError::Format { path: name_or_path.to_owned() });
@@ -64,7 +65,10 @@ pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result
         _ => (catalogue::document(name), None),
     };
     let base = base.map_err(|error| match error {
-        RobotError::Io { .. } | RobotError::Unknown { .. } | RobotError::Ambiguous { .. } => {
+        RobotError::Io { .. }
+        | RobotError::Unknown { .. }
+        | RobotError::Unpublished { .. }
+        | RobotError::Ambiguous { .. } => {
             let (name, reason) = (name.clone(), error.to_string());
             RobotError::Base { place, name, reason }
         }

@@ -7,15 +7,29 @@
 
 use std::fmt::Write;
 
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::catalogue;
 use super::error::RobotError;
+use super::fields::{Accepts, LENGTH, TURN, is_turn};
+use super::limits::TCP_SPEED;
+use super::link::{Link, MASS};
 use super::system_parameters::{Entry, break_off, section};
 use super::toml_text::{list, pose, quoted};
 
 /// Sections of a controller's own file: of the first ones, and of the last.
 const ENDS: [&str; 2] = ["MOTION_SYSTEM", "MOTOR_CALIB"];
+
+/// Sections whose entries are read.
+const READ: [&str; 5] = ["MOTION_PLANNER", "ROBOT", "ARM", "ARM_LOAD", "CFRIC_BLOCK"];
+
+/// By how much the length of a quaternion may miss 1: what few printed digits do.
+const UNIT: f64 = 0.01;
+
+/// Metres and parts of a quaternion.
+const PLACEMENT: Accepts = Accepts::Between(-1000.0, 1000.0, "a number, in m");
+/// Levels of the friction compensation \[Nm\].
+const FRICTION_LEVEL: Accepts = Accepts::Between(0.0, 1000.0, "0 or more and at most 1000, in Nm");
 
 /// How every motion configuration begins.
 const HEADER: &str = "MOC:CFG_";
@@ -31,7 +45,9 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
     configuration.check_whole()?;
     let (index, robot) = configuration.robot(unit)?;
     let kind = configuration.text(&robot, "use_robot_type", "ROBOT")?;
-    let model = catalogue::find(kind)?;
+    let model = catalogue::find(kind).map_err(|error| {
+        configuration.error_at(robot.line_of("use_robot_type"), error.to_string())
+    })?;
 
     let source = quoted(&format!("{file}, {kind}"));
     let stated = format!("source = {source}\nprovenance = \"identified\"\n");
@@ -50,17 +66,8 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
     let _ = write!(out, "\n[limits]\nposition = [\n");
     for joint in &joints {
         let arm = configuration.named(&arms, joint, "ARM")?;
-        let [low, high] = [
-            configuration.number(arm, "lower_joint_bound", joint)?,
-            configuration.number(arm, "upper_joint_bound", joint)?,
-        ];
-        if low >= high {
-            return Err(configuration.error(format!(
-                "{joint} turns from {low} to {high} rad; correct -lower_joint_bound and \
-                 -upper_joint_bound"
-            )));
-        }
-        let _ = writeln!(out, "  {},", list(&[low, high]));
+        let keys = ["lower_joint_bound", "upper_joint_bound"];
+        let _ = writeln!(out, "  {},", list(&configuration.range(arm, keys, joint)?));
     }
     let _ = write!(out, "]\nposition_source = {source}\nposition_provenance = \"identified\"\n");
     // What is set up on the controller holds without the conditions of the data sheet.
@@ -68,19 +75,17 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
     if let Some(arm) = joints.get(2).and_then(|joint| find(&arms, joint))
         && arm.contains_key("upper_joint_coupl_bound")
     {
-        let [low, high] = [
-            configuration.number(arm, "lower_joint_coupl_bound", &joints[2])?,
-            configuration.number(arm, "upper_joint_coupl_bound", &joints[2])?,
-        ];
+        let keys = ["lower_joint_coupl_bound", "upper_joint_coupl_bound"];
         let _ = write!(
             out,
             "coupled = {}\ncoupled_source = {source}\ncoupled_provenance = \"identified\"\n",
-            list(&[low, high])
+            list(&configuration.range(arm, keys, &joints[2])?)
         );
     }
     let planners = section(text, "MOTION_PLANNER");
     if let Some(planner) = planners.get(index).filter(|p| p.contains_key("linear_max_speed")) {
-        let speed = configuration.number(planner, "linear_max_speed", "MOTION_PLANNER")?;
+        let speed =
+            configuration.number(planner, "linear_max_speed", "MOTION_PLANNER", TCP_SPEED)?;
         let _ = write!(
             out,
             "tcp_speed = {speed:?}\ntcp_speed_source = {source}\n\
@@ -109,10 +114,12 @@ impl Configuration<'_> {
         RobotError::Configuration { place: self.file.to_owned(), message }
     }
 
+    fn error_at(&self, line: usize, message: String) -> RobotError {
+        RobotError::Configuration { place: format!("{}:{line}", self.file), message }
+    }
+
     fn check_whole(&self) -> Result<(), RobotError> {
-        let at = |line: usize, message: String| {
-            Err(RobotError::Configuration { place: format!("{}:{line}", self.file), message })
-        };
+        let at = |line: usize, message: String| Err(self.error_at(line, message));
         if !self.text.trim_start_matches('\u{feff}').starts_with(HEADER) {
             return at(
                 1,
@@ -126,12 +133,38 @@ impl Configuration<'_> {
         let [begins, ends] = ENDS.map(|name| !section(self.text, name).is_empty());
         let lacks = (begins && !ends)
             .then(|| (self.text.lines().count(), format!("there is no section {}", ENDS[1])));
-        match broken.or(lacks) {
-            Some((line, how)) => {
-                at(line, format!("the file breaks off here ({how}); take it from the backup again"))
-            }
-            None => Ok(()),
+        if let Some((line, how)) = broken.or(lacks) {
+            let message =
+                format!("the file breaks off here ({how}); take it from the backup again");
+            return at(line, message);
         }
+        for name in READ {
+            self.check_once(name)?;
+        }
+        Ok(())
+    }
+
+    /// Every entry of a section has a name of its own, every key of an entry one value.
+    fn check_once(&self, name: &str) -> Result<(), RobotError> {
+        let entries = section(self.text, name);
+        for (i, entry) in entries.iter().enumerate() {
+            if let Some((key, line)) = entry.repeated() {
+                let message = format!("a second -{key} in one entry of {name}; remove one");
+                return Err(self.error_at(line, message));
+            }
+            let Some(own) = entry.get("name") else { continue };
+            if let Some(first) = find(&entries[..i], own) {
+                return Err(self.error_at(
+                    entry.line_of("name"),
+                    format!(
+                        "a second \"{own}\" in {name}, the first is in line {}; rename or remove \
+                         one (where the whole file is there twice, take it from the backup again)",
+                        first.line_of("name")
+                    ),
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// The robot and its number among the robots.
@@ -165,23 +198,35 @@ impl Configuration<'_> {
             return Ok(None);
         }
         let or = |key: &str, absent: f64| {
-            if robot.contains_key(key) { self.number(robot, key, "ROBOT") } else { Ok(absent) }
+            if robot.contains_key(key) {
+                self.number(robot, key, "ROBOT", PLACEMENT)
+            } else {
+                Ok(absent)
+            }
         };
         let [x, y, z] = [
             or("base_frame_pos_x", 0.0)?,
             or("base_frame_pos_y", 0.0)?,
             or("base_frame_pos_z", 0.0)?,
         ];
-        let [w, i, j, k] = [
+        let turn = Quaternion::new(
             or("base_frame_orient_u0", 1.0)?,
             or("base_frame_orient_u1", 0.0)?,
             or("base_frame_orient_u2", 0.0)?,
             or("base_frame_orient_u3", 0.0)?,
-        ];
-        let Some(turn) = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 0.1) else {
-            let message = "the base frame's orientation is no quaternion: base_frame_orient_u0…u3";
-            return Err(self.error(message.into()));
-        };
+        );
+        if (turn.norm() - 1.0).abs() > UNIT {
+            let key = robot.keys().find(|key| key.starts_with("base_frame_orient"));
+            return Err(self.error_at(
+                robot.line_of(key.unwrap_or_default()),
+                format!(
+                    "-base_frame_orient_u0…u3 are a quaternion of length {:.3}; correct them to \
+                     length 1",
+                    turn.norm()
+                ),
+            ));
+        }
+        let turn = UnitQuaternion::new_normalize(turn);
         Ok(Some(Isometry3::from_parts(Translation3::new(x, y, z), turn)))
     }
 
@@ -200,7 +245,7 @@ impl Configuration<'_> {
             if !block.contains_key("friction_ff_level") {
                 return Ok(None);
             }
-            levels.push(self.number(block, "friction_ff_level", &name)?);
+            levels.push(self.number(block, "friction_ff_level", &name, FRICTION_LEVEL)?);
         }
         Ok(Some(levels))
     }
@@ -213,32 +258,116 @@ impl Configuration<'_> {
         stated: &str,
     ) -> Result<String, RobotError> {
         let loads = section(self.text, "ARM_LOAD");
+        let stated_of = |entry: &Entry| entry.get("use_customer_arm_load").cloned();
+        let referred: Vec<String> = arms.iter().filter_map(stated_of).collect();
+        let is_referred = |name: &str| referred.iter().any(|own| own.eq_ignore_ascii_case(name));
+        let prefix = format!("r{}_load_", index + 1);
+        let mut carried: Vec<String> = Vec::new();
         let mut out = String::new();
         for (i, joint) in joints.iter().enumerate() {
-            let used = find(arms, joint).and_then(|arm| arm.get("use_customer_arm_load")).cloned();
-            let name = used.unwrap_or_else(|| format!("r{}_load_{}", index + 1, i + 1));
-            let Some(load) = find(&loads, &name) else { continue };
-            let or_zero = |key: &str| {
-                if load.contains_key(key) { self.number(load, key, &name) } else { Ok(0.0) }
+            let arm = find(arms, joint);
+            let stated_name = arm.and_then(stated_of).filter(|name| !name.is_empty());
+            // A load that an arm refers to hangs there, whatever its number.
+            let usual = format!("{prefix}{}", i + 1);
+            let own = Some(usual).filter(|name| !is_referred(name));
+            let Some(name) = stated_name.clone().or(own) else { continue };
+            let Some(load) = find(&loads, &name) else {
+                if stated_name.is_none() {
+                    continue;
+                }
+                return Err(self.error_at(
+                    arm.map_or(1, |arm| arm.line_of("use_customer_arm_load")),
+                    format!(
+                        "-use_customer_arm_load of {joint} is \"{name}\", which the section \
+                         ARM_LOAD does not have; add it or name another"
+                    ),
+                ));
             };
-            let mass = or_zero("mass")?;
-            if mass <= 0.0 {
-                continue;
+            if let Some(body) = self.arm_load(load, &name)? {
+                let _ = write!(
+                    out,
+                    "\n# {name}: the axes are taken as those of the joint's frame.\n[[arm_load]]\n\
+                     {stated}joint = {}\n{body}",
+                    i + 1,
+                );
             }
-            let com =
-                [or_zero("mass_centre_x")?, or_zero("mass_centre_y")?, or_zero("mass_centre_z")?];
-            let moments = [or_zero("inertia_x")?, or_zero("inertia_y")?, or_zero("inertia_z")?];
-            let inertia = [moments[0], moments[1], moments[2], 0.0, 0.0, 0.0];
-            let _ = write!(
-                out,
-                "\n# {name}: the axes are taken as those of the joint's frame.\n[[arm_load]]\n\
-                 {stated}joint = {}\nmass = {mass:?}\ncom = {}\ninertia = {}\n",
-                i + 1,
-                list(&com),
-                list(&inertia)
-            );
+            carried.push(name);
+        }
+        for load in &loads {
+            let name = load.get("name").map_or("", String::as_str);
+            let known = carried.iter().any(|own| own.eq_ignore_ascii_case(name));
+            let of_robot = name.to_lowercase().starts_with(&prefix);
+            if of_robot && !known && !is_referred(name) && self.arm_load(load, name)?.is_some() {
+                return Err(self.error_at(
+                    load.line_of("name"),
+                    format!(
+                        "no arm carries the load {name}; name it in -use_customer_arm_load of its \
+                         ARM, or remove it"
+                    ),
+                ));
+            }
         }
         Ok(out)
+    }
+
+    /// The keys of a load's body; `None` where it weighs nothing.
+    fn arm_load(&self, load: &Entry, name: &str) -> Result<Option<String>, RobotError> {
+        let or_zero = |key: &str, accepts: Accepts| {
+            if load.contains_key(key) { self.number(load, key, name, accepts) } else { Ok(0.0) }
+        };
+        let mass = or_zero("mass", MASS)?;
+        let com = [
+            or_zero("mass_centre_x", LENGTH)?,
+            or_zero("mass_centre_y", LENGTH)?,
+            or_zero("mass_centre_z", LENGTH)?,
+        ];
+        let moments = [
+            or_zero("inertia_x", Accepts::NonNegative)?,
+            or_zero("inertia_y", Accepts::NonNegative)?,
+            or_zero("inertia_z", Accepts::NonNegative)?,
+        ];
+        if mass == 0.0 {
+            return Ok(None);
+        }
+        let body = Link {
+            mass,
+            com: Vector3::from(com),
+            inertia: Matrix3::from_diagonal(&Vector3::from(moments)),
+        };
+        if let Some(why) = body.impossible() {
+            let keys = ["inertia_x", "inertia_y", "inertia_z"];
+            let key = keys.into_iter().find(|key| load.contains_key(key)).unwrap_or("mass");
+            return Err(self.error_at(
+                load.line_of(key),
+                format!(
+                    "{name}: {why}; correct -inertia_x, -inertia_y and -inertia_z (kg m2), or leave \
+                     all three out"
+                ),
+            ));
+        }
+        let inertia = list(&[moments[0], moments[1], moments[2], 0.0, 0.0, 0.0]);
+        Ok(Some(format!("mass = {mass:?}\ncom = {}\ninertia = {inertia}\n", list(&com))))
+    }
+
+    /// The interval of two keys \[rad\].
+    fn range(&self, arm: &Entry, keys: [&str; 2], joint: &str) -> Result<[f64; 2], RobotError> {
+        let [low, high] =
+            [self.number(arm, keys[0], joint, TURN)?, self.number(arm, keys[1], joint, TURN)?];
+        for (key, bound) in keys.into_iter().zip([low, high]) {
+            if !is_turn(bound) {
+                return Err(self.refused(arm, key, joint, TURN));
+            }
+        }
+        if low < high {
+            return Ok([low, high]);
+        }
+        Err(self.error_at(
+            arm.line_of(keys[1]),
+            format!(
+                "{joint} turns from {low} to {high} rad; correct -{} and -{}",
+                keys[0], keys[1]
+            ),
+        ))
     }
 
     fn named<'e>(
@@ -257,16 +386,30 @@ impl Configuration<'_> {
 
     fn text<'e>(&self, entry: &'e Entry, key: &str, of: &str) -> Result<&'e str, RobotError> {
         entry.get(key).map(String::as_str).filter(|value| !value.is_empty()).ok_or_else(|| {
-            self.error(format!("{of} has no -{key}; take the file from the backup again"))
+            let message = format!("{of} has no -{key}; take the file from the backup again");
+            self.error_at(entry.line_of(key), message)
         })
     }
 
-    fn number(&self, entry: &Entry, key: &str, of: &str) -> Result<f64, RobotError> {
-        let text = self.text(entry, key, of)?;
-        text.parse()
-            .ok()
-            .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| self.error(format!("-{key} of {of} is \"{text}\"; it must be a number")))
+    fn number(
+        &self,
+        entry: &Entry,
+        key: &str,
+        of: &str,
+        accepts: Accepts,
+    ) -> Result<f64, RobotError> {
+        let number = self.text(entry, key, of)?.parse().ok();
+        number
+            .filter(|value| accepts.holds(*value))
+            .ok_or_else(|| self.refused(entry, key, of, accepts))
+    }
+
+    fn refused(&self, entry: &Entry, key: &str, of: &str, accepts: Accepts) -> RobotError {
+        let text = entry.get(key).map_or("", String::as_str);
+        self.error_at(
+            entry.line_of(key),
+            format!("-{key} of {of} is \"{text}\"; it must be {}", accepts.words()),
+        )
     }
 }
 

@@ -21,6 +21,8 @@ use super::wrist::Wrist;
 pub struct Model {
     /// Name, such as `IRB1600-10/1.45`.
     pub name: String,
+    /// The file that it was loaded from; `None` for robots of the catalogue.
+    pub file: Option<String>,
     /// Number of joints, 1 to [`MAX_DOF`].
     pub dof: usize,
     /// The chain from base to flange.
@@ -89,12 +91,13 @@ impl Model {
         let limits = robot.table("limits")?;
         let limits = Limits::read(robot.required("limits", limits)?, dof, &mut origins)?;
         let mut links: Vec<Link> = Vec::new();
+        let place = robot.place_of("link");
         for table in robot.tables("link")? {
             links.push(Link::read(table, &mut origins)?);
         }
         if !links.is_empty() && links.len() != dof {
             return Err(RobotError::Length {
-                place: robot.place(),
+                place,
                 key: "link".into(),
                 found: links.len(),
                 expected: format!("{dof}, one for each joint, or none"),
@@ -143,6 +146,7 @@ impl Model {
         origins.extend(robot.finish()?);
         let mut model = Model {
             name,
+            file: None,
             dof,
             kinematics,
             limits,

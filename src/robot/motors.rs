@@ -7,6 +7,19 @@ use super::provenance::Origin;
 /// Phases of a motor, each carrying the rms current.
 const PHASES: f64 = 3.0;
 
+/// Torque constants of motors \[Nm per A rms\].
+const TORQUE_CONSTANT: Accepts = Accepts::Between(
+    f64::MIN_POSITIVE,
+    50.0,
+    "more than 0 and at most 50, in Nm per A rms at the motor (not mNm)",
+);
+/// Inertias of rotors \[kg m²\].
+const ROTOR_INERTIA: Accepts = Accepts::Between(
+    0.0,
+    0.5,
+    "0 or more and at most 0.5, in kg m2 at the motor (not at the joint, not in kg cm2)",
+);
+
 /// One motor with its gear for each joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motors {
@@ -38,17 +51,18 @@ impl Motors {
     ) -> Result<Motors, RobotError> {
         let ratio = fields.per_joint("ratio", dof, Accepts::Positive)?;
         let ratio = fields.required("ratio", ratio)?;
-        let torque_constant = fields.per_joint("torque_constant", dof, Accepts::Positive)?;
-        let rotor_inertia = fields.per_joint("rotor_inertia", dof, Accepts::NonNegative)?;
+        let torque_constant = fields.per_joint("torque_constant", dof, TORQUE_CONSTANT)?;
+        let rotor_inertia = fields.per_joint("rotor_inertia", dof, ROTOR_INERTIA)?;
+        let place = fields.place_of("resistance");
         let loss = fields.per_joint("loss_constant", dof, Accepts::NonNegative)?;
         let resistance = fields.per_joint("resistance", dof, Accepts::NonNegative)?;
         let loss_constant = match (loss, resistance) {
             (Some(_), Some(_)) => {
                 return Err(RobotError::Value {
-                    place: fields.place(),
+                    place,
                     key: "motors.resistance".into(),
                     value: "[…]".into(),
-                    must: "absent where loss_constant is given".into(),
+                    must: "absent where loss_constant is given: remove one of the two".into(),
                 });
             }
             (Some(loss), None) => loss,

@@ -143,12 +143,14 @@ pub enum NotReady {
     /// Missing figures.
     #[error(
         "{robot} has no {}: {of} needs {}; give a robot file that adds what is missing \
-         (--robot FILE.toml with extends = \"{robot}\")",
+         (--robot FILE.toml with extends = \"{base}\")",
         words(lacks), if lacks.len() == 1 { "it" } else { "them" }
     )]
     Figures {
         /// The robot.
         robot: String,
+        /// Its file, or its name where it is one of the catalogue.
+        base: String,
         /// What it lacks.
         lacks: Vec<Lack>,
         /// What for.
@@ -166,7 +168,11 @@ pub fn ready(model: &Model, of: Use) -> Result<(), NotReady> {
     if lacks.contains(&Lack::SixJoints) {
         return Err(NotReady::Joints { robot, joints: model.dof, of });
     }
-    if lacks.is_empty() { Ok(()) } else { Err(NotReady::Figures { robot, lacks, of }) }
+    if lacks.is_empty() {
+        return Ok(());
+    }
+    let base = model.file.clone().unwrap_or_else(|| robot.clone());
+    Err(NotReady::Figures { robot, base, lacks, of })
 }
 
 fn words(lacks: &[Lack]) -> String {

@@ -14,6 +14,9 @@ use super::provenance::Provenance;
 /// Depth of nesting that a robot file may have; the format itself needs four.
 const MAX_DEPTH: usize = 16;
 
+/// Keys that say the same in two ways: an overlay's one replaces the other too.
+const ALTERNATIVES: [[&str; 2]; 1] = [["loss_constant", "resistance"]];
+
 /// A line of a file.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
@@ -81,6 +84,13 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Node, RobotError> {
 pub(super) fn overlay(base: Node, over: Node) -> Node {
     match (base.value, over.value) {
         (Value::Table(mut below), Value::Table(above)) => {
+            for pair in ALTERNATIVES {
+                for (given, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+                    if above.contains_key(given) && !above.contains_key(other) {
+                        below.remove(other);
+                    }
+                }
+            }
             for (key, node) in above {
                 let merged = match below.remove(&key) {
                     Some(old) => overlay(old, node),

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::cli::common::Format;
 use crate::kinematics::{fk, ik_near, limits_ok, radical_inverse};
-use crate::robot::{self, Lack, Link, Model, Use, lacking};
+use crate::robot::{self, Lack, Model, Use, implausible, lacking};
 
 /// Poses over the ranges of the joints at which forward and inverse kinematics
 /// are held against each other.
@@ -53,12 +53,7 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
 }
 
 fn checked(model: &Model) -> Finding {
-    let mut problems = Vec::new();
-    for (i, link) in model.links.iter().enumerate() {
-        if !Link::is_consistent(link) {
-            problems.push(format!("no body has the inertia of link {}", i + 1));
-        }
-    }
+    let mut problems = implausible(model);
     let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
     if missed > 0 {
         problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));

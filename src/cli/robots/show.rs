@@ -24,8 +24,9 @@ fn text(model: &Model) -> String {
     let degrees = |list: &[f64]| {
         list.iter().map(|x| format!("{:.1}", x.to_degrees())).collect::<Vec<_>>().join(" ")
     };
-    let range =
-        |[low, high]: &[f64; 2]| format!("{:.0}…{:.0}", low.to_degrees(), high.to_degrees());
+    // Hundredths, but no zeros behind them; -0 is 0.
+    let shown = |angle: f64| (angle.to_degrees() * 100.0).round() / 100.0 + 0.0;
+    let range = |[low, high]: &[f64; 2]| format!("{}…{}", shown(*low), shown(*high));
     let ranges: Vec<String> = model.limits.position.iter().map(range).collect();
     let _ = writeln!(text, "position deg: {}", ranges.join(" "));
     for wider in &model.limits.position_if {

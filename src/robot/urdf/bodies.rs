@@ -82,5 +82,11 @@ fn stated(document: &Document, link: &Link) -> Result<link::Link, RobotError> {
         ));
     }
     let at_com = link::Link { mass, com: Vector3::zeros(), inertia };
+    if let Some(why) = at_com.impossible() {
+        return fail(format!(
+            "the inertia of link \"{}\": {why}; correct it, or leave <inertial> out of every link",
+            link.name
+        ));
+    }
     Ok(at_com.placed(&isometry(&link.inertial.origin)))
 }

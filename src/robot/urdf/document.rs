@@ -55,6 +55,7 @@ impl Document {
         let mut lines = BTreeMap::new();
         let mut with_inertial = Vec::new();
         let mut reductions = BTreeMap::new();
+        let mut transmissions = Vec::new();
         for node in root.children().filter(roxmltree::Node::is_element) {
             let tag = node.tag_name().name();
             let name = node.attribute("name").unwrap_or_default();
@@ -74,21 +75,33 @@ impl Document {
                 "joint" => check_joint(node).map_err(wrong)?,
                 "transmission" => {
                     if let Some((joint, ratio)) = reduction(&node) {
-                        let message = || {
-                            format!("mechanicalReduction \"{ratio}\" is not a number other than 0")
-                        };
                         let value: f64 = ratio.parse().unwrap_or(f64::NAN);
-                        if !value.is_finite() || value == 0.0 {
-                            return Err(fail(line(&node), message()));
+                        if !value.is_finite() || value <= 0.0 {
+                            let message = format!(
+                                "mechanicalReduction \"{ratio}\" of joint \"{joint}\": give a number \
+                                 above 0; the sense belongs into the joint's axis"
+                            );
+                            return Err(fail(line(&node), message));
                         }
-                        reductions.insert(joint.to_owned(), value.abs());
+                        transmissions.push((joint, line(&node)));
+                        reductions.insert(joint.to_owned(), value);
                     }
                 }
                 _ => {}
             }
         }
-        let robot = urdf_rs::read_from_string(text)
-            .map_err(|error| fail(line(&root), format!("not a sound URDF: {error}")))?;
+        let is_joint = |name: &str| lines.contains_key(&("joint".to_owned(), name.to_owned()));
+        if let Some((joint, line)) = transmissions.iter().find(|(joint, _)| !is_joint(joint)) {
+            let message = format!(
+                "a transmission of the joint \"{joint}\", which is not there; correct its name or \
+                 remove the transmission"
+            );
+            return Err(fail(*line, message));
+        }
+        let robot = urdf_rs::read_from_string(text).map_err(|error| {
+            let message = format!("not a sound URDF: {error}; correct it or export it again");
+            fail(line(&root), message)
+        })?;
         Ok(Document { file: file.to_owned(), robot, reductions, lines, with_inertial })
     }
 

@@ -38,6 +38,14 @@ pub(super) fn too_deep(text: &str) -> Option<usize> {
 /// Checks a link's `<inertial>`.
 pub(super) fn check_link<'a, 'i>(link: Node<'a, 'i>) -> Result<(), Wrong<'a, 'i>> {
     named(link)?;
+    let is_nameless = |node: &Node<'_, '_>| {
+        node.tag_name().name() == "mesh" && node.attribute("filename").is_none()
+    };
+    if let Some(mesh) = link.descendants().find(is_nameless) {
+        let message =
+            format!("a <mesh> of {} has no filename; add it, or remove it", describe(link));
+        return Err((mesh, message));
+    }
     let Some(inertial) = child(link, "inertial") else { return Ok(()) };
     let whose = describe(link);
     for part in ["mass", "inertia"] {

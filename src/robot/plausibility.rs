@@ -1,0 +1,65 @@
+//! Figures that no robot has, though each may stand in a file: most often wrong units.
+
+use super::fields::is_endless;
+use super::link::Link;
+use super::model::Model;
+
+/// Speed that no joint of an arm reaches \[rad/s\].
+const FASTEST: f64 = 30.0;
+/// Time in which no joint reaches its speed \[s\].
+const QUICKEST: f64 = 0.01;
+/// Acceleration that no joint of unknown speed has \[rad/s²\].
+const HARDEST: f64 = 500.0;
+/// Bound of a joint that is neither endless nor the last \[rad\].
+const FARTHEST_TURN: f64 = 13.0;
+/// Length of the longest chain of joints \[m\].
+const LONGEST: f64 = 10.0;
+
+/// What is not plausible of a robot, each in words with the way out.
+#[must_use]
+pub fn implausible(model: &Model) -> Vec<String> {
+    let mut found = Vec::new();
+    for (i, link) in model.links.iter().enumerate() {
+        if let Some(why) = Link::impossible(link) {
+            found.push(format!("[[link]] {}: {why}; correct its mass and inertia", i + 1));
+        }
+    }
+    let limits = &model.limits;
+    for (i, range) in limits.position.iter().enumerate().take(model.dof.saturating_sub(1)) {
+        let bound = range[0].abs().max(range[1].abs());
+        if bound > FARTHEST_TURN && !is_endless(bound) {
+            found.push(format!(
+                "limits.position of joint {}: up to {bound} rad are {:.0} deg; give radians",
+                i + 1,
+                bound.to_degrees()
+            ));
+        }
+    }
+    for joint in 0..model.dof {
+        let of = |list: &Option<Vec<f64>>| list.as_ref().and_then(|l| l.get(joint)).copied();
+        let (speed, acceleration) = (of(&limits.velocity), of(&limits.acceleration));
+        if let Some(speed) = speed.filter(|speed| *speed > FASTEST) {
+            found.push(format!(
+                "limits.velocity of joint {}: {speed} rad/s are {:.0} deg/s; give rad/s",
+                joint + 1,
+                speed.to_degrees()
+            ));
+        }
+        let most = speed.map_or(HARDEST, |speed| speed / QUICKEST);
+        if let Some(acceleration) = acceleration.filter(|acceleration| *acceleration > most) {
+            found.push(format!(
+                "limits.acceleration of joint {}: {acceleration} rad/s2 are {:.0} deg/s2, more than \
+                 a joint of its speed has; give rad/s2",
+                joint + 1,
+                acceleration.to_degrees()
+            ));
+        }
+    }
+    let geometry = &model.kinematics;
+    let length = geometry.joints.iter().map(|joint| joint.translation.norm()).sum::<f64>()
+        + geometry.flange.translation.vector.norm();
+    if length > LONGEST {
+        found.push(format!("kinematics: the chain is {length:.1} m long; give its lengths in m"));
+    }
+    found
+}

@@ -1,0 +1,103 @@
+//! `joulepath optimize` where one run gives time to another, uses up a wait, or leaves its path.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+/// Rounding of a sum of times, s.
+const TIME: f64 = 1e-6;
+
+/// A quick way and a slow one, with a wait between.
+fn program(line: &str) -> String {
+    format!(
+        "MODULE M\n\
+         CONST jointtarget jA:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+         CONST jointtarget jB:=[[60,20,0,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+         CONST robtarget pC:=[[850,300,1000],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+         CONST robtarget pD:=[[850,-300,1000],[0,0,1,0],[-1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+         PROC main()\n\
+         ConfL \\Off; MoveAbsJ jA,v1000,fine,tool0;\n\
+         MoveAbsJ jB,vmax,fine,tool0;\n\
+         WaitDI diPart,1;\n\
+         MoveJ pC,v1000,fine,tool0;\n\
+         {line}\n\
+         MoveAbsJ jA,v1000,fine,tool0;\n\
+         ENDPROC\n\
+         ENDMODULE\n"
+    )
+}
+
+fn optimize(text: &str, options: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, text).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args(options)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(result["verification"]["passed"], true);
+    assert!(number(&result, "/optimized/cycle_s") <= number(&result, "/original/cycle_s") + TIME);
+    result
+}
+
+fn number(value: &Value, pointer: &str) -> f64 {
+    value.pointer(pointer).and_then(Value::as_f64).unwrap()
+}
+
+/// Time of the run that starts at a line, before and after.
+fn times(result: &Value, line: u64) -> [f64; 2] {
+    let segments = result["segments"].as_array().unwrap();
+    let run = segments.iter().find(|s| s["line_first"] == line && s["kind"] == "timing").unwrap();
+    ["time_before_s", "time_after_s"].map(|key| run[key].as_f64().unwrap())
+}
+
+#[test]
+fn a_wait_of_known_length_is_used_up() {
+    let text = program("MoveL pD,v500,fine,tool0;");
+    let unknown = optimize(&text, &[]);
+    let known = optimize(&text, &["--input", "diPart=3"]);
+    let [before, after] = times(&known, 8);
+    assert!(after > 1.5 * before, "{before} s, {after} s");
+    // A wait of unknown length gives nothing away.
+    assert!(times(&unknown, 8)[1] < 1.3 * before);
+    let saving = |result| number(result, "/motion_saving_percent");
+    assert!(saving(&known) > saving(&unknown) + 5.0);
+}
+
+#[test]
+fn a_run_where_time_is_worth_less_gives_it_to_the_others() {
+    let result = optimize(&program("MoveL pD,v500,fine,tool0;"), &[]);
+    let changes: Vec<f64> =
+        [8, 10, 11, 12].map(|line| times(&result, line)).map(|[a, b]| b / a - 1.0).to_vec();
+    assert!(changes.iter().any(|change| *change > 0.02), "{changes:?}");
+    assert!(changes.iter().any(|change| *change < -0.02), "{changes:?}");
+}
+
+#[test]
+fn what_is_free_leaves_its_path_and_is_never_worse() {
+    let line = "MoveL pD,v500,fine,tool0; ! joulepath: free";
+    let text = program(line);
+    let kept = optimize(&text, &[]);
+    let free = optimize(&text, &["--free-path", "--deviation", "40"]);
+    let line = "MoveL pD,v500,fine,tool0;";
+    let strict = optimize(&program(line), &["--free-path", "--deviation", "40"]);
+    let energy = |result| number(result, "/optimized/motion_energy_j");
+    let deviation = |result| number(result, "/verification/max_path_deviation_m");
+    assert!(deviation(&kept) <= 0.005);
+    assert!(deviation(&free) > 0.005 && deviation(&free) <= 0.04, "{}", deviation(&free));
+    assert!(energy(&free) < energy(&kept), "{} J, {} J", energy(&free), energy(&kept));
+    // Without the comment the line stays a line.
+    assert!(energy(&free) < energy(&strict));
+    for segment in free["segments"].as_array().unwrap() {
+        if segment["rewritten"] == true {
+            assert!(number(segment, "/lower_bound_j") <= number(segment, "/energy_after_j"));
+        }
+    }
+}
