@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 #![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -42,9 +43,9 @@ fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Ident
     let model = from_toml(urdf, &import_urdf(urdf, &robot).unwrap()).unwrap();
     let mut map = String::from("t=t_s");
     for joint in 1..=joints {
-        map += &format!(",q{joint}=q_rad_{joint},tau{joint}=tau_Nm_{joint}");
+        let _ = write!(map, ",q{joint}=q_rad_{joint},tau{joint}=tau_Nm_{joint}");
         if rates {
-            map += &format!(",qd{joint}=qd_rad_s_{joint}");
+            let _ = write!(map, ",qd{joint}=qd_rad_s_{joint}");
         }
     }
     let log = read_csv(log.as_bytes(), &ColumnMap::parse(&map).unwrap()).unwrap();

@@ -27,7 +27,7 @@ const SHORTEST: usize = 20;
 /// Harmonics of the series at most.
 const HARMONICS: usize = 80;
 /// A harmonic counts where its power is this many times what noise would give it.
-const ABOVE_NOISE: f64 = 9.0;
+const ABOVE_NOISE: f64 = 16.0;
 
 /// Repetitions in evenly sampled series.
 #[derive(Clone, Copy, Debug, PartialEq)]
