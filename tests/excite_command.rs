@@ -5,18 +5,18 @@ use std::fs;
 use std::process::{Command, Output};
 
 use joulepath::dynamics::Load;
-use joulepath::excite::{Design, Focus, Plane, random_feasible};
-use joulepath::kinematics::fk;
+use joulepath::excite::{Design, Focus, random_feasible};
+use joulepath::kinematics::{Body, KeepOut, Obstacle, Plane, fk};
 use joulepath::robot::find;
 use joulepath::syntax;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
 /// What the issue asks for.
 const CONDITION: f64 = 20.0;
 /// Random motions that a design has to be as good as.
-const RANDOM: usize = 200;
+const RANDOM: usize = 2000;
 
 fn joulepath(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
@@ -75,9 +75,9 @@ fn the_motion_tells_all_parameters_within_all_limits() {
         base_frequency: 0.1,
         harmonics: vec![1, 4, 7],
         speed_share: 0.8,
-        planes: vec![
-            Plane { normal: Vector3::x(), distance: -0.8 },
-            Plane { normal: Vector3::z(), distance: 0.0 },
+        obstacles: vec![
+            Obstacle::Plane(Plane { normal: Vector3::x(), distance: -0.8 }),
+            Obstacle::Plane(Plane { normal: Vector3::z(), distance: 0.0 }),
         ],
         tool: Vector3::zeros(),
         load: Load::none(),
@@ -85,6 +85,30 @@ fn the_motion_tells_all_parameters_within_all_limits() {
     };
     let random = random_feasible(&model, &design, RANDOM).unwrap();
     assert!(found["log_det"].as_f64().unwrap() >= random, "{random} {found}");
+}
+
+/// Every capsule on a line of points, against the box by clamping.
+#[test]
+fn arm_and_tool_stay_out_of_a_box() {
+    let folder = tempfile::tempdir().unwrap();
+    let tool = ["--tool", "0,0,250"];
+    let found = excite(&folder, &[&["--box", "0.7,-1.5,0,1.2,1.5,0.7"], &tool[..]].concat());
+    assert!(found["condition"]["scaled"].as_f64().unwrap() <= CONDITION, "{found}");
+    assert!(found["workspace_margin_m"].as_f64().unwrap() >= 0.0);
+    let model = find(ROBOT).unwrap();
+    let keep_out = KeepOut::between(Point3::new(0.7, -1.5, 0.0), Point3::new(1.2, 1.5, 0.7));
+    let body = Body::new(&model, Vector3::new(0.0, 0.0, 0.25), &[]);
+    let csv = fs::read_to_string(folder.path().join("excitation.csv")).unwrap();
+    for line in csv.lines().skip(1) {
+        let q: Vec<f64> = line.split(',').skip(1).take(6).map(|x| x.parse().unwrap()).collect();
+        for capsule in body.capsules(&q).iter().skip(1) {
+            for share in 0..=10 {
+                let p = keep_out.pose.inverse_transform_point(&capsule.at(f64::from(share) / 10.0));
+                let outside = p.coords.abs() - keep_out.half;
+                assert!(outside.map(|x| x.max(0.0)).norm() >= capsule.radius, "{q:?}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -107,7 +131,9 @@ fn wrong_options_say_the_way_out() {
     for (more, message) in [
         (&["--plane", "1,0,0"][..], "a normal and a distance"),
         (&["--plane", "0,0,0,1"], "the normal is 0"),
-        (&["--plane", "1,0,0,5"], "move the planes"),
+        (&["--plane", "1,0,0,5"], "move these"),
+        (&["--box", "0,0,0,1"], "two corners"),
+        (&["--box", "0,0,0,1,1,0"], "no volume"),
         (&["--harmonics", "0,1"], "whole multiples"),
         (&["--speed-share", "1.5"], "at most 1"),
         (&["--spacing", "nan"], "above 0"),

@@ -135,6 +135,8 @@ fn what_is_repaired_is_said() {
     for cell in &mut broken[50][1..] {
         *cell = "1e200".into();
     }
+    broken[60][0] = "-1e200".into();
+    broken[70][0] = "5000".into();
     let log = bench.write(&header(), &broken, ",");
     let output = identify(&log, &[]);
     assert!(output.status.success());
@@ -145,9 +147,18 @@ fn what_is_repaired_is_said() {
         "row 32",
         "row 43",
         "row 52 left out: q1 is 1e200",
+        "row 62 left out: t is -1e200 s",
+        "row 72 left out: the time leaps",
     ] {
         assert!(said.contains(text), "{text}: {said}");
     }
+    // Rates of some joints are no use, and that is said.
+    let mut few = header();
+    few[12] = "other".into();
+    let output = identify(&bench.write(&few, &cells(&rows()), ","), &[]);
+    assert!(output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{said}");
     // Semicolons and decimal commas change nothing.
     let plain = bench.write(&header(), &cells(&rows()), ",");
     let expected = identify(&plain, &["-q"]).stdout;
@@ -156,6 +167,8 @@ fn what_is_repaired_is_said() {
         .map(|row| row.iter().map(|cell| cell.replace('.', ",")).collect())
         .collect();
     let log = bench.write(&header(), &commas, ";");
+    assert_eq!(identify(&log, &["-q"]).stdout, expected);
+    let log = bench.write(&header(), &cells(&rows()), "|");
     assert_eq!(identify(&log, &["-q"]).stdout, expected);
 }
 
@@ -194,12 +207,17 @@ fn what_can_not_be_used_ends_with_the_way_out() {
         (scaled(7..13, &degrees), "name the column qd1_deg"),
         (scaled(19..25, &|joint| 1.0 / ratio[joint]), "those of the motors"),
         (scaled(7..13, &|_| -1.0), "other sense"),
+        (scaled(17..18, &degrees), "name the column qdd5_deg"),
+        (scaled(0..1, &|_| 1000.0), "in ms"),
+        (scaled(21..22, &|_| 0.0), "tau3 never changes"),
+        (scaled(19..25, &|_| 1000.0), "mNm"),
         (without(&["tau4"]), "joint 4"),
         (without(&sixth), "positions of 5 joints"),
         (without(&torques), "no torques"),
         (without(&["t"]), "no column t"),
         ((more, longer), "tau7"),
         ((header(), cells(&rows()[..3])), "3 usable rows"),
+        ((header(), cells(&rows()[..15])), "usable equations"),
     ] {
         let log = bench.write(&header, &rows, ",");
         let output = identify(&log, &[]);
@@ -227,4 +245,25 @@ fn a_constant_joint_is_named() {
     assert!(missing.iter().any(|entry| entry["name"] == "fc4"), "{missing:?}");
     assert_eq!(found["joints"][3]["coulomb"], Value::Null);
     assert_eq!(found["joints"][3]["excited"], false);
+}
+
+/// The paper's fit can't be better than the free one, and begins at the robot file, which is
+/// right here.
+#[test]
+fn the_descent_of_the_paper_comes_near_the_free_fit() {
+    let bench = Bench::new();
+    let log = bench.write(&header(), &cells(&rows()), ",");
+    let ordinary = ["--method", "ordinary", "--descent", "--format", "json", "-q"];
+    let output = identify(&log, &ordinary);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let of = |list: &Value| -> Vec<f64> {
+        list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let total = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let free = total(&of(&found["unconstrained_rms"]["train"]));
+    let descent = total(&of(&found["descent"]["rms_by_joint"]));
+    assert!((1.0..1.1).contains(&(descent / free)), "{descent} {free}");
+    let [first, last] = ["first_rms", "rms"].map(|key| found["descent"][key].as_f64().unwrap());
+    assert!(last <= first, "{first} {last}");
 }

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget};
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
 
 use super::common::{self, Format};
@@ -16,9 +16,10 @@ use super::{load, output};
 use crate::dynamics::{Data, Load, torque};
 use crate::emit::{Excitation, Points, excitation};
 use crate::excite::{
-    Blend, Body, Checked, Design, Focus, Information, Plane, Plateaus, Series, State, blends,
-    check, design, friction_plateaus, wrist_plateaus,
+    Blend, Checked, Design, Focus, Information, Plateaus, Series, State, blends, check, design,
+    friction_plateaus, wrist_plateaus,
 };
+use crate::kinematics::{Body, KeepOut, Obstacle, Plane};
 use crate::robot::{self, Model};
 
 /// Interval of the rows of the table \[s\]: the grid on which limits are checked.
@@ -59,6 +60,10 @@ pub struct ExciteArgs {
     /// Keep arm and tool where n·x ≥ d: a normal and a distance in m, base frame; repeatable.
     #[arg(long = "plane", value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     planes: Vec<String>,
+
+    /// Keep arm and tool out of the box between two corners, m, base frame; repeatable.
+    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true)]
+    boxes: Vec<String>,
 
     /// Share of the joints' speed limits that is used.
     #[arg(long, value_name = "SHARE", default_value_t = 0.8)]
@@ -132,7 +137,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
     for text in model.assumed() {
         common::note(args.quiet, &text);
     }
-    let body = Body::new(&model, settings.tool, &settings.planes);
+    let body = Body::new(&model, settings.tool, &settings.obstacles);
     let plateaus = |found: Plateaus| of_plateaus(args, &model, &settings, &body, &found);
     let motion = match args.variant {
         Variant::Friction => plateaus(friction_plateaus(&model, &body, args.speed_share)?),
@@ -172,13 +177,17 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
             "--harmonics: give whole multiples of the base frequency from 1 to 100, such as 1,4,7"
         );
     }
-    let mut planes = Vec::new();
+    let mut obstacles = Vec::new();
     for text in &args.planes {
-        planes.push(plane(text)?);
+        obstacles.push(Obstacle::Plane(plane(text)?));
+    }
+    for text in &args.boxes {
+        obstacles.push(Obstacle::KeepOut(keep_out(text)?));
     }
     // What stands on a floor does not reach below it.
     if model.kinematics.base.rotation.angle() < 1e-6 {
-        planes.push(Plane { normal: Vector3::z(), distance: -model.kinematics.base.translation.z });
+        let distance = -model.kinematics.base.translation.z;
+        obstacles.push(Obstacle::Plane(Plane { normal: Vector3::z(), distance }));
     }
     let tool = match &args.tool {
         Some(text) => {
@@ -201,7 +210,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         base_frequency,
         harmonics,
         speed_share,
-        planes,
+        obstacles,
         tool,
         load,
         seed: args.seed,
@@ -217,6 +226,16 @@ fn plane(text: &str) -> anyhow::Result<Plane> {
         bail!("--plane {text}: the normal is 0; give {help}");
     }
     Ok(Plane { normal: normal / length, distance: d / length })
+}
+
+fn keep_out(text: &str) -> anyhow::Result<KeepOut> {
+    let help = "two corners of a box in m, such as 0.8,-0.5,0,1.4,0.5,0.9";
+    let [x, y, z, a, b, c] = numbers("--box", text, help)?;
+    let keep_out = KeepOut::between(Point3::new(x, y, z), Point3::new(a, b, c));
+    if keep_out.half.min() < 1e-9 {
+        bail!("--box {text}: it has no volume; give {help}");
+    }
+    Ok(keep_out)
 }
 
 fn numbers<const N: usize>(option: &str, text: &str, help: &str) -> anyhow::Result<[f64; N]> {
@@ -245,8 +264,9 @@ fn of_design(
     let fits = |states: &[State]| {
         let checked = check(model, body, &settings.load, states);
         let r = &checked.ratios;
-        [r.position, r.velocity, r.acceleration, r.torque].iter().all(|ratio| *ratio <= 1.0)
-            && checked.to_planes >= 0.0
+        [r.position, r.acceleration, r.torque].iter().all(|ratio| *ratio <= 1.0)
+            && r.velocity <= settings.speed_share
+            && checked.to_obstacles >= 0.0
             && checked.to_itself >= 0.0
     };
     let blends = blends(model, series, &fits);
@@ -418,7 +438,7 @@ fn document(motion: &Motion, outputs: &[String]) -> Value {
             "acceleration": checked.ratios.acceleration,
             "torque": checked.ratios.torque,
         },
-        "workspace_margin_m": room(checked.to_planes),
+        "workspace_margin_m": room(checked.to_obstacles),
         "self_margin_m": room(checked.to_itself),
         "blend_s": motion.blends.as_ref().map(|of| of.iter().map(|b| b.duration).collect::<Vec<_>>()),
         "outputs": outputs,
@@ -449,8 +469,8 @@ fn text(motion: &Motion, outputs: &[String]) -> String {
     );
     let _ = writeln!(
         text,
-        "least room: {:.3} m to planes, {:.3} m of the arm to itself (capsules of assumed radii)",
-        motion.checked.to_planes, motion.checked.to_itself
+        "least room: {:.3} m to planes and boxes, {:.3} m of the arm to itself (capsules of assumed radii)",
+        motion.checked.to_obstacles, motion.checked.to_itself
     );
     for path in outputs {
         let _ = writeln!(text, "{path}");

@@ -1,7 +1,7 @@
 //! `joulepath identify`: a dynamic model from measured logs.
 
-use std::fs;
-use std::io::Write as _;
+use std::fs::File;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -12,17 +12,13 @@ use sha2::{Digest, Sha256};
 use super::{common, output};
 use crate::cli::common::Format;
 use crate::identify::{
-    Free, Hints, Identified, Samples, Settings, Source, Weighting, check_angles, check_torques,
-    cleaned, identify, prepare, torques,
+    Free, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
+    check_torques, cleaned, identify, prepare, torques,
 };
-use crate::log::{self, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
+use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
 use crate::report::html::{Traces, identify_report};
 use crate::report::identify as report;
 use crate::robot::{self, Model};
-use crate::text;
-
-/// A UTF-16 file begins with one of these.
-const UTF_16: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 
 /// A dynamic model with standard errors from measured logs.
 #[derive(Debug, Args)]
@@ -62,6 +58,11 @@ pub struct IdentifyArgs {
     /// When the logs were recorded, for the model's record.
     #[arg(long, value_name = "DATE")]
     date: Option<String>,
+
+    /// Also fits masses, centres and moments by descent from the robot file, as the paper did,
+    /// for comparison: not convex, no standard errors.
+    #[arg(long)]
+    descent: bool,
 
     /// Where the model goes, Robot TOML.
     #[arg(long, value_name = "MODEL.toml")]
@@ -174,6 +175,12 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     for text in doubts(&found) {
         tell(args, &mut basis, text);
     }
+    if args.descent {
+        basis.descent = by_descent(&model, &found);
+        if basis.descent.is_none() {
+            bail!("--descent compares fits of all parameters: leave out --free");
+        }
+    }
     if let Some(path) = &args.report {
         let (shown, title) = match (validation.first(), basis.validation.first()) {
             (Some(samples), Some(log)) => (samples, log.0.clone()),
@@ -248,6 +255,12 @@ fn doubts(found: &Identified) -> Vec<String> {
             ));
         }
     }
+    for joint in giving_power(found) {
+        texts.push(format!(
+            "joint {}: its friction would give power: has its torque the wrong sign?",
+            joint + 1
+        ));
+    }
     let poor = found.fit.condition.scaled;
     if poor > 100.0 {
         texts.push(format!(
@@ -256,6 +269,21 @@ fn doubts(found: &Identified) -> Vec<String> {
         ));
     }
     texts
+}
+
+/// A friction below zero by so many deviations is none.
+const SURE: f64 = 5.0;
+
+/// Joints whose Coulomb friction in the free fit is surely negative, from 0.
+fn giving_power(found: &Identified) -> Vec<usize> {
+    let fit = &found.fit;
+    let negative = |joint: &usize| {
+        let name = format!("fc{}", joint + 1);
+        let all = fit.solution.determined.iter().enumerate();
+        all.filter(|(_, row)| found.base.name(**row) == name)
+            .any(|(k, row)| fit.solution.beta[*row] < -SURE * fit.covariance[(k, k)].sqrt())
+    };
+    (0..found.base.dof).filter(negative).collect()
 }
 
 /// Reads logs; halves of one run become one.
@@ -286,16 +314,26 @@ fn read_all(paths: &[PathBuf], map: &ColumnMap) -> anyhow::Result<Vec<Read>> {
 
 fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
     let shown = path.display().to_string();
-    let bytes = fs::read(path)
+    let file = File::open(path)
         .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
-    let hash = format!("{:x}", Sha256::digest(&bytes));
-    let bytes = if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
-        text::decode(&bytes).text.into_bytes()
-    } else {
-        bytes
-    };
-    let log = log::read(&bytes, map).with_context(|| shown.clone())?;
+    let mut stream = Hashed { stream: file, hash: Sha256::new() };
+    let log = log::read_from(&mut stream, map).with_context(|| shown.clone())?;
+    let hash = format!("{:x}", stream.hash.finalize());
     Ok(Read { shown, hash, log })
+}
+
+/// A stream whose bytes are hashed as they are read.
+struct Hashed {
+    stream: File,
+    hash: Sha256,
+}
+
+impl io::Read for Hashed {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(buffer)?;
+        self.hash.update(&buffer[..count]);
+        Ok(count)
+    }
 }
 
 /// Checks a log and makes instants of it.
@@ -337,8 +375,29 @@ fn ready(
     for text in torque.notes {
         tell(args, basis, format!("{shown}: {text}"));
     }
+    if let Some(text) = unused(&log) {
+        tell(args, basis, format!("{shown}: {text}"));
+    }
     let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
     Ok(Ready { record: (shown, hash, usable, left_out), samples, origin: torque.origin })
+}
+
+/// Rates and accelerations that are logged, but not of all joints.
+fn unused(log: &Log) -> Option<String> {
+    let part = |name: &str, channel: fn(usize) -> Channel| {
+        let has = |joint: &usize| log.column(channel(*joint)).is_some();
+        let (with, without): (Vec<usize>, Vec<usize>) = (0..log.joints()).partition(has);
+        let list = |joints: &[usize]| -> String {
+            joints.iter().map(|j| format!("{name}{}", j + 1)).collect::<Vec<_>>().join(", ")
+        };
+        let told = !with.is_empty() && !without.is_empty();
+        told.then(|| format!("no column {}: {} not used", list(&without), list(&with)))
+    };
+    let parts: Vec<String> = [part("qd", Channel::Velocity), part("qdd", Channel::Acceleration)]
+        .into_iter()
+        .flatten()
+        .collect();
+    (!parts.is_empty()).then(|| format!("{}; differentiated instead", parts.join("; ")))
 }
 
 /// The instants of several logs as one.

@@ -12,9 +12,9 @@ use rayon::prelude::*;
 use crate::dynamics::{
     BaseParameters, Load, Parameters, RIGID, base_parameters, base_parameters_among,
 };
+use crate::kinematics::{Body, Obstacle};
 use crate::robot::Model;
 
-use super::clearance::{Body, Plane};
 use super::error::ExciteError;
 use super::feasible::{Checked, Shares, check};
 use super::information::{Information, Normal, information, log_det};
@@ -29,8 +29,8 @@ const TRIED: usize = 300;
 const STARTS: usize = 4;
 /// Rounds of improvement.
 const ROUNDS: usize = 70;
-/// Weight of broken limits.
-const PENALTY: f64 = 200.0;
+/// Weights of broken limits, one after another as long as some are broken.
+const PENALTIES: [f64; 3] = [200.0, 2000.0, 20000.0];
 /// Weight of a poor condition.
 const CONDITION: f64 = 6.0;
 /// Scaled condition that is good enough.
@@ -70,8 +70,8 @@ pub struct Design {
     pub harmonics: Vec<usize>,
     /// Share of the joints' speeds that is used.
     pub speed_share: f64,
-    /// Half spaces to stay in.
-    pub planes: Vec<Plane>,
+    /// What arm and tool keep clear of.
+    pub obstacles: Vec<Obstacle>,
     /// Tool centre point in tool0 \[m\].
     pub tool: Vector3<f64>,
     /// What the flange carries.
@@ -129,7 +129,19 @@ pub fn design(
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 progress(count.min(STARTS * ROUNDS), STARTS * ROUNDS);
             };
-            maximise(start, ROUNDS, &mut |x| problem.value(&mut work, x), &step)
+            let [first, heavier @ ..] = PENALTIES;
+            let mut value = |x: &DVector<f64>| problem.value(&mut work, x, first);
+            let (mut found, _) = maximise(start, ROUNDS, &mut value, &step);
+            for weight in heavier {
+                if problem.excess(&mut work, &found) == 0.0 {
+                    break;
+                }
+                let mut value = |x: &DVector<f64>| problem.value(&mut work, x, weight);
+                found = maximise(found, ROUNDS / 2, &mut value, &|| ()).0;
+            }
+            let last = PENALTIES[PENALTIES.len() - 1];
+            let value = problem.value(&mut work, &found, last);
+            (found, value)
         })
         .collect();
     let mut order: Vec<usize> = (0..found.len()).collect();
@@ -218,7 +230,7 @@ impl<'a> Problem<'a> {
     }
 
     fn body(&self) -> Body<'a> {
-        Body::new(self.model, self.settings.tool, &self.settings.planes)
+        Body::new(self.model, self.settings.tool, &self.settings.obstacles)
     }
 
     fn per_joint(&self) -> usize {
@@ -283,23 +295,31 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// log det without a poor condition, less what breaks limits.
-    fn value(&self, work: &mut Work<'_>, x: &DVector<f64>) -> f64 {
-        let series = self.series(x);
-        let states = series.sampled(self.states);
-        let mut checked = check(self.model, &work.body, &self.settings.load, &states);
-        checked.to_planes -= ROOM;
+    /// By how much a motion breaks limits.
+    fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>) -> f64 {
+        self.excess_of(work, &self.series(x).sampled(self.states))
+    }
+
+    fn excess_of(&self, work: &mut Work<'_>, states: &[State]) -> f64 {
+        let mut checked = check(self.model, &work.body, &self.settings.load, states);
+        checked.to_obstacles -= ROOM;
         checked.to_itself -= ROOM;
+        checked.excess(&self.shares)
+    }
+
+    /// log det without a poor condition, less what breaks limits.
+    fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
+        let states = self.series(x).sampled(self.states);
         let normal = work.normal.of(&states);
         let told = log_det(&normal).unwrap_or(-1e4);
         let poor = (condition(&normal) / GOOD).ln().max(0.0);
         // Very large shapes are the same motion as smaller ones.
         let idle = 1e-3 * x.norm_squared();
-        told - CONDITION * poor - PENALTY * checked.excess(&self.shares) - idle
+        told - CONDITION * poor - penalty * self.excess_of(work, &states) - idle
     }
 
     fn rate(&self, x: &DVector<f64>) -> f64 {
-        self.value(&mut Work::new(self), x)
+        self.value(&mut Work::new(self), x, PENALTIES[0])
     }
 
     /// The motion, smaller until it keeps every limit at every millisecond.

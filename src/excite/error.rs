@@ -15,7 +15,7 @@ pub enum ExciteError {
     },
     /// No motion keeps all limits.
     #[error(
-        "no motion was found that keeps clear of itself and of the planes: move the planes, or give a smaller --speed-share"
+        "no motion was found that keeps clear of itself and of the planes and boxes: move these, or give a smaller --speed-share"
     )]
     Nowhere,
 }

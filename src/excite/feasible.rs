@@ -1,9 +1,9 @@
 //! Whether a motion stays within all limits, and by how much.
 
 use crate::dynamics::{Data, Load, torque};
+use crate::kinematics::Body;
 use crate::robot::{MAX_DOF, Model};
 
-use super::clearance::Body;
 use super::series::State;
 
 /// The share of each limit that a motion may use.
@@ -37,8 +37,8 @@ pub struct Ratios {
 pub struct Checked {
     /// Largest ratios.
     pub ratios: Ratios,
-    /// Least room to the planes \[m\], infinite without planes.
-    pub to_planes: f64,
+    /// Least room to the obstacles \[m\], infinite without any.
+    pub to_obstacles: f64,
     /// Least room of the arm to itself \[m\].
     pub to_itself: f64,
 }
@@ -54,7 +54,7 @@ impl Checked {
             + over(r.velocity, shares.velocity)
             + over(r.acceleration, shares.acceleration)
             + over(r.torque, shares.torque)
-            + (-self.to_planes).max(0.0)
+            + (-self.to_obstacles).max(0.0)
             + (-self.to_itself).max(0.0)
     }
 }
@@ -65,8 +65,11 @@ pub fn check(model: &Model, body: &Body<'_>, load: &Load, states: &[State]) -> C
     let n = model.dof;
     let limits = &model.limits;
     let mut data = Data::new();
-    let mut found =
-        Checked { ratios: Ratios::default(), to_planes: f64::INFINITY, to_itself: f64::INFINITY };
+    let mut found = Checked {
+        ratios: Ratios::default(),
+        to_obstacles: f64::INFINITY,
+        to_itself: f64::INFINITY,
+    };
     let torques = limits.torque.as_ref().filter(|_| model.has_dynamics());
     for [q, qd, qdd] in states {
         let ratios = &mut found.ratios;
@@ -88,8 +91,8 @@ pub fn check(model: &Model, body: &Body<'_>, load: &Load, states: &[State]) -> C
                 ratios.torque = ratios.torque.max(tau[joint].abs() / largest[joint]);
             }
         }
-        let [to_planes, to_itself] = body.margins(&q[..n]);
-        found.to_planes = found.to_planes.min(to_planes);
+        let [to_obstacles, to_itself] = body.margins(&q[..n]);
+        found.to_obstacles = found.to_obstacles.min(to_obstacles);
         found.to_itself = found.to_itself.min(to_itself);
     }
     found

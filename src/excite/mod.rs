@@ -4,7 +4,6 @@
 //! limits; [`plateaus`] and the settings of [`Design`] make the smaller experiments.
 
 mod blend;
-mod clearance;
 mod design;
 mod error;
 mod feasible;
@@ -14,7 +13,6 @@ mod search;
 mod series;
 
 pub use blend::{Blend, blends};
-pub use clearance::{Body, Plane};
 pub use design::{Design, Designed, Focus, design, random_feasible};
 pub use error::ExciteError;
 pub use feasible::{Checked, Ratios, check};

@@ -1,8 +1,8 @@
 //! Joints at constant speeds, there and back: what friction does over speed.
 
+use crate::kinematics::Body;
 use crate::robot::{MAX_DOF, Model};
 
-use super::clearance::Body;
 use super::error::ExciteError;
 use super::series::State;
 

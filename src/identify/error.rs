@@ -57,6 +57,45 @@ pub enum IdentifyError {
         /// Logged over differentiated.
         factor: f64,
     },
+    /// Accelerations that are not those of the rates.
+    #[error(
+        "qdd{joint} is {factor:.3} times the change of qd{joint}{}",
+        accelerations_hint(*factor, *joint)
+    )]
+    Accelerations {
+        /// From 1.
+        joint: usize,
+        /// Logged over differentiated.
+        factor: f64,
+    },
+    /// Rows too far apart to differentiate.
+    #[error(
+        "rows are {step} s apart, too far to tell rates from positions: t has to be in seconds (is it in ms?), or log qd1… and qdd1…"
+    )]
+    Slow {
+        /// Median interval \[s\].
+        step: f64,
+    },
+    /// A torque that never changes.
+    #[error(
+        "tau{joint} never changes while joint {joint} moves: it was not recorded; record it, or map another column"
+    )]
+    Dead {
+        /// From 1.
+        joint: usize,
+    },
+    /// Torques beyond all limits.
+    #[error(
+        "tau{joint} is mostly {reach:.0} Nm, the limit of the joint is {limit:.0} Nm: torques have to be in Nm at the joint (are they in mNm?)"
+    )]
+    Large {
+        /// From 1.
+        joint: usize,
+        /// Median size \[Nm\].
+        reach: f64,
+        /// Limit \[Nm\].
+        limit: f64,
+    },
     /// Torques of the motors.
     #[error(
         "the torques seem to be those of the motors: joint {joint} holds its weight with a torque that is smaller by its gear ratio {ratio}; multiply each tau by its ratio, or give currents as i1…"
@@ -109,17 +148,46 @@ pub enum IdentifyError {
     },
 }
 
+/// Whether a factor is about another one.
+fn near(factor: f64, other: f64) -> bool {
+    factor > 0.0 && (factor / other).ln().abs() < 0.2
+}
+
 /// What a factor between rates seems to be.
 fn rates_hint(factor: f64, joint: usize) -> String {
     let degrees = 180.0 / std::f64::consts::PI;
-    let near = |x: f64| (factor / x).ln().abs() < 0.2;
-    if factor > 0.0 && near(degrees) {
+    if near(factor, degrees) {
         format!(": it seems to be in degrees; name the column qd{joint}_deg")
-    } else if factor > 0.0 && near(1.0 / degrees) {
+    } else if near(factor, 1.0 / degrees) {
         format!(": the positions seem to be in degrees; name the column q{joint}_deg")
+    } else if near(factor, 1e3) || near(factor, 1e6) || near(factor, 1e9) {
+        format!(": the time seems to be in {}; give t in s", below_a_second(factor))
     } else if factor < 0.0 {
         ": it has the other sense; turn it, or leave the column out".into()
     } else {
         ": its unit can't be right; leave the column out and it is differentiated".into()
+    }
+}
+
+/// What a factor between accelerations seems to be.
+fn accelerations_hint(factor: f64, joint: usize) -> String {
+    let degrees = 180.0 / std::f64::consts::PI;
+    if near(factor, degrees) {
+        format!(": it seems to be in degrees; name the column qdd{joint}_deg")
+    } else if factor < 0.0 {
+        ": it has the other sense; turn it, or leave the column out".into()
+    } else {
+        ": its unit can't be right; leave the column out and it is differentiated".into()
+    }
+}
+
+/// The unit of time of which a second has about so many.
+fn below_a_second(count: f64) -> &'static str {
+    if count < 1e4 {
+        "ms"
+    } else if count < 1e7 {
+        "µs"
+    } else {
+        "ns"
     }
 }

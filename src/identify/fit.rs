@@ -11,6 +11,8 @@ use super::samples::Samples;
 
 /// Parts of the time for cross-validation.
 const PARTS: usize = 5;
+/// Equations for each unknown at least.
+const LEAST: usize = 2;
 /// Rounds of reweighting at most.
 const ROUNDS: usize = 20;
 /// Relative change of a weight that ends them.
@@ -69,7 +71,8 @@ pub fn fit(
     let factors = Factors::of(equations, samples, PARTS);
     let rows = factors.rows_without(None);
     let count: usize = rows.iter().sum();
-    if count < unknowns {
+    // As many as unknowns fit anything.
+    if count < LEAST * unknowns {
         return Err(IdentifyError::TooFew { equations: count, unknowns });
     }
     let merged = factors.merged(None);
@@ -101,10 +104,10 @@ pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
     root_mean(&factors.residual_squares(&solution.beta, None), &factors.rows_without(None))
 }
 
-/// Root mean squares.
+/// Root mean squares; not a number where there are none.
 #[must_use]
 pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
-    squares.iter().zip(rows).map(|(sum, n)| (sum / (*n).max(1) as f64).sqrt()).collect()
+    squares.iter().zip(rows).map(|(sum, n)| (sum / *n as f64).sqrt()).collect()
 }
 
 /// The solution, and the deviation of each joint \[Nm\].

@@ -5,6 +5,7 @@
 
 mod clean;
 mod consistent;
+mod descent;
 mod equations;
 mod error;
 mod essential;
@@ -21,6 +22,7 @@ mod work;
 mod wrist;
 
 pub use clean::cleaned;
+pub use descent::{Descent, by_descent};
 pub use equations::{Equations, Instant, Known, Layout};
 pub use error::IdentifyError;
 pub use essential::{Collinear, collinear, essential};

@@ -337,6 +337,11 @@ fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
     pseudo_inertia(&link_parameters(&bar(to)))
 }
 
+/// The link that a descent begins with.
+pub(super) fn first_guess(model: &Model, joint: usize) -> Link {
+    link(&super::consistent::parameters(&prior(model, joint)))
+}
+
 /// A round bar from the origin to a point.
 fn bar(to: Vector3<f64>) -> Link {
     let length = to.norm().max(SHORTEST);

@@ -50,6 +50,12 @@ pub enum LogError {
         /// Why.
         reason: String,
     },
+    /// A file that can't be read to its end.
+    #[error("the file can't be read to its end ({reason})")]
+    Stream {
+        /// Why.
+        reason: String,
+    },
     /// Two columns for one quantity.
     #[error("the columns {first} and {second} are the same quantity: leave one out")]
     Twice {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::dynamics::{JOINT, RIGID};
-use crate::identify::{Identified, Misses, Source, collinear, essential};
+use crate::identify::{Descent, Identified, Misses, Source, collinear, essential};
 use crate::robot::to_toml;
 
 /// What a result rests on, beside the result itself.
@@ -21,6 +21,8 @@ pub struct Basis {
     pub torque: String,
     /// What else a reader has to know.
     pub notes: Vec<String>,
+    /// The paper's fit, for comparison.
+    pub descent: Option<Descent>,
 }
 
 /// Names of the parameters of a joint with their units, as the model keeps them.
@@ -88,6 +90,14 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
         "logs": logs(&basis.logs),
         "validation_logs": logs(&basis.validation),
         "notes": basis.notes,
+        "descent": basis.descent.as_ref().map(|of| json!({
+            "first_rms": of.misses[0], "rms": of.misses[1], "steps": of.steps,
+            "rms_by_joint": of.rms,
+            "mass": of.links.iter().map(|link| link.mass).collect::<Vec<_>>(),
+            "com": of.links.iter().map(|link| link.com.as_slice().to_vec()).collect::<Vec<_>>(),
+            "moments": of.links.iter()
+                .map(|link| link.inertia.diagonal().as_slice().to_vec()).collect::<Vec<_>>(),
+        })),
         "model": path,
     })
 }
@@ -170,9 +180,13 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
     }
     let _ = writeln!(text, "torque = {}", quoted(&basis.torque));
     let _ = writeln!(text, "rank = {}", found.fit.solution.determined.len());
-    let _ = writeln!(text, "rms = {:?}", found.training.rms);
+    let list = |values: &[f64]| -> String {
+        // TOML's not a number is in small letters.
+        values.iter().map(|x| format!("{x:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
+    };
+    let _ = writeln!(text, "rms = [{}]", list(&found.training.rms));
     if let Some(Misses { rms, .. }) = &found.validation {
-        let _ = writeln!(text, "validation_rms = {rms:?}");
+        let _ = writeln!(text, "validation_rms = [{}]", list(rms));
     }
     for entry in undetermined(found) {
         let _ = write!(
@@ -201,6 +215,11 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
     text
 }
 
+/// A number, or a dash where there is none.
+fn shown(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
+}
+
 /// For people.
 pub fn text(found: &Identified, basis: &Basis) -> String {
     let fit = &found.fit;
@@ -224,11 +243,22 @@ pub fn text(found: &Identified, basis: &Basis) -> String {
     for joint in 0..found.base.dof {
         let _ = writeln!(
             text,
-            "{:>5}  {:>8.3}  {:>15.3}  {:>12.1}",
+            "{:>5}  {:>8}  {:>15}  {:>12}",
             joint + 1,
-            found.training.rms[joint],
-            held_out.1[joint],
-            100.0 * found.training.relative[joint]
+            shown(found.training.rms[joint], 3),
+            shown(held_out.1[joint], 3),
+            shown(100.0 * found.training.relative[joint], 1)
+        );
+    }
+    if let Some(of) = &basis.descent {
+        let each: Vec<String> = of.rms.iter().map(|rms| shown(*rms, 3)).collect();
+        let _ = writeln!(
+            text,
+            "\nby descent: RMS of all {:.3} Nm after {} steps from {:.3} Nm; by joint {}",
+            of.misses[1],
+            of.steps,
+            of.misses[0],
+            each.join(" ")
         );
     }
     let _ = writeln!(text, "\n{:>12} {:>12}  parameter", "value", "sd");
