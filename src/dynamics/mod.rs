@@ -36,7 +36,7 @@ pub use load::Load;
 pub use motor_side::{motor_rates, motor_torques};
 pub use parameters::{JOINT, Parameters, RIGID, link_parameters, parameters};
 pub use regressor::{Regressor, regressor};
-pub use rnea::{gravity, rnea};
+pub use rnea::{gravity, rnea, rnea_each};
 pub use torque::{Torque, torque};
 
 /// Acceleration of free fall \[m/s²\].

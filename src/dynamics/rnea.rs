@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::robot::{MAX_DOF, Model};
+use crate::robot::{Link, MAX_DOF, Model};
 
 use super::GRAVITY;
 use super::data::Data;
@@ -40,9 +40,28 @@ pub(super) fn rigid_bodies(
     qd: &[f64],
     qdd: &[f64],
 ) -> [f64; MAX_DOF] {
-    let geometry = &model.kinematics;
-    let [q, qd, qdd] = [q, qd, qdd].map(|values| geometry.to_serial(values));
-    geometry.from_serial_torque(newton_euler(model, data, load, &q, &qd, &qdd))
+    let Some(loaded) = load.on(model) else { return [0.0; MAX_DOF] };
+    turn(model, data, q);
+    newton_euler(model, data, &loaded, qd, qdd)
+}
+
+/// [`rnea`] of several motions \[q̇, q̈\] from one position.
+pub fn rnea_each<const N: usize>(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    q: &[f64],
+    motions: [[&[f64]; 2]; N],
+) -> [[f64; MAX_DOF]; N] {
+    let Some(loaded) = load.on(model) else { return [[0.0; MAX_DOF]; N] };
+    turn(model, data, q);
+    motions.map(|[qd, qdd]| {
+        let mut tau = newton_euler(model, data, &loaded, qd, qdd);
+        for (sum, rotor) in tau.iter_mut().zip(rotor_torques(model, qdd)) {
+            *sum += rotor;
+        }
+        tau
+    })
 }
 
 /// Torque of each joint \[Nm\] that holds the robot still at `q` \[rad\].
@@ -50,18 +69,32 @@ pub fn gravity(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; 
     rnea(model, data, load, q, &[], &[])
 }
 
+/// Number of links that carry mass.
+fn links(model: &Model) -> usize {
+    model.links.len().min(model.kinematics.joints.len()).min(MAX_DOF)
+}
+
+/// Keeps the rotation of each joint at `q`.
+fn turn(model: &Model, data: &mut Data, q: &[f64]) {
+    let q = model.kinematics.to_serial(q);
+    for (i, joint) in model.kinematics.joints.iter().enumerate().take(links(model)) {
+        data.rotation[i] = joint.rotation_at(q[i]);
+    }
+}
+
+/// The torques at the position that [`turn`] has kept, `loaded` being the last link.
 fn newton_euler(
     model: &Model,
     data: &mut Data,
-    load: &Load,
-    q: &[f64; MAX_DOF],
-    qd: &[f64; MAX_DOF],
-    qdd: &[f64; MAX_DOF],
+    loaded: &Link,
+    qd: &[f64],
+    qdd: &[f64],
 ) -> [f64; MAX_DOF] {
+    let geometry = &model.kinematics;
+    let [qd, qdd] = [qd, qdd].map(|values| geometry.to_serial(values));
     let mut tau = [0.0; MAX_DOF];
-    let Some(loaded) = load.on(model) else { return tau };
-    let joints = &model.kinematics.joints;
-    let last = model.links.len().min(joints.len()).min(MAX_DOF) - 1;
+    let joints = &geometry.joints;
+    let last = links(model) - 1;
 
     // Motion of the parent: angular velocity and acceleration, and acceleration
     // of its origin; gravity enters as an acceleration of the base.
@@ -70,8 +103,8 @@ fn newton_euler(
     let mut a = model.kinematics.up() * GRAVITY;
     for i in 0..=last {
         let joint = &joints[i];
-        let link = if i == last { &loaded } else { &model.links[i] };
-        let r = joint.rotation_at(q[i]);
+        let link = if i == last { loaded } else { &model.links[i] };
+        let r = data.rotation[i];
         let p = joint.translation;
         let axis = joint.axis.into_inner();
         a = r.tr_mul(&(a + wd.cross(&p) + w.cross(&w.cross(&p))));
@@ -81,7 +114,6 @@ fn newton_euler(
 
         let c = link.com;
         let force = (a + wd.cross(&c) + w.cross(&w.cross(&c))) * link.mass;
-        data.rotation[i] = r;
         data.force[i] = force;
         data.moment[i] = link.inertia * wd + w.cross(&(link.inertia * w)) + c.cross(&force);
     }
@@ -94,5 +126,5 @@ fn newton_euler(
             data.moment[i - 1] += moment;
         }
     }
-    tau
+    geometry.from_serial_torque(tau)
 }

@@ -1,9 +1,11 @@
 //! The energy of a simulation, by movement and by wait.
 
+use rayon::prelude::*;
+
 use super::parts::EnergyParts;
 use super::power::{holding_w, motion_energy};
 use crate::dynamics::Load;
-use crate::motion::timeline::{Run, Simulation, What};
+use crate::motion::timeline::{Event, Run, Simulation, What};
 use crate::path::joint_path::Joints;
 use crate::robot::Model;
 
@@ -19,32 +21,28 @@ pub struct Account {
 
 /// The energy of every event.
 pub fn account(model: &Model, simulation: &Simulation) -> Account {
+    let event = |event: &Event| match &event.what {
+        What::Run(run) => run_energy(model, run),
+        What::Wait(wait) => vec![at_rest(model, &wait.load, &wait.q, event.duration)],
+        What::Output(..) | What::Left(_) => vec![EnergyParts::default()],
+    };
+    let events: Vec<Vec<EnergyParts>> = simulation.events.par_iter().map(event).collect();
     let mut total = EnergyParts::default();
-    let mut events = Vec::with_capacity(simulation.events.len());
-    for event in &simulation.events {
-        let parts = match &event.what {
-            What::Run(run) => run_energy(model, run),
-            What::Wait(wait) => vec![at_rest(model, &wait.load, &wait.q, event.duration)],
-            What::Output(..) | What::Left(_) => vec![EnergyParts::default()],
-        };
-        for part in &parts {
-            total += *part;
-        }
-        events.push(parts);
+    for part in events.iter().flatten() {
+        total += *part;
     }
     Account { total, events }
 }
 
 /// The energy of a run by movement.
 pub fn run_energy(model: &Model, run: &Run) -> Vec<EnergyParts> {
-    let mut parts = Vec::with_capacity(run.moves.len());
     let last = run.moves.len().saturating_sub(1);
-    for (i, record) in run.moves.iter().enumerate() {
+    let moves = run.moves.par_iter().enumerate().map(|(i, record)| {
         let rest = if i == last { run.settling } else { 0.0 };
         let from = record.t_start;
         let to = record.t_start + record.duration - rest;
         let mut part = base(model, to - from);
-        for (begin, motion) in &run.motions {
+        for (begin, motion) in run.motions_between(from, to) {
             let (a, b) = ((from - begin).max(0.0), (to - begin).min(motion.duration()));
             if b > a {
                 part += motion_energy(model, &run.load, motion, a, b);
@@ -53,9 +51,9 @@ pub fn run_energy(model: &Model, run: &Run) -> Vec<EnergyParts> {
         if rest > 0.0 {
             part += at_rest(model, &run.load, &run.end, rest);
         }
-        parts.push(part);
-    }
-    parts
+        part
+    });
+    moves.collect()
 }
 
 /// Standing still with open brakes.

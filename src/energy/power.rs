@@ -117,9 +117,10 @@ pub fn motion_energy(
     to: f64,
 ) -> EnergyParts {
     let mut data = Data::new();
-    let mut knots: Vec<f64> = motion.knots();
-    knots.retain(|t| *t > from && *t < to);
-    knots.insert(0, from);
+    let all = motion.knots();
+    let inner = all.partition_point(|t| *t <= from)..all.partition_point(|t| *t < to);
+    let mut knots = vec![from];
+    knots.extend_from_slice(&all[inner]);
     knots.push(to);
     reversals(motion, &mut knots);
     // The rigid work is what the robot has gained; the rest is integrated.

@@ -4,7 +4,7 @@ use super::power::{Power, power, supply_w};
 use crate::dynamics::{Data, Load};
 use crate::kinematics::{Tcp, fk};
 use crate::motion::timed::JointState;
-use crate::motion::timeline::{Simulation, What};
+use crate::motion::timeline::{Run, Simulation, What};
 use crate::path::joint_path::Joints;
 use crate::robot::Model;
 use crate::text::Span;
@@ -39,26 +39,15 @@ pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
     for event in &simulation.events {
         match &event.what {
             What::Run(run) => {
+                let marks = marks(run);
                 for (i, record) in run.moves.iter().enumerate() {
                     tool = run.legs[i].tool;
-                    let settling = if i + 1 == run.moves.len() { run.settling } else { 0.0 };
-                    let end = record.t_start + record.duration;
-                    let mut marks = vec![record.t_start, end - settling, end];
-                    for (begin, motion) in &run.motions {
-                        marks.extend(motion.knots().iter().map(|t| t + begin));
-                    }
-                    marks.retain(|t| *t >= record.t_start && *t <= end);
-                    marks.sort_by(f64::total_cmp);
-                    marks.dedup();
-                    for t in dense(&marks) {
-                        let state =
-                            if t >= end - settling && i + 1 == run.moves.len() && settling > 0.0 {
-                                JointState::rest(run.end)
-                            } else {
-                                run.at(t)
-                            };
+                    let (begin, end) = (record.t_start, record.t_start + record.duration);
+                    let from = marks.partition_point(|t| *t < begin);
+                    let to = marks.partition_point(|t| *t <= end);
+                    for t in dense(&marks[from..to]) {
                         let at = event.t_start + t;
-                        sampler.push(at, state, &run.load, &tool, Some(record.movement.span));
+                        sampler.push(at, run.at(t), &run.load, &tool, Some(record.movement.span));
                     }
                 }
                 rest = Some(run.end);
@@ -79,6 +68,18 @@ pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
         sampler.push(0.0, JointState::rest(q), &Load::none(), &tool, None);
     }
     sampler.rows
+}
+
+/// Ends of movements and knots of the motions, s from the start of the run.
+fn marks(run: &Run) -> Vec<f64> {
+    let mut marks = vec![0.0, run.duration() - run.settling];
+    marks.extend(run.moves.iter().map(|record| record.t_start + record.duration));
+    for (begin, motion) in &run.motions {
+        marks.extend(motion.knots().iter().map(|t| t + begin));
+    }
+    marks.sort_by(f64::total_cmp);
+    marks.dedup();
+    marks
 }
 
 /// The marks and points between them at most a step apart.

@@ -119,6 +119,13 @@ pub struct Settings {
     pub other: Vec<Arc<str>>,
 }
 
+impl Settings {
+    /// True under `SingArea\Wrist`: lines and arcs turn the wrist axis by axis.
+    pub fn axiswise_wrist(&self) -> bool {
+        self.sing_area.as_ref().is_some_and(|area| area.to_lowercase().ends_with("\\wrist"))
+    }
+}
+
 impl Default for Settings {
     /// As after the start of the program from `main`.
     fn default() -> Settings {

@@ -10,10 +10,11 @@
 //! a little earlier than the average would.
 
 use super::controller::Average;
+use super::quintics::Quintics;
 use super::timed::JointState;
 use super::timing::profile::Profile;
 use crate::path::JointPath;
-use crate::path::joint_path::{DOF, Joints, PathPoint};
+use crate::path::joint_path::{DOF, Joints, Piece};
 
 /// Gauss-Legendre with four points on [0, 1]: exact up to degree 7. On a stretch without
 /// acceleration the joints are of degree 5.
@@ -27,6 +28,16 @@ const GAUSS: [(f64, f64); 4] = [
 /// Change of the path's acceleration, share of its largest, that makes a kink worth a knot.
 const KINK: f64 = 0.02;
 
+/// Joint speed (rad/s) and acceleration (rad/s²) that are rounding of none. Dry friction would
+/// take its sign for that of a motion.
+const STILL: f64 = 1e-9;
+
+/// Difference of a stretch's polynomial from the joints in its middle above which it is halved,
+/// rad: as exact as the pieces of the path.
+const STRETCH_TOLERANCE: f64 = 2e-7;
+/// Halvings of a stretch.
+const HALVINGS: usize = 6;
+
 /// The timing of a path: a speed profile, averaged over time.
 #[derive(Clone, Debug)]
 pub struct Averaged {
@@ -35,32 +46,29 @@ pub struct Averaged {
     /// Edges of the steps of the average as delays (s), with the changes of its density there
     /// (1/s): q̄ = Σ c ∫ q up to t − delay.
     edges: [(f64, f64); 4],
-    /// Times between which the joints before averaging are polynomials, s.
+    /// Joints at both ends, rad.
+    ends: [Joints; 2],
+    /// ∫ (q − q₀) before averaging, rad s, one after the other.
+    stretches: Vec<Quintics>,
+    /// The same where the motion before averaging ends.
+    integral: Joints,
+    /// Times between which the averaged joints move smoothly, s.
     knots: Vec<f64>,
-    /// Between two of them: the interval of the profile and the piece of the path.
-    stretches: Vec<(u32, u32)>,
-    /// ∫ q from the start to each of these times, rad s.
-    integral: Vec<Joints>,
     /// The end of the motion, from where the motion before averaging has ended.
-    closing: Closing,
-}
-
-/// A polynomial of degree 5 per joint that brings the robot to rest.
-#[derive(Clone, Debug)]
-struct Closing {
-    begin: f64,
-    length: f64,
-    /// Coefficients of (t − begin), lowest first.
-    coefficients: [[f64; 6]; DOF],
+    closing: Quintics,
+    /// s.
+    duration: f64,
 }
 
 impl Averaged {
     /// The path run by `profile`, averaged.
     pub fn new(path: &JointPath, profile: Profile, average: Average) -> Averaged {
         let Average { window, core, closing } = average;
-        let (knots, stretches) = stretches(path, &profile);
         let begin = profile.duration();
         let (side, middle) = ((1.0 - core) / window, (1.0 + core) / window);
+        let ends = [path.start(), path.end()];
+        let (stretches, integral) = stretches(path, &profile);
+        let rest = [ends[1], [0.0; DOF], [0.0; DOF]];
         let mut averaged = Averaged {
             profile,
             window,
@@ -70,24 +78,19 @@ impl Averaged {
                 (0.75 * window, side - middle),
                 (window, -side),
             ],
-            knots,
+            ends,
             stretches,
-            integral: Vec::new(),
-            closing: Closing { begin, length: 0.0, coefficients: [[0.0; 6]; DOF] },
+            integral,
+            knots: Vec::new(),
+            closing: Quintics::new(begin, 1.0, rest, rest),
+            duration: begin,
         };
-        let mut sum = [0.0; DOF];
-        let mut integral = vec![sum];
-        for k in 0..averaged.stretches.len() {
-            let part = averaged.stretch(path, k, averaged.knots[k + 1]);
-            sum = std::array::from_fn(|j| sum[j] + part[j]);
-            integral.push(sum);
-        }
-        averaged.integral = integral;
         if window > 0.0 {
-            let from = averaged.average(path, begin);
-            let end = path.eval(path.length()).q;
-            averaged.closing = Closing::new(begin, window - closing, &from, &end);
+            let JointState { q, qd, qdd } = averaged.average(begin);
+            averaged.closing = Quintics::new(begin, window - closing, [q, qd, qdd], rest);
+            averaged.duration += window - closing;
         }
+        averaged.knots = averaged.smooth_between();
         averaged
     }
 
@@ -98,7 +101,7 @@ impl Averaged {
 
     /// s.
     pub fn duration(&self) -> f64 {
-        self.closing.begin + self.closing.length
+        self.duration
     }
 
     /// When the motion is nearest to the place s of the path, s from its start.
@@ -107,41 +110,61 @@ impl Averaged {
     }
 
     /// The state at `t`; outside, at rest at the nearer end.
-    pub fn at(&self, path: &JointPath, t: f64) -> JointState {
+    pub fn at(&self, t: f64) -> JointState {
         if t <= 0.0 {
-            return JointState::rest(path.eval(0.0).q);
+            return JointState::rest(self.ends[0]);
         }
-        if t >= self.duration() {
-            return JointState::rest(path.eval(path.length()).q);
+        if t >= self.duration {
+            return JointState::rest(self.ends[1]);
         }
         if self.window == 0.0 {
-            let (s, v, a) = self.profile.at(t);
-            let p = path.eval(s);
-            let qdd = std::array::from_fn(|j| p.q1[j] * a + p.q2[j] * v * v);
-            return JointState { q: p.q, qd: p.q1.map(|x| x * v), qdd };
+            return self.unaveraged(t);
         }
-        if t >= self.closing.begin {
-            return self.closing.at(t);
+        if t >= self.closing.begin() {
+            let [q, qd, qdd] = self.closing.at(t);
+            return JointState { q, qd, qdd };
         }
-        self.average(path, t)
+        self.average(t)
     }
 
-    fn average(&self, path: &JointPath, t: f64) -> JointState {
-        let mut state = JointState::rest([0.0; DOF]);
+    fn average(&self, t: f64) -> JointState {
+        let mut state = JointState::rest(self.ends[0]);
         for (delay, c) in self.edges {
-            let source = self.source(path, t - delay);
+            let [sum, q, qd] = self.source(t - delay);
             for j in 0..DOF {
-                state.q[j] += c * source.sum[j];
-                state.qd[j] += c * source.q[j];
-                state.qdd[j] += c * source.qd[j];
+                state.q[j] += c * sum[j];
+                state.qd[j] += c * q[j];
+                state.qdd[j] += c * qd[j];
+            }
+        }
+        for (qd, qdd) in state.qd.iter_mut().zip(&mut state.qdd) {
+            if qd.abs() < STILL && qdd.abs() < STILL {
+                (*qd, *qdd) = (0.0, 0.0);
             }
         }
         state
     }
 
-    /// Times between which the joints move smoothly, from 0 to the duration: where the
-    /// acceleration before averaging changes by a share that counts, and that time later.
-    pub fn knots(&self) -> Vec<f64> {
+    fn unaveraged(&self, t: f64) -> JointState {
+        let stretch = self.stretch(t);
+        let [_, q, qd] = stretch.at(t);
+        let q = std::array::from_fn(|j| self.ends[0][j] + q[j]);
+        JointState { q, qd, qdd: stretch.third(t) }
+    }
+
+    fn stretch(&self, t: f64) -> &Quintics {
+        let after = self.stretches.partition_point(|stretch| stretch.begin() <= t);
+        &self.stretches[after.saturating_sub(1)]
+    }
+
+    /// Times between which the joints move smoothly, from 0 to the duration, s.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Where the acceleration before averaging changes by a share that counts, and the edges of
+    /// the average later.
+    fn smooth_between(&self) -> Vec<f64> {
         let pieces: Vec<f64> = self.profile.pieces().map(|piece| piece.acceleration).collect();
         let largest = pieces.iter().fold(0.0, |max: f64, a| max.max(a.abs()));
         let mut knots = vec![0.0];
@@ -156,123 +179,101 @@ impl Averaged {
             for (delay, _) in &self.edges[1..] {
                 knots.extend(source.iter().map(|t| t + delay));
             }
-            knots.retain(|t| *t < self.closing.begin);
-            knots.extend([self.closing.begin, self.duration()]);
+            let begin = self.closing.begin();
+            knots.retain(|t| *t < begin);
+            knots.extend([begin, self.duration]);
             knots.sort_by(f64::total_cmp);
             knots.dedup();
         }
         knots
     }
 
-    /// The motion before averaging.
-    fn source(&self, path: &JointPath, t: f64) -> Source {
-        let last = self.knots.len() - 1;
+    /// ∫ (q − q₀), q − q₀ and q̇ before averaging.
+    fn source(&self, t: f64) -> [Joints; 3] {
         if t <= 0.0 {
-            let q = path.eval(0.0).q;
-            return Source { sum: q.map(|q| q * t), q, qd: [0.0; DOF] };
+            return [[0.0; DOF]; 3];
         }
-        if t >= self.knots[last] {
-            let q = path.eval(path.length()).q;
-            let rest = t - self.knots[last];
-            let sum = std::array::from_fn(|j| self.integral[last][j] + q[j] * rest);
-            return Source { sum, q, qd: [0.0; DOF] };
+        let rest = t - self.profile.duration();
+        if rest >= 0.0 {
+            let q: Joints = std::array::from_fn(|j| self.ends[1][j] - self.ends[0][j]);
+            let sum = std::array::from_fn(|j| self.integral[j] + q[j] * rest);
+            return [sum, q, [0.0; DOF]];
         }
-        let k = self.knots.partition_point(|knot| *knot <= t) - 1;
-        let part = self.stretch(path, k, t);
-        let (interval, piece) = self.stretches[k];
-        let (s, v, _) = self.profile.in_interval(interval as usize, t);
-        let PathPoint { q, q1, .. } = path.pieces()[piece as usize].eval(s);
-        Source {
-            sum: std::array::from_fn(|j| self.integral[k][j] + part[j]),
-            q,
-            qd: q1.map(|x| x * v),
-        }
-    }
-
-    /// ∫ q from the begin of a stretch to a time in it, rad s.
-    fn stretch(&self, path: &JointPath, k: usize, to: f64) -> Joints {
-        let (interval, piece) = self.stretches[k];
-        let piece = &path.pieces()[piece as usize];
-        let from = self.knots[k];
-        let h = to - from;
-        let mut sum = [0.0; DOF];
-        for (x, weight) in GAUSS {
-            let (s, _, _) = self.profile.in_interval(interval as usize, from + h * x);
-            let q = piece.position(s);
-            for j in 0..DOF {
-                sum[j] += h * weight * q[j];
-            }
-        }
-        sum
+        self.stretch(t).at(t)
     }
 }
 
-/// The times at which the profile passes its nodes and the ends of the path's pieces, and between
-/// them the interval of the profile and the piece of the path.
-fn stretches(path: &JointPath, profile: &Profile) -> (Vec<f64>, Vec<(u32, u32)>) {
+/// ∫ (q − q₀) as polynomials between the times at which the profile passes its nodes and the
+/// ends of the path's pieces, and its value at the end.
+fn stretches(path: &JointPath, profile: &Profile) -> (Vec<Quintics>, Joints) {
     let (s, pieces) = (profile.s(), path.pieces());
     let (mut interval, mut piece) = (0, 0);
-    let mut knots = vec![0.0];
-    let mut stretches = Vec::with_capacity(s.len() + pieces.len());
+    let mut stretches = Stretches {
+        profile,
+        start: path.start(),
+        sum: [0.0; DOF],
+        done: Vec::with_capacity(s.len() + pieces.len()),
+    };
+    let mut begin = 0.0;
     while interval + 1 < s.len() && piece < pieces.len() {
-        stretches.push((interval as u32, piece as u32));
         let (node, end) = (s[interval + 1], pieces[piece].s + pieces[piece].length);
         let last = piece + 1 == pieces.len();
-        if node <= end || last {
-            knots.push(profile.times()[interval + 1]);
+        let (at, piece_before) = (interval, &pieces[piece]);
+        let until = if node <= end || last {
             interval += 1;
             if node == end && !last {
                 piece += 1;
             }
+            profile.times()[interval]
         } else {
-            knots.push(profile.time_in(interval, end));
             piece += 1;
+            profile.time_in(interval, end)
+        };
+        if until > begin {
+            stretches.add(piece_before, at, (begin, until), HALVINGS);
+            begin = until;
         }
     }
-    (knots, stretches)
+    (stretches.done, stretches.sum)
 }
 
-/// q, q̇ and ∫ q from the start, at a time before averaging.
-struct Source {
-    q: Joints,
-    qd: Joints,
+struct Stretches<'a> {
+    profile: &'a Profile,
+    start: Joints,
     sum: Joints,
+    done: Vec<Quintics>,
 }
 
-impl Closing {
-    /// From a state to rest at `end` in `length` seconds.
-    fn new(begin: f64, length: f64, from: &JointState, end: &Joints) -> Closing {
-        let h = length;
-        let coefficients = std::array::from_fn(|j| {
-            let (v, a) = (from.qd[j] * h, from.qdd[j] * h * h);
-            let d = end[j] - from.q[j];
-            let unit = [
-                from.q[j],
-                v,
-                0.5 * a,
-                10.0 * d - 6.0 * v - 1.5 * a,
-                -15.0 * d + 8.0 * v + 1.5 * a,
-                6.0 * d - 3.0 * v - 0.5 * a,
-            ];
-            let mut scale = 1.0;
-            unit.map(|c| {
-                let scaled = c / scale;
-                scale *= h;
-                scaled
-            })
-        });
-        Closing { begin, length, coefficients }
-    }
-
-    fn at(&self, t: f64) -> JointState {
-        let x = t - self.begin;
-        let mut state = JointState::rest([0.0; DOF]);
-        for j in 0..DOF {
-            let [c0, c1, c2, c3, c4, c5] = self.coefficients[j];
-            state.q[j] = c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))));
-            state.qd[j] = c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)));
-            state.qdd[j] = 2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5));
+impl Stretches<'_> {
+    /// Adds the time from `begin` to `end`, on a piece and an interval of the profile.
+    fn add(&mut self, piece: &Piece, interval: usize, (begin, end): (f64, f64), halvings: usize) {
+        let h = end - begin;
+        let mut sum = self.sum;
+        for (x, weight) in GAUSS {
+            let (s, _, _) = self.profile.in_interval(interval, begin + h * x);
+            let q = piece.position(s);
+            for j in 0..DOF {
+                sum[j] += h * weight * (q[j] - self.start[j]);
+            }
         }
-        state
+        let [from, to] = [begin, end].map(|t| {
+            let (s, v, _) = self.profile.in_interval(interval, t);
+            let at = piece.eval(s);
+            let q: Joints = std::array::from_fn(|j| at.q[j] - self.start[j]);
+            [q, at.q1.map(|x| x * v)]
+        });
+        let stretch = Quintics::new(begin, h, [self.sum, from[0], from[1]], [sum, to[0], to[1]]);
+        let middle = begin + 0.5 * h;
+        if halvings > 0 {
+            let q = piece.position(self.profile.in_interval(interval, middle).0);
+            let got = stretch.at(middle)[1];
+            if (0..DOF).any(|j| (got[j] + self.start[j] - q[j]).abs() > STRETCH_TOLERANCE) {
+                self.add(piece, interval, (begin, middle), halvings - 1);
+                self.add(piece, interval, (middle, end), halvings - 1);
+                return;
+            }
+        }
+        self.done.push(stretch);
+        self.sum = sum;
     }
 }

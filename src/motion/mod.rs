@@ -2,9 +2,14 @@
 
 pub mod averaged;
 pub mod controller;
+mod leg_times;
+pub mod pace;
 pub mod planner;
+mod quintics;
+mod run_plan;
 pub mod sampling;
 pub mod stream;
+mod tcp_limits;
 pub mod timed;
 pub mod timeline;
 pub mod timing;

@@ -1,13 +1,11 @@
 //! From a joint path to the grid that the timing solvers see.
 
 use super::controller::interpolation_s;
-use super::timing::grid::{GridError, PathGrid, PathPoint, TCP_ROWS};
+use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
 use super::timing::limits::Row;
-use crate::dynamics::{Data, Load, rnea};
+use crate::dynamics::{Data, Load, rnea_each};
 use crate::kinematics::Tcp;
-use crate::path::joint_path::{
-    DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
-};
+use crate::path::joint_path::{DOF, Extent, JointPath, PathPoint as PiecePoint, Piece, PieceKind};
 use crate::robot::Model;
 
 /// Limits that the program sets for one leg.
@@ -171,36 +169,37 @@ fn point(
     Bounds { cap, extent, zone }: &Bounds<'_>,
 ) -> PathPoint {
     let at = piece.eval(s);
-    let mut v_max = f64::INFINITY;
+    let mut slowest = (f64::INFINITY, SpeedBound::None);
+    let mut limit = |rate: f64, speed: f64, bound: SpeedBound| {
+        if rate > 0.0 && speed / rate < slowest.0 {
+            slowest = (speed / rate, bound);
+        }
+    };
     if let Some(limits) = &model.limits.velocity {
         for j in 0..DOF {
-            if at.q1[j] != 0.0 {
-                v_max = v_max.min(limits[j] / at.q1[j].abs());
-            }
+            limit(at.q1[j].abs(), limits[j], SpeedBound::Joint);
         }
     }
     let twist = extent.tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q1);
     let tcp_rate = twist.fixed_rows::<3>(0).norm();
     let turn_rate = twist.fixed_rows::<3>(3).norm();
-    let mut limit = |rate: f64, speed: f64| {
-        if rate > 0.0 {
-            v_max = v_max.min(speed / rate);
+    limit(tcp_rate, model.limits.tcp_speed.unwrap_or(f64::INFINITY), SpeedBound::Robot);
+    // The joints keep their ratio: the programmed speed holds on the average.
+    let (programmed, turn) = match piece.kind {
+        PieceKind::Joint | PieceKind::JointZone => {
+            (extent.length / extent.extent, extent.angle / extent.extent)
         }
+        PieceKind::Cartesian | PieceKind::CartesianZone => (tcp_rate, turn_rate),
     };
-    limit(tcp_rate, model.limits.tcp_speed.unwrap_or(f64::INFINITY));
-    if matches!(piece.kind, PieceKind::Joint | PieceKind::JointZone) {
-        // The joints keep their ratio: the programmed speed holds on the average.
-        limit(extent.length / extent.extent, cap.tcp);
-        limit(extent.angle / extent.extent, cap.orientation);
-    } else {
-        limit(tcp_rate, cap.tcp);
-        limit(turn_rate, cap.orientation);
-    }
+    limit(programmed, cap.tcp, SpeedBound::Programmed);
+    limit(turn, cap.orientation, SpeedBound::Reorientation);
     if let Some(zone) = zone {
         // The interpolator takes at least one step in each zone: runs with z1 show it.
-        v_max = v_max.min(zone / interpolation_s(model));
+        limit(1.0, zone / interpolation_s(model), SpeedBound::Zone);
     }
+    let (v_max, v_bound) = slowest;
     let mut point = PathPoint::kinematic(at.q, at.q1, at.q2, v_max);
+    point.v_bound = v_bound;
     if let (Some(by_pose), Some(limits)) =
         (&model.limits.acceleration_by_pose, &model.limits.acceleration)
     {
@@ -212,16 +211,11 @@ fn point(
     point.capability = point.capability.map(|share| share * cap.acceleration);
     point.tcp_rows = tcp_rows(model, &at, &extent.tool, &twist, cap);
     if model.has_dynamics() {
-        let zero = [0.0; DOF];
-        let tau = |data: &mut Data, qd: &Joints, qdd: &Joints| -> Joints {
-            let tau = rnea(model, data, load, &at.q, qd, qdd);
-            std::array::from_fn(|j| tau[j])
-        };
-        point.g = tau(data, &zero, &zero);
-        let m = tau(data, &zero, &at.q1);
-        let c = tau(data, &at.q1, &at.q2);
-        point.m = std::array::from_fn(|j| m[j] - point.g[j]);
-        point.c = std::array::from_fn(|j| c[j] - point.g[j]);
+        let motions: [[&[f64]; 2]; 3] = [[&[], &[]], [&[], &at.q1], [&at.q1, &at.q2]];
+        let [g, m, c] = rnea_each(model, data, load, &at.q, motions);
+        point.g = std::array::from_fn(|j| g[j]);
+        point.m = std::array::from_fn(|j| m[j] - g[j]);
+        point.c = std::array::from_fn(|j| c[j] - g[j]);
         for j in 0..DOF {
             point.coulomb[j] = model.friction.coulomb[j] * sign(at.q1[j]);
             point.viscous[j] = model.friction.viscous[j] * at.q1[j];
@@ -283,12 +277,10 @@ fn tcp_rows(
 /// An acceleration that no robot has, m/s².
 const NO_ACCELERATION_LIMIT: f64 = 1e3;
 
-fn sign(x: f64) -> f64 {
-    if x > 0.0 {
-        1.0
-    } else if x < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
+/// Turn of a joint on the path that is rounding of none, rad per unit of s.
+const STILL: f64 = 1e-9;
+
+/// The sign of a joint's motion, 0 where it stands.
+fn sign(rate: f64) -> f64 {
+    if rate.abs() < STILL { 0.0 } else { rate.signum() }
 }

@@ -46,7 +46,7 @@ impl TimedMotion {
     /// The state at `t` after the start; outside, at rest at the nearer end.
     pub fn at(&self, t: f64) -> JointState {
         match self {
-            TimedMotion::Path(path, timing) => timing.at(path, t),
+            TimedMotion::Path(_, timing) => timing.at(t),
             TimedMotion::Stream(stream) => {
                 let (q, qd, qdd) = stream.eval(t);
                 JointState { q, qd, qdd }
@@ -55,10 +55,10 @@ impl TimedMotion {
     }
 
     /// Times between which every joint moves smoothly, from 0 to the duration.
-    pub fn knots(&self) -> Vec<f64> {
+    pub fn knots(&self) -> &[f64] {
         match self {
             TimedMotion::Path(_, timing) => timing.knots(),
-            TimedMotion::Stream(stream) => stream.knots().times().to_vec(),
+            TimedMotion::Stream(stream) => stream.knots().times(),
         }
     }
 

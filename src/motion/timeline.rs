@@ -1,5 +1,6 @@
 //! The result of a simulation: runs, waits and outputs on one time line.
 
+use super::pace::Pace;
 use super::timed::{JointState, TimedMotion};
 use crate::dynamics::Load;
 use crate::ir::exec::Note;
@@ -75,8 +76,18 @@ impl Run {
         self.moves.iter().map(|m| m.duration).sum()
     }
 
+    /// The motions that may be under way between two times, s from the start of the run.
+    pub fn motions_between(&self, from: f64, to: f64) -> &[(f64, TimedMotion)] {
+        let first = self.motions.partition_point(|(begin, _)| *begin <= from).saturating_sub(1);
+        let last = self.motions.partition_point(|(begin, _)| *begin < to);
+        self.motions.get(first..last).unwrap_or_default()
+    }
+
     /// The state at `t` after the start of the run.
     pub fn at(&self, t: f64) -> JointState {
+        if t >= self.duration() - self.settling {
+            return JointState::rest(self.end);
+        }
         let after = self.motions.partition_point(|(begin, _)| *begin <= t);
         match after.checked_sub(1).and_then(|i| self.motions.get(i)) {
             Some((begin, motion)) => motion.at(t - begin),
@@ -94,6 +105,8 @@ pub struct MoveRecord {
     pub t_start: f64,
     /// s.
     pub duration: f64,
+    /// What sets its pace.
+    pub pace: Pace,
 }
 
 /// A wait with its length.

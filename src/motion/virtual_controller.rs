@@ -4,22 +4,22 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
+use rayon::prelude::*;
 
-use super::controller::{Planning, assumed, motion_limits};
-use super::planner::plan;
-use super::sampling::{Loaded, SpeedCap};
-use super::stream::Stream;
-use super::timed::TimedMotion;
+use super::controller::assumed;
+use super::run_plan::{Planned, plan_run};
+use super::sampling::Loaded;
 use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord, What};
 use crate::dynamics::Load;
 use crate::ir::exec::{Machine, Note, execute};
 use crate::ir::instructions::MoveForm;
-use crate::ir::movement::{LoadData, Movement, Output, Target, Tool, Unresolved, Wait};
+use crate::ir::movement::{LoadData, Movement, Output, Settings, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
 use crate::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
-use crate::path::{Leg, LegKind, build};
+use crate::path::{Leg, LegKind, arrival};
 use crate::robot::Model;
+use crate::text::Span;
 
 /// What a simulation needs besides the program and the robot.
 #[derive(Clone, Debug, Default)]
@@ -55,26 +55,31 @@ pub fn simulate(
         options,
         q: options.start.unwrap_or([0.0; DOF]),
         certain: true,
+        settling: 0.0,
+        late: false,
         moved: false,
         tool: None,
         time: 0.0,
         events: Vec::new(),
         pending: Vec::new(),
+        drafts: Vec::new(),
         notes: Vec::new(),
         repeats_from: None,
         waited: BTreeMap::new(),
     };
     let execution = execute(program, entry, &mut machine);
     machine.flush();
+    machine.lay_out();
     let mut assumptions = execution.assumed;
     assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
     unresolved.sort_by_key(|note| note.span);
+    let count = machine.events.len();
     Simulation {
         events: machine.events,
         cycle_s: machine.time,
-        repeats_from: machine.repeats_from,
+        repeats_from: machine.repeats_from.filter(|first| *first < count),
         unresolved,
         assumed: assumptions,
     }
@@ -91,19 +96,73 @@ struct VirtualController<'a> {
     options: &'a Options,
     /// Where the robot stands, or will once the pending movements are done.
     q: Joints,
-    /// False after something that may have moved the robot elsewhere.
+    /// False after something that may have moved the robot elsewhere, as far as laid out.
     certain: bool,
+    /// How long the robot rests after the last run before it can move on, s.
+    settling: f64,
+    /// True once what is laid out lasts too long.
+    late: bool,
     moved: bool,
     /// Tool of the last movement.
     tool: Option<Tool>,
     time: f64,
     events: Vec<Event>,
     pending: Vec<Pending>,
+    /// What is not on the time line yet: each becomes one event.
+    drafts: Vec<Draft>,
     notes: Vec<Note>,
     repeats_from: Option<usize>,
     /// End of the last wait for each input.
     waited: BTreeMap<String, f64>,
 }
+
+/// A run to a stop that is not planned yet.
+struct RunDraft {
+    movements: Vec<Movement>,
+    legs: Vec<Leg>,
+    /// `\T` of the movements under the overrides, s.
+    times: Vec<Option<f64>>,
+    load: Load,
+    /// In force at its first movement.
+    settings: Arc<Settings>,
+}
+
+/// A wait at joints q (rad) that is not on the time line yet.
+struct WaitDraft {
+    wait: Wait,
+    q: Joints,
+    load: Load,
+}
+
+/// What becomes an event once the time is known.
+enum Draft {
+    Run(Box<RunDraft>),
+    Wait(Box<WaitDraft>),
+    Output(Output, usize),
+    Left(Unresolved),
+}
+
+impl Draft {
+    fn span(&self) -> Span {
+        match self {
+            Draft::Run(run) => run.movements[run.movements.len() - 1].span,
+            Draft::Wait(wait) => wait.wait.span,
+            Draft::Output(output, _) => output.span,
+            Draft::Left(left) => left.span,
+        }
+    }
+}
+
+impl RunDraft {
+    fn plan(&self, model: &Model) -> Planned {
+        let loaded = Loaded { model, load: &self.load };
+        plan_run(loaded, &self.legs, &self.movements, &self.times, &self.settings)
+    }
+}
+
+/// Drafts that are planned together: they share the processors, and an endless program does not
+/// run far beyond the time at which it is stopped.
+const BATCH: usize = 256;
 
 /// Events of a simulation: more are not kept.
 const MAX_EVENTS: usize = 200_000;
@@ -115,8 +174,7 @@ impl Machine for VirtualController<'_> {
             Err(unresolved) => {
                 self.flush();
                 if unresolved.moves {
-                    self.certain = false;
-                    self.push(0.0, What::Left(unresolved));
+                    self.keep(Draft::Left(unresolved));
                 }
                 return;
             }
@@ -141,63 +199,38 @@ impl Machine for VirtualController<'_> {
             Err(reason) => {
                 self.flush();
                 self.note(movement.span, &reason);
-                self.certain = false;
                 let left = Unresolved { span: movement.span, reason, moves: true };
-                self.push(0.0, What::Left(left));
+                self.keep(Draft::Left(left));
             }
         }
     }
 
     fn waits(&mut self, wait: Wait) {
         self.flush();
-        let begin = self.time;
-        let known = wait.signal.as_ref().and_then(|signal| {
-            let key = signal.to_lowercase();
-            let delay = self.options.inputs.get(&key)?;
-            Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
-        });
-        let (duration, basis) = match (wait.duration, known) {
-            (Some(duration), _) => (duration, WaitBasis::Stated),
-            (None, Some(at)) => ((at - begin).max(0.0), WaitBasis::Input),
-            (None, None) => {
-                let what = match (&wait.signal, &wait.other) {
-                    (Some(signal), _) => format!(
-                        "{signal}, at a time that is not known: taken as 0 s \
-                         (--input {signal}=SECONDS states it)"
-                    ),
-                    (None, Some(other)) => format!("{other}: taken as 0 s"),
-                    (None, None) => {
-                        "a condition, at a time that is not known: taken as 0 s".to_owned()
-                    }
-                };
-                self.note(wait.span, &format!("waits for {what}"));
-                (0.0, WaitBasis::Unknown)
-            }
-        };
-        if let Some(signal) = &wait.signal {
-            self.waited.insert(signal.to_lowercase(), begin + duration);
-        }
         let load = self
             .tool
             .as_ref()
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
-        let record = WaitRecord { wait, basis, q: self.q, load, position_known: self.certain };
-        self.push(duration, What::Wait(Box::new(record)));
+        self.keep(Draft::Wait(Box::new(WaitDraft { wait, q: self.q, load })));
     }
 
     fn sets(&mut self, output: Output) {
         // Fly-by movements go on while the logic runs; the place in the order is kept.
         let position = self.pending.len();
-        self.push(0.0, What::Output(output, position));
+        self.keep(Draft::Output(output, position));
     }
 
     fn joints(&mut self) -> Option<Joints> {
-        (self.pending.is_empty() && self.certain).then_some(self.q)
+        if !self.pending.is_empty() {
+            return None;
+        }
+        self.lay_out();
+        self.certain.then_some(self.q)
     }
 
     fn repeats(&mut self) {
         // What is pending becomes the next event, and its end belongs to the loop.
-        self.repeats_from.get_or_insert(self.events.len());
+        self.repeats_from.get_or_insert(self.events.len() + self.drafts.len());
     }
 
     fn passes(&self) -> u32 {
@@ -209,20 +242,11 @@ impl Machine for VirtualController<'_> {
     }
 
     fn is_full(&self) -> bool {
-        self.events.len() + self.pending.len() > MAX_EVENTS || self.is_late()
-    }
-
-    fn full_because(&self) -> Option<String> {
-        let limit = self.options.max_time.unwrap_or(MAX_TIME);
-        self.is_late().then(|| format!("the cycle lasts longer than {limit} s (--max-time)"))
+        self.events.len() + self.drafts.len() + self.pending.len() > MAX_EVENTS || self.late
     }
 }
 
 impl VirtualController<'_> {
-    fn is_late(&self) -> bool {
-        self.time > self.options.max_time.unwrap_or(MAX_TIME)
-    }
-
     /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
     fn speed_override(&self, movement: &Movement) -> f64 {
         let settings = &movement.settings;
@@ -234,7 +258,7 @@ impl VirtualController<'_> {
         movement.time.map(|t| t / self.speed_override(movement))
     }
 
-    fn note(&mut self, span: crate::text::Span, reason: &str) {
+    fn note(&mut self, span: Span, reason: &str) {
         let note = Note { span, reason: reason.to_owned() };
         if !self.notes.contains(&note) {
             self.notes.push(note);
@@ -266,6 +290,7 @@ impl VirtualController<'_> {
         let near = |pose: &Isometry3<f64>| {
             ik_near(self.model, pose, &self.q).map_err(|error| error.to_string())
         };
+        let mut stated_end = true;
         let (kind, end, target) = match &movement.target {
             Target::Joints(q) => {
                 limits_ok(self.model, q).map_err(|error| error.to_string())?;
@@ -292,6 +317,7 @@ impl VirtualController<'_> {
                     (MoveForm::Linear, _) => LegKind::Line,
                     _ => LegKind::Joint,
                 };
+                stated_end = stated || !linear;
                 (kind, end, pose)
             }
         };
@@ -299,43 +325,94 @@ impl VirtualController<'_> {
         let factor = self.speed_override(movement);
         speed.tcp = (speed.tcp * factor).min(movement.settings.speed_max);
         speed.orientation *= factor;
-        Ok(Leg { kind, start: self.q, end, tool, target, speed, zone: movement.zone })
+        let axiswise = movement.settings.axiswise_wrist();
+        let zone = movement.zone;
+        let mut leg = Leg { kind, start: self.q, end, tool, target, axiswise, speed, zone };
+        if !stated_end && !axiswise {
+            // The configuration in which the line arrives.
+            leg.end = arrival(self.model, &leg).unwrap_or(end);
+        }
+        Ok(leg)
     }
 
-    /// Plans the pending movements as one run to a stop.
+    /// Keeps the pending movements as one run to a stop.
     fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
-        let (Some(first), Some(last)) = (pending.first(), pending.last()) else { return };
-        let start = first.leg.start;
-        let end = last.leg.end;
+        let Some(first) = pending.first() else { return };
         let settings = first.movement.settings.clone();
-        let planning = Planning::new(self.model, &settings);
         let load = effective_load(&first.movement);
-        let legs: Vec<Leg> = pending.iter().map(|p| p.leg.clone()).collect();
-        let movements: Vec<Movement> = pending.into_iter().map(|p| p.movement).collect();
-        let loaded = Loaded { model: self.model, load: &load };
+        let times = pending.iter().map(|p| self.timed(&p.movement)).collect();
+        let (movements, legs) = pending.into_iter().map(|p| (p.movement, p.leg)).unzip();
+        self.keep(Draft::Run(Box::new(RunDraft { movements, legs, times, load, settings })));
+    }
 
-        let (motions, durations, problem) = match self.as_stream(&start, &legs, &movements) {
-            Some(stream) => self.realise(stream, &movements),
-            None => self.plan_run(loaded, &legs, &movements, &planning),
-        };
+    fn keep(&mut self, draft: Draft) {
+        self.drafts.push(draft);
+        if self.drafts.len() >= BATCH {
+            self.lay_out();
+        }
+    }
+
+    /// Plans what is kept, runs side by side, and lays it on the time line.
+    fn lay_out(&mut self) {
+        let model = self.model;
+        let drafts = std::mem::take(&mut self.drafts);
+        let plans: Vec<Option<Planned>> = drafts
+            .par_iter()
+            .map(|draft| match draft {
+                Draft::Run(run) => Some(run.plan(model)),
+                _ => None,
+            })
+            .collect();
+        for (draft, plan) in drafts.into_iter().zip(plans) {
+            if self.late {
+                break;
+            }
+            let span = draft.span();
+            match (draft, plan) {
+                (Draft::Run(run), Some(plan)) => self.lay_run(*run, plan),
+                (Draft::Wait(wait), _) => self.lay_wait(*wait),
+                (Draft::Output(output, position), _) => {
+                    self.push(0.0, What::Output(output, position));
+                }
+                (Draft::Left(left), _) => {
+                    self.certain = false;
+                    self.push(0.0, What::Left(left));
+                }
+                (Draft::Run(_), None) => unreachable!("every run is planned"),
+            }
+            let limit = self.options.max_time.unwrap_or(MAX_TIME);
+            if self.time > limit {
+                self.late = true;
+                self.note(
+                    span,
+                    &format!(
+                        "the cycle lasts longer than {limit} s (--max-time): it is shown up to here"
+                    ),
+                );
+            }
+        }
+    }
+
+    fn lay_run(&mut self, run: RunDraft, plan: Planned) {
+        let RunDraft { movements, legs, load, .. } = run;
+        let Planned { motions, pieces, problem, settling_s } = plan;
         if let Some((leg, reason)) = &problem {
             self.note(movements[*leg].span, reason);
         }
-        let moved = durations.iter().sum::<f64>() > 0.0;
         let mut records = Vec::with_capacity(movements.len());
         let mut t = 0.0;
-        for (movement, duration) in movements.into_iter().zip(durations) {
-            records.push(MoveRecord { movement, t_start: t, duration });
+        for (movement, (duration, pace)) in movements.into_iter().zip(pieces) {
+            records.push(MoveRecord { movement, t_start: t, duration, pace });
             t += duration;
         }
         let run = Run {
             moves: records,
+            load,
+            start: legs[0].start,
+            end: legs[legs.len() - 1].end,
             legs,
             motions,
-            load,
-            start,
-            end,
             settling: 0.0,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
@@ -343,14 +420,16 @@ impl VirtualController<'_> {
         // An output between fly-by movements was noted when the run was not planned yet: it
         // keeps its place in the order before the run's event.
         self.certain = run.problem.is_none();
-        if moved {
-            self.settle(planning.settling_s);
+        if t > 0.0 {
+            self.settle();
         }
+        self.settling = settling_s;
         self.push(t, What::Run(Box::new(run)));
     }
 
     /// Between two movements the robot rests at the stop point. A wait takes that time too.
-    fn settle(&mut self, settling: f64) {
+    fn settle(&mut self) {
+        let settling = self.settling;
         let Some(Event { duration, what: What::Run(before), .. }) = self.events.last_mut() else {
             return;
         };
@@ -361,137 +440,36 @@ impl VirtualController<'_> {
         self.time += settling;
     }
 
-    /// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
-    fn as_stream(&self, start: &Joints, legs: &[Leg], movements: &[Movement]) -> Option<Stream> {
-        let mut intervals = Vec::with_capacity(legs.len());
-        for movement in movements {
-            if movement.form != MoveForm::AbsJ {
-                return None;
-            }
-            intervals.push(self.timed(movement)?);
-        }
-        // Distances between neighbouring points; the robot's own place does not count for zones
-        // of the points after it.
-        for pair in legs.windows(2) {
-            let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
-            if pair[0].zone.tcp < 0.5 * apart.norm() {
-                return None;
-            }
-        }
-        let points = legs.iter().map(|leg| leg.end).collect();
-        Stream::new(*start, points, intervals).ok()
-    }
-
-    fn realise(&self, stream: Stream, movements: &[Movement]) -> Planned {
-        // What the controller can't reach in time it does later.
-        let scale = self.lateness(&stream);
-        let stream = if scale > 1.0 {
-            let intervals = stream.intervals().iter().map(|t| t * scale).collect();
-            Stream::new(*stream.start(), stream.points().to_vec(), intervals).unwrap_or(stream)
-        } else {
-            stream
-        };
-        // A point's share of the time: up to the middle of the corner at it.
-        let times = stream.knots().times();
-        let mut durations = Vec::with_capacity(movements.len());
-        for i in 0..movements.len() {
-            let end = if i + 1 == movements.len() {
-                stream.duration()
-            } else {
-                0.5 * (times[i + 1] + times[i + 2])
-            };
-            let begin = if i == 0 { 0.0 } else { 0.5 * (times[i] + times[i + 1]) };
-            durations.push(end - begin);
-        }
-        (vec![(0.0, TimedMotion::Stream(stream))], durations, None)
-    }
-
-    /// How much slower than asked a stream runs, for the robot's speeds and accelerations.
-    fn lateness(&self, stream: &Stream) -> f64 {
-        let limits = &self.model.limits;
-        let worst = |values: &Joints, limit: &Option<Vec<f64>>| {
-            limit.as_ref().map_or(0.0, |limit| {
-                values.iter().zip(limit).map(|(x, l)| x / l).fold(0.0, f64::max)
-            })
-        };
-        let speed = worst(&stream.max_velocity(), &limits.velocity);
-        let acceleration = worst(&stream.max_acceleration(), &limits.acceleration).sqrt();
-        let scale = speed.max(acceleration);
-        if scale > 1.0 + LATENESS_ROUNDING { scale } else { 1.0 }
-    }
-
-    fn plan_run(
-        &self,
-        loaded: Loaded<'_>,
-        legs: &[Leg],
-        movements: &[Movement],
-        planning: &Planning,
-    ) -> Planned {
-        let caps: Vec<SpeedCap> =
-            legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
-        let limits = motion_limits(self.model, 1.0);
-        let (paths, problem) = match build(self.model, legs) {
-            Ok(paths) => (paths, None),
-            Err(error) => {
-                // For the time alone: the same points joint by joint.
-                let joint: Vec<Leg> =
-                    legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
-                let problem = Some((error.leg(), error.to_string()));
-                (build(self.model, &joint).unwrap_or_default(), problem)
-            }
-        };
-        let mut motions = Vec::new();
-        let mut durations = vec![0.0; legs.len()];
-        let mut t = 0.0;
-        for path in paths {
-            let path = Arc::new(path);
-            let indices = path.legs();
-            let times: Option<f64> = indices.clone().map(|i| self.timed(&movements[i])).sum();
-            match plan(loaded, &path, &caps, &limits, planning, times) {
-                Ok(motion) => {
-                    // Where there is no room for a zone the robot stops as at a stop point.
-                    if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty())
-                    {
-                        durations[last] += planning.settling_s;
-                        t += planning.settling_s;
+    fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
+        let begin = self.time;
+        let known = wait.signal.as_ref().and_then(|signal| {
+            let key = signal.to_lowercase();
+            let delay = self.options.inputs.get(&key)?;
+            Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
+        });
+        let (duration, basis) = match (wait.duration, known) {
+            (Some(duration), _) => (duration, WaitBasis::Stated),
+            (None, Some(at)) => ((at - begin).max(0.0), WaitBasis::Input),
+            (None, None) => {
+                let what = match (&wait.signal, &wait.other) {
+                    (Some(signal), _) => format!(
+                        "{signal}, at a time that is not known: taken as 0 s \
+                         (--input {signal}=SECONDS states it)"
+                    ),
+                    (None, Some(other)) => format!("{other}: taken as 0 s"),
+                    (None, None) => {
+                        "a condition, at a time that is not known: taken as 0 s".to_owned()
                     }
-                    let mut before = 0.0;
-                    for leg in indices {
-                        let at = motion.time_at(path.leg_end(leg));
-                        durations[leg] += at - before;
-                        before = at;
-                    }
-                    let duration = motion.duration();
-                    motions.push((t, motion));
-                    t += duration;
-                }
-                Err(error) => {
-                    return (motions, durations, Some((indices.start, error.to_string())));
-                }
+                };
+                self.note(wait.span, &format!("waits for {what}"));
+                (0.0, WaitBasis::Unknown)
             }
+        };
+        if let Some(signal) = &wait.signal {
+            self.waited.insert(signal.to_lowercase(), begin + duration);
         }
-        (motions, durations, problem)
-    }
-}
-
-/// Excess over a limit that is rounding of emitted figures and no reason to be late.
-const LATENESS_ROUNDING: f64 = 1e-3;
-
-/// Motions with their start in the run, duration of each move, and what went wrong at which leg.
-type Planned = (Vec<(f64, TimedMotion)>, Vec<f64>, Option<(usize, String)>);
-
-/// The programmed speed of a movement as a cap; a timed one has none but its time.
-fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
-    let settings = &movement.settings;
-    let limits = SpeedCap {
-        acceleration: settings.acceleration,
-        path_acceleration: settings.path_acceleration,
-        world_acceleration: settings.world_acceleration,
-        ..SpeedCap::NONE
-    };
-    match movement.time {
-        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation, ..limits },
-        Some(_) => limits,
+        let record = WaitRecord { wait, basis, q, load, position_known: self.certain };
+        self.push(duration, What::Wait(Box::new(record)));
     }
 }
 

@@ -238,7 +238,7 @@ fn slowed(
     let mut best = None;
     for _ in 0..CAP_STEPS {
         let cap = 0.5 * (slow + fast);
-        let capped = time_optimal(&grid.capped(cap), limits).into_profile();
+        let capped = time_optimal(&grid.capped(|_| cap), limits).into_profile();
         match capped.filter(|p| p.duration() <= duration) {
             Some(profile) => {
                 fast = cap;

@@ -2,8 +2,9 @@
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector3, Vector6};
 
+use super::axiswise::Wrist;
 use super::blend;
-use super::curve::{self, Curve};
+use super::curve::{self, Curve, CurvePoint};
 use super::joint_path::{DOF, Extent, JointPath, Joints, PathPoint, Piece, PieceKind};
 use super::leg::{Leg, LegKind, PathError, first_difference};
 use crate::kinematics::{fk, ik_near, limits_ok};
@@ -14,7 +15,7 @@ const METRES_PER_RADIAN: f64 = 0.1;
 /// A leg shorter than this (m, or rad × the above) goes nowhere.
 const NOWHERE: f64 = 1e-7;
 /// Longest piece of a Cartesian curve, m.
-const MAX_PIECE: f64 = 0.04;
+pub(super) const MAX_PIECE: f64 = 0.04;
 /// A piece is split while its middle is farther than this from the exact joints, rad.
 const PIECE_TOLERANCE: f64 = 2e-7;
 /// Pieces are not split below this length, m: a line that needs it runs into a singularity.
@@ -25,7 +26,7 @@ const SINGULAR_RATE: f64 = 300.0;
 const LENGTH_SAMPLES: usize = 24;
 
 /// A leg with what the zones need to know of it.
-struct Measured<'a> {
+pub(super) struct Measured<'a> {
     leg: &'a Leg,
     index: usize,
     /// TCP length, m.
@@ -35,7 +36,9 @@ struct Measured<'a> {
     /// Length in the parameter s.
     extent: f64,
     /// The Cartesian curve over [0, extent]; `None` for joint legs.
-    curve: Option<Curve>,
+    pub(super) curve: Option<Curve>,
+    /// Where the wrist goes its own way along the curve.
+    wrist: Option<Wrist>,
 }
 
 /// The joint paths of a run: legs between zones. A corner without room for a zone (a turn on
@@ -67,7 +70,8 @@ pub fn build(model: &Model, legs: &[Leg]) -> Result<Vec<JointPath>, PathError> {
     Ok(paths)
 }
 
-fn measure<'a>(
+/// What the zones need to know of a leg that begins at the joints `start`.
+pub(super) fn measure<'a>(
     model: &Model,
     leg: &'a Leg,
     index: usize,
@@ -120,7 +124,8 @@ fn measure<'a>(
         let widest = (0..DOF).map(|j| (leg.end[j] - start[j]).abs()).fold(0.0, f64::max);
         length.max(METRES_PER_RADIAN * widest)
     };
-    Ok(Measured { leg, index, length, angle, extent, curve })
+    let wrist = (leg.axiswise && curve.is_some()).then(|| Wrist::new(start, &leg.end, extent));
+    Ok(Measured { leg, index, length, angle, extent, curve, wrist })
 }
 
 /// TCP length of a line (m) and its curve; none if it goes nowhere.
@@ -184,7 +189,7 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
     let first = legs[0].index;
     let last = legs[legs.len() - 1].index;
     let extents = (first..=last).map(|index| {
-        let leg = legs.iter().rfind(|leg| leg.index <= index).unwrap_or(&legs[0]);
+        let leg = &legs[legs.partition_point(|leg| leg.index <= index) - 1];
         let flat_arc = matches!(leg.leg.kind, LegKind::Arc(_))
             && matches!(leg.curve, Some(Curve::Line { .. }));
         Extent {
@@ -195,7 +200,8 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
             flat_arc,
         }
     });
-    Ok(JointPath::new(builder.pieces, first, extents.collect()))
+    let ends = [legs[0].leg.start, legs[legs.len() - 1].leg.end];
+    Ok(JointPath::new(builder.pieces, first, extents.collect(), ends))
 }
 
 struct Builder<'a> {
@@ -245,7 +251,7 @@ impl Builder<'_> {
                 let steps = (rest / MAX_PIECE).ceil().max(1.0) as usize;
                 for i in 1..=steps {
                     let x = to + rest * i as f64 / steps as f64;
-                    q = self.solve(leg, &curve.eval(x).pose, &q, x)?;
+                    q = self.solve(leg, &curve.eval(x), &q, x)?;
                 }
                 Ok(Arrival { end: q })
             }
@@ -263,7 +269,9 @@ impl Builder<'_> {
     ) -> Result<(), PathError> {
         match (&before.curve, &after.curve) {
             (Some(Curve::Line { .. }), Some(Curve::Line { .. }))
-                if before.leg.tool == after.leg.tool =>
+                if before.leg.tool == after.leg.tool
+                    && before.wrist.is_none()
+                    && after.wrist.is_none() =>
             {
                 let curve = cartesian_corner(before, after, size);
                 self.trace_zone(before, after, &curve, size)
@@ -371,8 +379,14 @@ impl Builder<'_> {
         near: &Joints,
     ) -> Result<PathPoint, PathError> {
         let at = curve.eval(x);
-        let q = self.solve(leg, &at.pose, near, x)?;
+        let q = self.solve(leg, &at, near, x)?;
         let singular = || PathError::Singular { leg: leg.index, percent: percent(leg, x) };
+        if let Some(wrist) = &leg.wrist {
+            let point = wrist.derivatives(self.model, &leg.leg.tool, &at, q);
+            return point
+                .filter(|p| p.q1.iter().all(|x| x.abs() < SINGULAR_RATE))
+                .ok_or_else(singular);
+        }
         let j: Matrix6<f64> = leg.leg.tool.jacobian(self.model, &q);
         let lu = j.lu();
         let twist = stack(&at.linear, &at.angular);
@@ -391,18 +405,25 @@ impl Builder<'_> {
     fn solve(
         &self,
         leg: &Measured<'_>,
-        pose: &Isometry3<f64>,
+        at: &CurvePoint,
         near: &Joints,
         x: f64,
     ) -> Result<Joints, PathError> {
         // Between neighbouring points no joint turns by more than this, but for a branch change.
         const JUMP: f64 = 0.6;
-        let flange = leg.leg.tool.flange(pose);
-        let q = ik_near(self.model, &flange, near).map_err(|why| PathError::Unreachable {
-            leg: leg.index,
-            percent: percent(leg, x),
-            why: why.to_string(),
-        })?;
+        let tool = &leg.leg.tool;
+        let q = match &leg.wrist {
+            Some(wrist) => {
+                let position = at.pose.translation.vector;
+                wrist.solve(self.model, tool, &position, x, near).ok_or_else(|| {
+                    PathError::Singular { leg: leg.index, percent: percent(leg, x) }
+                })?
+            }
+            None => ik_near(self.model, &tool.flange(&at.pose), near).map_err(|why| {
+                let percent = percent(leg, x);
+                PathError::Unreachable { leg: leg.index, percent, why: why.to_string() }
+            })?,
+        };
         if (0..DOF).any(|j| (q[j] - near[j]).abs() > JUMP) {
             return Err(PathError::Singular { leg: leg.index, percent: percent(leg, x) });
         }

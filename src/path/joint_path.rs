@@ -10,6 +10,20 @@ pub const DOF: usize = 6;
 /// One number per joint.
 pub type Joints = [f64; DOF];
 
+/// Coefficients, lowest first, of the polynomial of degree 5 with this value, first and second
+/// derivative at 0 and at 1.
+pub fn quintic([p0, v0, a0]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 6] {
+    let d = p1 - p0;
+    [
+        p0,
+        v0,
+        0.5 * a0,
+        10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1,
+        -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1,
+        6.0 * d - 3.0 * (v0 + v1) - 0.5 * (a0 - a1),
+    ]
+}
+
 /// What kind of curve a piece belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PieceKind {
@@ -63,15 +77,7 @@ impl Piece {
         for j in 0..DOF {
             let (p0, v0, a0) = (a.q[j], a.q1[j] * h, a.q2[j] * h * h);
             let (p1, v1, a1) = (b.q[j], b.q1[j] * h, b.q2[j] * h * h);
-            let d = p1 - p0;
-            coefficients[j] = [
-                p0,
-                v0,
-                0.5 * a0,
-                10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1,
-                -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1,
-                6.0 * d - 3.0 * (v0 + v1) - 0.5 * (a0 - a1),
-            ];
+            coefficients[j] = quintic([p0, v0, a0], [p1, v1, a1]);
         }
         Piece { s, length, leg, kind, coefficients }
     }
@@ -79,8 +85,11 @@ impl Piece {
     /// q at s, which must lie in the piece.
     pub fn position(&self, s: f64) -> Joints {
         let u = (s - self.s) / self.length;
-        self.coefficients
-            .map(|[c0, c1, c2, c3, c4, c5]| c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5)))))
+        let mut q = [0.0; DOF];
+        for (q, [c0, c1, c2, c3, c4, c5]) in q.iter_mut().zip(&self.coefficients) {
+            *q = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
+        }
+        q
     }
 
     /// Values at s, which must lie in the piece.
@@ -121,13 +130,30 @@ pub struct JointPath {
     pieces: Vec<Piece>,
     /// Index of the first leg, and the legs from there on.
     legs: (usize, Vec<Extent>),
+    /// Joints where the path begins and ends, rad.
+    ends: [Joints; 2],
 }
 
 impl JointPath {
-    /// From pieces that follow each other without a gap, and the legs from the index
-    /// `first` on that they belong to.
-    pub fn new(pieces: Vec<Piece>, first: usize, legs: Vec<Extent>) -> JointPath {
-        JointPath { pieces, legs: (first, legs) }
+    /// From pieces that follow each other without a gap, the legs from the index `first` on
+    /// that they belong to, and the joints at both ends without the pieces' rounding.
+    pub fn new(
+        pieces: Vec<Piece>,
+        first: usize,
+        legs: Vec<Extent>,
+        ends: [Joints; 2],
+    ) -> JointPath {
+        JointPath { pieces, legs: (first, legs), ends }
+    }
+
+    /// Joints where the path begins, rad.
+    pub fn start(&self) -> Joints {
+        self.ends[0]
+    }
+
+    /// Joints where the path ends, rad.
+    pub fn end(&self) -> Joints {
+        self.ends[1]
     }
 
     /// What is known of a leg of the path.

@@ -32,6 +32,8 @@ pub struct Leg {
     /// Target pose of the TCP, seen from the robot's base frame or, of a stationary tool, from
     /// tool0; for a joint leg the pose at `end`.
     pub target: Isometry3<f64>,
+    /// True where the wrist of a line or arc is interpolated axis by axis (`SingArea\Wrist`).
+    pub axiswise: bool,
     /// Programmed speed.
     pub speed: Speed,
     /// Zone at its end.

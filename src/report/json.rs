@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::place::Places;
 use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
-use crate::motion::timeline::{Run, WaitBasis, What};
+use crate::motion::timeline::{WaitBasis, What};
 use crate::optimize::check::Check;
 use crate::retrofit::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind};
 use crate::robot::Model;
@@ -52,7 +52,7 @@ pub fn simulation(
     for (event, parts) in simulation.events.iter().zip(&account.events) {
         match &event.what {
             What::Run(run) => {
-                for (i, (record, part)) in run.moves.iter().zip(parts).enumerate() {
+                for (record, part) in run.moves.iter().zip(parts) {
                     let place = places.of(record.movement.span);
                     moves.push(json!({
                         "file": place.file,
@@ -62,7 +62,7 @@ pub fn simulation(
                         "t_start_s": event.t_start + record.t_start,
                         "duration_s": record.duration,
                         "energy_j": known.then(|| part.energy_j()),
-                        "limit": limit(run, i),
+                        "limit": record.pace.name(),
                     }));
                 }
             }
@@ -100,30 +100,6 @@ fn basis(basis: WaitBasis) -> &'static str {
         WaitBasis::Stated => "stated",
         WaitBasis::Input => "input",
         WaitBasis::Unknown => "unknown",
-    }
-}
-
-/// What sets the pace of a movement.
-fn limit(run: &Run, index: usize) -> &'static str {
-    let movement = &run.moves[index].movement;
-    if movement.time.is_some() {
-        return "time";
-    }
-    if run.problem.is_some() {
-        return "estimated";
-    }
-    let record = &run.moves[index];
-    if record.duration <= 0.0 {
-        return "none";
-    }
-    // The mean speed against the programmed one.
-    let leg = &run.legs[index];
-    let from = if index == 0 { None } else { Some(run.legs[index - 1].target) };
-    let distance =
-        from.map(|from| (from.translation.vector - leg.target.translation.vector).norm());
-    match distance {
-        Some(d) if d / record.duration > 0.9 * leg.speed.tcp => "speed",
-        _ => "acceleration",
     }
 }
 

@@ -74,6 +74,26 @@ pub struct PathPoint {
     pub tcp_rows: [Row; TCP_ROWS],
     /// Bound on ṡ from joint and TCP speeds; positive and finite.
     pub v_max: f64,
+    /// Where that bound comes from.
+    pub v_bound: SpeedBound,
+}
+
+/// What bounds the speed at a place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SpeedBound {
+    /// Nothing that is known.
+    #[default]
+    None,
+    /// The programmed speed of the TCP.
+    Programmed,
+    /// The programmed speed of reorientation.
+    Reorientation,
+    /// The largest speed of a joint.
+    Joint,
+    /// The robot's largest TCP speed.
+    Robot,
+    /// A zone that takes at least one step of the interpolator.
+    Zone,
 }
 
 impl PathPoint {
@@ -84,7 +104,22 @@ impl PathPoint {
         let (m, c, g, coulomb, viscous, bias) = (zero, zero, zero, zero, zero, zero);
         let capability = [1.0; 6];
         let tcp_rows = [Row::default(); TCP_ROWS];
-        PathPoint { q, q1, q2, m, c, g, coulomb, viscous, capability, bias, tcp_rows, v_max }
+        let v_bound = SpeedBound::None;
+        PathPoint {
+            q,
+            q1,
+            q2,
+            m,
+            c,
+            g,
+            coulomb,
+            viscous,
+            capability,
+            bias,
+            tcp_rows,
+            v_max,
+            v_bound,
+        }
     }
 
     /// m u + c b + g: the torque without friction, Nm.
@@ -115,6 +150,7 @@ impl PathPoint {
             bias: mix(&self.bias, &other.bias),
             tcp_rows: std::array::from_fn(|i| self.tcp_rows[i].toward(&other.tcp_rows[i], x)),
             v_max: self.v_max + x * (other.v_max - self.v_max),
+            v_bound: self.v_bound,
         }
     }
 
@@ -206,11 +242,13 @@ impl PathGrid {
         held
     }
 
-    /// The same path with the path speed capped at `v_max`, which must be positive.
-    pub(crate) fn capped(&self, v_max: f64) -> PathGrid {
+    /// The same path with the path speed on each interval capped at a positive number.
+    pub(crate) fn capped(&self, v_max: impl Fn(usize) -> f64) -> PathGrid {
         let mut capped = self.clone();
-        for point in capped.ends.as_flattened_mut() {
-            point.v_max = point.v_max.min(v_max);
+        for (k, pair) in capped.ends.iter_mut().enumerate() {
+            for point in pair {
+                point.v_max = point.v_max.min(v_max(k));
+            }
         }
         capped
     }

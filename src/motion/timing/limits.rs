@@ -75,9 +75,42 @@ impl Row {
         }
     }
 
+    /// Bound on the absolute value while |u| and b are at most these.
+    pub(crate) fn largest(&self, u: f64, b: f64) -> f64 {
+        // Without inertia the acceleration does not matter, however large it may be.
+        let inertial = if self.u == 0.0 { 0.0 } else { self.u.abs() * u };
+        inertial + self.b.abs() * b + self.root.abs() * b.sqrt() + self.constant.abs()
+    }
+
     /// The left side without the absolute value.
     pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
         self.u * u + self.b * b + self.root * b.sqrt() + self.constant
+    }
+}
+
+/// Largest |u| that the acceleration limits of the joints allow at a place where b is at most
+/// `b_max`.
+pub(crate) fn largest_acceleration(point: &PathPoint, limits: &PathLimits, b_max: f64) -> f64 {
+    let bound = |j: usize| {
+        let row = acceleration_row(point, limits, j);
+        (1.0 + row.constant.abs() + row.b.abs() * b_max) / row.u.abs()
+    };
+    // Rows are left out by this: a hair of room for the tolerance on the others.
+    (0..DOF).map(bound).fold(f64::INFINITY, f64::min) * 1.001
+}
+
+fn acceleration_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
+    let w = 1.0 / (limits.acceleration[j] * point.capability[j]);
+    Row { u: w * point.q1[j], b: w * point.q2[j], constant: point.bias[j], ..Row::default() }
+}
+
+fn torque_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
+    let w = 1.0 / limits.torque[j];
+    Row {
+        u: w * point.m[j],
+        b: w * point.c[j],
+        root: w * point.viscous[j],
+        constant: w * (point.g[j] + point.coulomb[j]),
     }
 }
 
@@ -85,21 +118,44 @@ impl Row {
 pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item = Row> {
     let point = *point;
     let limits = *limits;
-    let acceleration = move |j: usize| {
-        let w = 1.0 / (limits.acceleration[j] * point.capability[j]);
-        Row { u: w * point.q1[j], b: w * point.q2[j], constant: point.bias[j], ..Row::default() }
-    };
-    let torque = move |j: usize| {
-        let w = 1.0 / limits.torque[j];
-        Row {
-            u: w * point.m[j],
-            b: w * point.c[j],
-            root: w * point.viscous[j],
-            constant: w * (point.g[j] + point.coulomb[j]),
-        }
-    };
-    let joints = (0..DOF).flat_map(move |j| [acceleration(j), torque(j)]);
+    let joints = (0..DOF)
+        .flat_map(move |j| [acceleration_row(&point, &limits, j), torque_row(&point, &limits, j)]);
     joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
+}
+
+/// What a row limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowKind {
+    Acceleration,
+    Torque,
+    Tcp,
+}
+
+/// The kind of the row that the profile b uses most on interval k.
+pub(crate) fn tightest_row(
+    grid: &PathGrid,
+    limits: &PathLimits,
+    b: &[f64],
+    interval: usize,
+) -> RowKind {
+    let u = (b[interval + 1] - b[interval]) / (2.0 * grid.delta(interval));
+    let mut tightest = (0.0, RowKind::Acceleration);
+    for (point, b) in grid.ends()[interval].iter().zip(&b[interval..interval + 2]) {
+        let mut see = |row: Row, kind: RowKind| {
+            let value = row.value(u, *b).abs();
+            if value > tightest.0 {
+                tightest = (value, kind);
+            }
+        };
+        for j in 0..DOF {
+            see(acceleration_row(point, limits, j), RowKind::Acceleration);
+            see(torque_row(point, limits, j), RowKind::Torque);
+        }
+        for row in point.tcp_rows {
+            see(row, RowKind::Tcp);
+        }
+    }
+    tightest.1
 }
 
 /// The largest share of a limit that the profile b (one per node) uses at the ends of the

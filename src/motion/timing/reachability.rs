@@ -11,7 +11,7 @@
 //! are repeated until the profile stays.
 
 use super::grid::PathGrid;
-use super::limits::{PathLimits, Row, rows, worst_ratio};
+use super::limits::{PathLimits, Row, largest_acceleration, rows, worst_ratio};
 use super::profile::Profile;
 
 /// How the search for the fastest profile ended.
@@ -169,7 +169,11 @@ impl Stages {
         for (k, pair) in grid.ends().iter().enumerate() {
             let per_u = 0.5 / grid.delta(k);
             for (end, point) in pair.iter().enumerate() {
-                for Row { u, b, root, constant } in rows(point, limits) {
+                let b_max = stages.b_max[k + end];
+                let u_max = largest_acceleration(point, limits, b_max);
+                // A row that no profile within the other limits can reach is left out.
+                let binding = rows(point, limits).filter(|row| row.largest(u_max, b_max) > 1.0);
+                for Row { u, b, root, constant } in binding {
                     let (mut x, mut y) = (-per_u * u, per_u * u);
                     *(if end == 0 { &mut x } else { &mut y }) += b;
                     stages.viscous |= root != 0.0;
