@@ -1,7 +1,6 @@
 //! Identification from ten minutes at 100 Hz: 60,000 rows as CSV, to a model.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed bench")]
-#![expect(missing_docs, reason = "criterion writes the entry points")]
 
 use std::fmt::Write as _;
 use std::hint::black_box;
