@@ -23,6 +23,7 @@ CONST robtarget b25:=[[700,150,700],[0,0.2164396,0.9762960,0],[0,0,0,0],[9E9,9E9
 CONST robtarget d25:=[[1000,150,700],[0,0.2164396,0.9762960,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
 VAR num n:=0;
 VAR num endless:=1;
+VAR bool late:=FALSE;
 ";
 
 fn irb1600() -> Model {
@@ -372,4 +373,239 @@ fn external_axes_take_their_time() {
         .map(|event| event.duration)
         .collect();
     assert_eq!(waits, [0.0, 3.0, 7.0]);
+}
+
+fn reasons(simulation: &Simulation) -> Vec<&str> {
+    simulation.unresolved.iter().map(|note| note.reason.as_str()).collect()
+}
+
+fn waits(simulation: &Simulation) -> Vec<f64> {
+    let waits = simulation.events.iter().filter(|e| matches!(e.what, What::Wait(_)));
+    waits.map(|event| event.duration).collect()
+}
+
+fn with_input(body: &str, seconds: f64) -> Simulation {
+    let inputs = BTreeMap::from([("dipart".to_owned(), seconds)]);
+    run_with(&irb1600(), body, &Options { inputs, ..Options::default() })
+}
+
+/// Rounding of times, s.
+const TIME: f64 = 1e-9;
+/// Longer than any of the movements between a, b and c below, s.
+const ONE_MOVE: f64 = 2.0;
+
+#[test]
+fn fly_by_motion_without_end_is_stopped_within_the_instruction() {
+    let loops = [
+        "WHILE endless=1 DO\nMoveL b,v500,z10,tool0;\nMoveL a,v500,z10,tool0;\nENDWHILE",
+        "FOR i FROM 1 TO 90000 DO\nMoveL b,v500,z10,tool0;\nMoveL a,v500,z10,tool0;\nENDFOR",
+    ];
+    for body in loops {
+        let body = format!("MoveJ a,v1000,fine,tool0;\n{body}");
+        let options = Options { max_time: Some(20.0), ..Options::default() };
+        let simulation = run_with(&irb1600(), &body, &options);
+        let cycle = simulation.cycle_s;
+        assert!((20.0..20.0 + ONE_MOVE).contains(&cycle), "{cycle}");
+        let told: Vec<&str> = reasons(&simulation);
+        assert!(told.iter().any(|r| r.contains("--max-time")), "{told:?}");
+        let moves: usize = runs(&simulation).iter().map(|run| run.moves.len()).sum();
+        assert!((20..60).contains(&moves), "{moves}");
+        let last = runs(&simulation).last().unwrap().at(cycle);
+        assert!(last.qd.iter().all(|qd| *qd == 0.0), "{last:?}");
+    }
+}
+
+#[test]
+fn the_last_instruction_beyond_the_largest_time_is_told() {
+    let options = Options { max_time: Some(20.0), ..Options::default() };
+    let simulation = run_with(&irb1600(), "MoveJ a,v1000,fine,tool0;\nWaitTime 60;", &options);
+    assert!(reasons(&simulation).iter().any(|r| r.contains("--max-time")));
+    let simulation = run_with(&irb1600(), "MoveJ a,v1000,fine,tool0;\nWaitTime 6;", &options);
+    assert!(reasons(&simulation).is_empty());
+}
+
+#[test]
+fn waits_time_out() {
+    let start = "MoveAbsJ home,v1000,fine,tool0;\n";
+    let wait = |options: &str| format!("{start}WaitDI diPart,1{options};\nIF late WaitTime 9;");
+    assert_eq!(waits(&with_input(&wait("\\MaxTime:=2\\TimeFlag:=late"), 5.0)), [2.0, 9.0]);
+    assert_eq!(waits(&with_input(&wait("\\MaxTime:=7\\TimeFlag:=late"), 5.0)), [5.0]);
+    let until = format!("{start}WaitUntil diPart=1\\MaxTime:=2;\nWaitTime 9;");
+    let ended = with_input(&until, 5.0);
+    assert_eq!(waits(&ended), [2.0]);
+    assert!(reasons(&ended).iter().any(|r| r.contains("ERR_WAIT_MAXTIME")), "{ended:?}");
+}
+
+#[test]
+fn handlers_take_what_times_out() {
+    let program = |handler: &str| {
+        format!(
+            "MoveAbsJ home,v1000,fine,tool0;\nWaitDI diPart,1\\MaxTime:=2;\nWaitTime 9;\nERROR\n\
+             IF ERRNO=ERR_WAIT_MAXTIME THEN\n{handler}\nENDIF"
+        )
+    };
+    // Three tries of two seconds reach the five of the input.
+    assert_eq!(waits(&with_input(&program("RETRY;"), 5.0)), [2.0, 2.0, 1.0, 9.0]);
+    assert_eq!(waits(&with_input(&program("TRYNEXT;"), 5.0)), [2.0, 9.0]);
+    assert_eq!(waits(&with_input(&program("RETURN;"), 5.0)), [2.0]);
+    let never = with_input(&program("RETRY;"), 500.0);
+    assert_eq!(waits(&never), [2.0; 5]);
+    assert!(reasons(&never).iter().any(|r| r.contains("ERR_EXCRTYMAX")), "{:?}", reasons(&never));
+}
+
+#[test]
+fn stop_points_wait_for_their_condition() {
+    let time = |option: &str| {
+        duration(&format!("MoveJ a,v1000,fine,tool0;\nMoveL b,v500,z10{option},tool0;"))
+    };
+    let fine = duration("MoveJ a,v1000,fine,tool0;\nMoveL b,v500,fine,tool0;");
+    let longer = |option: &str, seconds: f64| {
+        let more = time(option) - fine;
+        assert!((more - seconds).abs() < TIME, "{option}: {more} s");
+    };
+    longer("\\Inpos:=stoptime0_5", 0.5);
+    longer("\\Inpos:=stoptime1_5", 1.5);
+    longer("\\Inpos:=fllwtime1_0", 1.0);
+    longer("\\Inpos:=inpos100", 0.0);
+    longer("\\Inpos:=[inpos,TRUE,[100,100,0.3,2],0,0,\"\",0,0]", 0.3);
+    longer("\\Inpos:=[inpos,TRUE,[1,1,0,0.1],0,0,\"\",0,0]", 0.1);
+    assert!(time("\\Inpos:=inpos20") > time("\\Inpos:=inpos50"));
+    assert!(time("\\Inpos:=inpos50") > fine + 0.01);
+}
+
+#[test]
+fn a_test_on_an_input_tells_its_other_ways() {
+    let body = "MoveJ a,v1000,fine,tool0;\nTEST giPart\nCASE 1:\nMoveL b,v500,fine,tool0;\n\
+                CASE 3,4:\nMoveL c,v500,fine,tool0;\nMoveL b,v500,fine,tool0;\nENDTEST";
+    let zero = simulated(body);
+    assert_eq!(runs(&zero).len(), 1);
+    let told = reasons(&zero).join("\n");
+    assert!(told.contains("2 other branches (3 instructions)"), "{told}");
+    assert!(told.contains("--assume giPart"), "{told}");
+    // Through a variable too.
+    let body_of = |value: &str| body.replace("TEST giPart", &format!("n:={value};\nTEST n"));
+    let told = reasons(&simulated(&body_of("giPart+0"))).join("\n");
+    assert!(told.contains("2 other branches") && told.contains("--assume giPart"), "{told}");
+    assert!(reasons(&simulated(&body_of("0"))).is_empty());
+    let levels = BTreeMap::from([("gipart".to_owned(), 3.0)]);
+    let three = run_with(&irb1600(), body, &Options { levels, ..Options::default() });
+    assert_eq!(runs(&three).len(), 3);
+    assert!(reasons(&three).join("\n").contains("1 other branch (1 instruction)"));
+}
+
+/// Loops that only ask for an input; all go on once it is there.
+const POLLING: [&str; 7] = [
+    "again:\nIF diPart=0 THEN\nWaitTime 0.1;\nGOTO again;\nENDIF",
+    "again:\nIF diPart=0 GOTO again;",
+    "again:\nWaitTime 0.1;\nIF diPart=1 GOTO done;\nGOTO again;\ndone:",
+    "again:\nn:=n+1;\nIF diPart=0 THEN\nGOTO again;\nELSE\nENDIF",
+    "WHILE diPart=0 DO\nWaitTime 0.1;\nENDWHILE",
+    "WHILE TRUE DO\nIF diPart=1 GOTO done;\nWaitTime 0.1;\nENDWHILE\ndone:",
+    "FOR i FROM 1 TO 90000 DO\nIF diPart=1 GOTO done;\nWaitTime 0.1;\nENDFOR\ndone:",
+];
+
+#[test]
+fn loops_that_poll_an_input_are_waits_for_it() {
+    for poll in POLLING {
+        let body = format!("MoveAbsJ home,v1000,fine,tool0;\n{poll}\nMoveJ a,v1000,fine,tool0;");
+        let unknown = simulated(&body);
+        assert_eq!(runs(&unknown).len(), 1, "{poll}: {:?}", reasons(&unknown));
+        assert!(waits(&unknown).len() <= 3, "{poll}: {:?}", waits(&unknown));
+        let told = reasons(&unknown);
+        assert!(told.iter().any(|r| r.contains("--input diPart=SECONDS")), "{poll}: {told:?}");
+        let known = with_input(&body, 5.0);
+        let sum: f64 = waits(&known).iter().sum();
+        // The pass in which the input is seen may take its time besides.
+        assert!((5.0 - TIME..5.1 + TIME).contains(&sum), "{poll}: {:?}", waits(&known));
+        assert_eq!(runs(&known).len(), 1, "{poll}");
+        assert!(known.repeats_from.is_none(), "{poll}");
+    }
+}
+
+#[test]
+fn a_counted_loop_gives_up_before_the_input_comes() {
+    let body = "MoveAbsJ home,v1000,fine,tool0;\nFOR i FROM 1 TO 20 DO\nIF diPart=1 GOTO done;\n\
+                WaitTime 0.1;\nENDFOR\nWaitTime 7;\ndone:";
+    let sum: f64 = waits(&with_input(body, 5.0)).iter().sum();
+    assert!((sum - 9.0).abs() < 0.11, "{sum}");
+}
+
+#[test]
+fn loops_that_move_until_an_input_comes_move_so_long() {
+    for body in [
+        "again:\nMoveL b,v500,z10,tool0;\nMoveL a,v500,fine,tool0;\nIF diPart=0 GOTO again;",
+        "WHILE diPart=0 DO\nMoveL b,v500,z10,tool0;\nMoveL a,v500,fine,tool0;\nENDWHILE",
+    ] {
+        let body = format!("MoveJ a,v1000,fine,tool0;\n{body}\nWaitTime 1;");
+        let unknown = simulated(&body);
+        let told = reasons(&unknown);
+        assert_eq!(runs(&unknown).len(), 2, "{told:?}");
+        assert!(told.iter().any(|r| r.contains("the first pass")), "{told:?}");
+        assert_eq!(waits(&unknown), [1.0]);
+        let known = with_input(&body, 10.0);
+        let cycle = known.cycle_s - 1.0;
+        assert!((10.0..10.0 + ONE_MOVE).contains(&cycle), "{cycle}");
+    }
+}
+
+#[test]
+fn settings_that_the_controller_refuses_or_that_are_not_simulated_are_told() {
+    for (setting, what) in [
+        ("VelSet 0,5000", "stops with an error"),
+        ("VelSet 250,5000", "stops with an error"),
+        ("VelSet 100,0", "stops with an error"),
+        ("SpeedRefresh 120", "stops with an error"),
+        ("PathAccLim TRUE\\AccMax:=0.01,FALSE", "0.1 m/s²"),
+        ("SoftAct 1,50", "not simulated"),
+        ("TuneServo ROB_1,1,80", "not simulated"),
+        ("CirPathMode\\CirPointOri", "not simulated"),
+        ("EOffsOn", "not simulated"),
+    ] {
+        let body = format!("MoveJ a,v1000,fine,tool0;\n{setting};\nMoveL b,v500,fine,tool0;");
+        let simulation = simulated(&body);
+        let told = reasons(&simulation);
+        assert!(told.len() == 1 && told[0].contains(what), "{setting}: {told:?}");
+        assert_eq!(runs(&simulation).len(), 2);
+    }
+    assert!(reasons(&simulated("CirPathMode\\PathFrame;\nSoftDeact;")).is_empty());
+}
+
+#[test]
+fn external_axes_have_speeds_of_their_own() {
+    let to = |x: f64, speed: &str| {
+        format!("MoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[{x},9E9,9E9,9E9,9E9,9E9]],{speed},fine;\n")
+    };
+    let body = [to(0.0, "vrot10"), to(30.0, "vrot10"), to(130.0, "vlin50")].concat();
+    let simulation = simulated(&format!("MoveJ a,v1000,fine,tool0;\n{body}"));
+    assert_eq!(waits(&simulation), [0.0, 3.0, 2.0]);
+}
+
+#[test]
+fn a_displacement_acts_in_the_frame_of_the_work_object() {
+    // The object lies a quarter turn to the left: its x is the world's y.
+    let object = "[FALSE,TRUE,\"\",[[700,0,700],[0.70710678,0,0,0.70710678]],[[0,0,0],[1,0,0,0]]]";
+    let point = "[[0,0,0],[0,0.70710678,0.70710678,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    let at = |settings: &str| {
+        let body = format!("{settings}MoveJ {point},v1000,fine,tool0\\WObj:={object};");
+        let simulation = simulated(&body);
+        assert!(reasons(&simulation).is_empty(), "{:?}", reasons(&simulation));
+        runs(&simulation).last().unwrap().legs[0].target.translation.vector
+    };
+    let shift = at("PDispSet [[100,0,0],[1,0,0,0]];\n") - at("");
+    assert!((shift - nalgebra::Vector3::new(0.0, 0.1, 0.0)).norm() < 1e-6, "{shift}");
+}
+
+#[test]
+fn logic_runs_during_concurrent_movements() {
+    let cycle = |conc: &str, wait: &str| {
+        let body =
+            format!("MoveJ a,v1000,fine,tool0;\nMoveL {conc}b,v100,fine,tool0;\nWaitTime {wait};");
+        simulated(&body).cycle_s
+    };
+    // The movement of 0.3 m at 100 mm/s hides a wait of one second, and three of five.
+    let moves = cycle("", "0");
+    assert!((cycle("", "1") - moves - 1.0).abs() < TIME);
+    assert!((cycle("\\Conc,", "1") - moves).abs() < TIME);
+    let rest = 1.0 + cycle("\\Conc,", "5") - moves;
+    assert!((2.5..3.0).contains(&rest), "{rest}");
 }

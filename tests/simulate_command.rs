@@ -32,9 +32,15 @@ fn the_report_is_one_page_with_everything_in_it() {
     let output = joulepath(&["simulate", "fixtures/hard/waits.mod", robot, name, "--report", path]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let html = fs::read_to_string(page).unwrap();
-    for part in
-        ["Cycle by instruction", "Electrical power", "Joint positions", "Source", "waits.mod"]
-    {
+    for part in [
+        "Cycle by instruction",
+        "Electrical power",
+        "Joint positions",
+        "Source",
+        "waits.mod",
+        "6 waits of unknown length counted as 0 s",
+        ">waits.mod:14 MoveAbsJ<",
+    ] {
         assert!(html.contains(part), "{part}");
     }
     assert!(!html.contains("<script") && !html.contains("http"), "nothing is loaded");
@@ -51,6 +57,10 @@ fn wrong_options_name_the_way_out() {
         ("--max-time", "-1", "above 0"),
         ("--input", "diPart", "SIGNAL=SECONDS"),
         ("--passes", "0", "1.."),
+        ("--assume", "diPrt=1", "names no signal"),
+        ("--input", "diStrat=1", "did you mean diStart?"),
+        ("--assume", "diStart=7", "0 or 1"),
+        ("--start", "0,0,0,0,900,0", "joint 5"),
     ] {
         let given = format!("{option}={value}");
         let arguments = [&program[..], &[given.as_str()]].concat();
@@ -89,4 +99,33 @@ fn levels_and_passes_change_what_runs() {
     let (_, notes) = moves(&["--passes", "1000", "--max-time", "30"]);
     let stopped = notes.iter().any(|note| note["reason"].as_str().unwrap().contains("--max-time"));
     assert!(stopped, "{notes:?}");
+}
+
+#[test]
+fn movements_that_do_more_are_marked_and_waits_have_their_joules() {
+    let [robot, name] = ROBOT;
+    let result = json(&["simulate", "fixtures/hard/trigger.mod", robot, name, "--format", "json"]);
+    let marks: Vec<(&str, &Value)> = result["moves"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| (m["instruction"].as_str().unwrap(), &m["mark"]))
+        .collect();
+    for (instruction, mark) in &marks {
+        let wanted = match instruction.get(..5) {
+            Some("Trigg") => Value::from("trigger"),
+            Some("Searc") => Value::from("search"),
+            _ if instruction.ends_with("Sync") => Value::from("call"),
+            _ if instruction.ends_with("DO") => Value::from("output"),
+            _ => Value::Null,
+        };
+        assert_eq!(**mark, wanted, "{instruction}");
+    }
+    assert!(marks.iter().any(|(_, mark)| !mark.is_null()), "{marks:?}");
+    let result = json(&["simulate", "fixtures/hard/waits.mod", robot, name, "--format", "json"]);
+    let moves = result["moves"].as_array().unwrap().iter();
+    let all = moves.chain(result["waits"].as_array().unwrap());
+    let sum: f64 = all.map(|part| part["energy_j"].as_f64().unwrap()).sum();
+    let total = result["energy_j"].as_f64().unwrap();
+    assert!((sum - total).abs() < 1e-9 * total, "{sum} {total}");
 }

@@ -11,6 +11,7 @@ use super::backup::motion_configuration;
 use super::choice;
 use super::input::{self, Input};
 use crate::config::{self, Config};
+use crate::kinematics::limits_ok;
 use crate::motion::timeline::What;
 use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
@@ -198,7 +199,7 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         speed_override: args.speed_override.map(|percent| percent / 100.0),
         passes: args.passes,
         max_time: args.max_time,
-        start: args.start.as_deref().map(|text| six_degrees("--start", text)).transpose()?,
+        start: args.start.as_deref().map(|text| start(&model, text)).transpose()?,
         inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
     };
     let files: Vec<Source> = choice
@@ -278,10 +279,22 @@ fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
     Ok((Config::default(), PathBuf::new()))
 }
 
+/// Where the robot stands at first \[rad\].
+fn start(model: &Model, text: &str) -> anyhow::Result<[f64; 6]> {
+    let q = six_degrees("--start", text)?;
+    if let Err(error) = limits_ok(model, &q) {
+        bail!("--start {text}: {error}; give a position that {} can have", model.name);
+    }
+    Ok(q)
+}
+
 fn input_level(text: &str) -> anyhow::Result<(String, f64)> {
     let wrong = || format!("--assume {text}: write it as SIGNAL=LEVEL, such as di1=1");
     let (name, level) = text.split_once('=').with_context(wrong)?;
     let level: f64 = level.trim().parse().map_err(|_| anyhow::anyhow!(wrong()))?;
+    if !level.is_finite() {
+        bail!(wrong());
+    }
     Ok((name.trim().to_owned(), level))
 }
 

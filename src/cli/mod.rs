@@ -14,6 +14,7 @@ pub mod output;
 pub mod parse;
 pub mod predict;
 pub mod robots;
+pub mod signals;
 pub mod simulate;
 pub mod standstill;
 

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::common::{self, Format, ProgramArgs};
-use super::output;
+use super::{output, signals};
 use crate::energy::account;
 use crate::energy::trajectory::trajectory;
 use crate::motion;
@@ -41,6 +41,7 @@ pub struct SimulateArgs {
 pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let job = common::prepare(&args.program)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
+    signals::check(&args.program, &job.options.levels, &program)?;
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);
     let account = account(&job.model, &simulation);
     let sources = job.sources();
@@ -56,7 +57,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
             output::write(path, page.as_bytes())?;
         }
     }
-    let notes = job.unused_inputs(&simulation);
+    let mut notes = job.unused_inputs(&simulation);
+    notes.extend(signals::unused_levels(&args.program, &simulation));
     for text in &notes {
         common::note(args.program.quiet, text);
     }

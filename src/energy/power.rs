@@ -103,7 +103,7 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
 }
 
 /// Longest interval of the quadrature, s.
-const MAX_STEP: f64 = 0.01;
+const MAX_STEP: f64 = 0.02;
 /// Gauss-Legendre with three points on [−1, 1]: exact up to degree 5.
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
-use super::movement::{LoadData, RobTarget, Speed, Tool, WorkObject, Zone};
+use super::movement::{LoadData, RobTarget, Speed, Stop, Tool, WorkObject, Zone};
 use super::value::Datum;
 
 const MM: f64 = 1e-3;
@@ -128,6 +128,24 @@ pub(super) fn zone(datum: &Datum) -> Converted<Zone> {
         orientation: ori.max(tcp) * MM,
         angle: angle.to_radians(),
     })
+}
+
+/// A `stoppointdata`.
+pub(super) fn stop(datum: &Datum) -> Converted<Stop> {
+    const WHAT: &str = "the stop point";
+    let [kind, _, inpos, stop_time, follow_time, ..] = parts::<8>(datum, WHAT)?;
+    let time = |datum: &Datum| Ok(Stop::Time(num(datum, WHAT)?.max(0.0)));
+    match num(kind, WHAT)? {
+        1.0 => {
+            let [position, speed, least, most] = nums::<4>(inpos, WHAT)?;
+            let share = (position.min(speed) / 100.0).max(0.0);
+            let least = least.max(0.0);
+            Ok(Stop::InPosition { share, least, most: most.max(least) })
+        }
+        2.0 => time(stop_time),
+        3.0 => time(follow_time),
+        kind => Err(format!("{WHAT} has the type {kind}: give inpos, stoptime or fllwtime")),
+    }
 }
 
 /// A `loaddata`.

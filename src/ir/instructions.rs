@@ -146,6 +146,7 @@ const HARMLESS: &[&str] = &[
     "clkreset",
     "clkstart",
     "clkstop",
+    "cirpathmode",
     "close",
     "closedir",
     "confj",

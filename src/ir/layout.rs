@@ -58,6 +58,19 @@ pub fn components(type_key: &str) -> Option<Components> {
             ("zone_leax", "num"),
             ("zone_reax", "num"),
         ],
+        "stoppointdata" => &[
+            ("type", "stoppoint"),
+            ("progsynch", "bool"),
+            ("inpos", "inposdata"),
+            ("stoptime", "num"),
+            ("followtime", "num"),
+            ("signal", "string"),
+            ("relation", "opnum"),
+            ("checkvalue", "num"),
+        ],
+        "inposdata" => {
+            &[("position", "num"), ("speed", "num"), ("mintime", "num"), ("maxtime", "num")]
+        }
         "progdisp" => &[("pdisp", "pose"), ("eoffs", "extjoint")],
         _ => return None,
     })

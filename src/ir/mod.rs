@@ -12,6 +12,7 @@ pub mod movement;
 pub mod number;
 pub mod predefined;
 pub mod program;
+pub mod signals;
 pub mod value;
 
 pub use instructions::is_movement;

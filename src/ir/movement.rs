@@ -48,6 +48,25 @@ pub struct Zone {
     pub angle: f64,
 }
 
+/// What a stop point waits for before the next movement begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// Nothing but standing: `fine`.
+    Fine,
+    /// A time, s: `stoptime` and `fllwtime`.
+    Time(f64),
+    /// A share of the errors of position and speed at which `fine` is reached, but at least and
+    /// at most so long, s: `inpos`.
+    InPosition {
+        /// 1 = as for `fine`.
+        share: f64,
+        /// s.
+        least: f64,
+        /// s.
+        most: f64,
+    },
+}
+
 /// A `loaddata`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadData {
@@ -184,6 +203,8 @@ pub struct Movement {
     pub time: Option<f64>,
     /// Zone, `\Z` and `\Inpos` applied.
     pub zone: Zone,
+    /// `\Inpos`: what it waits for at a stop point.
+    pub stop: Stop,
     /// Tool.
     pub tool: Tool,
     /// Work object.
@@ -224,6 +245,8 @@ pub struct Wait {
     pub routine: Arc<str>,
     /// Length in s where the program states it.
     pub duration: Option<f64>,
+    /// `\MaxTime`: longest that it lasts, s.
+    pub max_time: Option<f64>,
     /// The input that it waits for.
     pub signal: Option<Arc<str>>,
     /// For what it waits, in words, where neither is known.

@@ -16,6 +16,39 @@ const VMAX: f64 = 7000.0;
 /// Reorientation, linear and rotating external axis speed of all `vN`.
 const OTHER_SPEEDS: [f64; 3] = [500.0, 5000.0, 1000.0];
 
+/// Speeds of turning external axes that exist as `vrotN`, °/s.
+const TURNING: [u32; 7] = [1, 2, 5, 10, 20, 50, 100];
+/// Speeds of linear external axes that exist as `vlinN`, mm/s.
+const LINEAR: [u32; 7] = [10, 20, 50, 100, 200, 500, 1000];
+/// Stop points `inposN`: % of the errors of position and speed that `fine` allows.
+const IN_POSITION: [u32; 3] = [20, 50, 100];
+/// Longest time that they wait, s.
+const IN_POSITION_WAIT: f64 = 2.0;
+/// Stop points `stoptimeT` and `fllwtimeT`, s.
+const STOP_TIMES: [(&str, f64); 3] = [("0_5", 0.5), ("1_0", 1.0), ("1_5", 1.5)];
+
+/// Error numbers that handlers compare `ERRNO` with; a number stands for itself here.
+const ERRORS: [&str; 18] = [
+    "err_acc_too_low",
+    "err_ao_lim",
+    "err_conc_max",
+    "err_divzero",
+    "err_fileopen",
+    "err_go_lim",
+    "err_no_aliasio_def",
+    "err_norununit",
+    "err_outofbnd",
+    "err_path_stop",
+    "err_roblimit",
+    "err_sig_not_valid",
+    "err_sigsupsearch",
+    "err_sock_closed",
+    "err_sock_timeout",
+    "err_speed_refresh_lim",
+    "err_wait_maxtime",
+    "err_whlsearch",
+];
+
 /// `zN`: `pzone_tcp, pzone_ori, pzone_eax` (mm), `zone_ori` (deg), `zone_leax, zone_reax`.
 const ZONES: [(&str, [f64; 6]); 15] = [
     ("z0", [0.3, 0.3, 0.3, 0.03, 0.3, 0.03]),
@@ -60,8 +93,30 @@ pub fn lookup(key: &str) -> Option<Value> {
         "pi" => Value::constant(Datum::Num(std::f64::consts::PI), "num"),
         "high" | "edge" => Value::constant(Datum::Num(1.0), "num"),
         "low" => Value::constant(Datum::Num(0.0), "num"),
+        "inpos" => Value::constant(Datum::Num(1.0), "stoppoint"),
+        "stoptime" => Value::constant(Datum::Num(2.0), "stoppoint"),
+        "fllwtime" => Value::constant(Datum::Num(3.0), "stoppoint"),
         "stempty" => Value::constant(Datum::Text("".into()), "string"),
+        _ if ERRORS.contains(&key) => {
+            Value::constant(Datum::Text(key.to_uppercase().into()), "errnum")
+        }
         _ => {
+            if let Some(share) = key.strip_prefix("inpos") {
+                return known(share, &IN_POSITION).map(|share| stop(1.0, share, 0.0, 0.0));
+            }
+            for (prefix, kind) in [("stoptime", 2.0), ("fllwtime", 3.0)] {
+                if let Some(seconds) = key.strip_prefix(prefix) {
+                    let (_, time) = STOP_TIMES.iter().find(|(name, _)| *name == seconds)?;
+                    let (stands, follows) = if kind < 3.0 { (*time, 0.0) } else { (0.0, *time) };
+                    return Some(stop(kind, 0.0, stands, follows));
+                }
+            }
+            if let Some(turning) = key.strip_prefix("vrot") {
+                return known(turning, &TURNING).map(|v| external_speed([0.0, v]));
+            }
+            if let Some(linear) = key.strip_prefix("vlin") {
+                return known(linear, &LINEAR).map(|v| external_speed([v, 0.0]));
+            }
             let number: u32 = key.strip_prefix('v')?.parse().ok()?;
             let known = SPEEDS.contains(&number) || FAST_SPEEDS.contains(&number);
             return known.then(|| speed(f64::from(number)));
@@ -87,6 +142,33 @@ fn nums(values: &[f64]) -> Datum {
 
 fn identity_pose() -> Datum {
     Datum::List(vec![nums(&[0.0; 3]), nums(&[1.0, 0.0, 0.0, 0.0])])
+}
+
+/// The number in a name, if it is one of the list.
+fn known(text: &str, list: &[u32]) -> Option<f64> {
+    let number: u32 = text.parse().ok()?;
+    list.contains(&number).then_some(f64::from(number))
+}
+
+/// A `speeddata` for external axes alone: linear and turning.
+fn external_speed([linear, turning]: [f64; 2]) -> Value {
+    Value::constant(nums(&[0.0, 0.0, linear, turning]), "speeddata")
+}
+
+/// A `stoppointdata`.
+fn stop(kind: f64, share: f64, stands: f64, follows: f64) -> Value {
+    let inpos = if share > 0.0 { [share, share, 0.0, IN_POSITION_WAIT] } else { [0.0; 4] };
+    let list = vec![
+        Datum::Num(kind),
+        Datum::Bool(stands <= 0.0),
+        nums(&inpos),
+        Datum::Num(stands),
+        Datum::Num(follows),
+        Datum::Text("".into()),
+        Datum::Num(0.0),
+        Datum::Num(0.0),
+    ];
+    Value::constant(Datum::List(list), "stoppointdata")
 }
 
 fn speed(v_tcp: f64) -> Value {

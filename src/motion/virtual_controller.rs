@@ -1,19 +1,24 @@
 //! The virtual controller: executes a program and lays its movements on a time line.
 
+mod load;
+mod time_limit;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Isometry3;
 use rayon::prelude::*;
+
+use load::{effective_load, gripped, gripping};
 
 use super::controller::assumed;
 use super::run_plan::{Planned, plan_run};
 use super::sampling::Loaded;
 use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord, What};
 use crate::dynamics::Load;
-use crate::ir::exec::{Machine, Note, execute};
+use crate::ir::exec::{Machine, Note, Waited, execute};
 use crate::ir::instructions::MoveForm;
-use crate::ir::movement::{LoadData, Movement, Output, Settings, Target, Tool, Unresolved, Wait};
+use crate::ir::movement::{Movement, Output, Settings, Stop, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
 use crate::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
@@ -62,6 +67,10 @@ pub fn simulate(
         time: 0.0,
         events: Vec::new(),
         pending: Vec::new(),
+        pending_s: 0.0,
+        ahead: 0.0,
+        waited_last: Waited::Ended,
+        assumed: Vec::new(),
         drafts: Vec::new(),
         notes: Vec::new(),
         repeats_from: None,
@@ -70,7 +79,9 @@ pub fn simulate(
     let execution = execute(program, entry, &mut machine);
     machine.flush();
     machine.lay_out();
+    machine.tell_length();
     let mut assumptions = execution.assumed;
+    assumptions.append(&mut machine.assumed);
     assumptions.extend(assumed(model).filter(|_| machine.moved));
     let mut unresolved = execution.unresolved;
     unresolved.append(&mut machine.notes);
@@ -108,6 +119,14 @@ struct VirtualController<'a> {
     time: f64,
     events: Vec<Event>,
     pending: Vec<Pending>,
+    /// Time that the pending movements take at their speeds, s.
+    pending_s: f64,
+    /// Time by which the logic is ahead of the motion (`\Conc`), s.
+    ahead: f64,
+    /// How the wait that was laid out last ended.
+    waited_last: Waited,
+    /// What was assumed about the controller on the way.
+    assumed: Vec<String>,
     /// What is not on the time line yet: each becomes one event.
     drafts: Vec<Draft>,
     notes: Vec<Note>,
@@ -142,18 +161,14 @@ enum Draft {
     Left(Unresolved),
 }
 
-impl Draft {
-    fn span(&self) -> Span {
-        match self {
-            Draft::Run(run) => run.movements[run.movements.len() - 1].span,
-            Draft::Wait(wait) => wait.wait.span,
-            Draft::Output(output, _) => output.span,
-            Draft::Left(left) => left.span,
-        }
-    }
-}
-
 impl RunDraft {
+    /// The first movements of it alone: the robot stops behind them.
+    fn truncate(&mut self, count: usize) {
+        self.movements.truncate(count);
+        self.legs.truncate(count);
+        self.times.truncate(count);
+    }
+
     fn plan(&self, model: &Model) -> Planned {
         let loaded = Loaded { model, load: &self.load };
         plan_run(loaded, &self.legs, &self.movements, &self.times, &self.settings)
@@ -163,6 +178,10 @@ impl RunDraft {
 /// Drafts that are planned together: they share the processors, and an endless program does not
 /// run far beyond the time at which it is stopped.
 const BATCH: usize = 256;
+
+/// Time constant with which the error of the servos dies away at a stop point, s. Chosen: position
+/// loops of such robots close at some 20/s; no measurement of stop points with `inpos` is known.
+const SERVO_S: f64 = 0.05;
 
 /// Events of a simulation: more are not kept.
 const MAX_EVENTS: usize = 200_000;
@@ -191,9 +210,12 @@ impl Machine for VirtualController<'_> {
                 self.q = leg.end;
                 self.tool = Some(gripping(&movement));
                 let fine = leg.zone.fine;
+                self.pending_s += self.time_at_speed(&leg, &movement);
                 self.pending.push(Pending { movement, leg });
                 if fine {
                     self.flush();
+                } else {
+                    self.flush_if_late();
                 }
             }
             Err(reason) => {
@@ -205,13 +227,19 @@ impl Machine for VirtualController<'_> {
         }
     }
 
-    fn waits(&mut self, wait: Wait) {
+    fn waits(&mut self, wait: Wait) -> Waited {
         self.flush();
+        let may_time_out = wait.max_time.is_some() && self.comes_at(&wait).is_some();
         let load = self
             .tool
             .as_ref()
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
         self.keep(Draft::Wait(Box::new(WaitDraft { wait, q: self.q, load })));
+        if !may_time_out {
+            return Waited::Ended;
+        }
+        self.lay_out();
+        self.waited_last
     }
 
     fn sets(&mut self, output: Output) {
@@ -231,6 +259,22 @@ impl Machine for VirtualController<'_> {
     fn repeats(&mut self) {
         // What is pending becomes the next event, and its end belongs to the loop.
         self.repeats_from.get_or_insert(self.events.len() + self.drafts.len());
+    }
+
+    fn leaves_loop(&mut self) {
+        self.repeats_from = None;
+    }
+
+    fn has_come(&mut self, signal: &str) -> Option<bool> {
+        let key = signal.to_lowercase();
+        let delay = *self.options.inputs.get(&key)?;
+        self.lay_out();
+        let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
+        let come = self.time + self.pending_s >= at;
+        if come {
+            self.waited.insert(key, at);
+        }
+        Some(come)
     }
 
     fn passes(&self) -> u32 {
@@ -282,8 +326,9 @@ impl VirtualController<'_> {
         // What does not move with the robot is stated in the world, solved in its base frame.
         let world = self.model.kinematics.base.inverse();
         let held = movement.tool.robhold;
-        let object = movement.settings.displacement.unwrap_or_else(Isometry3::identity)
-            * movement.wobj.frame;
+        // A program displacement moves the targets in the object's frame.
+        let displacement = movement.settings.displacement.unwrap_or_else(Isometry3::identity);
+        let object = movement.wobj.frame * displacement;
         let base = if held { world * object } else { object };
         let frame = movement.tool.frame;
         let tool = if held { Tcp::Held(frame) } else { Tcp::Stationary(world * frame) };
@@ -338,6 +383,7 @@ impl VirtualController<'_> {
     /// Keeps the pending movements as one run to a stop.
     fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
+        self.pending_s = 0.0;
         let Some(first) = pending.first() else { return };
         let settings = first.movement.settings.clone();
         let load = effective_load(&first.movement);
@@ -368,7 +414,6 @@ impl VirtualController<'_> {
             if self.late {
                 break;
             }
-            let span = draft.span();
             match (draft, plan) {
                 (Draft::Run(run), Some(plan)) => self.lay_run(*run, plan),
                 (Draft::Wait(wait), _) => self.lay_wait(*wait),
@@ -381,22 +426,24 @@ impl VirtualController<'_> {
                 }
                 (Draft::Run(_), None) => unreachable!("every run is planned"),
             }
-            let limit = self.options.max_time.unwrap_or(MAX_TIME);
-            if self.time > limit {
-                self.late = true;
-                self.note(
-                    span,
-                    &format!(
-                        "the cycle lasts longer than {limit} s (--max-time): it is shown up to here"
-                    ),
-                );
-            }
+            self.late = self.late || self.time > self.max_time();
         }
     }
 
     fn lay_run(&mut self, run: RunDraft, plan: Planned) {
+        let (run, plan) = self.in_time(run, plan);
         let RunDraft { movements, legs, load, .. } = run;
-        let Planned { motions, pieces, problem, settling_s } = plan;
+        let Planned { motions, mut pieces, problem, settling_s } = plan;
+        let stands = movements.last().map_or(0.0, |movement| self.stands(movement));
+        if let Some((duration, _)) = pieces.last_mut() {
+            *duration += stands;
+        }
+        // The logic goes on when a movement with \Conc begins.
+        let under_way = movements.iter().zip(&pieces).rev();
+        let under_way = under_way.take_while(|(movement, _)| movement.concurrent);
+        let ahead: f64 = under_way.map(|(_, (duration, _))| duration).sum();
+        let all = movements.iter().all(|movement| movement.concurrent);
+        self.ahead = if all { self.ahead + ahead } else { ahead };
         if let Some((leg, reason)) = &problem {
             self.note(movements[*leg].span, reason);
         }
@@ -413,7 +460,7 @@ impl VirtualController<'_> {
             end: legs[legs.len() - 1].end,
             legs,
             motions,
-            settling: 0.0,
+            settling: stands,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
         };
@@ -440,16 +487,48 @@ impl VirtualController<'_> {
         self.time += settling;
     }
 
+    /// When what a wait waits for comes, s from the start, if the user states it.
+    fn comes_at(&self, wait: &Wait) -> Option<f64> {
+        let key = wait.signal.as_ref()?.to_lowercase();
+        let delay = self.options.inputs.get(&key)?;
+        Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
+    }
+
+    /// Time that the robot stands at a stop point besides settling, s.
+    fn stands(&mut self, movement: &Movement) -> f64 {
+        match movement.stop {
+            Stop::Fine => 0.0,
+            Stop::Time(time) => time,
+            Stop::InPosition { share, least, most } => {
+                let text = format!(
+                    "at stop points with inpos the error of the servos dies away over {SERVO_S} s"
+                );
+                if !self.assumed.contains(&text) {
+                    self.assumed.push(text);
+                }
+                // The error that `fine` allows is reached without a wait; it dies away from there.
+                let longer = if share > 0.0 { -SERVO_S * share.ln() } else { f64::INFINITY };
+                longer.max(0.0).clamp(least, most)
+            }
+        }
+    }
+
     fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
-        let begin = self.time;
-        let known = wait.signal.as_ref().and_then(|signal| {
-            let key = signal.to_lowercase();
-            let delay = self.options.inputs.get(&key)?;
-            Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
-        });
-        let (duration, basis) = match (wait.duration, known) {
+        // What the logic does while a movement with \Conc is under way takes no time of its own.
+        let begin = self.time - self.ahead;
+        self.waited_last = Waited::Ended;
+        let (length, basis) = match (wait.duration, self.comes_at(&wait)) {
             (Some(duration), _) => (duration, WaitBasis::Stated),
-            (None, Some(at)) => ((at - begin).max(0.0), WaitBasis::Input),
+            (None, Some(at)) => {
+                let rest = (at - begin).max(0.0);
+                match wait.max_time {
+                    Some(most) if most < rest => {
+                        self.waited_last = Waited::TimedOut;
+                        (most, WaitBasis::Stated)
+                    }
+                    _ => (rest, WaitBasis::Input),
+                }
+            }
             (None, None) => {
                 let what = match (&wait.signal, &wait.other) {
                     (Some(signal), _) => format!(
@@ -465,46 +544,12 @@ impl VirtualController<'_> {
                 (0.0, WaitBasis::Unknown)
             }
         };
-        if let Some(signal) = &wait.signal {
-            self.waited.insert(signal.to_lowercase(), begin + duration);
+        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == Waited::Ended) {
+            self.waited.insert(signal.to_lowercase(), begin + length);
         }
+        let duration = (length - self.ahead).max(0.0);
+        self.ahead = (self.ahead - length).max(0.0);
         let record = WaitRecord { wait, basis, q, load, position_known: self.certain };
         self.push(duration, What::Wait(Box::new(record)));
-    }
-}
-
-/// Tool and payload at the flange.
-pub fn effective_load(movement: &Movement) -> Load {
-    if let Some(total) = &movement.total_load {
-        return load(total, &Isometry3::identity());
-    }
-    gripped(&gripping(movement), movement.settings.grip_load.as_ref())
-}
-
-/// The tool with the frame in which `GripLoad` states a load: that of the tool, or of the work
-/// object where the robot holds that.
-fn gripping(movement: &Movement) -> Tool {
-    let tool = movement.tool.clone();
-    if tool.robhold { tool } else { Tool { frame: movement.wobj.frame, ..tool } }
-}
-
-/// A tool with what `GripLoad` says that it holds.
-fn gripped(tool: &Tool, grip: Option<&LoadData>) -> Load {
-    let alone = load(&tool.load, &Isometry3::identity());
-    match grip {
-        Some(grip) => alone.with(&load(grip, &tool.frame)),
-        None => alone,
-    }
-}
-
-fn load(data: &LoadData, frame: &Isometry3<f64>) -> Load {
-    let [w, x, y, z] = data.axes;
-    let axes = frame.rotation * UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
-    let axes = axes.to_rotation_matrix();
-    let principal = Matrix3::from_diagonal(&Vector3::from(data.inertia));
-    Load {
-        mass: data.mass,
-        com: frame * nalgebra::Point3::from(Vector3::from(data.com)) - nalgebra::Point3::origin(),
-        inertia: axes * principal * axes.transpose(),
     }
 }

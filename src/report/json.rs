@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::mark::mark;
 use super::place::Places;
 use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
@@ -63,6 +64,7 @@ pub fn simulation(
                         "duration_s": record.duration,
                         "energy_j": known.then(|| part.energy_j()),
                         "limit": record.pace.name(),
+                        "mark": mark(&record.movement),
                     }));
                 }
             }
@@ -75,6 +77,7 @@ pub fn simulation(
                     "t_start_s": event.t_start,
                     "duration_s": event.duration,
                     "basis": basis(wait.basis),
+                    "energy_j": known.then(|| parts.iter().map(EnergyParts::energy_j).sum::<f64>()),
                 }));
             }
             What::Output(..) | What::Left(_) => {}

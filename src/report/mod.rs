@@ -3,6 +3,7 @@
 pub mod html;
 pub mod identify;
 pub mod json;
+mod mark;
 pub mod place;
 pub mod standstill;
 pub mod svg;

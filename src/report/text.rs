@@ -2,9 +2,11 @@
 
 use std::fmt::Write;
 
+use super::mark::mark;
 use super::place::Places;
 use super::table::{Align, table};
 use crate::energy::{Account, EnergyParts};
+use crate::ir::movement::Movement;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::retrofit::{Retrofit, SegmentKind};
@@ -28,7 +30,7 @@ pub fn simulation(
                 for (record, part) in run.moves.iter().zip(parts) {
                     rows.push(vec![
                         places.of(record.movement.span).to_string(),
-                        record.movement.instruction.to_string(),
+                        marked(&record.movement),
                         record.movement.routine.to_string(),
                         format!("{:.3}", event.t_start + record.t_start),
                         format!("{:.3}", record.duration),
@@ -84,6 +86,14 @@ pub fn simulation(
         let _ = writeln!(out, "; the robot's file has no dynamics, so no energy");
     }
     out
+}
+
+/// The instruction, with what it does besides moving.
+fn marked(movement: &Movement) -> String {
+    match mark(movement) {
+        Some(mark) => format!("{} ({mark})", movement.instruction),
+        None => movement.instruction.to_string(),
+    }
 }
 
 /// Notes on a simulation: what could not be simulated and what was assumed, one a line.

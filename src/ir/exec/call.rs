@@ -7,7 +7,7 @@ use super::super::predefined;
 use super::super::program::{RoutineId, Symbol};
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::eval::declared_twice;
-use super::flow::Flow;
+use super::flow::{Flow, Raised};
 use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
 use crate::text::Span;
 
@@ -100,14 +100,19 @@ impl Executor<'_> {
         {
             return cell;
         }
+        self.seen_input = None;
         let mut value = self.eval(expr);
+        if let Datum::Signal(_) = value.datum {
+            self.seen_input = None;
+        }
+        let input = self.seen_input.clone();
         let alias = self.alias(expr, &value);
         // A signal is passed on as such.
         if !matches!(value.datum, Datum::Signal(_)) {
             value.type_key = param.type_name.key.as_str().into();
         }
         let reading = Origin::of(Dependence::Local(param.name.text.as_str().into()));
-        self.cells.push(Cell { value, reading, read_only: false, alias });
+        self.cells.push(Cell { value, reading, read_only: false, alias, input });
         self.cells.len() - 1
     }
 
@@ -142,30 +147,24 @@ impl Executor<'_> {
         for (_, cell) in &names {
             given.join(&self.cells[*cell].value.origin);
         }
+        let name = routine.name.text.as_str().into();
         self.frames.push(Frame {
-            module: id.module,
-            routine: routine.name.text.as_str().into(),
             names,
             present,
+            base: cells,
+            ..Frame::new(id.module, name, Some(id))
         });
         for data in &routine.data {
             self.declare_local(data);
         }
-        let mut flow = self.block(&routine.body);
-        if let Flow::Raised(at) = flow
-            && let Some((_, handler)) = routine.error.first()
-        {
-            self.unresolved(at, "the error is taken by the handler of the routine");
-            flow = match self.block(handler) {
-                Flow::Resume => Flow::Next,
-                other => other,
-            };
-        }
+        let flow = self.block(&routine.body);
         self.frames.pop();
         // Module data that were first used in the routine keep their cells.
         self.cells.truncate(cells.max(self.kept_cells));
         match flow {
-            Flow::Next | Flow::Resume => Flow::Return(None),
+            Flow::Next | Flow::Retry | Flow::TryNext => Flow::Return(None),
+            // The caller's handler is the next that may take it.
+            Flow::Raised(raised) => Flow::Raised(Raised { leaves: false, ..raised }),
             // A function's value depends on its arguments, which only it knows by name.
             Flow::Return(Some(mut value)) => {
                 value.origin.join(&given);

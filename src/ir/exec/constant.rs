@@ -4,7 +4,7 @@ use super::super::hir::{Expr, ExprKind, Ident};
 use super::super::movement::{Movement, Output, Unresolved, Wait};
 use super::super::program::{DataId, Program};
 use super::super::value::{Datum, Dependence, Value};
-use super::{Executor, Frame, Machine};
+use super::{Executor, Frame, Machine, Waited};
 
 /// The value of an expression that stands in a module. What depends on a variable that the
 /// program writes, on an input or on the robot is unknown, with the reason.
@@ -12,7 +12,7 @@ pub fn evaluate(program: &Program, module: usize, expr: &Expr) -> Value {
     let mut nowhere = Nowhere;
     let mut executor = Executor::new(program, &mut nowhere);
     let routine = "".into();
-    executor.frames.push(Frame { module, routine, names: Vec::new(), present: Vec::new() });
+    executor.frames.push(Frame::new(module, routine, None));
     let value = executor.eval(expr);
     let mut value = executor.level(value);
     if let Some(reason) = value.origin.iter().find_map(changes)
@@ -49,7 +49,9 @@ struct Nowhere;
 
 impl Machine for Nowhere {
     fn moves(&mut self, _: Result<Movement, Unresolved>) {}
-    fn waits(&mut self, _: Wait) {}
+    fn waits(&mut self, _: Wait) -> Waited {
+        Waited::Ended
+    }
     fn sets(&mut self, _: Output) {}
     fn joints(&mut self) -> Option<[f64; 6]> {
         None

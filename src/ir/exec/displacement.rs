@@ -5,14 +5,15 @@ use std::sync::Arc;
 use nalgebra::Isometry3;
 
 use super::super::convert;
+use super::super::hir::Stmt;
 use super::super::movement::Settings;
 use super::Executor;
 use super::instruction::Arguments;
 
 impl Executor<'_> {
     /// `PDispOn [\Rot] \ExeP:=there, programmed, tool`: what is programmed at the one point runs
-    /// at the other. Without `\ExeP` that is where the robot stands, which is not modelled.
-    pub(super) fn displace(&mut self, text: &str, arguments: &Arguments<'_>) {
+    /// at the other, both in the work object's frame. Without `\ExeP` that is where the robot stands, which is not modelled.
+    pub(super) fn displace(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let mut target = |expr| {
             let value = self.eval(expr);
             convert::robtarget(&value.datum).ok().map(|target| target.pose)
@@ -29,7 +30,11 @@ impl Executor<'_> {
                 let shift = there.translation.vector - programmed.translation.vector;
                 settings.displacement = Some(Isometry3::translation(shift.x, shift.y, shift.z));
             }
-            None => settings.other.push(text.into()),
+            None => {
+                settings.other.push(text.into());
+                let reason = format!("{text} with points that are not known: simulated without it");
+                self.unresolved(stmt.span, reason);
+            }
         }
         self.settings = Arc::new(settings);
     }

@@ -89,6 +89,7 @@ impl Executor<'_> {
         let key = name.to_lowercase();
         let stated = self.machine.stated_level(&key);
         let level = self.signals.get(&key).copied().or(stated);
+        self.seen_input = Some(name.clone());
         if let (None, Some(level)) = (self.signals.get(&key), stated) {
             self.assume(format!("{name} is {level} (stated by --assume)"));
         }
@@ -107,6 +108,9 @@ impl Executor<'_> {
             Some(cell) => {
                 let cell = &self.cells[cell];
                 let mut value = cell.value.clone();
+                if let Some(input) = &cell.input {
+                    self.seen_input = Some(input.clone());
+                }
                 // What a cell holds is described by how it is reached, not by its history.
                 value.origin = cell.reading.clone();
                 value
@@ -116,6 +120,11 @@ impl Executor<'_> {
                     Value::unknown(format!("'{}' is a routine", name.text), name.span)
                 }
                 Some(Symbol::Ambiguous) => Value::unknown(declared_twice(&name.text), name.span),
+                _ if name.key == "errno" => Value {
+                    datum: self.errno.clone().map_or(Datum::Num(0.0), Datum::Text),
+                    type_key: "errnum".into(),
+                    origin: Origin::of(Dependence::Variable("ERRNO".into())),
+                },
                 _ => predefined::lookup(&name.key).unwrap_or_else(|| {
                     Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
                 }),
@@ -146,6 +155,7 @@ impl Executor<'_> {
             reading: Origin::default(),
             read_only: true,
             alias: None,
+            input: None,
         });
         let cell = self.cells.len() - 1;
         self.globals.insert(id, cell);
@@ -173,8 +183,13 @@ impl Executor<'_> {
             (DataKind::Var, _) => Origin::of(Dependence::Variable(name)),
             (DataKind::Pers, _) => Origin::of(Dependence::Persistent(name)),
         };
-        self.cells[cell] =
-            Cell { value, reading, read_only: data.kind == DataKind::Const, alias: None };
+        self.cells[cell] = Cell {
+            value,
+            reading,
+            read_only: data.kind == DataKind::Const,
+            alias: None,
+            input: None,
+        };
         cell
     }
 
@@ -262,6 +277,7 @@ impl Executor<'_> {
     /// `target := value`; what can't be written is left with a note.
     pub(super) fn assign(&mut self, target: &Expr, value: Value) {
         let value = self.level(value);
+        let input = self.seen_input.take();
         let mut path = Vec::new();
         let mut base = target;
         loop {
@@ -283,14 +299,18 @@ impl Executor<'_> {
                     let type_key = self.cells[cell].value.type_key.clone();
                     let place = self.place(&type_key, &path);
                     let slot = &mut self.cells[cell].value.datum;
-                    match place {
-                        Some(indices) => store(slot, &indices, value.datum),
-                        None => {
-                            *slot = Datum::unknown(
-                                format!("it was written at a place in '{}' not known", name.text),
-                                target.span,
-                            );
-                        }
+                    let changed = if let Some(indices) = place {
+                        store(slot, &indices, value.datum)
+                    } else {
+                        *slot = Datum::unknown(
+                            format!("it was written at a place in '{}' not known", name.text),
+                            target.span,
+                        );
+                        true
+                    };
+                    self.cells[cell].input = input;
+                    if changed {
+                        self.changes(Some(cell));
                     }
                     return;
                 }
@@ -364,16 +384,20 @@ enum Step<'e> {
     Index(&'e Expr),
 }
 
-fn store(slot: &mut Datum, indices: &[usize], value: Datum) {
+/// Writes a part of a value; true if it was another one before.
+fn store(slot: &mut Datum, indices: &[usize], value: Datum) -> bool {
     match indices {
-        [] => *slot = value,
-        [first, rest @ ..] => {
-            if let Datum::List(items) = slot
-                && let Some(item) = items.get_mut(*first)
-            {
-                store(item, rest, value);
-            }
+        [] if *slot == value => false,
+        [] => {
+            *slot = value;
+            true
         }
+        [first, rest @ ..] => match slot {
+            Datum::List(items) => {
+                items.get_mut(*first).is_some_and(|item| store(item, rest, value))
+            }
+            _ => false,
+        },
     }
 }
 
@@ -424,7 +448,7 @@ fn binary(op: BinaryOp, left: &Datum, right: &Datum, expr: &Expr) -> Datum {
 }
 
 /// Equality with the precision of RAPID's `num`.
-fn equal(a: &Datum, b: &Datum) -> bool {
+pub(super) fn equal(a: &Datum, b: &Datum) -> bool {
     match (a, b) {
         (Datum::Num(a), Datum::Num(b)) => (*a as f32) == (*b as f32),
         (Datum::List(a), Datum::List(b)) => {

@@ -8,7 +8,8 @@ use super::instruction::{Arguments, Length};
 
 /// Values from here on stand for an axis that is not there (RAPID: 9E9).
 const ABSENT: f64 = 8.9e9;
-/// Where the speed of turning external axes stands in a `speeddata`.
+/// Where the speeds of linear and of turning external axes stand in a `speeddata`.
+const LINEAR: usize = 2;
 const TURNING: usize = 3;
 
 impl Executor<'_> {
@@ -25,7 +26,11 @@ impl Executor<'_> {
         let speed = arguments.option_value("speed").or_else(|| positional.next());
         let target = target.and_then(|expr| axes(&self.eval(expr).datum));
         let speed = speed.and_then(|expr| match self.eval(expr).datum {
-            Datum::List(items) => items.get(TURNING).and_then(Datum::num),
+            // Which kind the axes are is not in the program: `vlinN` has no turning speed.
+            Datum::List(items) => [TURNING, LINEAR]
+                .into_iter()
+                .filter_map(|i| items.get(i).and_then(Datum::num))
+                .find(|speed| *speed > 0.0),
             _ => None,
         });
         let stated = arguments.option_value("t").and_then(|expr| self.eval(expr).datum.num());
@@ -36,7 +41,7 @@ impl Executor<'_> {
                 let ways = from.iter().zip(&to).filter(|(a, b)| **a < ABSENT && **b < ABSENT);
                 let longest = ways.map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
                 self.assume(
-                    "external axes turn at the speed of their movement, without acceleration"
+                    "external axes move at the speed of their movement, without acceleration"
                         .to_owned(),
                 );
                 Length::Stated(longest / speed)
@@ -46,7 +51,7 @@ impl Executor<'_> {
                     .into(),
             ),
         };
-        self.wait(stmt, text, length);
+        self.wait(stmt, text, length, None);
     }
 }
 

@@ -1,9 +1,12 @@
 //! Statements and control flow.
 
-use super::super::hir::{Block, Data, Expr, Ident, Stmt, StmtKind};
-use super::super::movement::Wait;
+use std::sync::Arc;
+
+use super::super::hir::{Block, Data, Expr, ExprKind, Ident, Stmt, StmtKind};
 use super::super::value::{Datum, Dependence, Origin, Value};
-use super::{Cell, Executor, MAX_PASSES, MAX_STATEMENTS};
+use super::eval::equal;
+use super::polling::{Mark, Pass, Poll};
+use super::{Cell, Executor, MAX_STATEMENTS};
 use crate::text::Span;
 
 /// The note on a loop without an end.
@@ -17,16 +20,32 @@ pub(super) enum Flow {
     Return(Option<Value>),
     /// `EXIT`, or the machine is full.
     Exit,
-    /// `RAISE` at this place.
-    Raised(Span),
-    /// `GOTO` a label that is not in the list itself.
-    Jump(Ident),
-    /// `TRYNEXT` or `RETRY`: the end of a handler.
-    Resume,
+    /// An error that no handler has taken yet.
+    Raised(Raised),
+    /// `GOTO` a label that is not in the list itself, and the condition on inputs that decided.
+    Jump(Ident, Option<Box<Poll>>),
+    /// The end of a handler: the statement with the error once more.
+    Retry,
+    /// The end of a handler: the statement after the one with the error.
+    TryNext,
 }
 
+/// An error.
+pub(super) struct Raised {
+    pub(super) at: Span,
+    /// Its number by name, in upper case, where it is known.
+    pub(super) error: Option<Arc<str>>,
+    /// True if a handler of the routine has passed it on.
+    pub(super) leaves: bool,
+}
+
+/// Times that a statement is tried again: the controller's default.
+const RETRIES: u32 = 4;
+/// The error number with which a handler takes what any routine below raises.
+const ANY_ERROR: &str = "long_jmp_all_err";
+
 /// A condition, as far as it is known.
-enum Condition {
+pub(super) enum Condition {
     Known(bool),
     /// It depends on inputs at assumed levels.
     Assumed(bool),
@@ -36,34 +55,147 @@ enum Condition {
 
 impl Executor<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Flow {
+        let mut marks = Vec::new();
+        let flow = self.statements_of(block, &mut marks);
+        if !marks.is_empty() {
+            self.unwatch();
+        }
+        flow
+    }
+
+    /// Runs the statements; `marks` get the labels that were passed.
+    fn statements_of(&mut self, block: &Block, marks: &mut Vec<(usize, Mark)>) -> Flow {
         let mut index = 0;
         while let Some(stmt) = block.get(index) {
+            if matches!(stmt.kind, StmtKind::Label(_)) {
+                self.pass_label(index, marks);
+            }
             index += 1;
-            match self.statement(stmt) {
-                Flow::Next => {}
-                Flow::Jump(label) => match find_label(block, &label) {
-                    Some(at) if at < index && is_endless(stmt, &block[at..index - 1]) => {
-                        self.unresolved(stmt.span, ENDLESS);
-                    }
-                    Some(at) => index = at,
-                    None => return Flow::Jump(label),
-                },
+            let (label, decided) = match self.statement(stmt) {
+                Flow::Next => continue,
+                Flow::Jump(label, decided) => (label, decided),
                 other => return other,
+            };
+            match find_label(block, &label) {
+                Some(at) if at < index => {
+                    if is_endless(stmt, &block[at..index - 1]) {
+                        self.unresolved(stmt.span, ENDLESS);
+                        continue;
+                    }
+                    let branches = decided.is_some() && matches!(stmt.kind, StmtKind::If { .. });
+                    let known = marks.iter_mut().find(|(label, _)| *label == at);
+                    let pass = match known {
+                        Some((_, mark)) => self.pass(mark, "GOTO", decided.map(|p| *p), None),
+                        None => Pass::Ordinary,
+                    };
+                    if matches!(pass, Pass::Endless) {
+                        self.unresolved(stmt.span, ENDLESS);
+                        continue;
+                    }
+                    // The IF that led back goes the other way now; else the mark is set already.
+                    let goes_on = branches && matches!(pass, Pass::Came);
+                    index = if goes_on { index - 1 } else { at + 1 };
+                }
+                Some(at) => index = at,
+                None => return Flow::Jump(label, decided),
             }
         }
         Flow::Next
     }
 
+    fn pass_label(&mut self, label: usize, marks: &mut Vec<(usize, Mark)>) {
+        if marks.is_empty() {
+            self.watchers += 1;
+        }
+        marks.retain(|(known, _)| *known != label);
+        marks.push((label, self.mark()));
+    }
+
+    pub(super) fn unwatch(&mut self) {
+        self.watchers -= 1;
+        if self.watchers == 0 {
+            self.polls.clear();
+        }
+    }
+
     fn statement(&mut self, stmt: &Stmt) -> Flow {
+        let mut flow = self.attempt(stmt);
+        let mut tries = 0;
+        while let Flow::Raised(raised) = flow {
+            flow = match self.handle(raised) {
+                Flow::Retry if tries < RETRIES => {
+                    tries += 1;
+                    self.attempt(stmt)
+                }
+                Flow::Retry => {
+                    let reason = format!("tried {RETRIES} times again, with the same error");
+                    self.unresolved(stmt.span, reason);
+                    return Flow::Raised(Raised {
+                        at: stmt.span,
+                        error: Some("ERR_EXCRTYMAX".into()),
+                        leaves: true,
+                    });
+                }
+                Flow::TryNext => Flow::Next,
+                other => return other,
+            };
+        }
+        flow
+    }
+
+    /// Runs the error handler of the routine, if it has one that takes the error.
+    fn handle(&mut self, raised: Raised) -> Flow {
+        let program = self.program;
+        let frame = self.frame();
+        let Some(id) = frame.id.filter(|_| !frame.handling && !raised.leaves) else {
+            return Flow::Raised(Raised { leaves: true, ..raised });
+        };
+        let takes = |numbers: &[Expr]| {
+            numbers.is_empty()
+                || raised.error.is_none()
+                || numbers.iter().any(|number| match &number.kind {
+                    ExprKind::Ref(name) => {
+                        name.key == ANY_ERROR
+                            || raised.error.as_deref() == Some(&name.text.to_uppercase())
+                    }
+                    _ => false,
+                })
+        };
+        let handlers = &program.routine(id).error;
+        let Some((_, handler)) = handlers.iter().find(|(numbers, _)| takes(numbers)) else {
+            return Flow::Raised(raised);
+        };
+        self.unresolved(raised.at, "the error is taken by the handler of the routine");
+        let before = std::mem::replace(&mut self.errno, raised.error.clone());
+        self.frame_mut().handling = true;
+        let flow = self.block(handler);
+        self.frame_mut().handling = false;
+        self.errno = before;
+        match flow {
+            // A handler that ends leaves the routine.
+            Flow::Next => Flow::Return(None),
+            Flow::Raised(inner) => Flow::Raised(Raised { leaves: true, ..inner }),
+            other => other,
+        }
+    }
+
+    /// Counts a statement or a pass; true if no more may run.
+    pub(super) fn is_over(&mut self, at: Span) -> bool {
         self.statements += 1;
-        if self.machine.is_full() || self.statements > MAX_STATEMENTS {
-            let why = self.machine.full_because();
-            let why = why.unwrap_or_else(|| "the program does not end".into());
-            self.unresolved(stmt.span, format!("{why}: the cycle is shown up to here"));
+        if self.statements > MAX_STATEMENTS {
+            self.unresolved(at, "the program does not end: the cycle is shown up to here");
+            return true;
+        }
+        self.machine.is_full()
+    }
+
+    fn attempt(&mut self, stmt: &Stmt) -> Flow {
+        if self.is_over(stmt.span) {
             return Flow::Exit;
         }
         match &stmt.kind {
             StmtKind::Assign { target, value } => {
+                self.seen_input = None;
                 let value = self.eval(value);
                 self.assign(target, value);
                 Flow::Next
@@ -77,14 +209,22 @@ impl Executor<'_> {
             StmtKind::Test { value, cases, default } => {
                 self.test_statement(value, cases, default.as_ref())
             }
-            StmtKind::Goto(label) => Flow::Jump(label.clone()),
+            StmtKind::Goto(label) => Flow::Jump(label.clone(), None),
             StmtKind::Return(value) => {
                 let value = value.as_ref().map(|expr| self.eval(expr));
                 Flow::Return(value)
             }
-            StmtKind::Raise(_) => Flow::Raised(stmt.span),
+            StmtKind::Raise(number) => {
+                let error = match number.as_ref().map(|number| &number.kind) {
+                    Some(ExprKind::Ref(name)) => Some(name.text.to_uppercase().into()),
+                    Some(_) => None,
+                    None => self.errno.clone(),
+                };
+                Flow::Raised(Raised { at: stmt.span, error, leaves: false })
+            }
             StmtKind::Exit => Flow::Exit,
-            StmtKind::Retry | StmtKind::TryNext => Flow::Resume,
+            StmtKind::Retry => Flow::Retry,
+            StmtKind::TryNext => Flow::TryNext,
             StmtKind::Data(data) => {
                 self.declare_local(data);
                 Flow::Next
@@ -105,20 +245,34 @@ impl Executor<'_> {
             _ => Origin::of(Dependence::Variable(data.name.text.as_str().into())),
         };
         let read_only = data.kind == super::super::hir::DataKind::Const;
-        self.cells.push(Cell { value, reading, read_only, alias: None });
+        self.cells.push(Cell { value, reading, read_only, alias: None, input: None });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((data.name.key.clone(), cell));
     }
 
     fn if_statement(&mut self, branches: &[(Expr, Block)], otherwise: Option<&Block>) -> Flow {
+        // The last condition on inputs: it decides whether a GOTO is reached.
+        let mut decided = None;
         for (condition, block) in branches {
             match self.condition(condition) {
+                Condition::Known(false) if self.seen_input.is_some() => {
+                    self.note_branch(condition, "FALSE", Some(block));
+                }
                 Condition::Known(false) => {}
-                Condition::Assumed(false) => self.note_branch(condition, "FALSE", Some(block)),
-                Condition::Known(true) => return self.block(block),
+                Condition::Assumed(false) => {
+                    self.note_branch(condition, "FALSE", Some(block));
+                    decided = Some(Poll { condition: condition.clone(), value: false });
+                }
+                Condition::Known(true) => {
+                    if self.seen_input.is_some() {
+                        self.note_branch(condition, "TRUE", otherwise);
+                    }
+                    return decided_by(decided, self.block(block));
+                }
                 Condition::Assumed(true) => {
                     self.note_branch(condition, "TRUE", otherwise);
-                    return self.block(block);
+                    decided = Some(Poll { condition: condition.clone(), value: true });
+                    return decided_by(decided, self.block(block));
                 }
                 Condition::Unknown(why) => {
                     self.unresolved(
@@ -129,7 +283,7 @@ impl Executor<'_> {
             }
         }
         match otherwise {
-            Some(block) => self.block(block),
+            Some(block) => decided_by(decided, self.block(block)),
             None => Flow::Next,
         }
     }
@@ -142,10 +296,7 @@ impl Executor<'_> {
             return;
         }
         let what = if calls == 1 { "instruction" } else { "instructions" };
-        let state = match self.first_signal(condition) {
-            Some(signal) => format!("--assume {signal}=LEVEL states another"),
-            None => "--assume SIGNAL=LEVEL states another".to_owned(),
-        };
+        let state = self.how_to_state(condition);
         self.unresolved(
             condition.span,
             format!(
@@ -155,7 +306,27 @@ impl Executor<'_> {
         );
     }
 
-    fn condition(&mut self, expr: &Expr) -> Condition {
+    fn how_to_state(&mut self, expr: &Expr) -> String {
+        let seen = self.seen_input.clone();
+        let signal = self.first_signal(expr).or(seen);
+        format!("--assume {}=LEVEL states another", signal.as_deref().unwrap_or("SIGNAL"))
+    }
+
+    pub(super) fn condition(&mut self, expr: &Expr) -> Condition {
+        let condition = self.read_condition(expr);
+        let Condition::Assumed(value) = condition else { return condition };
+        if self.forced == Some(expr.span) {
+            self.forced = None;
+            return Condition::Assumed(!value);
+        }
+        if self.watchers > 0 {
+            self.polls.push(Poll { condition: expr.clone(), value });
+        }
+        condition
+    }
+
+    fn read_condition(&mut self, expr: &Expr) -> Condition {
+        self.seen_input = None;
         let value = self.eval(expr);
         let value = self.level(value);
         let input = value.origin.iter().any(|d| matches!(d, Dependence::Input(_)));
@@ -171,139 +342,92 @@ impl Executor<'_> {
         }
     }
 
-    fn for_statement(
-        &mut self,
-        stmt: &Stmt,
-        var: &Ident,
-        (from, to, step): (&Expr, &Expr, Option<&Expr>),
-        body: &Block,
-    ) -> Flow {
-        let from = self.eval(from).datum.num();
-        let to = self.eval(to).datum.num();
-        let step = match step {
-            Some(expr) => self.eval(expr).datum.num(),
-            None => None,
-        };
-        let (Some(from), Some(to)) = (from, to) else {
-            self.unresolved(stmt.span, "the bounds of the loop are not known: it was passed over");
-            return Flow::Next;
-        };
-        // Without STEP the loop counts towards its end.
-        let step = step.unwrap_or(if to >= from { 1.0 } else { -1.0 });
-        if step == 0.0 || !step.is_finite() {
-            self.unresolved(stmt.span, "STEP 0: the loop was passed over");
-            return Flow::Next;
-        }
-        self.cells.push(Cell {
-            value: Value::constant(Datum::Num(from), "num"),
-            reading: Origin::of(Dependence::Local(var.text.as_str().into())),
-            read_only: true,
-            alias: None,
-        });
-        let cell = self.cells.len() - 1;
-        self.frame_mut().names.push((var.key.clone(), cell));
-        let depth = self.frame().names.len();
-        let mut flow = Flow::Next;
-        for pass in 0..MAX_PASSES {
-            let x = from + f64::from(pass) * step;
-            if (step > 0.0 && x > to) || (step < 0.0 && x < to) {
-                break;
-            }
-            self.cells[cell].value = Value::constant(Datum::Num(x), "num");
-            flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
-            if !matches!(flow, Flow::Next) {
-                break;
-            }
-        }
-        self.frame_mut().names.truncate(depth - 1);
-        flow
-    }
-
-    fn while_statement(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
-        for pass in 0..MAX_PASSES {
-            match self.condition(condition) {
-                Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
-                Condition::Known(true) if is_always_true(condition) => {
-                    let passes = self.machine.passes().max(1);
-                    if passes == 1 {
-                        self.unresolved(stmt.span, ENDLESS);
-                    } else {
-                        let text = format!("an endless loop: simulated for {passes} passes");
-                        self.unresolved(stmt.span, text);
-                    }
-                    self.machine.repeats();
-                    for _ in 0..passes {
-                        let depth = self.frame().names.len();
-                        let flow = self.block(body);
-                        self.frame_mut().names.truncate(depth);
-                        if !matches!(flow, Flow::Next) {
-                            return flow;
-                        }
-                    }
-                    // What stands behind the loop never runs.
-                    return Flow::Exit;
-                }
-                Condition::Known(true) => {}
-                Condition::Assumed(true) => {
-                    // A loop that polls an input is a wait for it.
-                    let signal = self.first_signal(condition);
-                    self.machine.waits(Wait {
-                        instruction: "WHILE".into(),
-                        span: condition.span,
-                        routine: self.frame().routine.clone(),
-                        duration: None,
-                        signal,
-                        other: None,
-                        grip_load: self.settings.grip_load,
-                    });
-                    return Flow::Next;
-                }
-                Condition::Unknown(why) => {
-                    self.unresolved(
-                        condition.span,
-                        format!("the condition of the loop is not known{why}: passed over"),
-                    );
-                    return Flow::Next;
-                }
-            }
-            let depth = self.frame().names.len();
-            let flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
-            if !matches!(flow, Flow::Next) {
-                return flow;
-            }
-            if pass + 1 == MAX_PASSES {
-                self.unresolved(stmt.span, "the loop does not end; it was left here");
-            }
-        }
-        Flow::Next
-    }
-
     fn test_statement(
         &mut self,
         value: &Expr,
         cases: &[(Vec<Expr>, Block)],
         default: Option<&Block>,
     ) -> Flow {
+        self.seen_input = None;
         let tested = self.eval(value);
         let tested = self.level(tested);
+        let input = self.seen_input.clone();
         if let Some(unknown) = tested.datum.first_unknown() {
-            let reason = format!("the TEST value is not known ({})", unknown.reason);
+            let reason = unknown.reason.clone();
+            let taken = if default.is_some() { "DEFAULT is taken" } else { "no CASE is taken" };
+            let reason = format!("the TEST value is not known ({reason}): {taken}");
             self.unresolved(value.span, reason);
         } else {
-            for (values, block) in cases {
+            let mut taken = None;
+            'cases: for (i, (values, _)) in cases.iter().enumerate() {
                 for expr in values {
-                    if self.eval(expr).datum == tested.datum {
-                        return self.block(block);
+                    let candidate = self.eval(expr);
+                    let candidate = self.level(candidate);
+                    if equal(&candidate.datum, &tested.datum) {
+                        taken = Some(i);
+                        break 'cases;
                     }
                 }
+            }
+            if input.is_some() {
+                self.seen_input = input;
+                self.note_case(value, &tested.datum, taken, cases, default);
+            }
+            if let Some((_, block)) = taken.and_then(|i| cases.get(i)) {
+                return self.block(block);
             }
         }
         match default {
             Some(block) => self.block(block),
             None => Flow::Next,
         }
+    }
+}
+
+impl Executor<'_> {
+    /// Tells which way a `TEST` on inputs went and what the others hold.
+    fn note_case(
+        &mut self,
+        value: &Expr,
+        tested: &Datum,
+        taken: Option<usize>,
+        cases: &[(Vec<Expr>, Block)],
+        default: Option<&Block>,
+    ) {
+        let others = cases.iter().enumerate().filter(|(i, _)| taken != Some(*i));
+        let mut left_out: Vec<usize> = others.map(|(_, (_, block))| calls(block)).collect();
+        if taken.is_some() {
+            left_out.extend(default.map(|block| calls(block)));
+        }
+        left_out.retain(|calls| *calls > 0);
+        let count: usize = left_out.iter().sum();
+        if count == 0 {
+            return;
+        }
+        let branches = if left_out.len() == 1 { "branch" } else { "branches" };
+        let what = if count == 1 { "instruction" } else { "instructions" };
+        let level = match tested {
+            Datum::Num(x) => number_text(*x),
+            Datum::Bool(b) => b.to_string().to_uppercase(),
+            _ => "it is".to_owned(),
+        };
+        let state = self.how_to_state(value);
+        self.unresolved(
+            value.span,
+            format!(
+                "depends on inputs, taken as {level}: {} other {branches} ({count} {what}) not \
+                 run; {state}",
+                left_out.len()
+            ),
+        );
+    }
+}
+
+/// The flow out of a branch; a `GOTO` in it was decided by the condition.
+fn decided_by(decided: Option<Poll>, flow: Flow) -> Flow {
+    match flow {
+        Flow::Jump(label, None) => Flow::Jump(label, decided.map(Box::new)),
+        other => other,
     }
 }
 
@@ -317,7 +441,7 @@ fn is_endless(stmt: &Stmt, body: &[Stmt]) -> bool {
 }
 
 /// Whether nothing in these statements can jump out of them.
-fn never_leaves(block: &[Stmt]) -> bool {
+pub(super) fn never_leaves(block: &[Stmt]) -> bool {
     block.iter().all(|stmt| match &stmt.kind {
         StmtKind::Goto(_)
         | StmtKind::Return(_)
@@ -335,11 +459,6 @@ fn calls(block: &[Stmt]) -> usize {
         kind => kind.blocks().into_iter().map(|inner| calls(inner)).sum(),
     };
     block.iter().map(of).sum()
-}
-
-fn is_always_true(condition: &Expr) -> bool {
-    use super::super::hir::ExprKind;
-    matches!(condition.kind, ExprKind::Bool(true) | ExprKind::Num(_))
 }
 
 /// A number as RAPID text that reads back as the same number.

@@ -7,8 +7,8 @@ use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
 use super::super::instructions;
 use super::super::movement::{Output, Settings, Wait};
 use super::super::value::{Datum, Dependence, Value};
-use super::flow::{Flow, number_text};
-use super::{Cell, Executor};
+use super::flow::{Flow, Raised, number_text};
+use super::{Cell, Executor, Waited};
 
 /// The arguments of an instruction, by position and by name.
 pub(super) struct Arguments<'e> {
@@ -50,6 +50,9 @@ impl<'e> Arguments<'e> {
 /// Least limit of `PathAccLim` and `WorldAccLim`, m/s²: lower ones are raised.
 const LEAST_ACCELERATION: f64 = 0.1;
 
+/// Largest override of `VelSet`, %.
+const MOST_OVERRIDE: f64 = 200.0;
+
 /// How long a wait lasts.
 pub(super) enum Length {
     /// s.
@@ -70,16 +73,16 @@ impl Executor<'_> {
         match key {
             "waittime" => self.wait_time(stmt, text, &arguments),
             "waitdi" | "waitdo" | "waitgi" | "waitgo" | "waitai" | "waitao" => {
-                self.wait_signal(stmt, text, &arguments);
+                return self.wait_signal(stmt, text, &arguments);
             }
-            "waituntil" => self.wait_until(stmt, text, &arguments),
-            "pdispon" if arguments.has_option("exep") => self.displace(text, &arguments),
+            "waituntil" => return self.wait_until(stmt, text, &arguments),
+            "pdispon" if arguments.has_option("exep") => self.displace(stmt, text, &arguments),
             _ if instructions::is_waiting(key) => {
                 if instructions::is_writing(key) {
                     self.forget(args, text);
                 }
                 // The program does not tell for how long.
-                self.wait_until(stmt, text, &Arguments::new(&[]));
+                self.wait(stmt, text, Length::Until(None), None);
             }
             "setdo" | "setgo" | "setao" | "set" | "reset" | "pulsedo" | "invertdo" => {
                 self.output(stmt, key, text, &arguments);
@@ -93,20 +96,20 @@ impl Executor<'_> {
             }
             "velset" | "accset" | "confj" | "confl" | "gripload" | "pdispset" | "pdispoff"
             | "speedrefresh" => {
-                self.setting(key, text, &arguments);
+                self.setting(stmt, key, text, &arguments);
             }
-            "pathacclim" => self.path_acceleration(text, &arguments),
-            "worldacclim" => self.world_acceleration(text, &arguments),
+            "pathacclim" => self.path_acceleration(stmt, text, &arguments),
+            "worldacclim" => self.world_acceleration(stmt, text, &arguments),
             "singarea" => self.sing_area(text, &arguments),
             "waitrob" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
             "eoffsset" | "eoffson" | "softact" | "pdispon" | "corrcon" | "speedlimaxis"
-            | "egmreset" | "tuneservo" => {
-                self.unmodelled(key, text);
-            }
+            | "tuneservo" => self.unmodelled(stmt, text),
             "eoffsoff" => self.clear_unmodelled(&["eoffsset", "eoffson"]),
             "softdeact" => self.clear_unmodelled(&["softact"]),
             "corrdiscon" | "corrclear" => self.clear_unmodelled(&["corrcon"]),
+            "egmreset" => self.clear_unmodelled(&["egmreset"]),
             "tunereset" => self.clear_unmodelled(&["tuneservo"]),
+            "cirpathmode" => self.circle_mode(stmt, text, &arguments),
             _ if instructions::is_harmless(key) => {}
             _ if instructions::is_writing(key) => {
                 self.forget(args, &format!("is written by {text}"));
@@ -147,6 +150,7 @@ impl Executor<'_> {
             {
                 let reason = format!("'{}' {how}", name.text);
                 self.cells[cell].value.datum = Datum::unknown(reason, arg.span);
+                self.changes(Some(cell));
             }
         }
     }
@@ -169,22 +173,59 @@ impl Executor<'_> {
             }
             _ => Length::Unknown("a time that is not known".into()),
         };
-        self.wait(stmt, text, length);
+        self.wait(stmt, text, length, None);
     }
 
-    fn wait_signal(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+    fn wait_signal(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) -> Flow {
         let signal = arguments.positional.first().and_then(|expr| self.first_signal(expr));
-        if let (Some(signal), Some(value)) = (&signal, arguments.positional.get(1)) {
+        let flow = self.wait_at_most(stmt, text, Length::Until(signal.clone()), arguments);
+        if let (Ok(()), Some(signal), Some(value)) = (&flow, signal, arguments.positional.get(1)) {
             let value = self.eval(value);
             let level = self.level(value);
             if let Some(level) = level.datum.num() {
-                self.signals.insert(signal.to_lowercase(), level);
+                self.set_level(&signal, level);
             }
         }
-        self.wait(stmt, text, Length::Until(signal));
+        flow.err().unwrap_or(Flow::Next)
     }
 
-    fn wait_until(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+    /// A wait with `\MaxTime` and `\TimeFlag`, if they are given. `Err` holds what follows where
+    /// it did not end with what it waited for.
+    fn wait_at_most(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        length: Length,
+        arguments: &Arguments<'_>,
+    ) -> Result<(), Flow> {
+        let max_time = arguments.option_value("maxtime").and_then(|expr| {
+            let time = self.eval(expr).datum.num().filter(|time| time.is_finite());
+            if time.is_none() {
+                let reason = "\\MaxTime is not known: taken as long enough";
+                self.unresolved(stmt.span, reason);
+            }
+            time.map(|time| time.max(0.0))
+        });
+        let waited = self.wait(stmt, text, length, max_time);
+        let timed_out = waited == Waited::TimedOut;
+        if let Some(flag) = arguments.option_value("timeflag") {
+            self.seen_input = None;
+            self.assign(flag, Value::constant(Datum::Bool(timed_out), "bool"));
+            return if timed_out { Err(Flow::Next) } else { Ok(()) };
+        }
+        if !timed_out {
+            return Ok(());
+        }
+        let reason = format!(
+            "{text} times out after {} s, before what it waits for comes: ERR_WAIT_MAXTIME",
+            number_text(max_time.unwrap_or_default())
+        );
+        self.unresolved(stmt.span, reason);
+        let error = Some("ERR_WAIT_MAXTIME".into());
+        Err(Flow::Raised(Raised { at: stmt.span, error, leaves: false }))
+    }
+
+    fn wait_until(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) -> Flow {
         let condition = arguments.positional.first().copied();
         let signal = condition.and_then(|expr| self.first_signal(expr));
         if let Some(condition) = condition {
@@ -193,11 +234,17 @@ impl Executor<'_> {
             let input =
                 value.origin.iter().any(|d| matches!(d, super::super::value::Dependence::Input(_)));
             if value.datum == Datum::Bool(true) && !input {
-                return self.wait(stmt, text, Length::Stated(0.0));
+                let flow = self.wait_at_most(stmt, text, Length::Stated(0.0), arguments);
+                return flow.err().unwrap_or(Flow::Next);
             }
+        }
+        if let Err(flow) = self.wait_at_most(stmt, text, Length::Until(signal), arguments) {
+            return flow;
+        }
+        if let Some(condition) = condition {
             self.learn(condition);
         }
-        self.wait(stmt, text, Length::Until(signal));
+        Flow::Next
     }
 
     /// After the wait the equalities of its condition hold.
@@ -212,7 +259,7 @@ impl Executor<'_> {
                     if let Some(signal) = self.first_signal(a)
                         && let Some(level) = self.eval(b).datum.num()
                     {
-                        self.signals.insert(signal.to_lowercase(), level);
+                        self.set_level(&signal, level);
                         return;
                     }
                 }
@@ -221,10 +268,19 @@ impl Executor<'_> {
         }
     }
 
-    pub(super) fn wait(&mut self, stmt: &Stmt, text: &str, length: Length) {
+    pub(super) fn wait(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        length: Length,
+        max_time: Option<f64>,
+    ) -> Waited {
         let routine = self.frame().routine.clone();
         let (duration, signal, other) = match length {
-            Length::Stated(duration) => (Some(duration), None, None),
+            Length::Stated(duration) => {
+                self.waited_s += duration;
+                (Some(duration), None, None)
+            }
             Length::Until(signal) => (None, signal, None),
             Length::Unknown(what) => (None, None, Some(what)),
         };
@@ -233,10 +289,11 @@ impl Executor<'_> {
             span: stmt.span,
             routine,
             duration,
+            max_time,
             signal,
             other,
             grip_load: self.settings.grip_load,
-        });
+        })
     }
 
     fn output(&mut self, stmt: &Stmt, key: &str, text: &str, arguments: &Arguments<'_>) {
@@ -254,10 +311,12 @@ impl Executor<'_> {
             }),
         };
         let after = if key == "pulsedo" { Some(0.0) } else { level };
-        match after {
-            Some(level) => self.signals.insert(signal.to_lowercase(), level),
-            None => self.signals.remove(&signal.to_lowercase()),
-        };
+        if let Some(level) = after {
+            self.set_level(&signal, level);
+        } else {
+            self.signals.remove(&signal.to_lowercase());
+            self.changes(None);
+        }
         self.machine.sets(Output {
             instruction: text.into(),
             span: stmt.span,
@@ -282,7 +341,7 @@ impl Executor<'_> {
         self.assign(target, Value::constant(datum, "num"));
     }
 
-    fn setting(&mut self, key: &str, text: &str, arguments: &Arguments<'_>) {
+    fn setting(&mut self, stmt: &Stmt, key: &str, text: &str, arguments: &Arguments<'_>) {
         let mut values = Vec::new();
         for expr in &arguments.positional {
             let value = self.eval(expr);
@@ -294,7 +353,15 @@ impl Executor<'_> {
         settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
         let unknown = match key {
             "velset" => match (num(0), num(1)) {
-                (Some(percent), Some(max)) if percent > 0.0 && max > 0.0 => {
+                (Some(percent), Some(_)) if !(percent > 0.0 && percent <= MOST_OVERRIDE) => {
+                    self.refused(stmt, text, &format!("{percent} % of the programmed speed"));
+                    return;
+                }
+                (Some(_), Some(max)) if max <= 0.0 => {
+                    self.refused(stmt, text, &format!("a largest speed of {max} mm/s"));
+                    return;
+                }
+                (Some(percent), Some(max)) => {
                     settings.speed_override = percent / 100.0;
                     settings.speed_max = max * 1e-3;
                     false
@@ -314,10 +381,20 @@ impl Executor<'_> {
                 _ => true,
             },
             "speedrefresh" => match num(0) {
-                // The controller takes 0 to 100 %; at 0 nothing moves.
-                Some(percent) if percent > 0.0 => {
-                    settings.refresh = percent.min(100.0) / 100.0;
+                Some(percent) if percent > 0.0 && percent <= 100.0 => {
+                    settings.refresh = percent / 100.0;
                     false
+                }
+                Some(0.0) => {
+                    self.unresolved(
+                        stmt.span,
+                        format!("{text} 0 stops all movements: taken as if it were not there"),
+                    );
+                    return;
+                }
+                Some(percent) => {
+                    self.refused(stmt, text, &format!("{percent} % of the speed"));
+                    return;
                 }
                 _ => true,
             },
@@ -356,8 +433,29 @@ impl Executor<'_> {
         };
         if unknown {
             settings.other.push(text.into());
+            self.not_known(stmt, text);
         }
         self.settings = Arc::new(settings);
+    }
+
+    /// A value at which the controller stops with an error.
+    fn refused(&mut self, stmt: &Stmt, text: &str, what: &str) {
+        self.unresolved(
+            stmt.span,
+            format!(
+                "the controller stops with an error here: {text} with {what}; taken as if it were \
+                 not there"
+            ),
+        );
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        settings.other.push(text.into());
+        self.settings = Arc::new(settings);
+    }
+
+    fn not_known(&mut self, stmt: &Stmt, text: &str) {
+        let reason = format!("{text} with a value that is not known: simulated as before it");
+        self.unresolved(stmt.span, reason);
     }
 
     fn sing_area(&mut self, text: &str, arguments: &Arguments<'_>) {
@@ -371,7 +469,7 @@ impl Executor<'_> {
     }
 
     /// `PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`.
-    fn path_acceleration(&mut self, text: &str, arguments: &Arguments<'_>) {
+    fn path_acceleration(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let mut limits = [f64::INFINITY; 2];
         let mut known = arguments.positional.len() == 2;
         let options = ["accmax", "decelmax"];
@@ -381,7 +479,7 @@ impl Executor<'_> {
                 Datum::Bool(true) => {
                     let value = arguments.option_value(option);
                     match value.and_then(|expr| self.eval(expr).datum.num()) {
-                        Some(limit) => limits[i] = limit.max(LEAST_ACCELERATION),
+                        Some(limit) => limits[i] = self.least(stmt, text, limit),
                         None => known = false,
                     }
                 }
@@ -394,32 +492,61 @@ impl Executor<'_> {
             settings.path_acceleration = limits;
         } else {
             settings.other.push(text.into());
+            self.not_known(stmt, text);
         }
         self.settings = Arc::new(settings);
     }
 
+    /// A limit of the acceleration, raised to the least that there is.
+    fn least(&mut self, stmt: &Stmt, text: &str, limit: f64) -> f64 {
+        if limit < LEAST_ACCELERATION {
+            let reason = format!(
+                "{text} with {limit} m/s², less than the controller takes: simulated with \
+                 {LEAST_ACCELERATION} m/s²"
+            );
+            self.unresolved(stmt.span, reason);
+        }
+        limit.max(LEAST_ACCELERATION)
+    }
+
     /// `WorldAccLim \On := m/s²` or `\Off`.
-    fn world_acceleration(&mut self, text: &str, arguments: &Arguments<'_>) {
+    fn world_acceleration(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let on = arguments.option_value("on").map(|expr| self.eval(expr).datum.num());
         let mut settings = Settings::clone(&self.settings);
         settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
         match on {
             None if arguments.has_option("off") => settings.world_acceleration = f64::INFINITY,
-            Some(Some(limit)) => settings.world_acceleration = limit.max(LEAST_ACCELERATION),
-            _ => settings.other.push(text.into()),
+            Some(Some(limit)) => {
+                settings.world_acceleration = self.least(stmt, text, limit);
+            }
+            _ => {
+                settings.other.push(text.into());
+                self.not_known(stmt, text);
+            }
         }
         self.settings = Arc::new(settings);
     }
 
     /// A setting that changes movements in a way that is not modelled.
-    fn unmodelled(&mut self, key: &str, text: &str) {
+    fn unmodelled(&mut self, stmt: &Stmt, text: &str) {
+        self.unresolved(
+            stmt.span,
+            format!("{text} is not simulated: what follows runs as if it were not there"),
+        );
         let mut settings = Settings::clone(&self.settings);
         settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        let off = key == "egmreset";
-        if !off {
-            settings.other.push(text.into());
-        }
+        settings.other.push(text.into());
         self.settings = Arc::new(settings);
+    }
+
+    /// `CirPathMode`: how the tool turns on arcs; about the path's frame where nothing is said.
+    fn circle_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let plain = |key: &str| matches!(key, "pathframe" | "objectframe");
+        if arguments.optional.iter().all(|(key, _, _)| plain(key)) {
+            self.clear_unmodelled(&["cirpathmode"]);
+        } else {
+            self.unmodelled(stmt, text);
+        }
     }
 
     fn clear_unmodelled(&mut self, keys: &[&str]) {

@@ -14,7 +14,9 @@ mod external;
 mod flow;
 mod functions;
 mod instruction;
+mod loops;
 mod motion;
+mod polling;
 
 pub use constant::{evaluate, value_of};
 
@@ -30,12 +32,19 @@ use crate::text::Span;
 pub trait Machine {
     /// A movement, or the reason why it can't be worked out.
     fn moves(&mut self, movement: Result<Movement, Unresolved>);
-    /// A wait.
-    fn waits(&mut self, wait: Wait);
+    /// A wait; how it ended.
+    fn waits(&mut self, wait: Wait) -> Waited;
     /// A change of an output.
     fn sets(&mut self, output: Output);
     /// An endless loop begins: what comes from here on comes again and again.
     fn repeats(&mut self) {}
+    /// The loop that seemed endless was left.
+    fn leaves_loop(&mut self) {}
+    /// Whether an input has come, if it is known when it does. Once it has, its time counts
+    /// again from here.
+    fn has_come(&mut self, _signal: &str) -> Option<bool> {
+        None
+    }
     /// How often the loop that never ends is to run.
     fn passes(&self) -> u32 {
         1
@@ -46,12 +55,17 @@ pub trait Machine {
     }
     /// Axis positions in rad, if the robot stands and its position is known.
     fn joints(&mut self) -> Option<[f64; 6]>;
-    /// True once the machine wants no more (limits of time or of length).
+    /// True once the machine wants no more (limits of time or of length); it tells why itself.
     fn is_full(&self) -> bool;
-    /// Why it wants no more, where the user can change that.
-    fn full_because(&self) -> Option<String> {
-        None
-    }
+}
+
+/// How a wait ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waited {
+    /// What it waited for came, or its time was over.
+    Ended,
+    /// Its `\\MaxTime` was over before.
+    TimedOut,
 }
 
 /// Something that was not followed exactly, with the place.
@@ -97,6 +111,8 @@ struct Cell {
     read_only: bool,
     /// A name, valid in every module, of data that the value was passed from.
     alias: Option<Arc<str>>,
+    /// An input from which the value was worked out.
+    input: Option<Arc<str>>,
 }
 
 /// An active routine.
@@ -107,6 +123,29 @@ struct Frame {
     names: Vec<(String, CellId)>,
     /// Optional parameters that were given.
     present: Vec<String>,
+    /// Its declaration; none for an expression that stands by itself.
+    id: Option<RoutineId>,
+    /// True while its error handler runs.
+    handling: bool,
+    /// Cells from here on are its own.
+    base: CellId,
+    /// When its own data last changed, see [`Executor::stamp`].
+    changed: u64,
+}
+
+impl Frame {
+    fn new(module: usize, routine: Arc<str>, id: Option<RoutineId>) -> Frame {
+        Frame {
+            module,
+            routine,
+            names: Vec::new(),
+            present: Vec::new(),
+            id,
+            handling: false,
+            base: 0,
+            changed: 0,
+        }
+    }
 }
 
 struct Executor<'a> {
@@ -123,6 +162,24 @@ struct Executor<'a> {
     /// Where the external axes stand, in RAPID's units, once a movement of theirs has told.
     external_axes: Option<Vec<f64>>,
     statements: u64,
+    /// Counts changes of data and signals.
+    stamp: u64,
+    /// When data or signals other than the own ones of an active routine last changed.
+    changed_outside: u64,
+    /// Number of movements.
+    moves: u64,
+    /// Length of the waits whose length the program states, s.
+    waited_s: f64,
+    /// The conditions on inputs of the loops that are watched.
+    polls: Vec<polling::Poll>,
+    /// Number of loops that are watched for what they ask.
+    watchers: usize,
+    /// A condition whose next value is taken the other way.
+    forced: Option<Span>,
+    /// The input that was read last, itself or through data worked out from it.
+    seen_input: Option<Arc<str>>,
+    /// The error that a handler deals with: RAPID's `ERRNO`.
+    errno: Option<Arc<str>>,
     execution: Execution,
 }
 
@@ -139,6 +196,15 @@ impl<'a> Executor<'a> {
             settings: Arc::new(Settings::default()),
             external_axes: None,
             statements: 0,
+            stamp: 0,
+            changed_outside: 0,
+            moves: 0,
+            waited_s: 0.0,
+            polls: Vec::new(),
+            watchers: 0,
+            forced: None,
+            seen_input: None,
+            errno: None,
             execution: Execution::default(),
         }
     }
@@ -156,8 +222,12 @@ impl<'a> Executor<'a> {
             }
         }
         match self.enter(entry, Vec::new(), Vec::new()) {
-            flow::Flow::Raised(at) => self.unresolved(at, "an error that no handler takes ends it"),
-            flow::Flow::Jump(label) => {
+            flow::Flow::Raised(raised) => {
+                let error = raised.error.as_deref().unwrap_or("an error");
+                let reason = format!("{error}, which no handler takes, ends the program here");
+                self.unresolved(raised.at, reason);
+            }
+            flow::Flow::Jump(label, _) => {
                 self.unresolved(label.span, format!("no label '{}' in reach", label.text));
             }
             _ => {}

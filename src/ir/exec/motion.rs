@@ -3,7 +3,7 @@
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, Expr, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
-use super::super::movement::{LocalValue, Movement, Target, Unresolved, Zone};
+use super::super::movement::{LocalValue, Movement, Stop, Target, Unresolved, Zone};
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
@@ -16,7 +16,6 @@ const KNOWN_OPTIONS: &[&str] = &[
     "v",
     "t",
     "z",
-    "inpos",
     "wobj",
     "tload",
     "tool",
@@ -49,6 +48,13 @@ impl Executor<'_> {
         if !signature.plain {
             self.forget_targets(args);
         }
+        if signature.form != MoveForm::ExternalJoint && text.to_lowercase().starts_with("search") {
+            self.unresolved(
+                stmt.span,
+                "where the search finds its signal is not known: it runs to its end point",
+            );
+        }
+        self.moves += 1;
         self.machine.moves(movement);
     }
 
@@ -116,6 +122,13 @@ impl Executor<'_> {
             None => Zone { fine: true, tcp: 0.0, orientation: 0.0, angle: 0.0 },
         };
         let zone = self.zone_options(zone, arguments, &mut origin)?;
+        let stop = match arguments.option_value("inpos") {
+            Some(expr) => {
+                let value = self.argument(expr, &mut origin);
+                convert::stop(&value.datum)?
+            }
+            None => Stop::Fine,
+        };
         let tool_value = self.argument(tool, &mut origin);
         let tool_name = match &tool.kind {
             super::super::hir::ExprKind::Ref(name) => name.text.as_str(),
@@ -181,6 +194,7 @@ impl Executor<'_> {
             speed,
             time,
             zone,
+            stop,
             tool,
             wobj,
             total_load,
@@ -220,7 +234,9 @@ impl Executor<'_> {
         if datum.first_unknown().is_some() {
             return why.to_owned();
         }
-        let why = format!("'{}': {why}", name.text);
+        let quoted = format!("'{}'", name.text);
+        let why =
+            if why.starts_with(&quoted) { why.to_owned() } else { format!("{quoted}: {why}") };
         let frame = self.frame();
         if !frame.names.iter().any(|(key, _)| *key == name.key)
             && let Some(Symbol::Data(id)) = self.program.resolve(frame.module, &name.key)

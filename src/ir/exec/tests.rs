@@ -27,8 +27,10 @@ impl Machine for Recorder {
             Err(unresolved) => format!("{} ({})", unresolved.reason, unresolved.moves),
         });
     }
-    fn waits(&mut self, wait: Wait) {
+    fn waits(&mut self, wait: Wait) -> Waited {
         self.0.push(format!("{} {:?}", wait.instruction, wait.duration));
+        // What may time out does.
+        if wait.max_time.is_some() { Waited::TimedOut } else { Waited::Ended }
     }
     fn sets(&mut self, output: Output) {
         self.0.push(format!("{} {}={}", output.instruction, output.signal, output.value));

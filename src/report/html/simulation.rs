@@ -13,7 +13,7 @@ use super::source::text;
 use crate::energy::Account;
 use crate::energy::trajectory::Sample;
 use crate::motion::Simulation;
-use crate::motion::timeline::What;
+use crate::motion::timeline::{WaitBasis, What};
 use crate::path::joint_path::DOF;
 use crate::report::place::Places;
 use crate::report::svg::{Curve, Plot, Rule, Scale, Size, escape};
@@ -29,6 +29,8 @@ const MAX_ROWS: usize = 60;
 const ROW: f64 = 20.0;
 const NAMES: f64 = 300.0;
 const AXIS: f64 = 34.0;
+/// Width of the mark of a wait that counts 0 s because its length is not known, px.
+const UNKNOWN_WIDTH: f64 = 3.0;
 /// Ticks of the time.
 const TICKS: usize = 10;
 /// Lines shown before and after those that cost something.
@@ -43,6 +45,8 @@ struct Step<'a> {
     duration: f64,
     energy: f64,
     waits: bool,
+    /// True for a wait of a length that is not known, which counts 0 s.
+    unknown: bool,
 }
 
 #[derive(Serialize)]
@@ -101,6 +105,7 @@ pub fn simulate_report(
     context.insert("motion_energy", &known.then(|| joules(account.total.motion_energy_j())));
     context.insert("movements", &steps.iter().filter(|step| !step.waits).count());
     context.insert("waits", &steps.iter().filter(|step| step.waits).count());
+    context.insert("unknown", &steps.iter().filter(|step| step.unknown).count());
     context.insert("bars", &bars(&steps, simulation.cycle_s, places));
     context.insert("figures", &figures(model, samples));
     context.insert("joints", &(1..=DOF).collect::<Vec<usize>>());
@@ -136,6 +141,7 @@ fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {
                         duration: record.duration,
                         energy: energy(i),
                         waits: false,
+                        unknown: false,
                     });
                 }
             }
@@ -147,6 +153,7 @@ fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {
                 duration: event.duration,
                 energy: energy(0),
                 waits: true,
+                unknown: record.basis == WaitBasis::Unknown,
             }),
             What::Output(..) | What::Left(_) => {}
         }
@@ -157,7 +164,11 @@ fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {
 /// The cycle as bars over time: a row for each statement in the order of their first run, or for
 /// each routine where there are many.
 fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
-    let statement = |step: &Step<'_>| format!("{} {}", places.of(step.span), step.instruction);
+    let shared = shared_folder(steps.iter().map(|step| places.of(step.span).file));
+    let statement = |step: &Step<'_>| {
+        let place = places.of(step.span).to_string();
+        format!("{} {}", place.get(shared..).unwrap_or(&place), step.instruction)
+    };
     let routine = |step: &Step<'_>| step.routine.to_owned();
     let mut rows = rows(steps, statement);
     if rows.len() > MAX_ROWS {
@@ -194,13 +205,17 @@ fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
         );
         for step in members {
             let (a, b) = (at(step.begin), at(step.begin + step.duration));
-            let class = if step.waits { "idle" } else { "mechanical" };
+            let (class, least) = match (step.unknown, step.waits) {
+                (true, _) => ("friction", UNKNOWN_WIDTH),
+                (false, true) => ("idle", 0.5),
+                (false, false) => ("mechanical", 0.5),
+            };
             let _ = write!(
                 out,
                 "<rect class=\"part {class}\" x=\"{a:.1}\" y=\"{:.1}\" width=\"{:.1}\" \
                  height=\"{:.1}\"><title>{} {}: {} s from {} s, {} J</title></rect>",
                 y + 3.0,
-                (b - a).max(0.5),
+                (b - a).max(least),
                 ROW - 6.0,
                 escape(&places.of(step.span).to_string()),
                 escape(step.instruction),
@@ -216,6 +231,20 @@ fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
         height - 5.0
     );
     out
+}
+
+/// Length of the folder, with its separator, that all paths begin with.
+fn shared_folder(paths: impl Iterator<Item = String>) -> usize {
+    let folder = |path: &str| path.rfind('/').map_or(0, |at| at + 1);
+    let mut shared: Option<String> = None;
+    for path in paths {
+        let mut prefix = shared.unwrap_or_else(|| path[..folder(&path)].to_owned());
+        while !path.starts_with(&prefix) {
+            prefix.truncate(folder(prefix.trim_end_matches('/')));
+        }
+        shared = Some(prefix);
+    }
+    shared.map_or(0, |prefix| prefix.len())
 }
 
 /// Steps of the same name together, in the order of the first of them.
@@ -314,12 +343,18 @@ fn sources(steps: &[Step<'_>], files: &[SourceFile], known: bool) -> Vec<Annotat
             line[1] += step.energy;
         }
     }
+    let hottest = costs.iter().flat_map(BTreeMap::values).map(|cost| cost[1]).fold(0.0, f64::max);
     let used = files.iter().zip(&costs).filter(|(_, costs)| !costs.is_empty());
-    used.map(|(file, costs)| annotated(file, costs, known)).collect()
+    used.map(|(file, costs)| annotated(file, costs, hottest, known)).collect()
 }
 
-fn annotated(file: &SourceFile, costs: &BTreeMap<u32, [f64; 2]>, known: bool) -> Annotated {
-    let hottest = costs.values().map(|cost| cost[1]).fold(0.0, f64::max);
+/// `hottest` is the energy of the most expensive line of all files, J.
+fn annotated(
+    file: &SourceFile,
+    costs: &BTreeMap<u32, [f64; 2]>,
+    hottest: f64,
+    known: bool,
+) -> Annotated {
     let mut lines = Vec::new();
     let mut last = 0;
     for line in costs.keys() {

@@ -1,0 +1,200 @@
+//! `FOR` and `WHILE`.
+
+use super::super::hir::{Block, Expr, ExprKind, Ident, Stmt};
+use super::super::value::{Datum, Dependence, Origin, Value};
+use super::flow::{Condition, Flow, never_leaves};
+use super::polling::{Mark, Pass, Poll};
+use super::{Cell, Executor, MAX_PASSES};
+
+impl Executor<'_> {
+    pub(super) fn for_statement(
+        &mut self,
+        stmt: &Stmt,
+        var: &Ident,
+        (from, to, step): (&Expr, &Expr, Option<&Expr>),
+        body: &Block,
+    ) -> Flow {
+        let from = self.eval(from).datum.num();
+        let to = self.eval(to).datum.num();
+        let step = match step {
+            Some(expr) => self.eval(expr).datum.num(),
+            None => None,
+        };
+        let (Some(from), Some(to)) = (from, to) else {
+            self.unresolved(stmt.span, "the bounds of the loop are not known: it was passed over");
+            return Flow::Next;
+        };
+        // Without STEP the loop counts towards its end.
+        let step = step.unwrap_or(if to >= from { 1.0 } else { -1.0 });
+        if step == 0.0 || !step.is_finite() {
+            self.unresolved(stmt.span, "STEP 0: the loop was passed over");
+            return Flow::Next;
+        }
+        self.cells.push(Cell {
+            value: Value::constant(Datum::Num(from), "num"),
+            reading: Origin::of(Dependence::Local(var.text.as_str().into())),
+            read_only: true,
+            alias: None,
+            input: None,
+        });
+        let cell = self.cells.len() - 1;
+        self.frame_mut().names.push((var.key.clone(), cell));
+        let depth = self.frame().names.len();
+        let mut watched = self.watch(body);
+        let mut flow = Flow::Next;
+        let mut pass = 0.0;
+        loop {
+            let x = from + pass * step;
+            if (step > 0.0 && x > to) || (step < 0.0 && x < to) {
+                break;
+            }
+            if pass >= f64::from(MAX_PASSES) || self.is_over(stmt.span) {
+                if pass >= f64::from(MAX_PASSES) {
+                    self.unresolved(stmt.span, "the loop has too many passes; it was left here");
+                }
+                flow = if self.machine.is_full() { Flow::Exit } else { Flow::Next };
+                break;
+            }
+            self.cells[cell].value = Value::constant(Datum::Num(x), "num");
+            flow = self.block(body);
+            self.frame_mut().names.truncate(depth);
+            if !matches!(flow, Flow::Next) {
+                break;
+            }
+            if let Some(mark) = &mut watched {
+                let left = ((to - x) / step).floor().max(0.0);
+                if matches!(self.pass(mark, "FOR", None, Some(left)), Pass::TimedOut) {
+                    break;
+                }
+            }
+            pass += 1.0;
+        }
+        if watched.is_some() {
+            self.unwatch();
+        }
+        self.frame_mut().names.truncate(depth - 1);
+        flow
+    }
+
+    /// A mark for a loop that its body may leave: only such a loop can end with an input.
+    fn watch(&mut self, body: &Block) -> Option<Mark> {
+        if never_leaves(body) {
+            return None;
+        }
+        self.watchers += 1;
+        Some(self.mark())
+    }
+
+    /// The body of `WHILE TRUE`, which only the body itself can leave.
+    fn endless(&mut self, stmt: &Stmt, body: &Block) -> Flow {
+        let passes = self.machine.passes().max(1);
+        self.machine.repeats();
+        let mut watched = self.watch(body);
+        let mut flow = Flow::Next;
+        let mut pass = 0;
+        while pass < passes {
+            if self.is_over(stmt.span) {
+                flow = Flow::Exit;
+                break;
+            }
+            let depth = self.frame().names.len();
+            flow = self.block(body);
+            self.frame_mut().names.truncate(depth);
+            if !matches!(flow, Flow::Next) {
+                break;
+            }
+            // The pass after a wait for an input still is the one that waited.
+            let again =
+                watched.as_mut().is_some_and(|mark| matches!(self.pass_at_rest(mark), Pass::Came));
+            pass += u32::from(!again);
+        }
+        if watched.is_some() {
+            self.unwatch();
+        }
+        match flow {
+            Flow::Next => {
+                let plural = if passes == 1 { "pass" } else { "passes" };
+                let passes = if passes == 1 { "one".to_owned() } else { passes.to_string() };
+                let text = format!("an endless loop: simulated for {passes} {plural}");
+                self.unresolved(stmt.span, text);
+                // What stands behind the loop never runs.
+                Flow::Exit
+            }
+            Flow::Exit => Flow::Exit,
+            other => {
+                self.machine.leaves_loop();
+                other
+            }
+        }
+    }
+
+    /// As [`Executor::pass`], for a loop that is no wait as long as it moves.
+    fn pass_at_rest(&mut self, mark: &mut Mark) -> Pass {
+        if mark.has_moved(self) {
+            *mark = self.mark();
+            return Pass::Ordinary;
+        }
+        self.pass(mark, "WHILE", None, None)
+    }
+
+    pub(super) fn while_statement(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
+        self.watchers += 1;
+        let flow = self.passes_of_while(stmt, condition, body);
+        self.unwatch();
+        flow
+    }
+
+    fn passes_of_while(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
+        let mut mark = self.mark();
+        for pass in 0..MAX_PASSES {
+            if self.is_over(stmt.span) {
+                return Flow::Exit;
+            }
+            let mut decided = None;
+            match self.condition(condition) {
+                Condition::Known(false) | Condition::Assumed(false) => return Flow::Next,
+                Condition::Known(true) if is_always_true(condition) => {
+                    return self.endless(stmt, body);
+                }
+                Condition::Known(true) => {}
+                Condition::Assumed(true) if self.may_move(body) => {
+                    decided = Some(Poll { condition: condition.clone(), value: true });
+                }
+                Condition::Assumed(true) => {
+                    // A loop that polls an input is a wait for it.
+                    self.wait_for("WHILE", condition, None);
+                    self.flip(&Poll { condition: condition.clone(), value: true });
+                    self.forced = None;
+                    return Flow::Next;
+                }
+                Condition::Unknown(why) => {
+                    self.unresolved(
+                        condition.span,
+                        format!("the condition of the loop is not known{why}: passed over"),
+                    );
+                    return Flow::Next;
+                }
+            }
+            let depth = self.frame().names.len();
+            let flow = self.block(body);
+            self.frame_mut().names.truncate(depth);
+            if !matches!(flow, Flow::Next) {
+                return flow;
+            }
+            if decided.is_some()
+                && !matches!(self.pass(&mut mark, "WHILE", decided, None), Pass::Waiting)
+            {
+                self.forced = None;
+                return Flow::Next;
+            }
+            if pass + 1 == MAX_PASSES {
+                self.unresolved(stmt.span, "the loop does not end; it was left here");
+            }
+        }
+        Flow::Next
+    }
+}
+
+fn is_always_true(condition: &Expr) -> bool {
+    matches!(condition.kind, ExprKind::Bool(true) | ExprKind::Num(_))
+}

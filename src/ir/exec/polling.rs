@@ -1,0 +1,264 @@
+//! Loops that wait for an input by asking for it again and again.
+//!
+//! A pass that neither moves the robot nor changes data will be the same again until an input
+//! changes: the loop is a wait for that input. A pass that moves is run again until the input
+//! has come, or once where nobody knows when it comes.
+
+use std::sync::Arc;
+
+use super::super::hir::{ArgKind, Block, Call, Callee, Expr, ExprKind, Stmt, StmtKind};
+use super::super::instructions;
+use super::super::movement::Wait;
+use super::super::program::Symbol;
+use super::super::value::Datum;
+use super::{Executor, MAX_CALL_DEPTH, Waited};
+
+/// Times that one loop may wait before it is taken as one that never ends.
+const MAX_WAITS: u32 = 20;
+/// Passes after which a loop that counts while it asks for an input is taken as a wait.
+const MAX_COUNTED: u32 = 1000;
+
+/// A condition on inputs, and what it was.
+pub(super) struct Poll {
+    pub(super) condition: Expr,
+    pub(super) value: bool,
+}
+
+/// The state at the start of a pass.
+pub(super) struct Mark {
+    polls: usize,
+    stamp: u64,
+    moves: u64,
+    waited_s: f64,
+    passes: u32,
+    waits: u32,
+}
+
+impl Mark {
+    /// Whether the robot was told to move since.
+    pub(super) fn has_moved(&self, executor: &Executor<'_>) -> bool {
+        executor.moves != self.moves
+    }
+}
+
+/// What a pass was.
+pub(super) enum Pass {
+    /// One of a loop that goes on for reasons of its own.
+    Ordinary,
+    /// One of many: the input has not come.
+    Waiting,
+    /// The last: the input has come now.
+    Came,
+    /// The last: the loop ended before the input came.
+    TimedOut,
+    /// The same as all to come.
+    Endless,
+}
+
+impl Executor<'_> {
+    /// The start of the first pass.
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            polls: self.polls.len(),
+            stamp: self.stamp,
+            moves: self.moves,
+            waited_s: self.waited_s,
+            passes: 0,
+            waits: 0,
+        }
+    }
+
+    /// Judges the pass since the mark and sets the mark for the next. `decided` is the condition
+    /// that led back, if one on inputs did; after `passes_left` the loop ends by itself.
+    pub(super) fn pass(
+        &mut self,
+        mark: &mut Mark,
+        instruction: &str,
+        decided: Option<Poll>,
+        passes_left: Option<f64>,
+    ) -> Pass {
+        let polls = self.polls.split_off(mark.polls.min(self.polls.len()));
+        let moved = self.moves != mark.moves;
+        let changed = self.changed_outside.max(self.frame().changed) > mark.stamp;
+        let took = self.waited_s - mark.waited_s;
+        *mark = Mark { passes: mark.passes + 1, waits: mark.waits, ..self.mark() };
+        let counts = changed && mark.passes < MAX_COUNTED && decided.is_none();
+        let mut asked: Vec<Poll> = decided.into_iter().collect();
+        if asked.is_empty() {
+            asked = polls;
+        }
+        if asked.is_empty() {
+            let same = !changed && passes_left.is_none();
+            return if same { Pass::Endless } else { Pass::Ordinary };
+        }
+        // Of several inputs the one whose time is known decides.
+        let mut coming: Option<(usize, bool)> = None;
+        for (i, poll) in asked.iter().enumerate() {
+            if let Some(signal) = self.first_signal(&poll.condition)
+                && let Some(come) = self.machine.has_come(&signal)
+                && coming.is_none_or(|(_, before)| come && !before)
+            {
+                coming = Some((i, come));
+            }
+        }
+        let poll = asked.swap_remove(coming.map_or(0, |(i, _)| i));
+        match coming {
+            Some((_, true)) => return self.comes(mark, &poll),
+            Some((_, false)) if moved || counts => return Pass::Waiting,
+            // A counted loop with movements is work, not a wait.
+            None if counts || (moved && passes_left.is_some()) => return Pass::Ordinary,
+            _ => {}
+        }
+        let signal = self.first_signal(&poll.condition);
+        if moved {
+            let (name, hint) = match &signal {
+                Some(signal) => {
+                    (signal.to_string(), format!(" (--input {signal}=SECONDS states it)"))
+                }
+                None => ("an input".to_owned(), String::new()),
+            };
+            self.unresolved(
+                poll.condition.span,
+                format!(
+                    "moves until {name} changes, at a time that is not known: taken as during \
+                     the first pass{hint}"
+                ),
+            );
+            return self.comes(mark, &poll);
+        }
+        match self.wait_for(instruction, &poll.condition, passes_left.map(|n| n * took)) {
+            Waited::Ended => self.comes(mark, &poll),
+            Waited::TimedOut => Pass::TimedOut,
+        }
+    }
+
+    /// A wait for the inputs of a condition.
+    pub(super) fn wait_for(
+        &mut self,
+        instruction: &str,
+        condition: &Expr,
+        max_time: Option<f64>,
+    ) -> Waited {
+        let signal = self.first_signal(condition);
+        self.machine.waits(Wait {
+            instruction: instruction.into(),
+            span: condition.span,
+            routine: self.frame().routine.clone(),
+            duration: None,
+            max_time,
+            signal,
+            other: None,
+            grip_load: self.settings.grip_load,
+        })
+    }
+
+    fn comes(&mut self, mark: &mut Mark, poll: &Poll) -> Pass {
+        mark.waits += 1;
+        if mark.waits > MAX_WAITS {
+            return Pass::Endless;
+        }
+        self.flip(poll);
+        Pass::Came
+    }
+
+    /// Gives an input of the condition a level at which the condition is the other way.
+    pub(super) fn flip(&mut self, poll: &Poll) {
+        let mut signals = Vec::new();
+        let mut levels = vec![1.0, 0.0];
+        self.parts(&poll.condition, &mut signals, &mut levels);
+        for signal in signals {
+            let key = signal.to_lowercase();
+            let before = self.signals.get(&key).copied();
+            for level in &levels {
+                self.signals.insert(key.clone(), *level);
+                let value = self.eval(&poll.condition);
+                let now = match self.level(value).datum {
+                    Datum::Bool(b) => Some(b),
+                    Datum::Num(x) => Some(x != 0.0),
+                    _ => None,
+                };
+                if now == Some(!poll.value) {
+                    return;
+                }
+            }
+            match before {
+                Some(level) => self.signals.insert(key, level),
+                None => self.signals.remove(&key),
+            };
+        }
+        self.forced = Some(poll.condition.span);
+    }
+
+    /// The signals of an expression, and levels that it may compare them with or that lie beyond.
+    fn parts(&mut self, expr: &Expr, signals: &mut Vec<Arc<str>>, levels: &mut Vec<f64>) {
+        match &expr.kind {
+            ExprKind::Num(x) => levels.extend([*x, x + 1.0, x - 1.0]),
+            ExprKind::Ref(_) => match self.eval(expr).datum {
+                Datum::Signal(signal) => signals.push(signal),
+                Datum::Num(x) => levels.extend([x, x + 1.0, x - 1.0]),
+                _ => {}
+            },
+            ExprKind::Unary(_, operand) => self.parts(operand, signals, levels),
+            ExprKind::Binary(_, left, right) => {
+                self.parts(left, signals, levels);
+                self.parts(right, signals, levels);
+            }
+            ExprKind::Call(_, args) => {
+                for arg in args {
+                    if let ArgKind::Positional(expr) = &arg.kind {
+                        self.parts(expr, signals, levels);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether these statements may move the robot.
+    pub(super) fn may_move(&self, block: &Block) -> bool {
+        self.block_moves(self.frame().module, block, 0)
+    }
+
+    fn block_moves(&self, module: usize, block: &[Stmt], depth: usize) -> bool {
+        block.iter().any(|stmt| match &stmt.kind {
+            StmtKind::Call(call) => self.call_moves(module, call, depth),
+            kind => kind.blocks().into_iter().any(|inner| self.block_moves(module, inner, depth)),
+        })
+    }
+
+    fn call_moves(&self, module: usize, call: &Call, depth: usize) -> bool {
+        let Callee::Name(name) = &call.callee else { return true };
+        match self.program.resolve(module, &name.key) {
+            Some(Symbol::Routine(id)) if depth < MAX_CALL_DEPTH => {
+                self.block_moves(id.module, &self.program.routine(id).body, depth + 1)
+            }
+            Some(_) => true,
+            None => {
+                instructions::is_movement(&name.key)
+                    || (instructions::may_write(&name.key) && !instructions::is_writing(&name.key))
+            }
+        }
+    }
+
+    /// Notes that data or a signal have another value than before.
+    pub(super) fn changes(&mut self, cell: Option<super::CellId>) {
+        self.stamp += 1;
+        let stamp = self.stamp;
+        let frame = self.frame_mut();
+        let own = cell.is_some_and(|cell| {
+            cell >= frame.base && frame.names.iter().any(|(_, known)| *known == cell)
+        });
+        if own {
+            frame.changed = stamp;
+        } else {
+            self.changed_outside = stamp;
+        }
+    }
+
+    /// Gives a signal a level.
+    pub(super) fn set_level(&mut self, signal: &str, level: f64) {
+        if self.signals.insert(signal.to_lowercase(), level) != Some(level) {
+            self.changes(None);
+        }
+    }
+}

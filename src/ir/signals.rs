@@ -1,0 +1,195 @@
+//! The I/O signals that a program names.
+//!
+//! A signal is declared in the system's configuration, not in RAPID: a name that nothing declares
+//! is one. Its kind follows from the instructions that use it, else from the customary prefix.
+
+use std::collections::BTreeMap;
+
+use super::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Ident, Stmt, StmtKind};
+use super::predefined;
+use super::program::{Program, RoutineId};
+
+/// What a signal can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SignalKind {
+    /// 0 or 1.
+    Digital,
+    /// A whole number from 0.
+    Group,
+    /// Any number.
+    Analog,
+}
+
+/// A signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Signal {
+    /// As first written.
+    pub name: String,
+    /// Its kind, where the program or its name tells.
+    pub kind: Option<SignalKind>,
+}
+
+/// The signals of a program by lower-case name.
+pub fn signals(program: &Program) -> BTreeMap<String, Signal> {
+    let mut found = Found { program, module: 0, own: Vec::new(), signals: BTreeMap::new() };
+    for (module, body) in program.modules.iter().enumerate() {
+        found.module = module;
+        for (index, routine) in body.routines.iter().enumerate() {
+            let routine_id = RoutineId { module, index };
+            let declared = program.routine(routine_id);
+            found.own = declared.params.iter().map(|param| param.name.key.clone()).collect();
+            found.own.extend(declared.data.iter().map(|data| data.name.key.clone()));
+            for block in routine.blocks() {
+                found.block(block);
+            }
+        }
+    }
+    for signal in found.signals.values_mut() {
+        signal.kind = signal.kind.or_else(|| by_name(&signal.name));
+    }
+    found.signals
+}
+
+/// `diPart`, `do_1`: the customary prefixes, which a word such as `distance` has not.
+fn by_name(name: &str) -> Option<SignalKind> {
+    let (prefix, rest) = name.split_at_checked(2)?;
+    if rest.starts_with(|c: char| c.is_lowercase()) {
+        return None;
+    }
+    match prefix.to_lowercase().as_str() {
+        "di" | "do" => Some(SignalKind::Digital),
+        "gi" | "go" => Some(SignalKind::Group),
+        "ai" | "ao" => Some(SignalKind::Analog),
+        _ => None,
+    }
+}
+
+/// The kind of the signal that an instruction or function takes first.
+fn by_use(key: &str) -> Option<SignalKind> {
+    match key {
+        "waitdi" | "waitdo" | "setdo" | "set" | "reset" | "pulsedo" | "invertdo" | "isignaldi"
+        | "isignaldo" | "searchl" | "searchc" | "searchextj" | "dinput" | "doutput" | "testdi" => {
+            Some(SignalKind::Digital)
+        }
+        "waitgi" | "waitgo" | "setgo" | "isignalgi" | "isignalgo" | "ginput" | "goutput" => {
+            Some(SignalKind::Group)
+        }
+        "waitai" | "waitao" | "setao" | "isignalai" | "isignalao" | "ainput" | "aoutput" => {
+            Some(SignalKind::Analog)
+        }
+        _ => None,
+    }
+}
+
+struct Found<'a> {
+    program: &'a Program,
+    module: usize,
+    /// Names that the routine declares.
+    own: Vec<String>,
+    signals: BTreeMap<String, Signal>,
+}
+
+impl Found<'_> {
+    /// The depth of the recursion is limited by the parser.
+    fn block(&mut self, block: &Block) {
+        for stmt in block {
+            self.statement(stmt);
+            for inner in stmt.kind.blocks() {
+                self.block(inner);
+            }
+        }
+    }
+
+    fn statement(&mut self, stmt: &Stmt) {
+        match &stmt.kind {
+            StmtKind::Assign { target, value } => {
+                self.expr(target);
+                self.expr(value);
+            }
+            StmtKind::Call(call) => {
+                let key = match &call.callee {
+                    Callee::Name(name) => name.key.as_str(),
+                    Callee::Late(_) => "",
+                };
+                self.args(key, &call.args);
+            }
+            StmtKind::If { branches, .. } => {
+                for (condition, _) in branches {
+                    self.expr(condition);
+                }
+            }
+            StmtKind::For { var, from, to, step, .. } => {
+                self.own.push(var.key.clone());
+                for expr in [from, to].into_iter().chain(step) {
+                    self.expr(expr);
+                }
+            }
+            StmtKind::While { condition, .. } => self.expr(condition),
+            StmtKind::Test { value, cases, .. } => {
+                self.expr(value);
+                for expr in cases.iter().flat_map(|(values, _)| values) {
+                    self.expr(expr);
+                }
+            }
+            StmtKind::Return(Some(value)) => self.expr(value),
+            StmtKind::Data(data) => {
+                self.own.push(data.name.key.clone());
+                if let Some(value) = &data.init {
+                    self.expr(value);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn args(&mut self, key: &str, args: &[Arg]) {
+        let mut kind = by_use(key);
+        for arg in args {
+            match &arg.kind {
+                ArgKind::Positional(expr) => match (&expr.kind, kind.take()) {
+                    (ExprKind::Ref(name), Some(kind)) => self.name(name, Some(kind)),
+                    _ => self.expr(expr),
+                },
+                ArgKind::Named(_, expr) | ArgKind::Optional(_, Some(expr)) => self.expr(expr),
+                ArgKind::Optional(_, None) | ArgKind::Conditional(..) => {}
+            }
+        }
+    }
+
+    fn expr(&mut self, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Ref(name) => self.name(name, None),
+            ExprKind::Field(base, _) | ExprKind::Unary(_, base) => self.expr(base),
+            ExprKind::Index(base, indices) => {
+                self.expr(base);
+                for index in indices {
+                    self.expr(index);
+                }
+            }
+            ExprKind::Call(name, args) => self.args(&name.key, args),
+            ExprKind::Aggregate(items) => {
+                for item in items {
+                    self.expr(item);
+                }
+            }
+            ExprKind::Binary(_, left, right) => {
+                self.expr(left);
+                self.expr(right);
+            }
+            _ => {}
+        }
+    }
+
+    fn name(&mut self, name: &Ident, kind: Option<SignalKind>) {
+        if self.own.contains(&name.key)
+            || self.program.resolve(self.module, &name.key).is_some()
+            || predefined::lookup(&name.key).is_some()
+            || name.key == "errno"
+        {
+            return;
+        }
+        let new = || Signal { name: name.text.clone(), kind: None };
+        let signal = self.signals.entry(name.key.clone()).or_insert_with(new);
+        signal.kind = signal.kind.or(kind);
+    }
+}

@@ -1,0 +1,17 @@
+//! What a movement instruction does besides moving.
+
+use crate::ir::movement::Movement;
+
+/// `trigger`, `search`, `output` or `call`; none for an instruction that only moves.
+pub(super) fn mark(movement: &Movement) -> Option<&'static str> {
+    if movement.plain {
+        return None;
+    }
+    let key = movement.instruction.to_lowercase();
+    Some(match key.as_str() {
+        _ if key.starts_with("trigg") => "trigger",
+        _ if key.starts_with("search") => "search",
+        _ if key.ends_with("sync") => "call",
+        _ => "output",
+    })
+}
