@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, ensure};
-use joulepath::dynamics::{Load, Parameters, base_parameters, parameters};
+use joulepath::dynamics::{Data, Load, Parameters, base_parameters, parameters, torque};
 use joulepath::robot::find;
 use serde_json::Value;
 
@@ -100,12 +100,13 @@ fn record(table: &str, out: &str, seed: u64) -> anyhow::Result<()> {
     let motors = model.motors.as_ref().context("the robot has motors")?;
     let constants = motors.torque_constant.as_ref().context("the robot has torque constants")?;
     let text = std::fs::read_to_string(table).with_context(|| table.to_owned())?;
-    // Time, positions, rates, accelerations, torques.
-    let rows: Vec<Vec<f64>> = text
+    // Time, positions, rates.
+    let mut rows: Vec<Vec<f64>> = text
         .lines()
         .skip(1)
-        .map(|line| line.split(',').take(25).map(|x| x.parse().unwrap_or(f64::NAN)).collect())
+        .map(|line| line.split(',').take(13).map(|x| x.parse().unwrap_or(f64::NAN)).collect())
         .collect();
+    rows.dedup_by(|later, before| later[0] <= before[0]);
     let last = rows.last().context("the trajectory has rows")?[0];
     let mut random = fastrand::Rng::with_seed(seed);
     let mut noise = move |size: f64| {
@@ -119,6 +120,7 @@ fn record(table: &str, out: &str, seed: u64) -> anyhow::Result<()> {
         }
     }
     csv.push('\n');
+    let mut data = Data::new();
     let mut after = 1;
     for k in 0..(last / STEP) as usize {
         let t = STEP * k as f64;
@@ -126,18 +128,20 @@ fn record(table: &str, out: &str, seed: u64) -> anyhow::Result<()> {
             after += 1;
         }
         let (from, to) = (&rows[after - 1], &rows[after]);
-        let share = (t - from[0]) / (to[0] - from[0]).max(f64::MIN_POSITIVE);
-        let into = t - from[0];
-        let line = |column: usize| from[column] * (1.0 - share) + to[column] * share;
+        let (into, long) = (t - from[0], to[0] - from[0]);
+        // Rates are linear between rows, accelerations jump where points of the stream lie.
+        let qdd: [f64; 6] = std::array::from_fn(|j| (to[7 + j] - from[7 + j]) / long);
+        let qd: [f64; 6] = std::array::from_fn(|j| from[7 + j] + into * qdd[j]);
         let q: [f64; 6] =
-            std::array::from_fn(|j| from[1 + j] + into * (from[7 + j] + 0.5 * into * line(13 + j)));
+            std::array::from_fn(|j| from[1 + j] + into * (from[7 + j] + 0.5 * into * qdd[j]));
+        let parts = torque(&model, &mut data, &Load::none(), &q, &qd, &qdd);
         let _ = write!(csv, "{t:.7}");
         for q in &q {
             let _ = write!(csv, ",{:.8}", q + noise(NOISE[1]));
         }
         for phase in 0..3 {
             for joint in 0..6 {
-                let tau = line(19 + joint);
+                let tau = parts.rigid[joint] + parts.friction[joint];
                 let amplitude = SQRT_2 * tau / (constants[joint] * motors.ratio[joint]);
                 let angle =
                     POLE_PAIRS * motors.ratio[joint] * q[joint] - f64::from(phase) * TAU / 3.0;

@@ -23,16 +23,20 @@ use super::series::{Series, State};
 
 /// States of a period in the search, for each period of its fastest harmonic.
 const STATES: usize = 10;
+/// States for each of them where limits are looked at more strictly.
+const FINER: usize = 4;
 /// Random motions from which the starts are chosen.
 const TRIED: usize = 300;
 /// Motions that are improved.
 const STARTS: usize = 4;
+/// Sizes of a random motion that are tried until it keeps all limits.
+const SIZES: [f64; 6] = [1.0, 0.7, 0.5, 0.35, 0.2, 0.1];
 /// Rounds of improvement.
 const ROUNDS: usize = 70;
 /// Weights of broken limits, one after another as long as some are broken.
 const PENALTIES: [f64; 3] = [200.0, 2000.0, 20000.0];
 /// Weight of a poor condition.
-const CONDITION: f64 = 6.0;
+const CONDITION: f64 = 20.0;
 /// Scaled condition that is good enough.
 const GOOD: f64 = 12.0;
 /// Room that is kept beside what is asked for \[m\].
@@ -116,13 +120,19 @@ pub fn design(
     let problem = Problem::new(model, settings)?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     let tried: Vec<DVector<f64>> = (0..TRIED).map(|_| problem.random(&mut random)).collect();
-    let mut rated: Vec<(f64, DVector<f64>)> =
-        tried.into_par_iter().map(|x| (problem.rate(&x), x)).collect();
-    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let found: Vec<(DVector<f64>, f64)> = rated
+    let mut rated: Vec<(f64, DVector<f64>)> = tried
         .into_par_iter()
-        .take(STARTS)
+        .map(|x| {
+            let mut work = Work::new(&problem);
+            let x = problem.shrunk(&mut work, x);
+            (problem.value(&mut work, &x, PENALTIES[1]), x)
+        })
+        .collect();
+    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.truncate(STARTS);
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let found: Vec<DVector<f64>> = rated
+        .par_iter()
         .map(|(_, start)| {
             let mut work = Work::new(&problem);
             let step = || {
@@ -131,25 +141,28 @@ pub fn design(
             };
             let [first, heavier @ ..] = PENALTIES;
             let mut value = |x: &DVector<f64>| problem.value(&mut work, x, first);
-            let (mut found, _) = maximise(start, ROUNDS, &mut value, &step);
+            let (mut found, _) = maximise(start.clone(), ROUNDS, &mut value, &step);
             for weight in heavier {
                 if problem.excess(&mut work, &found) == 0.0 {
                     break;
                 }
-                let mut value = |x: &DVector<f64>| problem.value(&mut work, x, weight);
+                let mut value = |x: &DVector<f64>| problem.strict_value(&mut work, x, weight);
                 found = maximise(found, ROUNDS / 2, &mut value, &|| ()).0;
             }
-            let last = PENALTIES[PENALTIES.len() - 1];
-            let value = problem.value(&mut work, &found, last);
-            (found, value)
+            found
         })
         .collect();
-    let mut order: Vec<usize> = (0..found.len()).collect();
-    order.sort_by(|a, b| found[*b].1.total_cmp(&found[*a].1));
-    order
-        .iter()
-        .find_map(|k| problem.repaired(&problem.series(&found[*k].0)))
-        .ok_or(ExciteError::Nowhere)
+    // Where an improved motion has to become too small to keep all limits, the one that it
+    // came from may be better.
+    let all: Vec<&DVector<f64>> = found.iter().chain(rated.iter().map(|(_, x)| x)).collect();
+    let kept: Vec<Option<Designed>> =
+        all.into_par_iter().map(|x| problem.repaired(&problem.series(x))).collect();
+    let worth = |of: &Designed| {
+        let told = &of.information;
+        told.log_det - CONDITION * (told.scaled / GOOD).ln().max(0.0)
+    };
+    let best = kept.into_iter().flatten().max_by(|a, b| worth(a).total_cmp(&worth(b)));
+    best.ok_or(ExciteError::Nowhere)
 }
 
 /// log det of the best of `count` random motions that keep all limits, for comparison.
@@ -297,7 +310,7 @@ impl<'a> Problem<'a> {
 
     /// By how much a motion breaks limits.
     fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>) -> f64 {
-        self.excess_of(work, &self.series(x).sampled(self.states))
+        self.excess_of(work, &self.series(x).sampled(FINER * self.states))
     }
 
     fn excess_of(&self, work: &mut Work<'_>, states: &[State]) -> f64 {
@@ -307,19 +320,37 @@ impl<'a> Problem<'a> {
         checked.excess(&self.shares)
     }
 
-    /// log det without a poor condition, less what breaks limits.
+    /// log det without a poor condition, less what breaks limits at the states.
     fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
         let states = self.series(x).sampled(self.states);
-        let normal = work.normal.of(&states);
+        self.told(work, x, &states) - penalty * self.excess_of(work, &states)
+    }
+
+    /// The same with what breaks limits between them.
+    fn strict_value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
+        let states = self.series(x).sampled(self.states);
+        self.told(work, x, &states) - penalty * self.excess(work, x)
+    }
+
+    fn told(&self, work: &mut Work<'_>, x: &DVector<f64>, states: &[State]) -> f64 {
+        let normal = work.normal.of(states);
         let told = log_det(&normal).unwrap_or(-1e4);
         let poor = (condition(&normal) / GOOD).ln().max(0.0);
         // Very large shapes are the same motion as smaller ones.
         let idle = 1e-3 * x.norm_squared();
-        told - CONDITION * poor - penalty * self.excess_of(work, &states) - idle
+        told - CONDITION * poor - idle
     }
 
-    fn rate(&self, x: &DVector<f64>) -> f64 {
-        self.value(&mut Work::new(self), x, PENALTIES[0])
+    /// A motion of the same shape that is small enough to keep all limits, where one is.
+    fn shrunk(&self, work: &mut Work<'_>, x: DVector<f64>) -> DVector<f64> {
+        let count = self.per_joint();
+        SIZES
+            .iter()
+            .map(|size| {
+                DVector::from_fn(x.len(), |k, _| if k % count == 0 { x[k] } else { size * x[k] })
+            })
+            .find(|smaller| self.excess(work, smaller) == 0.0)
+            .unwrap_or(x)
     }
 
     /// The motion, smaller until it keeps every limit at every millisecond.

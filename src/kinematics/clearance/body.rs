@@ -15,6 +15,8 @@ use super::obstacle::Obstacle;
 const RADII: [f64; 3] = [0.09, 0.05, 0.03];
 /// Points nearer to each other than this share of the arm are one.
 const APART: f64 = 1e-6;
+/// Parts of an arm that are nearer along it than their radii by this factor count as joined.
+const JOINED: f64 = 1.5;
 /// Nearer to each other than this, two lines cross \[m\].
 const CROSSING: f64 = 1e-9;
 /// Shortest arm that radii are a share of \[m\].
@@ -41,10 +43,13 @@ pub struct Nearest {
 }
 
 /// A capsule and the last joint that moves it.
+#[derive(Clone, Copy)]
 struct Part {
     capsule: Capsule,
     /// Number of joints that move it.
     joints: usize,
+    /// Way from the base to its beginning along the middle line \[m\].
+    begin: f64,
 }
 
 impl<'a> Body<'a> {
@@ -74,7 +79,7 @@ impl<'a> Body<'a> {
             .skip(1)
             .flat_map(|part| self.obstacles.iter().map(|of| of.room(&part.capsule)))
             .fold(f64::INFINITY, f64::min);
-        let to_itself = pairs(&parts).map(|pair| between(pair).0).fold(f64::INFINITY, f64::min);
+        let to_itself = pairs(&parts).map(|pair| between(&pair).0).fold(f64::INFINITY, f64::min);
         [to_obstacles, to_itself]
     }
 
@@ -97,7 +102,7 @@ impl<'a> Body<'a> {
         }
         let mut to_itself = none;
         for pair in pairs(&parts) {
-            let (room, [one, other]) = between(pair);
+            let (room, [one, other]) = between(&pair);
             if room < to_itself.room {
                 // Lines that cross have no direction between them.
                 let away = (one - other).try_normalize(CROSSING).unwrap_or_default();
@@ -146,24 +151,39 @@ impl<'a> Body<'a> {
             let kind = if link + 1 >= links { 2 } else { usize::from(link + 2 >= links) };
             RADII[kind] * self.length
         };
-        let part = |(i, pair): (usize, &[(Point3<f64>, usize)])| Part {
-            capsule: Capsule { from: pair[0].0, to: pair[1].0, radius: radius(i) },
-            joints: pair[0].1,
+        let mut begin = 0.0;
+        let part = |(i, pair): (usize, &[(Point3<f64>, usize)])| {
+            let capsule = Capsule { from: pair[0].0, to: pair[1].0, radius: radius(i) };
+            let part = Part { capsule, joints: pair[0].1, begin };
+            begin += capsule.length();
+            part
         };
         points.windows(2).enumerate().map(part).collect()
     }
 }
 
-/// Parts that are no neighbours.
-fn pairs(parts: &[Part]) -> impl Iterator<Item = [&Part; 2]> {
-    parts
-        .iter()
-        .enumerate()
-        .flat_map(move |(i, one)| parts.iter().skip(i + 2).map(move |other| [one, other]))
+/// Parts that are no neighbours. What lies so near along the arm that it would touch in every
+/// pose is cut off from the later one.
+fn pairs(parts: &[Part]) -> impl Iterator<Item = [Part; 2]> {
+    parts.iter().enumerate().flat_map(move |(i, one)| {
+        parts.iter().skip(i + 2).filter_map(move |other| {
+            let apart = other.begin - one.begin - one.capsule.length();
+            let near = JOINED * (one.capsule.radius + other.capsule.radius) - apart;
+            let length = other.capsule.length();
+            if near >= length {
+                return None;
+            }
+            let mut capsule = other.capsule;
+            if near > 0.0 {
+                capsule.from = capsule.at(near / length);
+            }
+            Some([*one, Part { capsule, ..*other }])
+        })
+    })
 }
 
 /// Room between two parts \[m\], and their nearest points.
-fn between([one, other]: [&Part; 2]) -> (f64, [Point3<f64>; 2]) {
+fn between([one, other]: &[Part; 2]) -> (f64, [Point3<f64>; 2]) {
     let points = one.capsule.nearest_points(&other.capsule);
     let room = (points[0] - points[1]).norm() - one.capsule.radius - other.capsule.radius;
     (room, points)
@@ -192,6 +212,20 @@ mod tests {
         let tip = fk(&model, &q).transform_point(&tool.into());
         let [room, _] = body.margins(&q);
         assert!((room - (1.3 - tip.x - RADII[2] * body.length)).abs() < 1e-9, "{room} {tip}");
+    }
+
+    #[test]
+    fn a_tool_of_any_length_leaves_room() {
+        let model = find("IRB1600-10/1.45").unwrap();
+        for length in [0.05, 0.1, 0.25, 0.5] {
+            let body = Body::new(&model, Vector3::new(0.0, 0.0, length), &[]);
+            let [_, straight] = body.margins(&[0.0, 0.0, 0.0, 0.0, 0.3, 0.0]);
+            assert!(straight > 0.01, "{length}: {straight}");
+        }
+        // Folded back, a long tool meets the upper arm or the forearm.
+        let body = Body::new(&model, Vector3::new(0.0, 0.0, 0.5), &[]);
+        let [_, folded] = body.margins(&[0.0, 0.0, 0.0, 0.0, 3.0, 0.0]);
+        assert!(folded < 0.0, "{folded}");
     }
 
     /// Also with a parallelogram, whose third joint is not turned by the second.

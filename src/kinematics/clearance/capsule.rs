@@ -20,6 +20,12 @@ impl Capsule {
         self.from + self.along() * share
     }
 
+    /// Length of the line \[m\].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.along().norm()
+    }
+
     fn along(&self) -> Vector3<f64> {
         self.to - self.from
     }
