@@ -323,22 +323,13 @@ impl<'a> Problem<'a> {
     /// log det without a poor condition, less what breaks limits at the states.
     fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
         let states = self.series(x).sampled(self.states);
-        self.told(work, x, &states) - penalty * self.excess_of(work, &states)
+        told(work, x, &states) - penalty * self.excess_of(work, &states)
     }
 
     /// The same with what breaks limits between them.
     fn strict_value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
         let states = self.series(x).sampled(self.states);
-        self.told(work, x, &states) - penalty * self.excess(work, x)
-    }
-
-    fn told(&self, work: &mut Work<'_>, x: &DVector<f64>, states: &[State]) -> f64 {
-        let normal = work.normal.of(states);
-        let told = log_det(&normal).unwrap_or(-1e4);
-        let poor = (condition(&normal) / GOOD).ln().max(0.0);
-        // Very large shapes are the same motion as smaller ones.
-        let idle = 1e-3 * x.norm_squared();
-        told - CONDITION * poor - idle
+        told(work, x, &states) - penalty * self.excess(work, x)
     }
 
     /// A motion of the same shape that is small enough to keep all limits, where one is.
@@ -369,6 +360,16 @@ impl<'a> Problem<'a> {
         }
         None
     }
+}
+
+/// log det without a poor condition.
+fn told(work: &mut Work<'_>, x: &DVector<f64>, states: &[State]) -> f64 {
+    let normal = work.normal.of(states);
+    let told = log_det(&normal).unwrap_or(-1e4);
+    let poor = (condition(&normal) / GOOD).ln().max(0.0);
+    // Very large shapes are the same motion as smaller ones.
+    let idle = 1e-3 * x.norm_squared();
+    told - CONDITION * poor - idle
 }
 
 /// A joint that turns further than this need not use all of it \[rad\].
