@@ -409,7 +409,7 @@ impl<'a> Work<'a> {
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-        let nodes = sampling::nodes(self.path, INTERVALS);
+        let nodes = sampling::nodes(self.task.model, self.path, &caps, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
         let grid = sampling::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
