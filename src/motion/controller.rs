@@ -62,6 +62,7 @@ impl Planning {
 
 impl Planning {
     /// The same with a motion that ends as the average does, and the rest behind it shorter.
+    #[must_use]
     pub fn complete(self) -> Planning {
         let Planning { average, settling_s } = self;
         let settling_s = (settling_s - average.closing).max(0.0);
