@@ -8,6 +8,7 @@ use super::equations::Equations;
 use super::factors::Factors;
 use super::least_squares::solve;
 use super::samples::{Block, Samples};
+use super::work::Misses;
 
 /// Mean share of the torques' variance that a good model explains, and a fair one.
 const GOOD: f64 = 0.9;
@@ -21,6 +22,8 @@ const SHIFT: f64 = 1.0;
 const STEPS: [f64; 2] = [0.05, 0.01];
 /// Instants that tell a shift.
 const INSTANTS: usize = 3000;
+/// Least variance of a torque, over its mean square.
+const LEAST: f64 = 1e-3;
 /// Share of the residuals' power that a shift has to take away to be told.
 const GAIN: f64 = 0.5;
 
@@ -92,22 +95,22 @@ impl Quality {
     }
 }
 
-/// What is said of a model with the residuals `rms` \[Nm\] on `samples`; `surely_negative`
-/// are the joints whose friction gives power.
+/// What is said of a model with the residuals `misses` on `samples`; `giving_power` are the
+/// joints whose friction surely does.
 #[must_use]
 pub(super) fn quality(
     equations: &Equations<'_>,
     samples: &Samples,
-    rms: &[f64],
+    misses: &Misses,
     giving_power: Vec<usize>,
 ) -> Quality {
-    let explained: Vec<f64> = (0..rms.len())
+    let explained: Vec<f64> = (0..misses.rms.len())
         .map(|joint| {
             let moves = !samples.resting.contains(&joint);
-            if moves { 1.0 - rms[joint].powi(2) / variance(samples, joint) } else { f64::NAN }
+            if moves { explained(samples, misses, joint) } else { f64::NAN }
         })
         .collect();
-    let moving = rms.len() - samples.resting.len();
+    let moving = misses.rms.len() - samples.resting.len();
     let mut quality = Quality { grade: Grade::Good, explained, giving_power, late: None };
     let mean = quality.mean();
     let reversed = 2 * quality.giving_power.len() > moving;
@@ -120,7 +123,7 @@ pub(super) fn quality(
     } else {
         Grade::Good
     };
-    if matches!(quality.grade, Grade::Poor | Grade::None) {
+    if quality.grade != Grade::Good {
         quality.late = late(equations, samples);
     }
     quality
@@ -132,12 +135,16 @@ pub(super) fn surely_negative(value: f64, sd: f64) -> bool {
     value < -SURE * sd
 }
 
-/// The variance of a joint's torque \[N²m²\].
-fn variance(samples: &Samples, joint: usize) -> f64 {
+/// The share of the variance of a joint's torque, as the equations have it, behind a filter.
+fn explained(samples: &Samples, misses: &Misses, joint: usize) -> f64 {
     let all = || samples.blocks.iter().flat_map(|block| &block.tau[joint]);
-    let count = samples.len().max(1) as f64;
-    let mean = all().sum::<f64>() / count;
-    all().map(|tau| (tau - mean).powi(2)).sum::<f64>() / count
+    let mean = all().sum::<f64>() / samples.len().max(1) as f64;
+    let (rms, relative) = (misses.rms[joint], misses.relative[joint]);
+    if rms == 0.0 {
+        return 1.0;
+    }
+    let square = (rms / relative).powi(2);
+    1.0 - rms * rms / (square - mean * mean).max(LEAST * square)
 }
 
 /// The shift in time with which torques fit the motion best, where that is far better \[s\].
