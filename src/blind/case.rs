@@ -6,7 +6,7 @@ use super::fourier::fourier;
 use super::label::{HeldOut, Kind, Label, TrueParameter, Truth};
 use super::mechanics::Joints;
 use super::model_error::{ModelError, variation};
-use super::motion::{Motion, PER_ROW};
+use super::motion::{Motion, PER_ROW, Sample};
 use super::noise::Noise;
 use super::pick_place::pick_place;
 use super::plant::Plant;
@@ -55,6 +55,8 @@ const PAUSE_S: [f64; 2] = [5.0, 60.0];
 const VARIATION: [f64; 2] = [0.001, 0.006];
 /// Poses of the first look at a robot's torques, in samples of the simulation.
 const LOOK: usize = 10;
+/// A joint slower than this rests: it has no part in the figures of a log \[rad/s\].
+const RESTS: f64 = 0.02;
 /// Drawn again, a pair has two different effects.
 const DRAWS: usize = 32;
 
@@ -355,28 +357,28 @@ fn held_out(
     let once = [[1.0; MAX_DOF]];
     let (ill, well) =
         (simulate(ill, motion, clock, &once), simulate(healthy, motion, clock, &once));
-    let samples = motion.samples.iter().step_by(PER_ROW);
+    let samples: Vec<&Sample> = motion.samples.iter().step_by(PER_ROW).collect();
     let expected: Vec<Joints> = samples
+        .iter()
         .zip(&ill)
         .map(|(sample, row)| nominal.torque(&row.q, &sample.qd, &sample.qdd))
         .collect();
-    let plain: Vec<Joints> = motion
-        .samples
+    let plain: Vec<Joints> = samples
         .iter()
-        .step_by(PER_ROW)
         .map(|sample| healthy.plant.torque(&sample.q, &sample.qd, &sample.qdd))
         .collect();
-    let rms = |of: &dyn Fn(usize) -> f64| {
-        let squares: f64 = (0..ill.len()).map(|i| of(i).powi(2)).sum();
-        (squares / ill.len().max(1) as f64).sqrt()
+    let rms = |joint: usize, of: &dyn Fn(usize) -> f64| {
+        let moving = (0..ill.len()).filter(|i| samples[*i].qd[joint].abs() >= RESTS);
+        let squares: Vec<f64> = moving.map(|i| of(i).powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     };
     (0..nominal.dof)
         .map(|j| HeldOut {
             joint: j + 1,
-            torque: rms(&|i| ill[i].tau[j]),
-            model: rms(&|i| ill[i].tau[j] - expected[i][j]),
-            effects: rms(&|i| ill[i].tau[j] - well[i].tau[j]),
-            left: rms(&|i| well[i].tau[j] - plain[i][j]),
+            torque: rms(j, &|i| ill[i].tau[j]),
+            model: rms(j, &|i| ill[i].tau[j] - expected[i][j]),
+            effects: rms(j, &|i| ill[i].tau[j] - well[i].tau[j]),
+            left: rms(j, &|i| well[i].tau[j] - plain[i][j]),
         })
         .collect()
 }

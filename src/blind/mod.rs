@@ -10,6 +10,7 @@ mod case;
 mod detect;
 mod disturbance;
 mod fourier;
+mod grade;
 mod label;
 mod mechanics;
 mod model_error;
@@ -25,6 +26,7 @@ mod trust;
 mod workspace;
 
 pub use case::{Case, Settings, case};
+pub use grade::{Asked, Bin, DiagnosisError, Grades, Rate, Wrong, grade};
 pub use label::{HeldOut, Kind, Label, TrueParameter, Truth};
 pub use plant::torque;
 pub use seal::{KEY, SEALS, SealError, Sealed, open, seal};

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::mechanics::{GRAVITY, Joints};
+use super::mechanics::Joints;
 use super::plant::Plant;
 use super::random::Random;
 use super::workspace::Workspace;
@@ -28,6 +28,9 @@ const MASS_PER_REACH: [f64; 2] = [55.0, 110.0];
 const SHARES: [f64; 6] = [0.36, 0.28, 0.22, 0.09, 0.035, 0.015];
 /// Bearings and gears of a wrist turn with it: no link is lighter \[kg\].
 const LIGHTEST: f64 = 0.25;
+
+/// No motor is made for less at its joint \[Nm\].
+const LEAST_TORQUE: f64 = 8.0;
 
 /// A robot with dynamics. `None` where the catalogue has none of the arms.
 pub(super) fn robot(random: &mut Random) -> Option<Model> {
@@ -111,12 +114,14 @@ fn drives(model: &mut Model, random: &mut Random) {
     model.friction.coulomb = each(random, 0.03, 0.08)
         .iter()
         .enumerate()
-        .map(|(joint, share)| wide(joint) * share * largest[joint].max(GRAVITY))
+        .map(|(joint, share)| wide(joint) * share * largest[joint].max(LEAST_TORQUE))
         .collect();
     model.friction.viscous = each(random, 0.04, 0.12)
         .iter()
         .enumerate()
-        .map(|(joint, x)| wide(joint) * x * largest[joint].max(GRAVITY) / workspace.velocity[joint])
+        .map(|(joint, x)| {
+            wide(joint) * x * largest[joint].max(LEAST_TORQUE) / workspace.velocity[joint]
+        })
         .collect();
     model.friction.stribeck = None;
     model.friction.load_friction = None;
@@ -130,7 +135,7 @@ fn drives(model: &mut Model, random: &mut Random) {
             (at_joint / ratio[joint].powi(2)).min(0.4)
         })
         .collect();
-    let torque: Vec<f64> = (0..n).map(|joint| 2.5 * largest[joint].max(GRAVITY)).collect();
+    let torque: Vec<f64> = (0..n).map(|joint| 2.5 * largest[joint].max(LEAST_TORQUE)).collect();
     // A motor that gives its largest torque loses some kilowatts per megawatt of squared torque.
     let loss_constant: Vec<f64> =
         torque.iter().map(|tau| random.log_between(300.0, 900.0) / (tau * tau)).collect();
