@@ -1,5 +1,6 @@
 //! One case: a robot, its logs, and what is wrong with it.
 
+use super::conduct;
 use super::detect::{self, Pair, Setting};
 use super::disturbance::{self, Disturbance, Scale};
 use super::fourier::fourier;
@@ -10,6 +11,7 @@ use super::motion::{Motion, PER_ROW, Sample};
 use super::noise::Noise;
 use super::pick_place::pick_place;
 use super::plant::Plant;
+use super::program::{Conduct, Program};
 use super::random::Random;
 use super::robots;
 use super::simulate::{Robot, Row, Supply, simulate};
@@ -57,111 +59,202 @@ const VARIATION: [f64; 2] = [0.001, 0.006];
 const LOOK: usize = 10;
 /// A joint slower than this rests: it has no part in the figures of a log \[rad/s\].
 const RESTS: f64 = 0.02;
+/// Share of the cases that are runs of a program, and of those in which nothing is wrong.
+const PROGRAMS: f64 = 0.12;
+const HEALTHY_PROGRAMS: f64 = 0.4;
 /// Drawn again, a pair has two different effects.
 const DRAWS: usize = 32;
 
 /// The case with a number, from 1. `None` where the catalogue has none of the robots.
 #[must_use]
 pub fn case(settings: &Settings, number: usize) -> Option<Case> {
-    let stream = |purpose: &str| Random::new(settings.seed, number as u64, purpose);
-    let name = format!("case-{number:04}");
-    let nominal_model = nominal(&mut stream("robot"))?;
-    let nominal = Plant::of(&nominal_model);
-    let workspace = Workspace::of(&nominal_model);
+    let bench = Bench::drawn(settings, number)?;
+    Some(if bench.with_program { program_case(&bench) } else { torque_case(&bench) })
+}
 
-    let mut draws = stream("setting");
-    // Before what is wrong is drawn, so that nothing in the folder hints at it.
-    let with_baseline = draws.chance(0.5);
-    let trust = if with_baseline || draws.chance(0.4) { Trust::Commissioned } else { Trust::Cad };
-    let variation_size = draws.log_between(VARIATION[0], VARIATION[1]);
-    let heldout_works = draws.chance(0.5);
+/// A robot with its sensors, before anything is wrong.
+struct Bench<'a> {
+    settings: &'a Settings,
+    number: usize,
+    model: Model,
+    nominal: Plant,
+    workspace: Workspace,
+    trust: Trust,
+    /// Drawn before what is wrong, so that nothing in the folder hints at it.
+    with_program: bool,
+    with_baseline: bool,
+    variation: f64,
+    /// Two to learn from, one held out, one from before.
+    motions: [Motion; 4],
+    sizes: Sizes,
+    ratio: Joints,
+    /// Rms power \[W\].
+    power: f64,
+    plant: Plant,
+    supply: Supply,
+    error: ModelError,
+    noise: Noise,
+}
 
-    let mut draws = stream("motions");
-    let exciting = |draws: &mut Random| fourier(&workspace, settings.period_s, draws);
-    let motions = [exciting(&mut draws), exciting(&mut draws)];
-    let heldout = if heldout_works {
-        pick_place(&workspace, settings.period_s, &mut draws)
-    } else {
-        exciting(&mut draws)
-    };
-    let baseline = exciting(&mut draws);
+impl<'a> Bench<'a> {
+    fn drawn(settings: &'a Settings, number: usize) -> Option<Bench<'a>> {
+        let stream = |purpose: &str| Random::new(settings.seed, number as u64, purpose);
+        let model = nominal(&mut stream("robot"))?;
+        let nominal = Plant::of(&model);
+        let workspace = Workspace::of(&model);
 
-    let sizes = sizes(&nominal, &motions);
-    let (supply_nominal, ratio) = supply(&nominal_model);
-    let power = rms_power(&nominal, &supply_nominal, &motions);
-    let noise = Noise::drawn(&sizes.rms, &sizes.peak, power, &mut stream("noise levels"));
-    let error = ModelError::drawn(
-        nominal.dof,
-        &sizes.rms,
-        &sizes.fastest,
-        &noise.torque,
-        &ratio,
-        &mut stream("model error"),
-    );
-    let mut draws = stream("spread");
-    let plant = trust.real(&nominal, &mut draws);
-    let mut supply = supply_nominal.clone();
-    supply.base *= 1.0 + 0.02 * draws.normal_within(2.0);
-    for loss in &mut supply.loss {
-        *loss *= 1.0 + 0.5 * trust.friction() * draws.normal_within(2.0);
+        let mut draws = stream("setting");
+        let with_program = draws.chance(PROGRAMS);
+        let with_baseline = with_program || draws.chance(0.5);
+        let trust =
+            if with_baseline || draws.chance(0.4) { Trust::Commissioned } else { Trust::Cad };
+        let variation = draws.log_between(VARIATION[0], VARIATION[1]);
+        let heldout_works = draws.chance(0.5);
+
+        let mut draws = stream("motions");
+        let exciting = |draws: &mut Random| fourier(&workspace, settings.period_s, draws);
+        let motions = [
+            exciting(&mut draws),
+            exciting(&mut draws),
+            if heldout_works {
+                pick_place(&workspace, settings.period_s, &mut draws)
+            } else {
+                exciting(&mut draws)
+            },
+            exciting(&mut draws),
+        ];
+        let sizes = sizes(&nominal, &motions[..2]);
+        let (of_model, ratio) = supply(&model);
+        let power = rms_power(&nominal, &of_model, &motions[..2]);
+        let noise = Noise::drawn(&sizes.rms, &sizes.peak, power, &mut stream("noise levels"));
+        let error = ModelError::drawn(
+            nominal.dof,
+            &sizes.rms,
+            &sizes.fastest,
+            &noise.torque,
+            &ratio,
+            &mut stream("model error"),
+        );
+        let mut draws = stream("spread");
+        let plant = trust.real(&nominal, &mut draws);
+        let mut supply = of_model;
+        supply.base *= 1.0 + 0.02 * draws.normal_within(2.0);
+        for loss in &mut supply.loss {
+            *loss *= 1.0 + 0.5 * trust.friction() * draws.normal_within(2.0);
+        }
+        Some(Bench {
+            settings,
+            number,
+            model,
+            nominal,
+            workspace,
+            trust,
+            with_program,
+            with_baseline,
+            variation,
+            motions,
+            sizes,
+            ratio,
+            power,
+            plant,
+            supply,
+            error,
+            noise,
+        })
     }
 
-    let scale = Scale {
-        plant: &plant,
-        workspace: &workspace,
-        trust,
-        period_s: settings.period_s,
-        ratio,
-        rms: sizes.rms,
-        peak: sizes.peak,
-        fastest: sizes.fastest,
-        load: sizes.load,
-        power,
-    };
-    let (kind, disturbances) = wrong(&scale, with_baseline, &mut stream("truth"));
+    fn stream(&self, purpose: &str) -> Random {
+        Random::new(self.settings.seed, self.number as u64, purpose)
+    }
 
-    let steady = vec![[1.0; MAX_DOF]; settings.cycles];
-    let mut draws = stream("clock");
-    let lasts = settings.cycles as f64 * settings.period_s;
+    fn robot<'b>(&'b self, disturbances: Vec<&'b Disturbance>) -> Robot<'b> {
+        let Bench { plant, error, supply, .. } = self;
+        Robot { plant, error, supply, disturbances }
+    }
+
+    fn sealed(
+        &self,
+        mut files: Vec<(String, String)>,
+        options: &serde_json::Value,
+        kind: Kind,
+        label: impl FnOnce(&mut Label),
+    ) -> Case {
+        let name = format!("case-{:04}", self.number);
+        files.insert(0, ("nominal.toml".into(), to_toml(&self.model)));
+        files.push(("case.json".into(), format!("{options}\n")));
+        let mut sealed = Label {
+            case: name.clone(),
+            kind,
+            trust: self.trust.name().into(),
+            effects: Vec::new(),
+            place: None,
+            share: None,
+            lines: Vec::new(),
+            heldout: Vec::new(),
+        };
+        label(&mut sealed);
+        let mut draws = self.stream("salt");
+        let salt = format!("{:016x}{:016x}", draws.bits(), draws.bits());
+        Case { name, files, label: sealed, salt }
+    }
+}
+
+/// Times at which three logs begin, each of this length \[s\].
+fn clocks(lasts: f64, random: &mut Random) -> [f64; 3] {
     let mut clocks = [0.0; 3];
     for i in 1..clocks.len() {
-        clocks[i] = clocks[i - 1] + lasts + draws.between(PAUSE_S[0], PAUSE_S[1]).round();
+        clocks[i] = clocks[i - 1] + lasts + random.between(PAUSE_S[0], PAUSE_S[1]).round();
     }
-    let robot = Operation { plant: &plant, error: &error, supply: &supply };
+    clocks
+}
+
+/// A case of torques or power.
+fn torque_case(bench: &Bench<'_>) -> Case {
+    let Bench { settings, nominal, plant, noise, trust, .. } = bench;
+    let scale = Scale {
+        plant,
+        workspace: &bench.workspace,
+        trust: *trust,
+        period_s: settings.period_s,
+        ratio: bench.ratio,
+        rms: bench.sizes.rms,
+        peak: bench.sizes.peak,
+        fastest: bench.sizes.fastest,
+        load: bench.sizes.load,
+        power: bench.power,
+    };
+    let (kind, disturbances) = wrong(&scale, bench.with_baseline, &mut bench.stream("truth"));
     let all: Vec<&Disturbance> = disturbances.iter().collect();
+    let [first, second, heldout, before] = &bench.motions;
+    let lasts = settings.cycles as f64 * settings.period_s;
+    let clocks = clocks(lasts, &mut bench.stream("clock"));
 
     // What is logged, with the noise of its own.
-    let mut files = vec![("nominal.toml".to_owned(), to_toml(&nominal_model))];
-    let logged = [("log-1", &motions[0]), ("log-2", &motions[1]), ("heldout", &heldout)];
-    for ((file, motion), clock) in logged.into_iter().zip(clocks) {
-        let mut draws = stream(file);
-        let factors = variation(settings.cycles, variation_size, &mut draws);
-        let rows = simulate(&robot.with(all.clone()), motion, clock, &factors);
-        files.push((format!("{file}.csv"), noise.log(&rows, plant.dof, clock, &mut draws)));
+    let logged = |file: &str, motion: &Motion, clock: f64, of: &[&Disturbance]| {
+        let mut draws = bench.stream(file);
+        let factors = variation(settings.cycles, bench.variation, &mut draws);
+        let rows = simulate(&bench.robot(of.to_vec()), motion, clock, &factors);
+        (file.to_owned(), noise.log(&rows, plant.dof, clock, None, &mut draws))
+    };
+    let mut files = vec![
+        logged("log-1.csv", first, clocks[0], &all),
+        logged("log-2.csv", second, clocks[1], &all),
+        logged("heldout.csv", heldout, clocks[2], &all),
+    ];
+    if bench.with_baseline {
+        files.push(logged("baseline-1.csv", before, 0.0, &[]));
     }
-    if with_baseline {
-        let mut draws = stream("baseline-1");
-        let factors = variation(settings.cycles, variation_size, &mut draws);
-        let rows = simulate(&robot.with(Vec::new()), &baseline, 0.0, &factors);
-        files.push(("baseline-1.csv".into(), noise.log(&rows, plant.dof, 0.0, &mut draws)));
-    }
-    let options = serde_json::json!({ "trust": trust.name(), "period": settings.period_s });
-    files.push(("case.json".into(), format!("{options}\n")));
 
     // What can be seen of each thing that is wrong, the others being there.
-    let train = [(&motions[0], clocks[0]), (&motions[1], clocks[1])];
+    let steady = vec![[1.0; MAX_DOF]; settings.cycles];
+    let train = [(first, clocks[0]), (second, clocks[1])];
     let run = |of: &[&Disturbance]| -> Vec<Vec<Row>> {
-        let robot = robot.with(of.to_vec());
+        let robot = bench.robot(of.to_vec());
         train.iter().map(|(motion, clock)| simulate(&robot, motion, *clock, &steady)).collect()
     };
     let with_all = run(&all);
-    let setting = Setting {
-        nominal: &nominal,
-        trust,
-        error: &error,
-        noise: &noise,
-        variation: variation_size,
-    };
+    let setting =
+        Setting { nominal, trust: *trust, error: &bench.error, noise, variation: bench.variation };
     let mut effects = Vec::new();
     for (i, disturbance) in disturbances.iter().enumerate() {
         let others: Vec<&Disturbance> =
@@ -171,7 +264,7 @@ pub fn case(settings: &Settings, number: usize) -> Option<Case> {
             .map(|k| Pair { motion: train[k].0, with: &with_all[k], without: &without[k] })
             .collect();
         let nats = match kind {
-            Kind::Power => detect::power_nats(&noise, &pairs),
+            Kind::Power => detect::power_nats(noise, &pairs),
             _ => detect::torque_nats(&setting, &pairs),
         };
         effects.push(truth(disturbance, nats));
@@ -181,34 +274,49 @@ pub fn case(settings: &Settings, number: usize) -> Option<Case> {
         _ if disturbances.is_empty() => (None, None),
         _ => largest_share(plant.dof, &with_all, &run(&[])),
     };
-    let held = held_out(&nominal, &heldout, &robot.with(all), &robot.with(Vec::new()), clocks[2]);
-    let label = Label {
-        case: name.clone(),
-        kind,
-        trust: trust.name().into(),
-        effects,
-        place,
-        share,
-        line: None,
-        heldout: held,
+    let held = held_out(nominal, heldout, &bench.robot(all), &bench.robot(Vec::new()), clocks[2]);
+    let options = serde_json::json!({ "trust": trust.name(), "period": settings.period_s });
+    bench.sealed(files, &options, kind, |label| {
+        label.effects = effects;
+        (label.place, label.share) = (place, share);
+        label.heldout = held;
+    })
+}
+
+/// A case of a program's run.
+fn program_case(bench: &Bench<'_>) -> Case {
+    let Bench { settings, workspace, plant, noise, .. } = bench;
+    let program = Program::drawn(workspace, &mut bench.stream("program"));
+    let plain = Conduct::plain();
+    let mut draws = bench.stream("truth");
+    let wrong = (!draws.chance(HEALTHY_PROGRAMS))
+        .then(|| conduct::motion_effect(&program, workspace, &mut draws));
+    let conduct = wrong.as_ref().map_or(plain, |wrong| wrong.conduct);
+    let logged = |file: &str, conduct: &Conduct, clock: f64| {
+        let mut draws = bench.stream(file);
+        let course = program.run(workspace, conduct, settings.cycles, &mut draws);
+        let rows = simulate(&bench.robot(Vec::new()), &course.motion, clock, &[[1.0; MAX_DOF]]);
+        let marks: Vec<[usize; 2]> = course.marks.iter().step_by(PER_ROW).copied().collect();
+        (file.to_owned(), noise.log(&rows, plant.dof, clock, Some(&marks), &mut draws))
     };
-    let mut draws = stream("salt");
-    let salt = format!("{:016x}{:016x}", draws.bits(), draws.bits());
-    Some(Case { name, files, label, salt })
-}
-
-/// A robot to which something may happen.
-struct Operation<'a> {
-    plant: &'a Plant,
-    error: &'a ModelError,
-    supply: &'a Supply,
-}
-
-impl<'a> Operation<'a> {
-    fn with(&self, disturbances: Vec<&'a Disturbance>) -> Robot<'a> {
-        let Operation { plant, error, supply } = *self;
-        Robot { plant, error, supply, disturbances }
-    }
+    let lasts = settings.cycles as f64 * program.durations(workspace, &conduct).iter().sum::<f64>();
+    let clocks = clocks(2.0 * lasts, &mut bench.stream("clock"));
+    let files = vec![
+        logged("log-1.csv", &conduct, clocks[0]),
+        logged("log-2.csv", &conduct, clocks[1]),
+        logged("heldout.csv", &conduct, clocks[2]),
+        logged("baseline-1.csv", &plain, 0.0),
+        ("program/MainModule.mod".to_owned(), program.text()),
+    ];
+    let options = serde_json::json!({ "trust": bench.trust.name(), "program": "program" });
+    let kind = if wrong.is_some() { Kind::Motion } else { Kind::Healthy };
+    bench.sealed(files, &options, kind, |label| {
+        if let Some(wrong) = wrong {
+            let logs = 2.0 * settings.cycles as f64;
+            label.lines = wrong.lines;
+            label.effects = vec![Truth { nats: wrong.nats_per_cycle * logs, ..wrong.truth }];
+        }
+    })
 }
 
 /// A robot, with a drive that gives braking power back in some cases.
@@ -301,9 +409,10 @@ fn sizes(plant: &Plant, motions: &[Motion]) -> Sizes {
 fn supply(model: &Model) -> (Supply, Joints) {
     let (mut loss, mut ratio) = ([0.0; MAX_DOF], [1.0; MAX_DOF]);
     if let Some(motors) = &model.motors {
-        for joint in 0..model.dof {
-            loss[joint] = motors.loss_constant[joint];
-            ratio[joint] = motors.ratio[joint];
+        for (to, from) in [(&mut loss, &motors.loss_constant), (&mut ratio, &motors.ratio)] {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = *from;
+            }
         }
     }
     let drive = &model.drive;

@@ -201,7 +201,7 @@ fn columns_at(setting: &Setting<'_>, sample: &Sample, columns: usize) -> DMatrix
         ] {
             let mut at_motors = [0.0; MAX_DOF];
             at_motors[motor] = torque;
-            for (joint, tau) in nominal.from_motor(at_motors).iter().take(n).enumerate() {
+            for (joint, tau) in nominal.at_joints(at_motors).iter().take(n).enumerate() {
                 matrix[(joint, column)] = *tau;
             }
             column += 1;
@@ -234,4 +234,58 @@ fn varied(body: &Body, trust: Trust) -> [Body; OF_BODY] {
         }
         body
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::super::fourier::fourier;
+    use super::super::random::Random;
+    use super::super::robots;
+    use super::super::workspace::Workspace;
+    use super::*;
+
+    /// A change of one nuisance by one standard deviation is worth half a nat at most, an offset
+    /// of the same size far more.
+    #[test]
+    fn what_the_parameters_may_be_is_no_evidence() {
+        let mut random = Random::new(4, 1, "test");
+        let model = robots::robot(&mut random).unwrap();
+        let nominal = Plant::of(&model);
+        let motion = fourier(&Workspace::of(&model), 4.0, &mut random);
+        let samples: Vec<Sample> = motion.samples.iter().step_by(PER_ROW).copied().collect();
+        let row = |plant: &Plant, sample: &Sample, offset: f64| {
+            let mut tau = plant.torque(&sample.q, &sample.qd, &sample.qdd);
+            tau[1] += offset;
+            Row { q: sample.q, tau, power: 0.0 }
+        };
+        let rows = |plant: &Plant, offset: f64| -> Vec<Row> {
+            samples.iter().map(|sample| row(plant, sample, offset)).collect()
+        };
+        let without = rows(&nominal, 0.0);
+        let sizes = without[0].tau.map(|_| 20.0);
+        let noise = Noise::drawn(&sizes, &sizes, 100.0, &mut random);
+        let error = ModelError::drawn(6, &sizes, &sizes, &sizes, &sizes, &mut random);
+        let setting = Setting {
+            nominal: &nominal,
+            trust: Trust::Commissioned,
+            error: &error,
+            noise: &noise,
+            variation: 0.002,
+        };
+        let nats = |with: &[Row]| {
+            torque_nats(&setting, &[Pair { motion: &motion, with, without: &without }])
+        };
+        let mut other = nominal.clone();
+        let change = setting.trust.friction() * other.viscous[1];
+        other.viscous[1] += change;
+        let of_parameter = nats(&rows(&other, 0.0));
+        assert!(of_parameter > 0.0 && of_parameter <= 0.5 + 1e-6, "{of_parameter}");
+        other = nominal.clone();
+        other.bodies[2].mass *= 1.0 + setting.trust.mass();
+        assert!(nats(&rows(&other, 0.0)) <= 0.5 + 1e-6);
+        let offset = nats(&rows(&nominal, 5.0));
+        assert!(offset > 20.0 * of_parameter, "{offset}");
+    }
 }

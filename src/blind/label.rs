@@ -54,8 +54,8 @@ pub struct Label {
     pub place: Option<usize>,
     /// That share.
     pub share: Option<f64>,
-    /// A RAPID line, where the effect is at one.
-    pub line: Option<usize>,
+    /// RAPID lines that say where the effect is; empty where it is at none.
+    pub lines: Vec<usize>,
     /// The held-out log: the gap that the nominal model leaves, joint by joint.
     pub heldout: Vec<HeldOut>,
 }

@@ -7,6 +7,7 @@
 //! tells what is in a case.
 
 mod case;
+mod conduct;
 mod detect;
 mod disturbance;
 mod fourier;
@@ -18,6 +19,7 @@ mod motion;
 mod noise;
 mod pick_place;
 mod plant;
+mod program;
 mod random;
 mod robots;
 mod seal;

@@ -46,15 +46,23 @@ impl Noise {
         (white * white + step * step / 12.0).sqrt()
     }
 
-    /// The log of some rows from the time `clock` \[s\], as CSV.
-    pub(super) fn log(&self, rows: &[Row], dof: usize, clock: f64, random: &mut Random) -> String {
+    /// The log of some rows from the time `clock` \[s\], as CSV; with `marks`, the repetition and
+    /// the movement of each row.
+    pub(super) fn log(
+        &self,
+        rows: &[Row],
+        dof: usize,
+        clock: f64,
+        marks: Option<&[[usize; 2]]>,
+        random: &mut Random,
+    ) -> String {
         let mut csv = String::from("t");
         for name in ["q", "tau"] {
             for joint in 1..=dof {
                 let _ = write!(csv, ",{name}{joint}");
             }
         }
-        csv.push_str(",power\n");
+        csv.push_str(if marks.is_some() { ",power,cycle,cmd\n" } else { ",power\n" });
         let fresh = (1.0 - self.memory * self.memory).sqrt();
         let mut state: Joints = [0.0; MAX_DOF];
         let mut of_power = 0.0;
@@ -75,7 +83,11 @@ impl Noise {
                 let _ = write!(csv, ",{:.4}", (tau / step).round() * step);
             }
             of_power = self.memory * of_power + fresh * random.normal();
-            let _ = writeln!(csv, ",{:.2}", row.power + self.power * of_power);
+            let _ = write!(csv, ",{:.2}", row.power + self.power * of_power);
+            if let Some([cycle, movement]) = marks.and_then(|marks| marks.get(i)) {
+                let _ = write!(csv, ",{cycle},{movement}");
+            }
+            csv.push('\n');
         }
         csv
     }

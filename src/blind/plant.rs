@@ -69,7 +69,7 @@ impl Plant {
     }
 
     /// Torques at the joints of those at the motors (times the gear ratios).
-    pub(super) fn from_motor(&self, mut tau: Joints) -> Joints {
+    pub(super) fn at_joints(&self, mut tau: Joints) -> Joints {
         tau[WRIST[0]] += self.coupling * tau[WRIST[1]];
         tau
     }
@@ -119,7 +119,7 @@ impl Plant {
                 + self.coulomb[i] * sign
                 + self.viscous[i] * rate[i];
         }
-        for (sum, part) in tau.iter_mut().zip(self.from_motor(gears)) {
+        for (sum, part) in tau.iter_mut().zip(self.at_joints(gears)) {
             *sum += part;
         }
         tau

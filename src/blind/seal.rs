@@ -1,5 +1,7 @@
 //! Seals: a hash of each label in the open, the labels in a key.
 
+use std::fmt::Write as _;
+
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
@@ -78,7 +80,7 @@ pub fn seal(labels: &[(Label, String)]) -> Result<Sealed, SealError> {
     let mut key = Key { labels: Vec::new() };
     for (label, salt) in labels {
         let text = serde_json::to_string(label).map_err(unreadable)?;
-        seals += &format!("{},{}\n", label.case, hash(salt, &text));
+        let _ = writeln!(seals, "{},{}", label.case, hash(salt, &text));
         key.labels.push(Entry { case: label.case.clone(), salt: salt.clone(), label: text });
     }
     let key = serde_json::to_string_pretty(&key).map_err(unreadable)? + "\n";
@@ -131,5 +133,8 @@ pub fn open(sealed: &Sealed) -> Result<Vec<Label>, SealError> {
 
 fn hash(salt: &str, label: &str) -> String {
     let digest = Sha256::digest(format!("{salt}\n{label}").as_bytes());
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    digest.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }

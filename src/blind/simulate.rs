@@ -113,7 +113,7 @@ pub(super) fn simulate(
                 change(&moment, &mut at_motors);
             }
             let mut tau = rigid[i];
-            for (sum, part) in tau.iter_mut().zip(plant.from_motor(at_motors)) {
+            for (sum, part) in tau.iter_mut().zip(plant.at_joints(at_motors)) {
                 *sum += part;
             }
             for change in &mut joints {

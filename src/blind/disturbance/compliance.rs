@@ -157,3 +157,52 @@ pub(super) fn backlash(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
         .with("gap", gap)
         .acting(Action::Compliance(Compliance { joint, stiffness, spring, damping }))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    const STEP_S: f64 = 0.002;
+    const STIFFNESS: f64 = 2e4;
+    const INERTIA: f64 = 5.0;
+
+    fn deflections(spring: Spring, damping: Option<f64>, frequency: f64) -> Vec<f64> {
+        let count = (1.0 / frequency / STEP_S).round() as usize;
+        let load: Vec<f64> =
+            (0..count).map(|i| 100.0 * (TAU * i as f64 / count as f64).sin()).collect();
+        let compliance = Compliance { joint: 0, stiffness: STIFFNESS, spring, damping };
+        compliance.deflections(&load, &vec![INERTIA; count], STEP_S)
+    }
+
+    fn largest(values: &[f64]) -> f64 {
+        values.iter().fold(0.0, |most, x| x.abs().max(most))
+    }
+
+    /// Slowly, an oscillator is a spring; near its resonance it gives way as far as the steady
+    /// state of a damped oscillator does.
+    #[test]
+    fn oscillators_have_their_resonance() {
+        let still = largest(&deflections(Spring::Linear, None, 0.1));
+        let slow = largest(&deflections(Spring::Linear, Some(0.7), 0.1));
+        assert!((slow / still - 1.0).abs() < 0.01, "{slow} {still}");
+
+        let own = (STIFFNESS / INERTIA).sqrt() / TAU;
+        let (damping, x) = (0.2, 0.5);
+        let found = largest(&deflections(Spring::Linear, Some(damping), x * own));
+        let amplified = 1.0 / ((1.0 - x * x).powi(2) + (2.0 * damping * x).powi(2)).sqrt();
+        let expected = amplified * 100.0 / STIFFNESS;
+        assert!((found / expected - 1.0).abs() < 0.03, "{found} {expected}");
+    }
+
+    /// A gap adds half of its width to each side.
+    #[test]
+    fn gaps_are_crossed() {
+        let gap = 4e-3;
+        let with = deflections(Spring::Gap(gap), Some(0.5), 0.5);
+        let without = deflections(Spring::Linear, Some(0.5), 0.5);
+        let more = largest(&with) - largest(&without);
+        assert!((more - 0.5 * gap).abs() < 0.1 * gap, "{more}");
+    }
+}

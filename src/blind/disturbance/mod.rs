@@ -269,3 +269,139 @@ fn mapped(
 
 /// Nothing for each joint.
 const NONE: Joints = [0.0; MAX_DOF];
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use super::super::fourier::fourier;
+    use super::super::model_error::ModelError;
+    use super::super::motion::Motion;
+    use super::super::robots;
+    use super::super::simulate::{Robot, Row, Supply, simulate};
+    use super::*;
+
+    /// Draws of each effect.
+    const DRAWS: usize = 24;
+    /// Functional forms that each effect has at least.
+    const FORMS: usize = 3;
+    /// Torques are never so many times as large as the robot's own.
+    const ABSURD: f64 = 20.0;
+
+    struct Bench {
+        plant: Plant,
+        workspace: Workspace,
+        motion: Motion,
+        error: ModelError,
+        supply: Supply,
+    }
+
+    fn bench() -> Bench {
+        let mut random = Random::new(1, 1, "test");
+        let model = robots::robot(&mut random).unwrap();
+        let workspace = Workspace::of(&model);
+        let motion = fourier(&workspace, 4.0, &mut random);
+        let nothing = [0.0; MAX_DOF];
+        Bench {
+            plant: Plant::of(&model),
+            workspace,
+            motion,
+            error: ModelError::drawn(0, &nothing, &nothing, &nothing, &nothing, &mut random),
+            supply: Supply { base: 100.0, loss: [1e-3; MAX_DOF], regeneration: 0.7 },
+        }
+    }
+
+    impl Bench {
+        fn run(&self, disturbances: Vec<&Disturbance>) -> Vec<Row> {
+            let Bench { plant, error, supply, .. } = self;
+            let robot = Robot { plant, error, supply, disturbances };
+            simulate(&robot, &self.motion, 0.0, &[[1.0; MAX_DOF]; 2])
+        }
+
+        fn scale(&self) -> Scale<'_> {
+            let (mut peak, mut fastest) = (NONE, NONE);
+            for sample in &self.motion.samples {
+                let tau = self.plant.torque(&sample.q, &sample.qd, &sample.qdd);
+                for joint in 0..self.plant.dof {
+                    peak[joint] = f64::max(peak[joint], tau[joint].abs());
+                    fastest[joint] = f64::max(fastest[joint], sample.qd[joint].abs());
+                }
+            }
+            Scale {
+                plant: &self.plant,
+                workspace: &self.workspace,
+                trust: Trust::Commissioned,
+                period_s: 4.0,
+                ratio: [100.0; MAX_DOF],
+                rms: peak.map(|x| 0.5 * x),
+                peak,
+                fastest,
+                load: peak.map(|x| 0.4 * x),
+                power: 500.0,
+            }
+        }
+    }
+
+    /// Each effect has its forms, changes the log, and stays a robot's.
+    #[test]
+    fn every_effect_shows_in_several_forms() {
+        let bench = bench();
+        let (scale, plain) = (bench.scale(), bench.run(Vec::new()));
+        let mut forms: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for (id, draw) in TORQUE.iter().chain(&POWER) {
+            for k in 0..DRAWS {
+                let disturbance = draw(&scale, &mut Random::new(2, k as u64, id));
+                assert_eq!(disturbance.id, *id);
+                if !forms.entry(id).or_default().insert(disturbance.form) {
+                    continue;
+                }
+                let rows = bench.run(vec![&disturbance]);
+                let name = format!("{id} {}", disturbance.form);
+                let mut changed = 0.0;
+                for (row, plain) in rows.iter().zip(&plain) {
+                    assert!(row.power.is_finite(), "{name}");
+                    changed += (row.power - plain.power).abs() / scale.power;
+                    for joint in 0..bench.plant.dof {
+                        let tau = row.tau[joint];
+                        assert!(tau.abs() < ABSURD * scale.peak[joint], "{name}: {tau}");
+                        changed += (tau - plain.tau[joint]).abs() / scale.peak[joint]
+                            + (row.q[joint] - plain.q[joint]).abs();
+                    }
+                }
+                assert!(changed > 0.0, "{name}");
+            }
+        }
+        assert_eq!(forms.len(), TORQUE.len() - 1 + POWER.len());
+        for (id, forms) in forms {
+            assert!(forms.len() >= FORMS, "{id}: {forms:?}");
+        }
+    }
+
+    /// A delay moves the torques and changes nothing else; a lag does so at low frequencies.
+    #[test]
+    fn delays_are_exact() {
+        let bench = bench();
+        let (scale, plain) = (bench.scale(), bench.run(Vec::new()));
+        let mut checked = 0;
+        for k in 0..60 {
+            let disturbance = sensing::time_delay(&scale, &mut Random::new(3, k, "delay"));
+            if disturbance.form != "constant" || !disturbance.joints.is_empty() {
+                continue;
+            }
+            checked += 1;
+            let late = bench.run(vec![&disturbance]);
+            let steps = disturbance.parameters[0].value / 0.01;
+            let (whole, part) = (steps.floor() as usize, steps.fract());
+            // In the second period nothing is left of the start. The gravity torque of axis 2 has
+            // no jumps but friction's, which a line between rows of 10 ms blurs.
+            let misses = (plain.len() / 2..plain.len()).filter(|&i| {
+                let (newer, older) = (plain[i - whole].tau[1], plain[i - whole - 1].tau[1]);
+                (late[i].tau[1] - (newer + part * (older - newer))).abs() > 0.01 * scale.peak[1]
+            });
+            assert!(misses.count() < 20);
+        }
+        assert!(checked > 3);
+    }
+}

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::label::{Kind, Label};
 use diagnosis::Diagnosis;
-use score::{Score, score};
+use score::{Outcome, Score, score};
 
 pub use diagnosis::DiagnosisError;
 
@@ -119,7 +119,7 @@ pub fn grade(
                 .entry(score.outcome.name())
                 .or_default() += 1;
         }
-        if score.wrong {
+        if score.outcome == Outcome::WrongName {
             wrong.push(Wrong { case: label.case.clone(), truth, said: score.said.clone() });
         }
         scores.push(score);
@@ -171,14 +171,26 @@ fn rates(scores: &[Score]) -> Vec<Rate> {
     let two = || detectable(Kind::Two);
     let outside = || detectable(Kind::Outside);
     vec![
-        rate("healthy_named", AtMost(0.02), of_kind(Kind::Healthy).map(|score| score.named)),
+        rate(
+            "healthy_named",
+            AtMost(0.02),
+            of_kind(Kind::Healthy).map(|score| score.outcome.names()),
+        ),
         rate(
             "parameters_only_named",
             AtMost(0.02),
-            of_kind(Kind::ParametersOnly).map(|score| score.named),
+            of_kind(Kind::ParametersOnly).map(|score| score.outcome.names()),
         ),
-        rate("one_right_or_class", AtLeast(0.92), single(scores).map(|score| score.all_right)),
-        rate("one_wrong_name", AtMost(0.02), single(scores).map(|score| score.wrong)),
+        rate(
+            "one_right_or_class",
+            AtLeast(0.92),
+            single(scores).map(|score| score.outcome.is_right()),
+        ),
+        rate(
+            "one_wrong_name",
+            AtMost(0.02),
+            single(scores).map(|score| score.outcome == Outcome::WrongName),
+        ),
         rate("one_joints", AtLeast(0.90), single(scores).filter_map(|score| score.joints)),
         rate("one_place", AtLeast(0.90), single(scores).filter_map(|score| score.place)),
         rate("line", AtLeast(0.90), single(scores).filter_map(|score| score.line)),
@@ -187,9 +199,13 @@ fn rates(scores: &[Score]) -> Vec<Rate> {
             AtLeast(0.93),
             scores.iter().flat_map(|score| score.parameters.iter().copied()),
         ),
-        rate("two_both", AtLeast(0.70), two().map(|score| score.all_right)),
-        rate("two_wrong_name", AtMost(0.03), two().map(|score| score.wrong)),
-        rate("outside_abstains", AtLeast(0.95), outside().map(|score| score.abstains)),
+        rate("two_both", AtLeast(0.70), two().map(|score| score.outcome.is_right())),
+        rate(
+            "two_wrong_name",
+            AtMost(0.03),
+            two().map(|score| score.outcome == Outcome::WrongName),
+        ),
+        rate("outside_abstains", AtLeast(0.95), outside().map(|score| score.outcome.abstains())),
     ]
 }
 
@@ -198,9 +214,13 @@ fn left_out_rates(scores: &[Score]) -> Vec<Rate> {
         rate(
             "left_out_unknown_or_class",
             Asked::AtLeast(0.92),
-            single(scores).map(|score| score.abstains || score.all_right),
+            single(scores).map(|score| score.outcome.abstains() || score.outcome.is_right()),
         ),
-        rate("left_out_wrong_name", Asked::AtMost(0.08), single(scores).map(|score| score.wrong)),
+        rate(
+            "left_out_wrong_name",
+            Asked::AtMost(0.08),
+            single(scores).map(|score| score.outcome == Outcome::WrongName),
+        ),
     ]
 }
 

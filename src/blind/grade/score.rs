@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::super::label::{Kind, Label, Truth};
-use super::diagnosis::{Diagnosis, Said};
+use super::diagnosis::{Diagnosis, Said, Verdict};
 
 /// An effect that the logs show less than this is not asked for \[nats\].
 pub(super) const DETECTABLE_NATS: f64 = 10.0;
@@ -22,8 +22,8 @@ pub(super) enum Outcome {
     /// Some of several effects, and none that is wrong.
     SomeRight,
     WrongName,
-    /// Nothing was named; the verdict's name.
-    Verdict(&'static str),
+    /// Nothing was named.
+    Verdict(Verdict),
 }
 
 impl Outcome {
@@ -33,8 +33,23 @@ impl Outcome {
             Outcome::RightClass => "right_class",
             Outcome::SomeRight => "some_right",
             Outcome::WrongName => "wrong_name",
-            Outcome::Verdict(verdict) => verdict,
+            Outcome::Verdict(verdict) => verdict.name(),
         }
+    }
+
+    /// All that is wrong was named, in a class at least, and nothing else.
+    pub(super) fn is_right(self) -> bool {
+        matches!(self, Outcome::RightName | Outcome::RightClass)
+    }
+
+    /// Whether some effect was named.
+    pub(super) fn names(self) -> bool {
+        !matches!(self, Outcome::Verdict(_))
+    }
+
+    /// Whether it owns up to not knowing.
+    pub(super) fn abstains(self) -> bool {
+        matches!(self, Outcome::Verdict(verdict) if verdict.abstains())
     }
 }
 
@@ -44,10 +59,6 @@ pub(super) struct Score {
     pub(super) kind: Kind,
     pub(super) detectable: bool,
     pub(super) outcome: Outcome,
-    pub(super) named: bool,
-    pub(super) abstains: bool,
-    pub(super) all_right: bool,
-    pub(super) wrong: bool,
     pub(super) joints: Option<bool>,
     pub(super) place: Option<bool>,
     pub(super) line: Option<bool>,
@@ -77,7 +88,7 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
     let outcome = if wrong {
         Outcome::WrongName
     } else if named.is_empty() {
-        Outcome::Verdict(diagnosis.verdict.name())
+        Outcome::Verdict(diagnosis.verdict)
     } else if !all_right {
         Outcome::SomeRight
     } else if by_name {
@@ -101,7 +112,8 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
     let place = (!truths.is_empty() && !named.is_empty())
         .then(|| clear.map(|joint| diagnosis.place() == Some(joint)))
         .flatten();
-    let line = label.line.map(|line| diagnosis.lines().any(|other| other == line));
+    let line = (!label.lines.is_empty())
+        .then(|| diagnosis.lines().any(|line| label.lines.contains(&line)));
     let parameters = right
         .iter()
         .filter(|(truth, said)| truth.nats >= DETECTABLE_NATS && said.id == truth.id)
@@ -119,10 +131,6 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
         kind: label.kind,
         detectable,
         outcome,
-        named: !named.is_empty(),
-        abstains: named.is_empty() && diagnosis.verdict.abstains(),
-        all_right,
-        wrong,
         joints,
         place,
         line,
