@@ -212,6 +212,7 @@ fn clocks(lasts: f64, random: &mut Random) -> [f64; 3] {
 fn torque_case(bench: &Bench<'_>) -> Case {
     let Bench { settings, nominal, plant, noise, trust, .. } = bench;
     let scale = Scale {
+        nominal,
         plant,
         workspace: &bench.workspace,
         trust: *trust,

@@ -52,6 +52,7 @@ pub(super) fn torque_nats(setting: &Setting<'_>, pairs: &[Pair<'_>]) -> f64 {
     let columns = OF_BODY * n + OF_JOINT * n + SMOOTH * n;
     let mut gram = DMatrix::<f64>::identity(columns, columns);
     let mut projected = DVector::<f64>::zeros(columns);
+    let mut rows = Vec::new();
     let mut squares = 0.0;
     for pair in pairs {
         let samples: Vec<Sample> = pair.motion.samples.iter().step_by(PER_ROW).copied().collect();
@@ -81,17 +82,18 @@ pub(super) fn torque_nats(setting: &Setting<'_>, pairs: &[Pair<'_>]) -> f64 {
                         weight * (now - memory * nuisance[before][(joint, column)]);
                 }
             }
-            squares += delta.norm_squared();
             gram += block.tr_mul(&block);
             projected += block.tr_mul(&delta);
+            rows.push((block, delta));
             squares += between_periods(setting, &deltas, &mean, &samples, joint);
         }
     }
-    let explained = match gram.cholesky() {
-        Some(factor) => projected.dot(&factor.solve(&projected)),
-        None => return 0.0,
-    };
-    0.5 * (squares - explained).max(0.0)
+    // Δᵀ(Σ + BBᵀ)⁻¹Δ is the least of ‖Δ − B x‖² + ‖x‖², where a small error of x does not count; a
+    // difference of the large sums would lose its digits.
+    let Some(factor) = gram.cholesky() else { return 0.0 };
+    let x = factor.solve(&projected);
+    let left: f64 = rows.iter().map(|(block, delta)| (delta - block * &x).norm_squared()).sum();
+    0.5 * (squares + left + x.norm_squared())
 }
 
 /// Nats of the power.

@@ -207,7 +207,7 @@ fn between(from: &Joints, to: &Joints, x: f64, lasts: f64) -> Sample {
 /// A pole behind the motion; positions, rates and accelerations pass through the same one.
 fn lagging(samples: &mut [Sample], lag: f64) {
     let Some(first) = samples.first().copied().filter(|_| lag > 0.0) else { return };
-    let kept = (-STEP_S / lag).exp();
+    let kept = lag / (lag + STEP_S);
     let mut state = first;
     for sample in samples {
         for joint in 0..MAX_DOF {

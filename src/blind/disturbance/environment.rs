@@ -148,8 +148,8 @@ pub(super) fn base_tilt(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
         weight.up = difference;
         Box::new(move |m, tau| {
             let share = match form {
-                1 => 0.03 * (m.q[0] - direction).cos(),
-                _ => -0.04 * (-m.t / (8.0 * period)).exp(),
+                1 => 0.02 * (m.q[0] - direction).cos(),
+                _ => -0.02 * (-m.t / (8.0 * period)).exp(),
             };
             let more = weight.rigid(&m.q, &NONE, &NONE);
             for (sum, part) in tau.iter_mut().zip(more) {
@@ -190,8 +190,8 @@ pub(super) fn wrist_coupling(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let coupling = if (before + away).abs() > 1.2 { before - away } else { before + away };
     let forms = ["geared", "friction_only", "rounded_friction"];
     let form = random.below(forms.len());
-    let disturbance =
-        Disturbance::new("wrist_coupling", forms[form], vec![4, 5]).with("coupling", coupling);
+    let disturbance = Disturbance::new("wrist_coupling", forms[form], vec![4, 5])
+        .with("coupling", coupling - before);
     if form == 0 {
         return disturbance.acting(plant(move |plant| plant.coupling = coupling));
     }

@@ -25,13 +25,14 @@ pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let form = random.below(forms.len());
     let fastest = scale.fastest[joint].max(1e-3);
     Disturbance::of("friction_level", forms[form], joint)
-        .graded("coulomb", coulomb)
-        .graded("viscous", viscous)
+        // Against what the robot is said to be: the usual spread is a part of the change.
+        .graded("coulomb", coulomb + scale.plant.coulomb[joint] - scale.nominal.coulomb[joint])
+        .graded("viscous", viscous + scale.plant.viscous[joint] - scale.nominal.viscous[joint])
         .acting(Action::Gears(memoryless(joint, move |m| {
             let v = m.rate[joint];
             let dry = match form {
                 1 => (v / (0.01 * fastest)).tanh(),
-                2 => m.sign[joint] * (1.0 - 0.05 * (v / fastest).abs()),
+                2 => m.sign[joint] * (1.0 - 0.01 * (v / fastest).abs()),
                 _ => m.sign[joint],
             };
             coulomb * dry + viscous * v

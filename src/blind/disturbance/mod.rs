@@ -143,6 +143,8 @@ impl Disturbance {
 
 /// What the sizes of disturbances are drawn from.
 pub(super) struct Scale<'a> {
+    /// What the robot is said to be, and what it is when nothing is wrong.
+    pub(super) nominal: &'a Plant,
     pub(super) plant: &'a Plant,
     pub(super) workspace: &'a Workspace,
     pub(super) trust: Trust,
@@ -330,6 +332,7 @@ mod tests {
                 }
             }
             Scale {
+                nominal: &self.plant,
                 plant: &self.plant,
                 workspace: &self.workspace,
                 trust: Trust::Commissioned,

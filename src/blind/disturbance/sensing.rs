@@ -19,7 +19,7 @@ pub(super) fn encoder_offset(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let phase = random.between(0.0, TAU);
     Disturbance::of("encoder_offset", forms[form], joint).graded("offset", offset).acting(
         Action::Positions(mapped(joint, move |_, q| {
-            let eccentric = if form == 2 { 0.03 * offset * (q + phase).cos() } else { 0.0 };
+            let eccentric = if form == 2 { 0.01 * offset * (q + phase).cos() } else { 0.0 };
             q - offset - eccentric
         })),
     )
@@ -34,7 +34,7 @@ pub(super) fn torque_offset(scale: &Scale<'_>, random: &mut Random) -> Disturban
         Action::Torques(mapped(joint, move |m, tau| {
             let share = match form {
                 1 => m.sign[joint] * m.sign[joint],
-                2 => 1.0 - 0.3 * (-m.t / 20.0).exp(),
+                2 => 1.0 - 0.05 * (-m.t / 20.0).exp(),
                 _ => 1.0,
             };
             tau + offset * share
@@ -100,7 +100,8 @@ pub(super) fn filter_lag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
         Box::new(move |m, tau| {
             let [x, v] = states.get_or_insert([*tau, NONE]);
             past.push_front(*tau);
-            let length = ((2.0 * lag / m.dt).round() as usize).max(1);
+            // Its mean is half of its length late.
+            let length = (2.0 * lag / m.dt).round() as usize + 1;
             past.truncate(length);
             for &j in &joints {
                 let input = tau[j];
@@ -108,7 +109,7 @@ pub(super) fn filter_lag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
                     1 => {
                         // Group delay √2/ω at low frequencies; exact for an input that stays.
                         let omega = std::f64::consts::SQRT_2 / lag;
-                        let steps = (omega * m.dt / 0.1).ceil().max(1.0);
+                        let steps = (omega * m.dt / 0.02).ceil().max(1.0);
                         let h = m.dt / steps;
                         for _ in 0..steps as usize {
                             let pull = omega * omega * (input - x[j])
@@ -120,13 +121,13 @@ pub(super) fn filter_lag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
                     }
                     2 => past.iter().map(|old| old[j]).sum::<f64>() / past.len() as f64,
                     3 => {
-                        let kept = (-2.0 * m.dt / lag).exp();
+                        let kept = lag / (lag + 2.0 * m.dt);
                         x[j] = input + kept * (x[j] - input);
                         v[j] = x[j] + kept * (v[j] - x[j]);
                         v[j]
                     }
                     _ => {
-                        x[j] = input + (-m.dt / lag).exp() * (x[j] - input);
+                        x[j] = input + lag / (lag + m.dt) * (x[j] - input);
                         x[j]
                     }
                 };
