@@ -112,7 +112,7 @@ fn first(kind: Kind, settings: &Settings) -> Case {
 #[test]
 fn programs_run_as_they_say() {
     let settings = short(4);
-    let cases = (1..50).map(|number| blind::case(&settings, number).unwrap());
+    let cases = (1..80).map(|number| blind::case(&settings, number).unwrap());
     let (mut healthy, mut late) = (0, 0);
     for case in cases.filter(is_of_a_program) {
         let program = file(&case, "program/MainModule.mod");

@@ -259,7 +259,8 @@ mod tests {
         let samples: Vec<Sample> = motion.samples.iter().step_by(PER_ROW).copied().collect();
         let row = |plant: &Plant, sample: &Sample, offset: f64| {
             let mut tau = plant.torque(&sample.q, &sample.qd, &sample.qdd);
-            tau[1] += offset;
+            // The first axis stands upright: no weight can make an offset there.
+            tau[0] += offset;
             Row { q: sample.q, tau, power: 0.0 }
         };
         let rows = |plant: &Plant, offset: f64| -> Vec<Row> {
