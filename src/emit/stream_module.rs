@@ -3,11 +3,12 @@
 use serde::Serialize;
 use tera::{Context, Tera};
 
+use super::layout::{Layout, parts};
 use super::names::Names;
 use crate::ir::movement::LocalValue;
 use crate::ir::number::{TIME_DECIMALS, joints, number};
 use crate::ir::value::Datum;
-use crate::text::{Edit, SourceFile, Span};
+use crate::text::{Edit, SourceFile, Span, charset};
 
 /// How near the robot must stand to the start of a stream, degrees.
 const JOINT_TOLERANCE_DEG: f64 = 0.1;
@@ -27,6 +28,8 @@ pub struct EmittedStream {
     pub points: Vec<[f64; 6]>,
     /// `\T` of each, s.
     pub intervals: Vec<f64>,
+    /// Where the external axes stand meanwhile, as the program writes it.
+    pub external: [f64; 6],
     /// Values that loop variables and parameters must have.
     pub locals: Vec<LocalValue>,
     /// The tool as the program names it at that place.
@@ -51,12 +54,10 @@ pub struct Site {
 /// What was emitted.
 #[derive(Clone, Debug)]
 pub struct Emitted {
-    /// Text of the streams module.
-    pub module: String,
+    /// Names and texts of the modules with streams; the first one has the functions of guards.
+    pub modules: Vec<(String, String)>,
     /// Insertions into the original files.
     pub edits: Vec<Edit>,
-    /// Names used.
-    pub names: Names,
 }
 
 /// Why nothing was emitted.
@@ -80,6 +81,18 @@ struct StreamText {
     start: String,
     targets: Vec<TargetText>,
     points: Vec<PointText>,
+    array: Option<ArrayText>,
+}
+
+/// What a stream from arrays needs besides its points.
+#[derive(Serialize)]
+struct ArrayText {
+    points: String,
+    times: String,
+    /// The number of points in the braces of an index.
+    last: String,
+    /// The number of the last point but one.
+    fly_by: String,
 }
 
 #[derive(Serialize)]
@@ -91,7 +104,7 @@ struct TargetText {
 
 #[derive(Serialize)]
 struct PointText {
-    joints: String,
+    target: String,
     time: String,
     zone: &'static str,
 }
@@ -111,7 +124,12 @@ pub fn can_guard(local: &LocalValue) -> bool {
 ///
 /// # Errors
 /// A local value that no condition can be written for.
-pub fn emit(files: &[SourceFile], names: &Names, sites: &[Site]) -> Result<Emitted, EmitError> {
+pub fn emit(
+    files: &[SourceFile],
+    names: &Names,
+    layout: Layout,
+    sites: &[Site],
+) -> Result<Emitted, EmitError> {
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
         ("streams.mod", include_str!("../../templates/streams.mod.tera")),
@@ -123,7 +141,7 @@ pub fn emit(files: &[SourceFile], names: &Names, sites: &[Site]) -> Result<Emitt
         let mut branches = Vec::new();
         for stream in &site.streams {
             let number = texts.len() + 1;
-            let (text, conditions) = stream_text(stream, names, number)?;
+            let (text, conditions) = stream_text(stream, names, layout, number)?;
             branches.push(BranchText {
                 condition: conditions.join(" AND "),
                 call: format!("{} {}", text.proc_name, stream.tool),
@@ -136,17 +154,28 @@ pub fn emit(files: &[SourceFile], names: &Names, sites: &[Site]) -> Result<Emitt
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("names", names);
-    context.insert("streams", &texts);
     context.insert("joint_tolerance", &number(JOINT_TOLERANCE_DEG, 6));
     context.insert("position_tolerance", &number(POSITION_TOLERANCE_MM, 6));
     context.insert("orientation_tolerance", &number(ORIENTATION_TOLERANCE, 6));
-    let module = tera.render("streams.mod", &context)?;
-    Ok(Emitted { module, edits, names: names.clone() })
+    let counts: Vec<usize> = texts.iter().map(|text| text.points.len()).collect();
+    let modules: Result<Vec<(String, String)>, tera::Error> = parts(&counts)
+        .into_iter()
+        .enumerate()
+        .map(|(index, part)| {
+            let name = names.part(index);
+            context.insert("module", &name);
+            context.insert("functions", &(index == 0));
+            context.insert("streams", &texts[part]);
+            Ok((name, tera.render("streams.mod", &context)?))
+        })
+        .collect();
+    Ok(Emitted { modules: modules?, edits })
 }
 
 fn stream_text(
     stream: &EmittedStream,
     names: &Names,
+    layout: Layout,
     index: usize,
 ) -> Result<(StreamText, Vec<String>), EmitError> {
     let prefix = &names.prefix;
@@ -160,14 +189,22 @@ fn stream_text(
         let text = text.replace("@joints", &names.same_joints);
         conditions.push(text);
     }
-    let last = stream.points.len().saturating_sub(1);
+    let count = stream.points.len();
+    let last = count.saturating_sub(1);
+    let external = stream.external.map(external_axis).join(",");
+    let array = layout.is_array(count).then(|| ArrayText {
+        points: format!("{prefix}Points{index}"),
+        times: format!("{prefix}Times{index}"),
+        last: format!("{{{count}}}"),
+        fly_by: last.to_string(),
+    });
     let points = stream
         .points
         .iter()
         .zip(&stream.intervals)
         .enumerate()
         .map(|(i, (q, t))| PointText {
-            joints: joints(q),
+            target: format!("[[{}],[{external}]]", joints(q)),
             time: number(*t, TIME_DECIMALS),
             zone: if i == last { "fine" } else { "z200" },
         })
@@ -181,6 +218,7 @@ fn stream_text(
         start_name,
         targets,
         points,
+        array,
     };
     Ok((text, conditions))
 }
@@ -215,11 +253,17 @@ fn condition(
     }
 }
 
+/// A value from here on is RAPID's 9E9, no axis.
+const NO_AXIS: f64 = 9e8;
+
+fn external_axis(x: f64) -> String {
+    if x >= NO_AXIS { "9E9".to_owned() } else { number(x, 9) }
+}
+
 /// A value as a RAPID aggregate.
 fn aggregate(datum: &Datum) -> Option<String> {
     match datum {
-        Datum::Num(x) if *x >= 9e8 => Some("9E9".to_owned()),
-        Datum::Num(x) if x.is_finite() => Some(number(*x, 9)),
+        Datum::Num(x) if x.is_finite() => Some(external_axis(*x)),
         Datum::Bool(b) => Some(if *b { "TRUE" } else { "FALSE" }.to_owned()),
         Datum::List(items) => {
             let parts: Option<Vec<String>> = items.iter().map(aggregate).collect();
@@ -252,9 +296,11 @@ fn guard(
     let after = file.bytes.get(span.end as usize);
     let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
     let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
+    // Names of tools and data may be in it: it is written as the file is.
+    let charset = charset(&file.bytes);
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },
-        text: text.into_bytes(),
+        text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
     };
     Ok([insertion(span.start, head), insertion(span.end, tail)])
 }

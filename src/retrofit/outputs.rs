@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::figures::{OutputFile, OutputKind};
 use super::work::{RetrofitError, Source, Way, run_of};
-use crate::emit::{self, EmittedStream, Names};
+use crate::emit::{self, EmittedStream, Layout, Names};
 use crate::ir::number::number;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::Simulation;
@@ -21,9 +21,10 @@ pub(super) fn emit(
     simulation: &Simulation,
     sites: &[Site],
     ways: &[Way],
+    originals: &[SourceFile],
     names: &Names,
+    layout: Layout,
 ) -> Result<Vec<OutputFile>, RetrofitError> {
-    let originals: Vec<text::SourceFile> = files.iter().map(|s| s.file.clone()).collect();
     let mut emitted_sites = Vec::new();
     for (index, site) in sites.iter().enumerate() {
         let streams: Vec<EmittedStream> = ways
@@ -43,7 +44,7 @@ pub(super) fn emit(
         }
         return Ok(outputs);
     }
-    let emitted = emit::emit(&originals, names, &emitted_sites)?;
+    let emitted = emit::emit(originals, names, layout, &emitted_sites)?;
     for (i, source) in files.iter().enumerate() {
         let edits: Vec<text::Edit> =
             emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
@@ -63,16 +64,18 @@ pub(super) fn emit(
     }
     let entry_file = &files[module_file];
     let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
-    let name = format!("{}.mod", names.module);
-    let path = if folder.is_empty() { name } else { format!("{folder}/{name}") };
     let end_of_line = emit::end_of_line(&entry_file.file.bytes);
-    let module = emitted.module.replace('\n', end_of_line);
-    outputs.push(OutputFile {
-        path,
-        kind: OutputKind::New,
-        bytes: module.into_bytes(),
-        input: None,
-    });
+    for (name, text) in emitted.modules {
+        let path =
+            if folder.is_empty() { format!("{name}.mod") } else { format!("{folder}/{name}.mod") };
+        let text = text.replace('\n', end_of_line);
+        outputs.push(OutputFile {
+            path,
+            kind: OutputKind::New,
+            bytes: text.into_bytes(),
+            input: None,
+        });
+    }
     Ok(outputs)
 }
 
@@ -85,7 +88,8 @@ pub fn read_again(outputs: &[OutputFile]) -> Vec<Source> {
     outputs.iter().enumerate().map(file).collect()
 }
 
-fn unchanged(index: usize, source: &Source) -> OutputFile {
+/// A file of the program as it was.
+pub(super) fn unchanged(index: usize, source: &Source) -> OutputFile {
     OutputFile {
         path: source.relative.clone(),
         kind: OutputKind::Unchanged,
@@ -118,8 +122,9 @@ fn stream(
         start: run.start,
         points: retiming.stream.points().to_vec(),
         intervals: retiming.stream.intervals().to_vec(),
+        external: run.moves.first()?.movement.external?,
         locals: site.variants[way.variant].locals.clone(),
-        tool: run.moves.first()?.movement.tool.name.to_string(),
+        tool: argument(files, run.moves.first()?.movement.tool_span),
         origin: format!("{} {lines}{way_text}", ascii(&file.relative)),
         before: format!("{} s {} J", number(run.duration(), 3), number(before, 1)),
         after: format!(
@@ -128,6 +133,12 @@ fn stream(
             number(retiming.energy.energy_j(), 1)
         ),
     })
+}
+
+/// An argument as the program writes it, to be written again at the same place.
+fn argument(files: &[Source], span: Span) -> String {
+    let file = &files[span.file.0 as usize].file;
+    file.text(span).into_owned()
 }
 
 /// Comments are plain ASCII, whatever the file's encoding.
