@@ -40,8 +40,12 @@ fn program() -> String {
 }
 
 fn run(folder: &Path, options: &[&str]) -> Value {
+    run_text(folder, &program(), options)
+}
+
+fn run_text(folder: &Path, text: &str, options: &[&str]) -> Value {
     let path = folder.join("m.mod");
-    fs::write(&path, program()).unwrap();
+    fs::write(&path, text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
         .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
         .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
@@ -111,6 +115,10 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
     let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
     let promised = number(&result, "/optimized/energy_j");
     assert!((number(&simulated, "/energy_j") - promised).abs() < 1e-6 * promised);
+    // There is nothing left to do.
+    let folder = tempfile::tempdir().unwrap();
+    let again = run_text(folder.path(), &written, &["--emit", "retime", "--input", "diPart=4"]);
+    assert_eq!(fs::read_to_string(folder.path().join("out/m.mod")).unwrap(), written, "{again}");
 }
 
 #[test]

@@ -401,13 +401,13 @@ fn layouts_are_the_same_motion() {
     }
     // Long streams are arrays by themselves: a way with many corners, between two short ones.
     let corners: String = (1..40)
-        .map(|i| format!("MoveL Offs(pC,{},{},0),v200,z10,tool0;\n", -4 * i, 30 * (i % 2)))
+        .map(|i| format!("MoveL Offs(pC,{},{},0),v600,z20,tool0;\n", -4 * i, 60 * (i % 2)))
         .collect();
     let text = program().replace(
         "WaitTime 0.5;\n",
-        &format!("MoveJ pC,v1000,fine,tool0;\n{corners}MoveL pD,v200,fine,tool0;\n"),
+        &format!("MoveJ pC,v1000,fine,tool0;\n{corners}MoveL Offs(pC,-200,0,0),v200,fine,tool0;\n"),
     );
-    let (result, auto) = optimize_text(folder.path(), &text, &[]);
+    let (result, auto) = optimize_text(folder.path(), &text, &["--time-factor", "1.3"]);
     let streams = read(&auto);
     let long = streams.iter().filter(|stream| stream.points.len() >= 64).count();
     assert_eq!(auto.matches("FOR ").count(), long);

@@ -8,7 +8,7 @@ use super::names::Names;
 use crate::ir::movement::LocalValue;
 use crate::ir::number::{TIME_DECIMALS, joints, number};
 use crate::ir::value::Datum;
-use crate::text::{Edit, SourceFile, Span, charset};
+use crate::text::{Charset, Edit, SourceFile, Span, charset};
 
 /// How near the robot must stand to the start of a stream, degrees.
 const JOINT_TOLERANCE_DEG: f64 = 0.1;
@@ -135,6 +135,7 @@ pub fn emit(
         ("streams.mod", include_str!("../../templates/streams.mod.tera")),
         ("guard", include_str!("../../templates/guard.tera")),
     ])?;
+    let charsets: Vec<Charset> = files.iter().map(|file| charset(&file.bytes)).collect();
     let mut texts = Vec::new();
     let mut edits = Vec::new();
     for site in sites {
@@ -148,8 +149,8 @@ pub fn emit(
             });
             texts.push(text);
         }
-        let file = &files[site.span.file.0 as usize];
-        edits.extend(guard(&tera, file, site.span, &branches)?);
+        let file = site.span.file.0 as usize;
+        edits.extend(guard(&tera, &files[file], charsets[file], site.span, &branches)?);
     }
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
@@ -277,6 +278,7 @@ fn aggregate(datum: &Datum) -> Option<String> {
 fn guard(
     tera: &Tera,
     file: &SourceFile,
+    charset: Charset,
     span: Span,
     branches: &[BranchText],
 ) -> Result<[Edit; 2], EmitError> {
@@ -297,7 +299,6 @@ fn guard(
     let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
     let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
     // Names of tools and data may be in it: it is written as the file is.
-    let charset = charset(&file.bytes);
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },
         text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),

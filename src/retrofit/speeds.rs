@@ -145,7 +145,7 @@ pub(super) fn retrofit(
     Ok(Retrofit {
         original,
         optimized,
-        potential_j: dwells_before.iter().map(|dwell| dwell.potential_j).sum(),
+        potential_j: dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b),
         segments,
         notes,
         verification,

@@ -362,7 +362,7 @@ pub fn retrofit(
         &not_reached(&program, &simulation),
     );
     outputs::add_brake_note(&mut checked.0, model, &dwells(model, &after_simulation));
-    let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).sum();
+    let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
     let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
     let notes =
         notes::notes(files, model, settings, &simulation, &segments, (&original, &optimized));
@@ -458,6 +458,11 @@ fn retime_all(
         .collect();
     if settings.budget == Budget::AsBefore {
         keep_to_the_cycle(&plan, &tasks, &mut outcomes);
+        if settings.objective == Objective::Energy {
+            let executions =
+                |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
+            leave_what_does_not_pay(&plan, &tasks, &executions, &mut outcomes);
+        }
     }
     if let Budget::Factor(factor) = settings.budget {
         let share = |(outcome, task): (&Outcome, &Task<'_>)| match outcome {
@@ -504,6 +509,43 @@ fn keep_to_the_cycle(plan: &Plan, tasks: &[(usize, Task<'_>)], outcomes: &mut [(
     outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
         |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
     );
+}
+
+/// A run that is quicker at the cost of energy has to give its time to others that save more.
+/// Where the cycle is kept without it, or nothing is saved in all, it goes back to its time before.
+fn leave_what_does_not_pay(
+    plan: &Plan,
+    tasks: &[(usize, Task<'_>)],
+    executions: &dyn Fn(usize) -> f64,
+    outcomes: &mut [(usize, Outcome)],
+) {
+    let excess = |outcome: &Outcome| {
+        outcome.as_ref().map_or(0.0, |r| r.energy.energy_j() - r.energy_before_j)
+    };
+    let time = |task: &Task<'_>, outcome: &Outcome| {
+        outcome.as_ref().map_or(task.run.duration(), |retiming| retiming.duration_s)
+    };
+    let mut times: Vec<f64> =
+        tasks.iter().zip(&*outcomes).map(|((_, task), (_, outcome))| time(task, outcome)).collect();
+    let mut costly: Vec<usize> =
+        (0..tasks.len()).filter(|i| excess(&outcomes[*i].1) > 0.0).collect();
+    costly.sort_by(|a, b| excess(&outcomes[*b].1).total_cmp(&excess(&outcomes[*a].1)));
+    for i in costly {
+        let task = &tasks[i].1;
+        let patient = std::mem::replace(&mut times[i], task.run.duration());
+        if plan.holds(&times) {
+            outcomes[i].1 = retime(task, Goal::Within(task.run.duration()));
+            times[i] = time(task, &outcomes[i].1);
+        } else {
+            times[i] = patient;
+        }
+    }
+    let in_all: f64 = outcomes.iter().map(|(i, o)| executions(*i) * excess(o)).sum();
+    if in_all >= 0.0 {
+        outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
+            |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
+        );
+    }
 }
 
 /// Up to the next figure with three decimals: what a message tells to give has to do.
