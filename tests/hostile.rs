@@ -220,6 +220,19 @@ fn external_axes_are_held_or_keep_their_movements() {
     let held: Vec<bool> =
         moves.map(|line| line.contains("],[1500,9E9,9E9,9E9,9E9,9E9]],")).collect();
     assert!(held.contains(&true) && held.contains(&false), "{streams}");
+    // A movement of their own brings them elsewhere.
+    let apart = "MoveAbsJ jB,v1000,fine,tP; ! => stream\nMoveExtJ jE,vlin100,fine;\n\
+                 MoveAbsJ jE,v1000,fine,tP; ! => stream\nMoveExtJ jE,vlin100,fine;\n\
+                 MoveAbsJ jB,v1000,fine,tP; ! => external-axes";
+    check(&program(data, apart, ""), &[]);
+    // The same way twice, with the track at two places.
+    let twice = "CONST jointtarget jG:=[[0,-12,14,0,60,0],[0,9E9,9E9,9E9,9E9,9E9]];\n\
+                 CONST jointtarget jH:=[[60,20,0,-20,65,30],[0,9E9,9E9,9E9,9E9,9E9]];\n\
+                 PROC rGo(jointtarget jX,jointtarget jY)\n\
+                 MoveAbsJ jX,v1000,fine,tP; ! => stream\n\
+                 MoveAbsJ jY,v1000,fine,tP; ! => stream\nENDPROC";
+    let calls = "MoveExtJ jG,vlin100,fine;\nrGo jH,jG;\nMoveExtJ jE,vlin100,fine;\nrGo jF,jE;";
+    check(&program(&format!("{data}\n{twice}"), calls, ""), &[]);
     // The external axes of each stream are the same all the way.
     let changes = held.windows(2).filter(|pair| pair[0] != pair[1]).count();
     assert_eq!(changes, 1, "{streams}");

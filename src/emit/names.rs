@@ -18,6 +18,10 @@ pub struct Names {
     pub module: String,
     /// Function: the robot stands at a joint target.
     pub at: String,
+    /// Function: the external axes that there are stand at a place.
+    pub external_at: String,
+    /// Function: the same for one of them.
+    pub axis_at: String,
     /// Function: two joint targets are the same.
     pub same_joints: String,
     /// Function: two robtargets are the same.
@@ -44,6 +48,8 @@ impl Names {
         Names {
             module: module_name(round),
             at: format!("{prefix}At"),
+            external_at: format!("{prefix}ExternalAt"),
+            axis_at: format!("{prefix}AxisAt"),
             same_joints: format!("{prefix}SameJoints"),
             same_target: format!("{prefix}SameTarget"),
             prefix,

@@ -12,6 +12,8 @@ use crate::text::{Charset, Edit, SourceFile, Span, charset};
 
 /// How near the robot must stand to the start of a stream, degrees.
 const JOINT_TOLERANCE_DEG: f64 = 0.1;
+/// The same for an external axis, degrees or mm.
+const EXTERNAL_TOLERANCE: f64 = 0.1;
 /// How near a parameter must be to the target of a stream, mm.
 const POSITION_TOLERANCE_MM: f64 = 0.01;
 /// The same for the components of its quaternion.
@@ -158,6 +160,9 @@ pub fn emit(
     context.insert("joint_tolerance", &number(JOINT_TOLERANCE_DEG, 6));
     context.insert("position_tolerance", &number(POSITION_TOLERANCE_MM, 6));
     context.insert("orientation_tolerance", &number(ORIENTATION_TOLERANCE, 6));
+    let external = sites.iter().flat_map(|site| &site.streams).any(has_external);
+    context.insert("external", &external);
+    context.insert("external_tolerance", &number(EXTERNAL_TOLERANCE, 6));
     let counts: Vec<usize> = texts.iter().map(|text| text.points.len()).collect();
     let modules: Result<Vec<(String, String)>, tera::Error> = parts(&counts)
         .into_iter()
@@ -182,6 +187,9 @@ fn stream_text(
     let prefix = &names.prefix;
     let start_name = format!("{prefix}From{index}");
     let mut conditions = vec![format!("{}({start_name})", names.at)];
+    if has_external(stream) {
+        conditions.push(format!("{}({start_name}.extax)", names.external_at));
+    }
     let mut targets = Vec::new();
     for local in &stream.locals {
         let name = format!("{prefix}For{index}_{}", targets.len() + 1);
@@ -214,7 +222,7 @@ fn stream_text(
         origin: stream.origin.clone(),
         before: stream.before.clone(),
         after: stream.after.clone(),
-        start: joints(&stream.start),
+        start: format!("[[{}],[{external}]]", joints(&stream.start)),
         proc_name: format!("{prefix}Run{index}"),
         start_name,
         targets,
@@ -241,7 +249,7 @@ fn condition(
         ("jointtarget", datum) => {
             let value = aggregate(datum).ok_or_else(|| name.to_string())?;
             targets.push(TargetText { r#type: "jointtarget", name: constant.to_owned(), value });
-            Ok(format!("@joints({name},{constant})"))
+            Ok(format!("@joints({name},{constant}) AND {name}.extax={constant}.extax"))
         }
         (_, Datum::Num(x)) if x.is_finite() => {
             Ok(format!("Abs({name}-({}))<{}", number(*x, 6), number(NUMBER_TOLERANCE, 6)))
@@ -256,6 +264,11 @@ fn condition(
 
 /// A value from here on is RAPID's 9E9, no axis.
 const NO_AXIS: f64 = 9e8;
+
+/// Whether the targets of a stream name external axes.
+fn has_external(stream: &EmittedStream) -> bool {
+    stream.external.iter().any(|x| *x < NO_AXIS)
+}
 
 fn external_axis(x: f64) -> String {
     if x >= NO_AXIS { "9E9".to_owned() } else { number(x, 9) }

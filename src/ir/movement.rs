@@ -258,6 +258,9 @@ pub struct Wait {
     pub other: Option<String>,
     /// `GripLoad` in force, in the tool's frame.
     pub grip_load: Option<LoadData>,
+    /// Where external axes stand after a movement of theirs, as written; `None` where it is none,
+    /// or they are not known.
+    pub external: Option<[f64; 6]>,
 }
 
 /// A change of an output.

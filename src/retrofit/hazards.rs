@@ -44,6 +44,7 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
     let moved = external_axes(simulation);
     for site in sites {
         for variant in &mut site.variants {
+            let elsewhere = stands_elsewhere(simulation, &variant.events);
             let reason = variant.events.iter().find_map(|event| {
                 let What::Run(run) = &simulation.events[*event].what else { return None };
                 let spans = run.moves.iter().map(|record| record.movement.span);
@@ -51,7 +52,9 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
                 handler
                     .or(interrupt.as_ref())
                     .cloned()
-                    .or_else(|| moved.contains(event).then_some(Reason::ExternalAxes))
+                    .or_else(|| {
+                        (elsewhere || moved.contains(event)).then_some(Reason::ExternalAxes)
+                    })
                     .or_else(|| stop_with_time(run))
             });
             if variant.reason.is_none() {
@@ -65,6 +68,16 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
 fn stop_with_time(run: &Run) -> Option<Reason> {
     let waits = run.moves.iter().any(|record| record.movement.stop != Stop::Fine);
     waits.then(|| Reason::Argument("Inpos".into()))
+}
+
+/// Whether the external axes stand at different places in different executions of one way.
+fn stands_elsewhere(simulation: &Simulation, events: &[usize]) -> bool {
+    let mut places = events.iter().filter_map(|event| match &simulation.events[*event].what {
+        What::Run(run) => run.moves.first().map(|record| record.movement.external),
+        _ => None,
+    });
+    let first = places.next();
+    places.any(|place| Some(place) != first)
 }
 
 /// The runs in which external axes may move.
@@ -81,6 +94,9 @@ fn external_axes(simulation: &Simulation) -> BTreeSet<usize> {
                     }
                     stand = to;
                 }
+            }
+            What::Wait(record) if is_movement(&record.wait.instruction) => {
+                stand = record.wait.external;
             }
             What::Wait(_) | What::Output(..) => {}
             What::Left(_) => stand = None,

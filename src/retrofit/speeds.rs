@@ -38,9 +38,11 @@ use crate::syntax;
 use crate::text::{self, Edit, Span};
 
 /// Factors on the programmed speeds that are tried for every run.
-const FACTORS: [f64; 13] = [0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.4, 1.8, 2.5, 4.0];
+const FACTORS: [f64; 18] = [
+    0.03, 0.05, 0.08, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.4, 1.8, 2.5, 4.0,
+];
 /// Halvings of the range in which a factor is searched.
-const HALVINGS: usize = 4;
+const HALVINGS: usize = 6;
 /// A factor this close to 1 is none.
 const UNCHANGED: f64 = 2e-3;
 /// The largest programmed speed that a controller takes, m/s.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
-use super::super::instructions;
+use super::super::instructions::{self, MoveForm};
 use super::super::movement::{Output, Settings, Wait};
 use super::super::value::{Datum, Dependence, Value};
 use super::flow::{Flow, Raised, number_text};
@@ -286,6 +286,10 @@ impl Executor<'_> {
             Length::Until(signal) => (None, signal, None),
             Length::Unknown(what) => (None, None, Some(what)),
         };
+        let moves = instructions::movement(&text.to_lowercase())
+            .is_some_and(|signature| signature.form == MoveForm::ExternalJoint);
+        let external = self.external_axes.as_deref().filter(|_| moves);
+        let external = external.and_then(|axes| axes.try_into().ok());
         self.machine.waits(Wait {
             instruction: text.into(),
             span: stmt.span,
@@ -295,6 +299,7 @@ impl Executor<'_> {
             signal,
             other,
             grip_load: self.settings.grip_load,
+            external,
         })
     }
 
