@@ -284,16 +284,13 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
         }
         let watts = power(model, &tau, &load.rigid, &load.friction, &qd_rad);
         let (place, direction) = flange(q);
-        let off = match way {
-            Way::Line(from, to) => {
-                let turned = apart(direction, first);
-                assert!(turned <= TURNED, "{name}: the tool turns by {turned} rad at {t} s");
-                off_line(place, [*from, *to]) / OFF_LINE
-            }
-            _ => {
-                let nearest = original.iter().map(|p| apart(*p, place)).fold(f64::MAX, f64::min);
-                nearest / OFF_JOINT_PATH
-            }
+        let off = if let Way::Line(from, to) = way {
+            let turned = apart(direction, first);
+            assert!(turned <= TURNED, "{name}: the tool turns by {turned} rad at {t} s");
+            off_line(place, [*from, *to]) / OFF_LINE
+        } else {
+            let nearest = original.iter().map(|p| apart(*p, place)).fold(f64::MAX, f64::min);
+            nearest / OFF_JOINT_PATH
         };
         assert!(off <= 1.0, "{name}: {off} of the allowed distance from the path at {t} s");
         if let Some((then, power, from)) = before

@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn modules_are_filled_in_order_and_none_is_empty() {
-        assert_eq!(parts(&[10, 20]), [0..2]);
+        assert_eq!(parts(&[10, 20, 1_380]), [0..2, 2..3]);
         assert_eq!(parts(&[1_400, 1]), [0..1, 1..2]);
         assert_eq!(parts(&[5_000, 5_000, 700, 700, 1]), [0..1, 1..2, 2..4, 4..5]);
     }

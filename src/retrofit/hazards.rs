@@ -47,8 +47,8 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
             let elsewhere = stands_elsewhere(simulation, &variant.events);
             let reason = variant.events.iter().find_map(|event| {
                 let What::Run(run) = &simulation.events[*event].what else { return None };
-                let spans = run.moves.iter().map(|record| record.movement.span);
-                let handler = spans.filter_map(|span| handled.get(&span)).next();
+                let mut spans = run.moves.iter().map(|record| record.movement.span);
+                let handler = spans.find_map(|span| handled.get(&span));
                 handler
                     .or(interrupt.as_ref())
                     .cloned()
@@ -125,11 +125,11 @@ fn handler_of(routine: &Routine) -> Option<String> {
     if routine.backward.is_some() {
         return Some("its routine has a BACKWARD handler, which goes back step by step".into());
     }
-    let taking = routine
+    let mut taking = routine
         .error
         .iter()
         .filter(|(numbers, _)| numbers.is_empty() || numbers.iter().any(is_movement_error));
-    let again = taking.filter_map(|(_, handler)| resumes(handler)).next()?;
+    let again = taking.find_map(|(_, handler)| resumes(handler))?;
     Some(format!(
         "the error handler of its routine may go on within it ({again}) after an error of any kind"
     ))
@@ -260,7 +260,7 @@ impl Reach {
             if let StmtKind::Call(call) = &stmt.kind {
                 match &call.callee {
                     Callee::Name(name) => self.call(program, module, &name.text),
-                    _ => {
+                    Callee::Late(_) => {
                         self.changes.get_or_insert("a procedure with a computed name".into());
                     }
                 }

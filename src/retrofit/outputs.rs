@@ -6,25 +6,34 @@ use super::figures::{OutputFile, OutputKind};
 use super::work::{RetrofitError, Source, Way, run_of};
 use crate::emit::{self, EmittedStream, Layout, Names};
 use crate::ir::number::number;
-use crate::ir::program::{Program, RoutineId};
 use crate::motion::Simulation;
 use crate::optimize::idle::Dwell;
 use crate::optimize::site::Site;
 use crate::robot::Model;
 use crate::text::{self, FileId, SourceFile, Span};
 
+/// What stays the same from one emission to the next.
+pub(super) struct Writing<'a> {
+    /// The files of the program.
+    pub(super) files: &'a [Source],
+    /// The same as they are read.
+    pub(super) originals: Vec<SourceFile>,
+    /// The file beside which new modules lie.
+    pub(super) beside: usize,
+    /// Names that are free.
+    pub(super) names: Names,
+    /// How points are written.
+    pub(super) layout: Layout,
+}
+
 /// Emits the ways that have streams; every other file stays as it was.
 pub(super) fn emit(
-    files: &[Source],
-    program: &Program,
-    entry: RoutineId,
+    writing: &Writing<'_>,
     simulation: &Simulation,
     sites: &[Site],
     ways: &[Way],
-    originals: &[SourceFile],
-    names: &Names,
-    layout: Layout,
 ) -> Result<Vec<OutputFile>, RetrofitError> {
+    let files = writing.files;
     let mut emitted_sites = Vec::new();
     for (index, site) in sites.iter().enumerate() {
         let streams: Vec<EmittedStream> = ways
@@ -37,14 +46,13 @@ pub(super) fn emit(
         }
     }
     let mut outputs = Vec::new();
-    let module_file = program.modules[entry.module].span.file.0 as usize;
     if emitted_sites.is_empty() {
         for (i, source) in files.iter().enumerate() {
             outputs.push(unchanged(i, source));
         }
         return Ok(outputs);
     }
-    let emitted = emit::emit(originals, names, layout, &emitted_sites)?;
+    let emitted = emit::emit(&writing.originals, &writing.names, writing.layout, &emitted_sites)?;
     for (i, source) in files.iter().enumerate() {
         let edits: Vec<text::Edit> =
             emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
@@ -62,7 +70,7 @@ pub(super) fn emit(
             input: Some(i),
         });
     }
-    let entry_file = &files[module_file];
+    let entry_file = &files[writing.beside];
     let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
     let end_of_line = emit::end_of_line(&entry_file.file.bytes);
     for (name, text) in emitted.modules {

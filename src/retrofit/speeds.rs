@@ -38,9 +38,8 @@ use crate::syntax;
 use crate::text::{self, Edit, Span};
 
 /// Factors on the programmed speeds that are tried for every run.
-const FACTORS: [f64; 18] = [
-    0.03, 0.05, 0.08, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.4, 1.8, 2.5, 4.0,
-];
+const FACTORS: [f64; 18] =
+    [0.03, 0.05, 0.08, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.4, 1.8, 2.5, 4.0];
 /// Halvings of the range in which a factor is searched.
 const HALVINGS: usize = 6;
 /// A factor this close to 1 is none.
@@ -268,12 +267,17 @@ fn search(
     }
     let mut known: Vec<Vec<(f64, f64, f64)>> = vec![Vec::new(); slots.len()];
     for (round, factor) in FACTORS.iter().enumerate() {
-        let tried = try_speeds(before, model, settings, slots, &vec![*factor; slots.len()])?;
+        done(round + 1);
+        // A cycle may become too long to be simulated.
+        let factors = vec![*factor; slots.len()];
+        let Some(tried) = try_speeds(before, model, settings, slots, &factors) else { continue };
         for (slot, list) in slots.iter().zip(&mut known) {
             let (time, energy) = mean(before.sites, slot, &tried.simulation, &tried.account);
             list.push((*factor, time, energy));
         }
-        done(round + 1);
+    }
+    if known.iter().any(Vec::is_empty) {
+        return None;
     }
     let times = times(before, model, settings, slots, ways, &known)?;
     // Of the factors whose time fits the slowest one, and a slower one whose time does not.

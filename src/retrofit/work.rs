@@ -312,23 +312,19 @@ pub fn retrofit(
     }
     let mut ways = retime_all(model, settings, &simulation, &before, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
-    let names = Names::free(&originals);
+    let writing = outputs::Writing {
+        files,
+        names: Names::free(&originals),
+        originals,
+        beside: program.modules[entry.module].span.file.0 as usize,
+        layout: settings.layout,
+    };
     let dwells_before = dwells(model, &simulation);
 
     // Each round leaves out what did not hold in the emitted text.
     let mut rounds = 0;
     let mut checked = loop {
-        let emitted = outputs::emit(
-            files,
-            &program,
-            entry,
-            &simulation,
-            &sites,
-            &ways,
-            &originals,
-            &names,
-            settings.layout,
-        )?;
+        let emitted = outputs::emit(&writing, &simulation, &sites, &ways)?;
         let attempt = verify::verify(files, &emitted, model, settings, &simulation, &sites, &ways);
         if attempt.verification.passed || ways.iter().all(|way| way.outcome.is_err()) {
             break (emitted, attempt);
@@ -348,7 +344,7 @@ pub fn retrofit(
     };
     let verify::Attempt { simulation: mut after_simulation, verification, .. } = checked.1;
     if settings.form == Form::Guided {
-        checked.0 = guided::files(files, &simulation, &sites, &mut ways, &names)?;
+        checked.0 = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
         after_simulation = simulate(&program, entry, model, &settings.options);
     }
