@@ -264,7 +264,7 @@ fn tools_and_places_may_be_named_in_any_way() {
     let result = optimize(folder.path(), &latin, &[]);
     assert_eq!(result["segments"][1]["rewritten"], true, "{result}");
     let written = fs::read(folder.path().join("out/m.mod")).unwrap();
-    assert_eq!(written.iter().filter(|b| **b == 0xf6).count(), 3);
+    assert_eq!(written.split(|b| *b == 0xf6).count(), 4);
     // A label before a run, and a jump to it.
     let jump = "VAR num n:=0;";
     let statements = "again:\nMoveAbsJ jB,v1000,fine,tP; ! => stream\n\
