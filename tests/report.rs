@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
+use joulepath::emit::Layout;
 use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
@@ -13,8 +14,8 @@ use joulepath::optimize::corridor::Freedom;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{
-    Budget, Figures, Objective, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings,
-    Source, Verification, read_program, retrofit,
+    Budget, Figures, Form, Objective, OutputFile, OutputKind, Retrofit, Segment, SegmentKind,
+    Settings, SignalKind, SignalShift, Source, Verification, read_program, retrofit,
 };
 use joulepath::robot::{self, Model};
 use joulepath::text::{FileId, SourceFile, Span};
@@ -57,6 +58,8 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         budget: Budget::AsBefore,
         spacing_s: 0.05,
         freedom: Freedom::none(),
+        form: Form::Streams,
+        layout: Layout::Auto,
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();
@@ -187,8 +190,16 @@ fn small(path: &str) -> Small {
         verification: Verification {
             passed: true,
             worst: Check { velocity: 0.5, torque: 0.25, deviation_m: 0.001, ..Check::none() },
+            intended_error_rad: 2e-9,
             checks: vec![("the emitted text parses".into(), true)],
         },
+        signals: vec![SignalShift {
+            name: "doGrip".into(),
+            kind: SignalKind::Output,
+            times: 2,
+            order_kept: true,
+            largest_shift_s: -0.12,
+        }],
         outputs: vec![OutputFile {
             path: path.to_owned(),
             kind: OutputKind::Changed,

@@ -12,12 +12,13 @@ use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::{listing, output};
+use crate::emit::Layout;
 use crate::optimize::corridor::{Ceilings, Freedom};
 use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{
-    Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, freed, retrofit,
+    Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, freed, retrofit,
 };
 use crate::text::charset;
 
@@ -68,6 +69,14 @@ pub struct OptimizeArgs {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     spacing: Option<f64>,
 
+    /// What is written.
+    #[arg(long, value_enum, default_value_t = EmitArg::Absj)]
+    emit: EmitArg,
+
+    /// How the points of streams are written.
+    #[arg(long, value_enum, default_value_t = LayoutArg::Auto)]
+    layout: LayoutArg,
+
     /// Let lines and arcs be faster than programmed.
     #[arg(long)]
     allow_faster_tcp: bool,
@@ -93,6 +102,28 @@ enum ObjectiveArg {
     Energy,
     /// Time.
     Time,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EmitArg {
+    /// Streams of joint targets in place of movements.
+    Absj,
+    /// The movements with other speeds; lines and arcs not faster than programmed.
+    Retime,
+    /// The program as it is, and positions for externally guided motion in the folder egm.
+    Egm,
+}
+
+/// How the points of streams are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LayoutArg {
+    /// An instruction for each point.
+    Plain,
+    /// Constant arrays and a loop.
+    Array,
+    /// Arrays for long streams.
+    Auto,
 }
 
 /// Least spacing that a controller may be asked for, s.
@@ -200,6 +231,16 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
             deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
+        },
+        form: match args.emit {
+            EmitArg::Absj => Form::Streams,
+            EmitArg::Retime => Form::Speeds,
+            EmitArg::Egm => Form::Guided,
+        },
+        layout: match args.layout {
+            LayoutArg::Plain => Layout::Plain,
+            LayoutArg::Array => Layout::Array,
+            LayoutArg::Auto => Layout::Auto,
         },
     })
 }

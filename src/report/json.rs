@@ -9,7 +9,9 @@ use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::optimize::check::Check;
-use crate::retrofit::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind};
+use crate::retrofit::{
+    Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind, SignalShift,
+};
 use crate::robot::Model;
 
 /// The six parts, or nulls where the robot has no dynamics.
@@ -164,13 +166,28 @@ pub fn retrofit(
             "max_ratio": ratios(worst),
             "max_path_deviation_m": worst.deviation_m,
             "endpoint_error_rad": worst.endpoint_error_rad,
+            "intended_error_rad": retrofit.verification.intended_error_rad,
             "checks": checks,
         },
+        "signals": retrofit.signals.iter().map(signal).collect::<Vec<Value>>(),
         "files": retrofit.outputs.iter().map(file).collect::<Vec<Value>>(),
         "outputs": outputs,
         "notes": retrofit.notes,
         "unresolved": unresolved(places, &retrofit.before.0),
         "assumed": assumed(model, &retrofit.before.0),
+    })
+}
+
+fn signal(signal: &SignalShift) -> Value {
+    json!({
+        "name": signal.name,
+        "kind": match signal.kind {
+            SignalKind::Input => "input",
+            SignalKind::Output => "output",
+        },
+        "times": signal.times,
+        "order_kept": signal.order_kept,
+        "largest_shift_s": signal.largest_shift_s,
     })
 }
 

@@ -1,5 +1,6 @@
 //! The result of a retrofit as plain data.
 
+use super::signals::SignalShift;
 use crate::energy::Account;
 use crate::motion::Simulation;
 use crate::optimize::check::Check;
@@ -89,6 +90,8 @@ pub struct Verification {
     pub passed: bool,
     /// Worst figures of all streams.
     pub worst: Check,
+    /// Largest distance of a joint of a simulated stream from the intended one at any time, rad.
+    pub intended_error_rad: f64,
     /// What was compared, in words, and whether it held.
     pub checks: Vec<(String, bool)>,
 }
@@ -130,6 +133,8 @@ pub struct Retrofit {
     pub segments: Vec<Segment>,
     /// What the verifier saw.
     pub verification: Verification,
+    /// The signals of the program before and after.
+    pub signals: Vec<SignalShift>,
     /// The complete program.
     pub outputs: Vec<OutputFile>,
     /// What else is to be known.
