@@ -1,10 +1,11 @@
 //! What a stream really does, against every limit.
 
 use super::corridor::Corridor;
+use super::plant::STILL;
 use crate::dynamics::{Data, Load};
 use crate::energy::power::power;
 use crate::kinematics::{Tcp, fk, limits_ok};
-use crate::motion::stream::Stream;
+use crate::motion::stream::{Piece, Stream};
 use crate::motion::timed::JointState;
 use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
@@ -112,9 +113,9 @@ pub fn check(
     let mut data = Data::new();
     let mut at = 0;
     for piece in stream.pieces() {
-        let steps = (piece.length / STEP).ceil().max(1.0) as usize;
-        for i in 0..=steps {
-            let (q, qd, qdd) = piece.at(piece.length * i as f64 / steps as f64);
+        for tau in samples(&piece) {
+            let (q, qd, qdd) = piece.at(tau);
+            let qd = qd.map(|v| if v.abs() < STILL { 0.0 } else { v });
             result.in_range &= limits_ok(model, &q).is_ok();
             let state = JointState { q, qd, qdd };
             let torque = if model.has_dynamics() {
@@ -132,4 +133,18 @@ pub fn check(
         }
     }
     result
+}
+
+/// Distance from the time at which a joint turns, s: dry friction jumps there.
+const BESIDE: f64 = 1e-6;
+
+/// Times in a piece, s: not far apart, and on both sides of where a joint turns.
+fn samples(piece: &Piece) -> Vec<f64> {
+    let steps = (piece.length / STEP).ceil().max(1.0) as usize;
+    let turns = (0..DOF).map(|j| -piece.qd[j] / piece.qdd[j]);
+    let inside = turns.filter(|turn| *turn > BESIDE && *turn < piece.length - BESIDE);
+    (0..=steps)
+        .map(|i| piece.length * i as f64 / steps as f64)
+        .chain(inside.flat_map(|turn| [turn - BESIDE, turn + BESIDE]))
+        .collect()
 }

@@ -13,6 +13,9 @@ const FIRST_SPACING: f64 = 0.1;
 /// Share of the allowed distance from the path that the polishing may use at first.
 const FIRST_DISTANCE: f64 = 0.95;
 
+/// What is asked for beyond what is missing.
+const FURTHER: f64 = 1.002;
+
 /// Margins and tolerances of one attempt.
 #[derive(Clone)]
 pub(super) struct Margins {
@@ -71,7 +74,8 @@ impl Margins {
 
     /// Tighter for more polishing of a stream that nearly holds.
     pub(super) fn tighten_a_little(&mut self, check: &Check) {
-        let over = |share: f64| share.max(1.0);
+        // A share a hair above 1 would leave the margin where it is.
+        let over = |share: f64| if share > 1.0 { share * FURTHER } else { 1.0 };
         self.load /= over(check.torque);
         self.speed /= over(check.tcp_speed);
         self.distance /= over(check.deviation);

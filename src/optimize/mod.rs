@@ -11,6 +11,7 @@ pub mod energy_program;
 pub mod idle;
 mod margins;
 pub mod path_energy;
+pub mod path_grid;
 pub mod plant;
 pub mod reason;
 pub mod retime;

@@ -28,9 +28,13 @@ pub trait Plant {
     }
 }
 
+/// A speed that is the rounding of none, rad/s: where a motion ends it has no direction, and no
+/// dry friction helps to brake.
+pub(super) const STILL: f64 = 1e-9;
+
 /// The sign of a velocity, 0 at rest.
 fn direction(velocity: f64) -> f64 {
-    if velocity == 0.0 { 0.0 } else { velocity.signum() }
+    if velocity.abs() < STILL { 0.0 } else { velocity.signum() }
 }
 
 /// Room that is kept to the limits.

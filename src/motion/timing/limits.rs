@@ -39,6 +39,14 @@ impl PathLimits {
         Ok(PathLimits { acceleration, torque })
     }
 
+    /// All limits times a positive factor.
+    pub(super) fn scaled(&self, factor: f64) -> PathLimits {
+        PathLimits {
+            acceleration: self.acceleration.map(|x| x * factor),
+            torque: self.torque.map(|x| x * factor),
+        }
+    }
+
     /// Largest |q̈| of each joint, rad/s².
     pub fn acceleration(&self) -> &Joints {
         &self.acceleration

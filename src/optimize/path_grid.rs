@@ -1,0 +1,87 @@
+//! The grid on which a run is timed anew: nodes where joints turn, friction as each side sees it.
+
+use crate::motion::sampling::{self, Loaded, SpeedCap};
+use crate::motion::timing::grid::{GridError, PathGrid};
+use crate::path::joint_path::{DOF, JointPath, Piece};
+
+/// Parts of a piece in which one turn of a joint is looked for.
+const PARTS: usize = 4;
+/// Bisections that find a turn.
+const BISECTIONS: usize = 40;
+/// Rate of a joint at which its direction is rounding, rad per unit of s.
+const STILL: f64 = 1e-7;
+/// Nodes nearer to a turn than this are moved there, m of the path or share of a short one.
+const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
+
+/// Nodes in s: about `count` intervals, closer where speeds change, and the places where a joint
+/// turns, since its dry friction jumps there.
+pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
+    let mut nodes = sampling::nodes(path, count);
+    let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * path.length());
+    for turn in path.pieces().iter().flat_map(turns) {
+        let next = nodes.partition_point(|node| *node < turn);
+        if next == 0 || next == nodes.len() {
+            continue;
+        }
+        let last = nodes.len() - 1;
+        match (turn - nodes[next - 1] < apart, nodes[next] - turn < apart) {
+            (true, _) if next > 1 => nodes[next - 1] = turn,
+            (_, true) if next < last => nodes[next] = turn,
+            (false, false) => nodes.insert(next, turn),
+            _ => {}
+        }
+    }
+    nodes
+}
+
+/// Where joints change their direction inside a piece.
+fn turns(piece: &Piece) -> Vec<f64> {
+    let at = |i: usize| piece.s + piece.length * i as f64 / PARTS as f64;
+    let rates: Vec<_> = (0..=PARTS).map(|i| piece.eval(at(i)).q1).collect();
+    let mut turns = Vec::new();
+    for i in 0..PARTS {
+        for j in 0..DOF {
+            let (from, to) = (rates[i][j], rates[i + 1][j]);
+            if from * to < 0.0 && from.abs().min(to.abs()) > STILL {
+                let (mut lo, mut hi) = (at(i), at(i + 1));
+                for _ in 0..BISECTIONS {
+                    let middle = 0.5 * (lo + hi);
+                    *(if piece.eval(middle).q1[j] * from > 0.0 { &mut lo } else { &mut hi }) = middle;
+                }
+                turns.push(0.5 * (lo + hi));
+            }
+        }
+    }
+    turns
+}
+
+/// The grid at these nodes, with the speed caps of the legs.
+///
+/// # Errors
+/// Values that are not finite.
+pub fn grid(
+    loaded: Loaded<'_>,
+    path: &JointPath,
+    nodes: &[f64],
+    caps: &[SpeedCap],
+) -> Result<PathGrid, GridError> {
+    let grid = sampling::grid(loaded, path, nodes, caps)?;
+    let still = |ends: &[crate::motion::timing::grid::PathPoint; 2]| {
+        ends.iter().any(|end| end.q1.iter().any(|rate| rate.abs() < STILL))
+    };
+    if !grid.ends().iter().any(still) {
+        return Ok(grid);
+    }
+    let mut ends = grid.ends().to_vec();
+    for (pair, s) in ends.iter_mut().zip(nodes.windows(2)).filter(|(pair, _)| still(pair)) {
+        let rate = path.eval(0.5 * (s[0] + s[1])).q1;
+        for end in pair {
+            for j in (0..DOF).filter(|j| rate[*j].abs() >= STILL) {
+                if end.q1[j].abs() < STILL {
+                    end.coulomb[j] = loaded.model.friction.coulomb[j] * rate[j].signum();
+                }
+            }
+        }
+    }
+    PathGrid::new(nodes.to_vec(), ends)
+}
