@@ -6,6 +6,7 @@ use std::path::Path;
 use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::motion::Options;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::retrofit::{Budget, Objective, Settings, Source, retrofit};
 use joulepath::robot;
 use joulepath::text::{FileId, SourceFile};
@@ -33,6 +34,8 @@ fn pick_place(c: &mut Criterion) {
         budget: Budget::AsBefore,
         spacing_s: 0.05,
         freedom: Freedom::none(),
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let mut group = c.benchmark_group("retrofit");
     group.sample_size(10);

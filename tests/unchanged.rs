@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use joulepath::motion::Options;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::retrofit::{
     Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
 };
@@ -48,6 +49,8 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
         budget: Budget::AsBefore,
         spacing_s: 0.05,
         freedom: Freedom::none(),
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let model = find("IRB1600-10/1.45").unwrap();
     let result = retrofit(&files, &model, &settings, &|_, _| ());

@@ -13,6 +13,7 @@ use similar::TextDiff;
 use super::common::{self, Format, Job, ProgramArgs};
 use super::{listing, output};
 use crate::optimize::corridor::{Ceilings, Freedom};
+use crate::optimize::cost::Cost;
 use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
@@ -50,6 +51,15 @@ pub struct OptimizeArgs {
     /// What is minimised.
     #[arg(long, value_enum, default_value_t = ObjectiveArg::Energy)]
     objective: ObjectiveArg,
+
+    /// What stands for energy on each path. Joules, bounds and the sharing of time stay electrical.
+    #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
+    energy: EnergyArg,
+
+    /// Add the curve of least energy over time of each segment to the JSON and the report, with
+    /// so many points.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=200), hide_default_value = true)]
+    pareto: u16,
 
     /// Time for the cycle, s; otherwise no run takes longer than before.
     #[arg(
@@ -93,6 +103,21 @@ enum ObjectiveArg {
     Energy,
     /// Time.
     Time,
+}
+
+/// What stands for energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EnergyArg {
+    /// What the robot takes from the grid.
+    Electrical,
+    /// The same with all braking energy lost.
+    ElectricalNoRegeneration,
+    /// Mechanical work, as if braking gave everything back.
+    Mechanical,
+    /// Squares of the joint speeds.
+    Velocity,
+    /// Squares of the joint torques.
+    Torque,
 }
 
 /// Least spacing that a controller may be asked for, s.
@@ -201,6 +226,14 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
         },
+        cost: match args.energy {
+            EnergyArg::Electrical => Cost::Electrical,
+            EnergyArg::ElectricalNoRegeneration => Cost::ElectricalWithoutRegeneration,
+            EnergyArg::Mechanical => Cost::Mechanical,
+            EnergyArg::Velocity => Cost::Velocity,
+            EnergyArg::Torque => Cost::Torque,
+        },
+        pareto: usize::from(args.pareto),
     })
 }
 

@@ -118,7 +118,7 @@ impl<'a> Programs<'a> {
     ) -> Programs<'a> {
         let n = grid.intervals();
         let parts = evaluate(grid, start, model);
-        let unit = parts.friction.abs() + parts.copper + parts.drive + parts.base;
+        let unit = parts.friction.abs() + parts.copper + parts.drive + parts.base + parts.speed;
         let unit = if unit > 0.0 { unit } else { 1.0 };
         let speed = grid.length() / start.duration();
         let scale = Scale { speed, unit, duration };
@@ -376,7 +376,8 @@ impl IntervalCost {
         let (mut copper, mut cross, mut viscous) = (Vec::new(), Affine::default(), 0.0);
         for j in 0..DOF {
             let friction = middle.viscous[j];
-            viscous += friction * (middle.q1[j] + model.loss[j] * friction);
+            viscous += friction * (model.work * middle.q1[j] + model.loss[j] * friction)
+                + model.speed * middle.q1[j] * middle.q1[j];
             if model.loss[j] > 0.0 {
                 let per_unit = 2.0 * delta * model.loss[j] / (scale.unit * scale.speed);
                 copper.push(linear(j).times(per_unit.sqrt()));

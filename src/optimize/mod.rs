@@ -5,6 +5,7 @@ mod banded_program;
 pub mod check;
 mod cone;
 pub mod corridor;
+pub mod cost;
 pub mod cycle;
 mod energy_cones;
 pub mod energy_program;

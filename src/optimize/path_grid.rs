@@ -46,7 +46,8 @@ fn turns(piece: &Piece) -> Vec<f64> {
                 let (mut lo, mut hi) = (at(i), at(i + 1));
                 for _ in 0..BISECTIONS {
                     let middle = 0.5 * (lo + hi);
-                    *(if piece.eval(middle).q1[j] * from > 0.0 { &mut lo } else { &mut hi }) = middle;
+                    *(if piece.eval(middle).q1[j] * from > 0.0 { &mut lo } else { &mut hi }) =
+                        middle;
                 }
                 turns.push(0.5 * (lo + hi));
             }

@@ -80,8 +80,9 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
                 out.excess += (share - (1.0 - ROOM)).max(0.0);
             }
             for j in 0..DOF {
-                sum.mechanical += seconds * smooth[j] * qd[j];
-                sum.friction += seconds * dry[j] * qd[j].abs();
+                sum.mechanical += seconds * model.work * smooth[j] * qd[j];
+                sum.friction += seconds * model.work * dry[j] * qd[j].abs();
+                sum.speed += seconds * model.speed * qd[j] * qd[j];
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
             }
         }

@@ -6,10 +6,12 @@
 
 use super::check::{Check, check};
 use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::cost::Cost;
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
 use super::margins::Margins;
-use super::path_energy::{EnergyModel, Sharing};
+use super::path_energy::EnergyModel;
+use super::path_grid;
 use super::plant::Plant;
 use super::reason::Reason;
 use super::stream_fit::{StreamFit, fit_stream};
@@ -23,7 +25,7 @@ use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
 use crate::kinematics::fk;
 use crate::motion::controller::motion_limits;
-use crate::motion::sampling::{self, Loaded, SpeedCap};
+use crate::motion::sampling::{Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
@@ -32,7 +34,7 @@ use crate::motion::timing::limits::PathLimits;
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
 use crate::path::joint_path::{DOF, JointPath, Joints};
-use crate::robot::{self, Model};
+use crate::robot::Model;
 
 /// A run to be timed anew.
 #[derive(Clone, Copy)]
@@ -47,6 +49,8 @@ pub struct Task<'a> {
     pub spacing_s: f64,
     /// What the stream may do that the run did not.
     pub freedom: &'a Freedom,
+    /// What is minimised.
+    pub cost: Cost,
 }
 
 /// The time of a run, settling included.
@@ -199,7 +203,8 @@ pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
     let fast = fastest_profile(&grid, &limits).ok()?;
     let longest = SLOWEST * task.run.duration();
-    let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
+    let model = &work.electrical;
+    let optimum = minimize_energy(&grid, &limits, model, &fast, longest).into_optimum()?;
     Some(optimum.profile.duration() + task.run.settling)
 }
 
@@ -213,7 +218,7 @@ pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOf
     let shortest = shortest.max(RESERVE * fast.duration() + settling);
     let known = |time: f64| {
         let outcome =
-            minimize_energy_from(&grid, &limits, &work.model, &fast, time - settling, None);
+            minimize_energy_from(&grid, &limits, &work.electrical, &fast, time - settling, None);
         let optimum = outcome.into_optimum()?;
         Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
     };
@@ -221,6 +226,54 @@ pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOf
     let far = if longest > FAR * before { Some(known(longest)?) } else { None };
     TradeOff::about(known(before)?, shortest, longest.max(before), far)
 }
+
+/// A point of the curve of energy over time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeEnergy {
+    /// Time of the run, settling included, s.
+    pub time_s: f64,
+    /// Energy of the run with the best timing of its path in this time, all six parts, J.
+    pub energy_j: f64,
+    /// No timing of the path takes less in this time, J.
+    pub lower_bound_j: f64,
+}
+
+/// `count` points of the curve of energy over time of a run, from the least time of its path to
+/// the longest that is asked for or a multiple of the least. Without a limit on the jerk: what a
+/// stream can be compared with. Empty where the path has no timing.
+pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
+    let curve = || {
+        let work = Work::new(task).ok()?;
+        let (grid, limits) = work.bare_grid(&Margins::none()).ok()?;
+        let fast = fastest_profile(&grid, &limits).ok()?;
+        let (run, robot) = (task.run, task.model);
+        let least = RESERVE_OF_CURVE * fast.duration();
+        let longest = (CURVE * least).max(run.duration() - run.settling);
+        let held = account::at_rest(robot, &run.load, &run.end, run.settling).energy_j();
+        let point = |i: usize| {
+            let share = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
+            let time = least * (longest / least).powf(share);
+            let bound = energy_bound(&grid, &limits, &work.electrical, &fast, time);
+            let from = bound.as_ref();
+            let model = &work.electrical;
+            let optimum = minimize_energy_from(&grid, &limits, model, &fast, time, from);
+            let optimum = optimum.into_optimum()?;
+            let idle = account::base(robot, time).energy_j() + held;
+            Some(TimeEnergy {
+                time_s: time + run.settling,
+                energy_j: optimum.energy.total() + idle,
+                lower_bound_j: optimum.lower_bound.min(optimum.energy.total()) + idle,
+            })
+        };
+        Some((0..count).filter_map(point).collect())
+    };
+    curve().unwrap_or_default()
+}
+
+/// The curve of energy over time begins at the least time times this, where programs have room.
+const RESERVE_OF_CURVE: f64 = 1.001;
+/// And goes on to this many times that, at least.
+const CURVE: f64 = 2.0;
 
 /// A stream needs this much more time than the fastest profile, at least.
 const RESERVE: f64 = 1.05;
@@ -232,6 +285,9 @@ struct Work<'a> {
     path: &'a JointPath,
     corridor: Corridor,
     limits: StreamLimits,
+    /// What the robot takes.
+    electrical: EnergyModel,
+    /// What is minimised.
     model: EnergyModel,
     lever: Joints,
 }
@@ -249,22 +305,14 @@ impl<'a> Work<'a> {
                 values.as_ref().and_then(|v| v.get(j)).copied().unwrap_or(f64::INFINITY)
             })
         };
-        let motors = robot.motors.as_ref();
-        let model = EnergyModel {
-            loss: std::array::from_fn(|j| motors.map_or(0.0, |m| m.loss_constant[j])),
-            base_w: 0.0,
-            sharing: match robot.drive.sharing {
-                robot::Sharing::None => Sharing::PerJoint,
-                robot::Sharing::Bus => Sharing::Bus,
-            },
-            regeneration: robot.drive.regeneration,
-        };
+        let (electrical, model) = (Cost::Electrical.model(robot), task.cost.model(robot));
         let limits = StreamLimits {
             velocity: list(&robot.limits.velocity),
             acceleration: list(&robot.limits.acceleration),
             jerk: list(&robot.limits.jerk),
         };
-        Ok(Work { task, path, corridor, limits, model, lever: levers(robot, task.run) })
+        let lever = levers(robot, task.run);
+        Ok(Work { task, path, corridor, limits, electrical, model, lever })
     }
 
     /// Least energy in a time, settling included, if that takes less than `worth` (J, motion).
@@ -322,6 +370,8 @@ impl<'a> Work<'a> {
     ) -> Result<Intended, Reason> {
         let (grid, limits) = self.grid(margins)?;
         let fast = fastest_profile(&grid, &limits)?;
+        // The relaxation of another cost says nothing of this one.
+        let bound = bound.filter(|_| self.task.cost.is_electrical());
         let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;
@@ -332,7 +382,7 @@ impl<'a> Work<'a> {
     fn bound(&self, budget: f64) -> Option<EnergyBound> {
         let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        energy_bound(&grid, &limits, &self.model, &fast, budget)
+        energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
@@ -409,9 +459,9 @@ impl<'a> Work<'a> {
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-        let nodes = sampling::nodes(self.path, INTERVALS);
+        let nodes = path_grid::nodes(self.path, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
-        let grid = sampling::grid(loaded, self.path, &nodes, &caps)
+        let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
         let full = motion_limits(self.task.model, margins.load);
         let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))

@@ -358,10 +358,11 @@ impl<P: Plant> Polish<'_, P> {
         for (n, a) in columns.iter().enumerate() {
             let mut slope = 2.0 * price * a.w * lever[a.joint] * offset[a.joint];
             for j in 0..DOF {
-                slope +=
-                    per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + place.qd[j]);
+                let work = self.model.work * place.qd[j];
+                slope += per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + work);
             }
-            slope += per * a.w1 * lin.torque[a.joint];
+            let speed = 2.0 * self.model.speed * place.qd[a.joint];
+            slope += per * a.w1 * (self.model.work * lin.torque[a.joint] + speed);
             model.gradient[a.index] += slope;
             for b in &columns[..=n] {
                 let mut curve: f64 = (0..DOF)
@@ -370,7 +371,8 @@ impl<P: Plant> Polish<'_, P> {
                 let mut normal = -along[a.joint] * along[b.joint];
                 if a.joint == b.joint {
                     normal += 1.0;
-                    curve += 2.0 * per * lin.torque_by[1][a.joint][a.joint].max(0.0) * a.w1 * b.w1;
+                    let friction = self.model.work * lin.torque_by[1][a.joint][a.joint].max(0.0);
+                    curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
                 }
                 curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
                 let (i, j) = (a.index.max(b.index), a.index.min(b.index));

@@ -39,6 +39,9 @@ pub(super) fn segments(
         for way in ways.iter().filter(|way| way.site == index) {
             let events = &site.variants[way.variant].events;
             segment.executions += events.len();
+            if segment.pareto.is_empty() {
+                segment.pareto.clone_from(&way.pareto);
+            }
             let (time, energy) = cost(before, before_account, events);
             segment.time_before_s += time;
             segment.energy_before_j += energy;

@@ -14,9 +14,10 @@ use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
 use crate::optimize::corridor::Freedom;
+use crate::optimize::cost::Cost;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Goal, Retiming, Task, retime};
+use crate::optimize::retime::{Goal, Retiming, Task, TimeEnergy, pareto, retime};
 use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
@@ -70,6 +71,10 @@ pub struct Settings {
     pub spacing_s: f64,
     /// What streams may do that the movements did not.
     pub freedom: Freedom,
+    /// What stands for energy.
+    pub cost: Cost,
+    /// Points of the curve of energy over time of each segment; 0 for none.
+    pub pareto: usize,
 }
 
 /// Why a program can't be retrofitted at all.
@@ -258,6 +263,8 @@ pub(super) struct Way {
     pub(super) variant: usize,
     /// Its stream, or why there is none.
     pub(super) outcome: Outcome,
+    /// Its curve of energy over time, if that is asked for.
+    pub(super) pareto: Vec<TimeEnergy>,
 }
 
 /// A stream, or why there is none.
@@ -371,6 +378,7 @@ fn retime_all(
                 site: s,
                 variant: v,
                 outcome: Err(reason.unwrap_or(Reason::NoSaving)),
+                pareto: Vec::new(),
             });
         }
     }
@@ -389,6 +397,7 @@ fn retime_all(
                 energy_before: energy,
                 spacing_s: settings.spacing_s,
                 freedom: &settings.freedom,
+                cost: settings.cost,
             };
             Some((*i, task))
         })
@@ -427,6 +436,13 @@ fn retime_all(
     }
     for (i, outcome) in outcomes {
         ways[i].outcome = outcome;
+    }
+    if settings.pareto > 0 {
+        let curves: Vec<(usize, Vec<TimeEnergy>)> =
+            tasks.par_iter().map(|(i, task)| (*i, pareto(task, settings.pareto))).collect();
+        for (i, curve) in curves {
+            ways[i].pareto = curve;
+        }
     }
     Ok(ways)
 }

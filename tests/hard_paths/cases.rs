@@ -197,7 +197,8 @@ fn draw(random: &mut Random, kind: Kind, model: &Model, name: &str) -> Option<Ca
         Kind::EasyLine => {
             let length = uniform(random, 0.15, 0.4);
             let way = step(random, length);
-            let _ = writeln!(body, "MoveL {},{speed},fine,tool0;", target(&(way * fk(model, &start))));
+            let _ =
+                writeln!(body, "MoveL {},{speed},fine,tool0;", target(&(way * fk(model, &start))));
         }
         Kind::EasyBlend => {
             let q = moved(random, &start, 0.5);

@@ -22,6 +22,7 @@ use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
 use joulepath::motion::timing::refined::{Refinement, time_optimal_between};
 use joulepath::optimize::corridor::{Ceilings, Freedom};
+use joulepath::optimize::cost::Cost;
 use joulepath::optimize::path_grid;
 use joulepath::optimize::reason::Reason;
 use joulepath::optimize::retime::{Goal, Task, retime};
@@ -166,6 +167,7 @@ fn streams_keep_all_limits_between_their_points_or_say_why_there_is_none() {
                 energy_before: EnergyParts::default(),
                 spacing_s: 0.05,
                 freedom: &freedom,
+                cost: Cost::Electrical,
             };
             let fastest = retime(&task, Goal::Fastest);
             let least = fastest.as_ref().map_or(case.run().duration(), |found| found.duration_s);

@@ -62,8 +62,7 @@ pub(crate) fn worst(case: &Case, stream: &Stream) -> (f64, &'static str) {
                 let speed = from[j] + tau * qdd[j];
                 if speed.abs() < STILL { 0.0 } else { speed }
             });
-            let here: Joints =
-                std::array::from_fn(|j| q[j] + tau * (from[j] + 0.5 * tau * qdd[j]));
+            let here: Joints = std::array::from_fn(|j| q[j] + tau * (from[j] + 0.5 * tau * qdd[j]));
             let load = torque(model, &mut data, load, &here, &qd, &qdd);
             for j in 0..DOF {
                 see(qd[j].abs() / limit(&limits.velocity, j), "velocity");

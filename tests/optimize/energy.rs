@@ -16,8 +16,14 @@ const FREE: Joints = [f64::INFINITY; DOF];
 const DISCRETISATION: f64 = 2e-3;
 
 fn first_joint(loss: f64) -> EnergyModel {
-    let mut model =
-        EnergyModel { loss: [0.0; DOF], base_w: 0.0, sharing: Sharing::Bus, regeneration: 1.0 };
+    let mut model = EnergyModel {
+        work: 1.0,
+        speed: 0.0,
+        loss: [0.0; DOF],
+        base_w: 0.0,
+        sharing: Sharing::Bus,
+        regeneration: 1.0,
+    };
     model.loss[0] = loss;
     model
 }
@@ -104,9 +110,30 @@ fn base_power_alone_gives_the_fastest_profile() {
 fn models() -> [EnergyModel; 3] {
     let loss = arm::LOSS;
     [
-        EnergyModel { loss, base_w: 0.0, sharing: Sharing::PerJoint, regeneration: 0.0 },
-        EnergyModel { loss, base_w: 0.0, sharing: Sharing::Bus, regeneration: 0.0 },
-        EnergyModel { loss, base_w: 150.0, sharing: Sharing::Bus, regeneration: 0.6 },
+        EnergyModel {
+            work: 1.0,
+            speed: 0.0,
+            loss,
+            base_w: 0.0,
+            sharing: Sharing::PerJoint,
+            regeneration: 0.0,
+        },
+        EnergyModel {
+            work: 1.0,
+            speed: 0.0,
+            loss,
+            base_w: 0.0,
+            sharing: Sharing::Bus,
+            regeneration: 0.0,
+        },
+        EnergyModel {
+            work: 1.0,
+            speed: 0.0,
+            loss,
+            base_w: 150.0,
+            sharing: Sharing::Bus,
+            regeneration: 0.6,
+        },
     ]
 }
 
