@@ -13,7 +13,6 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use cases::{Case, EASY};
-use joulepath::dynamics::{Data, rnea};
 use joulepath::motion::controller::motion_limits;
 use joulepath::motion::sampling::{Loaded, SpeedCap};
 use joulepath::motion::stream::{Joints, Stream};
@@ -24,6 +23,7 @@ use joulepath::optimize::cost::Cost;
 use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_grid;
 use joulepath::optimize::plant::{Plant, realise};
+use joulepath::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use joulepath::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
 use joulepath::optimize::stream_polish::{Corridor, polish_stream};
@@ -57,8 +57,11 @@ struct Arm<'a>(&'a Case);
 
 impl Plant for Arm<'_> {
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
-        let tau = rnea(&self.0.model, &mut Data::new(), &self.0.run().load, q, qd, qdd);
-        std::array::from_fn(|j| tau[j] + self.0.model.friction.viscous[j] * qd[j])
+        smooth_torque(&self.0.model, &self.0.run().load, q, qd, qdd)
+    }
+
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        smooth_torque_derivatives(&self.0.model, &self.0.run().load, q, qd, qdd)
     }
 
     fn dry_friction(&self) -> Joints {

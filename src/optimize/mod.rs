@@ -16,6 +16,7 @@ pub mod path_grid;
 pub mod plant;
 pub mod reason;
 pub mod retime;
+pub mod robot_plant;
 pub mod site;
 pub mod standstill;
 pub mod stream_fit;

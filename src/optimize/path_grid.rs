@@ -1,7 +1,7 @@
 //! The grid on which a run is timed anew: nodes where joints turn, friction as each side sees it.
 
 use crate::motion::sampling::{self, Loaded, SpeedCap};
-use crate::motion::timing::grid::{GridError, PathGrid};
+use crate::motion::timing::grid::{GridError, PathGrid, PathPoint};
 use crate::path::joint_path::{DOF, JointPath, Piece};
 
 /// Parts of a piece in which one turn of a joint is looked for.
@@ -56,7 +56,8 @@ fn turns(piece: &Piece) -> Vec<f64> {
     turns
 }
 
-/// The grid at these nodes, with the speed caps of the legs.
+/// The grid at these nodes, with the speed caps of the legs. Where the robot rests, at both ends,
+/// dry friction helps nobody: it has no direction there.
 ///
 /// # Errors
 /// Values that are not finite.
@@ -67,12 +68,8 @@ pub fn grid(
     caps: &[SpeedCap],
 ) -> Result<PathGrid, GridError> {
     let grid = sampling::grid(loaded, path, nodes, caps)?;
-    let still = |ends: &[crate::motion::timing::grid::PathPoint; 2]| {
-        ends.iter().any(|end| end.q1.iter().any(|rate| rate.abs() < STILL))
-    };
-    if !grid.ends().iter().any(still) {
-        return Ok(grid);
-    }
+    let still =
+        |ends: &[PathPoint; 2]| ends.iter().any(|end| end.q1.iter().any(|rate| rate.abs() < STILL));
     let mut ends = grid.ends().to_vec();
     for (pair, s) in ends.iter_mut().zip(nodes.windows(2)).filter(|(pair, _)| still(pair)) {
         let rate = path.eval(0.5 * (s[0] + s[1])).q1;
@@ -83,6 +80,12 @@ pub fn grid(
                 }
             }
         }
+    }
+    if let Some([begin, _]) = ends.first_mut() {
+        begin.coulomb = [0.0; DOF];
+    }
+    if let Some([_, end]) = ends.last_mut() {
+        end.coulomb = [0.0; DOF];
     }
     PathGrid::new(nodes.to_vec(), ends)
 }

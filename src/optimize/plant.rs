@@ -8,6 +8,21 @@ pub trait Plant {
     /// Torques without dry friction, Nm, at positions (rad), velocities and accelerations.
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints;
 
+    /// The change of [`torque`](Plant::torque) per change of q (Nm/rad), q̇ and q̈ of each joint:
+    /// `[kind][joint that changes][torque]`. By differences, where nothing better is known.
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        let here = self.torque(q, qd, qdd);
+        std::array::from_fn(|kind| {
+            std::array::from_fn(|joint| {
+                let mut state = [*q, *qd, *qdd];
+                state[kind][joint] += DIFFERENCES[kind];
+                let [q, qd, qdd] = state;
+                let next = self.torque(&q, &qd, &qdd);
+                std::array::from_fn(|j| (next[j] - here[j]) / DIFFERENCES[kind])
+            })
+        })
+    }
+
     /// Dry friction of each joint, Nm, which acts against its motion.
     fn dry_friction(&self) -> Joints;
 
@@ -33,10 +48,12 @@ pub trait Plant {
 pub(super) const STILL: f64 = 1e-9;
 
 /// The sign of a velocity, 0 at rest.
-fn direction(velocity: f64) -> f64 {
+pub(super) fn direction(velocity: f64) -> f64 {
     if velocity.abs() < STILL { 0.0 } else { velocity.signum() }
 }
 
+/// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
+pub(super) const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Room that is kept to the limits.
 pub(super) const ROOM: f64 = 1e-3;
 /// Steps on a piece at which it is judged; even, for Simpson's rule.

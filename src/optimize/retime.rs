@@ -14,13 +14,14 @@ use super::path_energy::EnergyModel;
 use super::path_grid;
 use super::plant::Plant;
 use super::reason::Reason;
+use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
-use crate::dynamics::{Data, potential_energy, rnea};
+use crate::dynamics::potential_energy;
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
 use crate::kinematics::fk;
@@ -597,9 +598,12 @@ struct RobotPlant<'a> {
 impl Plant for RobotPlant<'_> {
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
         let task = self.work.task;
-        let mut data = Data::new();
-        let tau = rnea(task.model, &mut data, &task.run.load, q, qd, qdd);
-        std::array::from_fn(|j| tau[j] + task.model.friction.viscous[j] * qd[j])
+        smooth_torque(task.model, &task.run.load, q, qd, qdd)
+    }
+
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        let task = self.work.task;
+        smooth_torque_derivatives(task.model, &task.run.load, q, qd, qdd)
     }
 
     fn dry_friction(&self) -> Joints {

@@ -9,7 +9,7 @@
 use super::banded::Banded;
 use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{Plant, ROOM, Realised, realise};
+use super::plant::{DIFFERENCES, Plant, ROOM, Realised, realise};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -66,8 +66,6 @@ const DAMPING: f64 = 1e-3;
 const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 /// Factor on the damping after a good or a bad step.
 const DAMPING_STEP: f64 = 5.0;
-/// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
-const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Smallest tolerance that is taken literally.
 const TIGHTEST: f64 = 1e-7;
 /// Steps to the nearest point of the path.
@@ -265,20 +263,19 @@ impl<P: Plant> Polish<'_, P> {
 
     /// Adds the derivatives.
     fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
-        let here = self.plant.torque(&place.q, &place.qd, &place.qdd);
-        let capped = lin.path.iter().any(|share| *share > NEAR);
-        for (kind, step) in DIFFERENCES.into_iter().enumerate() {
+        lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
+        if lin.path.iter().all(|share| *share <= NEAR) {
+            return;
+        }
+        // Positions and speeds move the tool; accelerations do not.
+        for (kind, step) in DIFFERENCES.into_iter().enumerate().take(2) {
             for joint in self.points.joints.iter().copied() {
-                let mut state = [place.q, place.qd, place.qdd];
+                let mut state = [place.q, place.qd];
                 state[kind][joint] += step;
-                let [q, qd, qdd] = state;
-                let next = self.plant.torque(&q, &qd, &qdd);
-                lin.torque_by[kind][joint] = std::array::from_fn(|j| (next[j] - here[j]) / step);
-                if capped && kind < 2 {
-                    let next = self.plant.path_shares(&q, &qd, &mut near.clone());
-                    for (limit, next) in next.iter().enumerate() {
-                        lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
-                    }
+                let [q, qd] = state;
+                let next = self.plant.path_shares(&q, &qd, &mut near.clone());
+                for (limit, next) in next.iter().enumerate() {
+                    lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
                 }
             }
         }
