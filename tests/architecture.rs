@@ -6,12 +6,13 @@ use std::fs;
 use std::path::Path;
 
 /// Pages that people are sent to.
-const PAGES: [&str; 8] = [
+const PAGES: [&str; 9] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
     "docs/controller.md",
     "docs/energy.md",
+    "docs/identification.md",
     "docs/reasons.md",
     "docs/robots.md",
     "fixtures/README.md",

@@ -83,12 +83,14 @@ pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     for text in generated.notes.iter().chain(&model.assumed()) {
         common::note(args.program.quiet, text);
     }
-    let mut written = Vec::new();
-    for file in &generated.outputs {
-        let path = args.out.join(&file.path);
-        output::write(&path, &file.bytes)?;
-        written.push(path.display().to_string());
-    }
+    let files: Vec<(PathBuf, &[u8])> = generated
+        .outputs
+        .iter()
+        .map(|file| (PathBuf::from(&file.path), file.bytes.as_slice()))
+        .collect();
+    output::write_folder(&args.out, &files)?;
+    let written: Vec<String> =
+        files.iter().map(|(path, _)| args.out.join(path).display().to_string()).collect();
     let mut out = std::io::stdout().lock();
     match args.program.format {
         Format::Json => {

@@ -3,7 +3,9 @@
 pub mod backup;
 pub mod choice;
 pub mod common;
+pub mod excite;
 pub mod generate;
+pub mod identify;
 pub mod input;
 pub mod listing;
 pub mod load;
@@ -36,6 +38,8 @@ enum Command {
     Optimize(Box<optimize::OptimizeArgs>),
     Generate(generate::GenerateArgs),
     Standstill(standstill::StandstillArgs),
+    Excite(Box<excite::ExciteArgs>),
+    Identify(Box<identify::IdentifyArgs>),
     Predict(predict::PredictArgs),
     Robots(robots::RobotsArgs),
 }
@@ -49,6 +53,8 @@ pub fn main() -> ExitCode {
         Command::Optimize(args) => optimize::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Standstill(args) => standstill::run(&args),
+        Command::Excite(args) => excite::run(&args),
+        Command::Identify(args) => identify::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Robots(args) => robots::run(&args),
     };

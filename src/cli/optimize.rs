@@ -271,7 +271,6 @@ fn progress(quiet: bool) -> ProgressBar {
 
 /// The complete program below a folder.
 fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
-    let mut written = Vec::new();
     let real = |path: &Path| path.canonicalize().ok();
     for file in &result.outputs {
         let path = folder.join(&file.path);
@@ -286,19 +285,24 @@ fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<V
             );
         }
     }
-    for file in &result.outputs {
-        let path = folder.join(&file.path);
-        output::write(&path, &stored(job, file))?;
-        written.push(path.display().to_string());
-    }
-    Ok(written)
+    let stored: Vec<(PathBuf, Cow<'_, [u8]>)> =
+        new_first(result).map(|file| (PathBuf::from(&file.path), stored(job, file))).collect();
+    let files: Vec<(PathBuf, &[u8])> =
+        stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref())).collect();
+    output::write_folder(folder, &files)?;
+    Ok(result.outputs.iter().map(|file| folder.join(&file.path).display().to_string()).collect())
+}
+
+/// New files before those that call them: a write that breaks off leaves a program that works.
+fn new_first(result: &Retrofit) -> impl Iterator<Item = &OutputFile> {
+    let of =
+        |new: bool| result.outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
+    of(true).chain(of(false))
 }
 
 /// The changed files in place of the original ones, each with a backup; new files beside.
 fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
-    let changed: Vec<(&OutputFile, PathBuf)> = result
-        .outputs
-        .iter()
+    let changed: Vec<(&OutputFile, PathBuf)> = new_first(result)
         .filter(|file| file.kind != OutputKind::Unchanged)
         .map(|file| (file, place(job, file)))
         .collect();
@@ -313,6 +317,7 @@ fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
         }
     }
     let mut written = Vec::new();
+    let mut staged = Vec::new();
     for (file, path) in &changed {
         if file.kind == OutputKind::Changed {
             let copy = backup(path);
@@ -320,9 +325,10 @@ fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
                 .with_context(|| format!("cannot write '{}'", copy.display()))?;
             written.push(copy.display().to_string());
         }
-        output::write(path, &stored(job, file))?;
+        staged.push(output::stage(path, &stored(job, file))?);
         written.push(path.display().to_string());
     }
+    staged.into_iter().try_for_each(output::Staged::put)?;
     Ok(written)
 }
 

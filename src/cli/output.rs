@@ -1,21 +1,30 @@
 //! Writing files: into a temporary file first, then renamed.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+
+/// A file that is written but not at its place yet.
+pub struct Staged {
+    file: tempfile::NamedTempFile,
+    path: PathBuf,
+}
 
 /// Writes a file whole or not at all.
 ///
 /// # Errors
 /// The folder can't be made or written.
 pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let failed =
-        || format!("cannot write '{}'; check the folder and its permissions", path.display());
+    stage(path, bytes)?.put()
+}
+
+/// Writes a file beside its place.
+///
+/// # Errors
+/// As [`write`].
+pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
+    let folder = parent(path);
     let closed = || {
         format!(
             "cannot write into the folder '{}'; name another one or check its permissions",
@@ -24,15 +33,69 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     };
     std::fs::create_dir_all(folder).with_context(closed)?;
     let mut file = tempfile::NamedTempFile::new_in(folder).with_context(closed)?;
-    file.write_all(bytes).with_context(failed)?;
+    file.write_all(bytes).with_context(|| failed(path))?;
     // A temporary file is private; what stands for a program is not.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         let mode = std::fs::metadata(path).map_or(0o644, |m| m.permissions().mode());
         let permissions = std::fs::Permissions::from_mode(mode);
-        file.as_file().set_permissions(permissions).with_context(failed)?;
+        file.as_file().set_permissions(permissions).with_context(|| failed(path))?;
     }
-    file.persist(path).map_err(|error| error.error).with_context(failed)?;
+    Ok(Staged { file, path: path.to_owned() })
+}
+
+impl Staged {
+    /// Puts the file at its place, over one that is there.
+    ///
+    /// # Errors
+    /// The place can't be written.
+    pub fn put(self) -> anyhow::Result<()> {
+        let path = self.path;
+        self.file.persist(&path).map_err(|error| error.error).with_context(|| failed(&path))?;
+        Ok(())
+    }
+}
+
+/// Writes files into a folder: into a new one all at once, into an existing one each whole, in
+/// their order, and none before all could be written. Their paths start in the folder.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result<()> {
+    if folder.exists() {
+        let staged: Result<Vec<Staged>, _> =
+            files.iter().map(|(path, bytes)| stage(&folder.join(path), bytes)).collect();
+        return staged?.into_iter().try_for_each(Staged::put);
+    }
+    let beside = parent(folder);
+    std::fs::create_dir_all(beside).with_context(|| failed(folder))?;
+    let whole = tempfile::Builder::new()
+        .prefix(".joulepath")
+        .tempdir_in(beside)
+        .with_context(|| failed(folder))?;
+    for (path, bytes) in files {
+        write(&whole.path().join(path), bytes)?;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let permissions = std::fs::Permissions::from_mode(0o755);
+        std::fs::set_permissions(whole.path(), permissions).with_context(|| failed(folder))?;
+    }
+    std::fs::rename(whole.path(), folder).with_context(|| failed(folder))?;
+    // Nothing is left where it was: there is nothing to remove.
+    let _ = whole.keep();
     Ok(())
+}
+
+fn parent(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn failed(path: &Path) -> String {
+    format!("cannot write '{}'; check the folder and its permissions", path.display())
 }

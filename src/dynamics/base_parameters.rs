@@ -114,6 +114,13 @@ pub fn write_rows(
 /// The base parameters of a robot.
 #[must_use]
 pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
+    let all: Vec<usize> = (0..which.count(model.dof)).collect();
+    base_parameters_among(model, which, &all)
+}
+
+/// The base parameters of those at the indices `among` (ascending), the others being known.
+#[must_use]
+pub fn base_parameters_among(model: &Model, which: Parameters, among: &[usize]) -> BaseParameters {
     let n = model.dof;
     let count = which.count(n);
     let mut stacked = DMatrix::zeros(STATES * n, count);
@@ -124,6 +131,7 @@ pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
         });
         write_rows(model, &mut scratch, [&q, &qd, &qdd], which, &mut stacked, state * n);
     }
+    let mut stacked = stacked.select_columns(among);
     // Columns of one length each, so that units do not matter; a column of rounding
     // errors stays one.
     let mut lengths: Vec<f64> = stacked.column_iter().map(|column| column.norm()).collect();
@@ -134,7 +142,11 @@ pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
         }
         column /= *length;
     }
-    group(stacked, &lengths, which, n)
+    let mut base = group(stacked, &lengths, which, n);
+    for index in base.independent.iter_mut().chain(&mut base.dependent) {
+        *index = among[*index];
+    }
+    base
 }
 
 /// Householder reflections from left to right; a column with nothing left below

@@ -24,7 +24,7 @@ mod rnea;
 mod spatial;
 mod torque;
 
-pub use base_parameters::{BaseParameters, base_parameters, write_rows};
+pub use base_parameters::{BaseParameters, base_parameters, base_parameters_among, write_rows};
 pub use crba::crba;
 pub use data::Data;
 pub use derivatives::{Derivatives, rnea_derivatives};
@@ -34,7 +34,7 @@ pub use friction::{friction, smooth_friction};
 pub use joint_matrix::JointMatrix;
 pub use load::Load;
 pub use motor_side::{motor_rates, motor_torques};
-pub use parameters::{Parameters, RIGID, link_parameters, parameters};
+pub use parameters::{JOINT, Parameters, RIGID, link_parameters, parameters};
 pub use regressor::{Regressor, regressor};
 pub use rnea::{gravity, rnea, rnea_each};
 pub use torque::{Torque, torque};

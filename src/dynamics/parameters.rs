@@ -10,7 +10,7 @@ use super::load::Load;
 /// Parameters of a rigid body.
 pub const RIGID: usize = 10;
 /// Parameters of a joint: rotor inertia, viscous and Coulomb friction, offset.
-pub(super) const JOINT: usize = 4;
+pub const JOINT: usize = 4;
 
 /// Names of the parameters of a link, in order: mass \[kg\], first moments \[kg m\],
 /// moments about the joint's origin \[kg m²\].

@@ -4,11 +4,13 @@
 //! every byte of it stays.
 
 mod brake_note;
+mod excitation;
 mod generated;
 pub mod names;
 pub mod stream_module;
 
 pub use brake_note::{BrakeDwell, brake_note};
+pub use excitation::{Excitation, ExcitationModules, Points, excitation};
 pub use generated::{
     GeneratedMove, GeneratedNames, egm_module, generated_module, jointtarget, main_module,
     stream_time,

@@ -104,6 +104,9 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
 
 /// Longest interval of the quadrature, s.
 const MAX_STEP: f64 = 0.02;
+/// Kinks nearer to each other than this are integrated over, s: on such a stretch they change the
+/// acceleration by too little to matter.
+const MIN_STEP: f64 = 0.002;
 /// Gauss-Legendre with three points on [−1, 1]: exact up to degree 5.
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
@@ -120,7 +123,11 @@ pub fn motion_energy(
     let all = motion.knots();
     let inner = all.partition_point(|t| *t <= from)..all.partition_point(|t| *t < to);
     let mut knots = vec![from];
-    knots.extend_from_slice(&all[inner]);
+    for knot in &all[inner] {
+        if knot - knots[knots.len() - 1] > MIN_STEP && to - knot > MIN_STEP {
+            knots.push(*knot);
+        }
+    }
     knots.push(to);
     reversals(motion, &mut knots);
     // The rigid work is what the robot has gained; the rest is integrated.
@@ -156,10 +163,10 @@ const HALVINGS: usize = 40;
 /// Adds the moments at which a joint turns, where dry friction jumps.
 fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
     let mut found = Vec::new();
+    let mut before = motion.at(knots[0]).qd;
     for pair in knots.windows(2) {
         let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
         let h = (pair[1] - pair[0]) / steps;
-        let mut before = motion.at(pair[0]).qd;
         for i in 0..steps as usize {
             let (a, b) = (pair[0] + h * i as f64, pair[0] + h * (i + 1) as f64);
             let after = motion.at(b).qd;

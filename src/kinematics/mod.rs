@@ -1,9 +1,10 @@
 //! Where the robot is: forward and inverse kinematics, configurations,
-//! Jacobians, singularities, position limits. Knows no RAPID.
+//! Jacobians, singularities, position limits, room around the arm. Knows no RAPID.
 //!
 //! Poses are those of tool0 in the robot's base frame: base z up along axis 1,
 //! x forward; tool0 z out of the flange, x down when all joints are at zero.
 
+mod clearance;
 mod conf;
 mod error;
 mod fk;
@@ -17,6 +18,7 @@ mod select;
 mod singularity;
 mod tcp;
 
+pub use clearance::{Body, Capsule, KeepOut, Nearest, Obstacle, Plane};
 pub use conf::{Conf, conf_of};
 pub use error::{IkError, LimitViolation, Side};
 pub use fk::fk;

@@ -1,6 +1,8 @@
 //! Logs as CSV: delimiter and decimal comma are detected, and rows that can't be
 //! used are left out with their number.
 
+use std::io::Read;
+
 use csv::{ByteRecord, ReaderBuilder};
 
 use super::Log;
@@ -9,7 +11,7 @@ use super::error::LogError;
 use super::rows::Rows;
 
 /// What may stand between two columns.
-const DELIMITERS: [u8; 4] = *b",;\t ";
+const DELIMITERS: [u8; 5] = *b",;\t| ";
 
 /// The log in the bytes of a CSV file.
 ///
@@ -17,11 +19,19 @@ const DELIMITERS: [u8; 4] = *b",;\t ";
 /// A header that can't be understood, or fewer than [`MIN_ROWS`](super::MIN_ROWS) usable
 /// rows.
 pub fn read_csv(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    read_rows(bytes, std::io::empty(), map)
+}
+
+/// The same of a file whose beginning, with the header, is `head`.
+///
+/// # Errors
+/// As of [`read_csv`], and a stream that breaks off.
+pub(super) fn read_rows(head: &[u8], rest: impl Read, map: &ColumnMap) -> Result<Log, LogError> {
+    let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
     let (delimiter, names, columns) = DELIMITERS
         .iter()
         .map(|delimiter| {
-            let names = names(bytes, *delimiter);
+            let names = names(head, *delimiter);
             let columns = recognised(&names, map);
             (*delimiter, names, columns)
         })
@@ -30,10 +40,14 @@ pub fn read_csv(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
     check(&columns, &names, map)?;
 
     let mut rows = Rows::new(&columns);
-    let mut reader = ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(bytes);
+    let mut reader =
+        ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(head.chain(rest));
     let mut record = ByteRecord::new();
     let mut values = Vec::with_capacity(columns.len());
-    while reader.read_byte_record(&mut record).unwrap_or(false) {
+    while reader
+        .read_byte_record(&mut record)
+        .map_err(|error| LogError::Stream { reason: error.to_string() })?
+    {
         let line = record.position().map_or(0, csv::Position::line);
         let read = numbers(&record, names.len(), &columns, &mut values);
         rows.push(line, read.map(|()| values.as_slice()));
@@ -56,7 +70,13 @@ fn numbers(
     row: &mut Vec<f64>,
 ) -> Result<(), String> {
     if record.len() != width {
-        return Err(format!("{} columns where the header has {width}", record.len()));
+        // Commas in numbers that stand between commas.
+        let hint = if record.len() + 1 >= 2 * width {
+            "; write decimal points, or another delimiter than the decimal comma"
+        } else {
+            ""
+        };
+        return Err(format!("{} columns where the header has {width}{hint}", record.len()));
     }
     row.clear();
     for column in columns {

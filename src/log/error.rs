@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// A log that can't be read.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum LogError {
     /// No header, or none that is understood.
     #[error(
@@ -50,6 +50,12 @@ pub enum LogError {
         /// Why.
         reason: String,
     },
+    /// A file that can't be read to its end.
+    #[error("the file can't be read to its end ({reason})")]
+    Stream {
+        /// Why.
+        reason: String,
+    },
     /// Two columns for one quantity.
     #[error("the columns {first} and {second} are the same quantity: leave one out")]
     Twice {
@@ -75,5 +81,25 @@ pub enum LogError {
         needed: usize,
         /// What is wrong with the first one left out.
         why: String,
+    },
+    /// Two recorders without marks in common.
+    #[error(
+        "the marks (column sync) change {here} times beside the positions and {there} times beside the currents: both need three of the same changes at least"
+    )]
+    Marks {
+        /// Changes beside the positions.
+        here: usize,
+        /// Changes beside the currents.
+        there: usize,
+    },
+    /// Marks of two recorders that are not those of one run.
+    #[error(
+        "the marks of the two logs miss each other by up to {worst:.3} s (a row is {step:.4} s): are they of one run?"
+    )]
+    Unaligned {
+        /// Largest distance \[s\].
+        worst: f64,
+        /// Interval of the slower one \[s\].
+        step: f64,
     },
 }

@@ -1,21 +1,36 @@
 //! Measured logs: what a robot did, as columns of numbers. Knows no robot.
 
+mod bandwidth;
 mod channel;
 mod columns;
 mod csv;
 mod differentiate;
 mod error;
+mod low_pass;
+mod marks;
 mod motion;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod periods;
 mod rows;
+mod three_phase;
+mod uniform;
+mod utf16;
 
+use std::io::Read;
+
+pub use bandwidth::bandwidth;
 pub use channel::Channel;
 pub use columns::ColumnMap;
 pub use csv::read_csv;
 pub use differentiate::derivatives;
 pub use error::LogError;
+pub use low_pass::LowPass;
+pub use marks::{aligned, are_halves};
 pub use motion::Motion;
+pub use periods::{Averaged, Periods, averaged, find_periods};
+pub use three_phase::{Signed, Vectors, signed, vectors};
+pub use uniform::{Section, interpolated, median_step, sections};
 
 use channel::Family;
 
@@ -44,18 +59,37 @@ pub struct Rejected {
     pub reason: String,
 }
 
+/// So many bytes tell what a file is; a header is shorter.
+const HEAD: u64 = 1 << 16;
+
 /// The log in the bytes of a file, CSV or Parquet by its content.
 ///
 /// # Errors
 /// Columns that can't be understood, fewer than [`MIN_ROWS`] usable rows, a damaged file.
 pub fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
-    if bytes.starts_with(b"PAR1") {
-        #[cfg(feature = "parquet")]
-        return parquet::read_parquet(bytes, map);
-        #[cfg(not(feature = "parquet"))]
-        return Err(LogError::Parquet { reason: "this build does not read them".into() });
+    read_from(bytes, map)
+}
+
+/// The same from a stream. Of a CSV only the recognised columns stay in memory.
+///
+/// # Errors
+/// As of [`read`], and a stream that breaks off.
+pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError> {
+    let broken = |error: std::io::Error| LogError::Stream { reason: error.to_string() };
+    let mut head = Vec::new();
+    stream.by_ref().take(HEAD).read_to_end(&mut head).map_err(broken)?;
+    let parquet = head.starts_with(b"PAR1");
+    if !parquet && !utf16::is_utf16(&head) {
+        return csv::read_rows(&head, stream, map);
     }
-    read_csv(bytes, map)
+    stream.read_to_end(&mut head).map_err(broken)?;
+    if !parquet {
+        return read_csv(utf16::decoded(&head).as_bytes(), map);
+    }
+    #[cfg(feature = "parquet")]
+    return parquet::read_parquet(&head, map);
+    #[cfg(not(feature = "parquet"))]
+    Err(LogError::Parquet { reason: "this build does not read them".into() })
 }
 
 impl Log {

@@ -5,6 +5,12 @@ use super::columns::Column;
 use super::error::LogError;
 use super::{Log, MIN_ROWS, Rejected};
 
+/// No clock shows a time as large as this \[s\].
+const NO_CLOCK: f64 = 1e12;
+/// A row whose time leaps ahead by this many times the interval over it is the wrong one,
+/// not those after it.
+const LEAP: f64 = 100.0;
+
 /// A log that is being read.
 pub(super) struct Rows {
     log: Log,
@@ -25,6 +31,9 @@ impl Rows {
 
     /// Adds the values of a row, or says why it has none; time has to go on.
     pub(super) fn push(&mut self, row: u64, values: Result<&[f64], String>) {
+        if let Ok(values) = &values {
+            self.drop_leap(values[self.time]);
+        }
         let last = self.log.values[self.time].last().copied();
         let checked = values.and_then(|values| later(values[self.time], last).map(|()| values));
         match checked {
@@ -35,6 +44,21 @@ impl Rows {
                 self.log.rows.push(row);
             }
             Err(reason) => self.log.rejected.push(Rejected { row, reason }),
+        }
+    }
+
+    /// Leaves out the last row if it alone had leapt ahead of the time that goes on now.
+    fn drop_leap(&mut self, time: f64) {
+        let [.., before, last] = self.log.values[self.time][..] else { return };
+        if time <= before || time >= last || last - before < LEAP * (time - before) {
+            return;
+        }
+        for column in &mut self.log.values {
+            column.pop();
+        }
+        if let Some(row) = self.log.rows.pop() {
+            let reason = format!("the time leaps from {before} s to {last} s for one row");
+            self.log.rejected.push(Rejected { row, reason });
         }
     }
 
@@ -57,6 +81,9 @@ impl Rows {
 
 /// Whether time goes on.
 fn later(time: f64, last: Option<f64>) -> Result<(), String> {
+    if time.abs() > NO_CLOCK {
+        return Err(format!("t is {time:e} s, which no clock shows"));
+    }
     match last {
         Some(last) if time == last => Err(format!("the time {time} s is there twice")),
         Some(last) if time < last => Err(format!("the time goes back from {last} s to {time} s")),

@@ -50,6 +50,8 @@ pub struct Averaged {
     ends: [Joints; 2],
     /// ∫ (q − q₀) before averaging, rad s, one after the other.
     stretches: Vec<Quintics>,
+    /// Where they begin, s.
+    begins: Vec<f64>,
     /// The same where the motion before averaging ends.
     integral: Joints,
     /// Times between which the averaged joints move smoothly, s.
@@ -79,6 +81,7 @@ impl Averaged {
                 (window, -side),
             ],
             ends,
+            begins: stretches.iter().map(Quintics::begin).collect(),
             stretches,
             integral,
             knots: Vec::new(),
@@ -153,7 +156,7 @@ impl Averaged {
     }
 
     fn stretch(&self, t: f64) -> &Quintics {
-        let after = self.stretches.partition_point(|stretch| stretch.begin() <= t);
+        let after = self.begins.partition_point(|begin| *begin <= t);
         &self.stretches[after.saturating_sub(1)]
     }
 

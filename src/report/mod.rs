@@ -1,6 +1,7 @@
 //! Results as text, JSON and HTML.
 
 pub mod html;
+pub mod identify;
 pub mod json;
 mod mark;
 pub mod place;

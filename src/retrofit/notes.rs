@@ -7,6 +7,7 @@ use super::work::{Budget, Objective, Settings, Source};
 use crate::energy::account::at_rest;
 use crate::motion::Simulation;
 use crate::motion::timeline::What;
+use crate::optimize::reason::Reason;
 use crate::robot::Model;
 
 /// Differences of energy below this are rounding, J.
@@ -23,7 +24,7 @@ pub(super) fn notes(
     segments: &[Segment],
     (original, optimized): (&Figures, &Figures),
 ) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = unchanged(segments).into_iter().collect();
     if settings.objective == Objective::Time || settings.budget == Budget::AsBefore {
         return notes;
     }
@@ -69,6 +70,20 @@ pub(super) fn notes(
     }
     notes.push(note);
     notes
+}
+
+/// Says so where no file changes.
+fn unchanged(segments: &[Segment]) -> Option<String> {
+    if segments.iter().any(|segment| segment.rewritten) {
+        return None;
+    }
+    let timed = segments.iter().filter(|s| matches!(s.reason, Some(Reason::Timed))).count();
+    let already = if timed > 0 {
+        format!(": {timed} of its runs are streams or timed already")
+    } else {
+        String::new()
+    };
+    Some(format!("no movement was rewritten, every file stays as it was{already}"))
 }
 
 /// Energy of standing at the end of the cycle for some time, J.

@@ -1,5 +1,7 @@
 //! The complete program as files.
 
+use std::collections::BTreeMap;
+
 use super::figures::{OutputFile, OutputKind};
 use super::work::{RetrofitError, Source, Way, run_of};
 use crate::emit::{self, EmittedStream, Names};
@@ -9,7 +11,7 @@ use crate::motion::Simulation;
 use crate::optimize::idle::Dwell;
 use crate::optimize::site::Site;
 use crate::robot::Model;
-use crate::text::{self, FileId, SourceFile};
+use crate::text::{self, FileId, SourceFile, Span};
 
 /// Emits the ways that have streams; every other file stays as it was.
 pub(super) fn emit(
@@ -133,32 +135,24 @@ fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }
 
-/// A note for dwells that pay, with the setting that they need.
-pub(super) fn add_brake_note(
-    outputs: &mut Vec<OutputFile>,
-    files: &[Source],
-    model: &Model,
-    dwells: &[Dwell],
-) {
-    let paying: Vec<&Dwell> = dwells.iter().filter(|dwell| dwell.potential_j > 0.0).collect();
-    if paying.is_empty() {
+/// A note for dwells of the emitted program that pay, with the setting that they need.
+pub(super) fn add_brake_note(outputs: &mut Vec<OutputFile>, model: &Model, dwells: &[Dwell]) {
+    let paying = dwells.iter().filter(|dwell| dwell.potential_j > 0.0);
+    let mut by_place: BTreeMap<Span, Vec<&Dwell>> = BTreeMap::new();
+    for dwell in paying {
+        by_place.entry(dwell.span).or_default().push(dwell);
+    }
+    if by_place.is_empty() {
         return;
     }
-    let list: Vec<emit::BrakeDwell> = paying
-        .iter()
-        .map(|dwell| {
-            let file = &files[dwell.span.file.0 as usize];
-            emit::BrakeDwell {
-                place: format!("{} {}", file.relative, file.file.position(dwell.span.start).line),
-                duration: number(dwell.duration, 2),
-                holding: number(dwell.holding_w.iter().sum(), 1),
-                break_even: number(dwell.break_even_s.unwrap_or(0.0), 2),
-                potential: number(dwell.potential_j, 1),
-            }
-        })
-        .collect();
-    let shortest =
-        paying.iter().filter_map(|dwell| dwell.break_even_s).fold(f64::INFINITY, f64::min);
+    let files = read_again(outputs);
+    let list: Vec<emit::BrakeDwell> =
+        by_place.iter().map(|(span, dwells)| brake_dwell(&files, *span, dwells)).collect();
+    let shortest = by_place
+        .values()
+        .flatten()
+        .filter_map(|dwell| dwell.break_even_s)
+        .fold(f64::INFINITY, f64::min);
     let Ok(text) = emit::brake_note(&model.name, &list, &number(shortest, 1)) else { return };
     outputs.push(OutputFile {
         path: "joulepath_brakes.txt".to_owned(),
@@ -166,4 +160,21 @@ pub(super) fn add_brake_note(
         bytes: text.into_bytes(),
         input: None,
     });
+}
+
+/// The dwells of one place: figures of the longest, joules of all.
+fn brake_dwell(files: &[Source], span: Span, dwells: &[&Dwell]) -> emit::BrakeDwell {
+    let file = &files[span.file.0 as usize];
+    let longest = dwells
+        .iter()
+        .max_by(|a, b| a.duration.total_cmp(&b.duration))
+        .unwrap_or_else(|| unreachable!("a place has dwells"));
+    let times = if dwells.len() > 1 { format!(" ({} times)", dwells.len()) } else { String::new() };
+    emit::BrakeDwell {
+        place: format!("{} {}{times}", file.relative, file.file.position(span.start).line),
+        duration: number(longest.duration, 2),
+        holding: number(longest.holding_w.iter().sum(), 1),
+        break_even: number(longest.break_even_s.unwrap_or(0.0), 2),
+        potential: number(dwells.iter().map(|dwell| dwell.potential_j).sum(), 1),
+    }
 }

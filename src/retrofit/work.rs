@@ -287,7 +287,7 @@ pub fn retrofit(
     let sites = sites(&program, &simulation);
     let mut ways = retime_all(model, settings, &simulation, &before, &sites, progress)?;
     let names = Names::free(&program);
-    let dwells = dwells(model, &simulation);
+    let dwells_before = dwells(model, &simulation);
 
     // Each round leaves out what did not hold in the emitted text.
     let mut checked = loop {
@@ -315,11 +315,11 @@ pub fn retrofit(
         (&after_simulation, &after),
         &sites,
         &ways,
-        &dwells,
+        &dwells_before,
         &not_reached(&program, &simulation),
     );
-    outputs::add_brake_note(&mut checked.0, files, model, &dwells);
-    let potential_j = dwells.iter().map(|dwell| dwell.potential_j).sum();
+    outputs::add_brake_note(&mut checked.0, model, &dwells(model, &after_simulation));
+    let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).sum();
     let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
     let notes =
         notes::notes(files, model, settings, &simulation, &segments, (&original, &optimized));

@@ -32,6 +32,7 @@ mod toml_text;
 mod tree;
 mod urdf;
 mod wrist;
+mod write;
 
 pub use catalogue::{find, names};
 pub use controller::Controller;
@@ -54,6 +55,7 @@ pub use readiness::{Lack, NotReady, Use, lacking, ready};
 pub use sensors::Sensors;
 pub use urdf::import_urdf;
 pub use wrist::Wrist;
+pub use write::to_toml;
 
 /// The largest number of joints a model may have.
 pub const MAX_DOF: usize = 7;

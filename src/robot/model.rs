@@ -141,6 +141,8 @@ impl Model {
             Some(table) => EffectParameters::read_all(table, dof, &mut origins)?,
             None => Vec::new(),
         };
+        // How an identification came to its numbers is for people; nothing is computed from it.
+        robot.take("identification");
         origins.extend(robot.finish()?);
         let mut model = Model {
             name,

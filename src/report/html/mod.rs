@@ -3,6 +3,7 @@
 
 mod energy_time;
 mod format;
+mod identify;
 mod movements;
 mod proof;
 mod samples;
@@ -13,7 +14,9 @@ mod standstill;
 mod summary;
 mod ways;
 
+pub use identify::{Traces, identify_report};
 pub use simulation::simulate_report;
+
 use tera::{Context, Tera};
 
 use super::place::Places;

@@ -1,0 +1,21 @@
+//! Why there is no excitation.
+
+use thiserror::Error;
+
+/// Input that no excitation can be designed for.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ExciteError {
+    /// The robot lacks a limit.
+    #[error("{name} has no {what}: give it in the robot file ([limits])")]
+    Lacks {
+        /// The robot.
+        name: String,
+        /// The limit.
+        what: &'static str,
+    },
+    /// No motion keeps all limits.
+    #[error(
+        "no motion was found that keeps clear of itself and of the planes and boxes: move these, or give a smaller --speed-share"
+    )]
+    Nowhere,
+}

@@ -1,0 +1,21 @@
+//! Motions that let a robot's parameters be told from its torques.
+//!
+//! [`design()`] optimises Fourier series for the information that they give, within all
+//! limits; [`plateaus`] and the settings of [`Design`] make the smaller experiments.
+
+mod blend;
+mod design;
+mod error;
+mod feasible;
+mod information;
+mod plateaus;
+mod search;
+mod series;
+
+pub use blend::{Blend, blends};
+pub use design::{Design, Designed, Focus, design, random_feasible};
+pub use error::ExciteError;
+pub use feasible::{Checked, Ratios, check};
+pub use information::{Information, information};
+pub use plateaus::{Plateaus, friction_plateaus, wrist_plateaus};
+pub use series::{Series, State};

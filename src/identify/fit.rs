@@ -1,0 +1,337 @@
+//! The base parameters of a log: weighted least squares, standard errors, validation.
+
+use nalgebra::DMatrix;
+
+use super::equations::Equations;
+use super::error::IdentifyError;
+use super::factors::Factors;
+use super::least_squares::{Condition, Solution, solve};
+use super::noise::{Residual, autocovariance};
+use super::samples::Samples;
+
+/// Parts of the time for cross-validation.
+const PARTS: usize = 5;
+/// Equations for each unknown at least.
+const LEAST: usize = 2;
+/// Rounds of reweighting at most.
+const ROUNDS: usize = 20;
+/// Relative change of a weight that ends them.
+const SETTLED: f64 = 1e-4;
+/// Instants from which the effect of coloured noise on the parameters is computed.
+const INSTANTS: usize = 6000;
+/// Residuals with this many times the variance of the noise have more in them.
+const MISSES: f64 = 1.5;
+/// Length of the pieces that they are taken in, in lags of the noise.
+const PIECE: usize = 12;
+
+/// How the joints are weighted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighting {
+    /// All equations alike: ordinary least squares.
+    Ordinary,
+    /// Each joint by the deviation of its residuals, found by repetition.
+    Joint,
+}
+
+/// A fit of the base parameters.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The solution.
+    pub solution: Solution,
+    /// Covariance of the determined parameters.
+    pub covariance: DMatrix<f64>,
+    /// Standard deviation of each joint's equations \[Nm\].
+    pub sigma: Vec<f64>,
+    /// Condition of the weighted equations.
+    pub condition: Condition,
+    /// Usable equations of each joint.
+    pub rows: Vec<usize>,
+    /// Root mean square of each joint's residuals \[Nm\].
+    pub rms: Vec<f64>,
+    /// The same over that of the torque \[1\].
+    pub relative_rms: Vec<f64>,
+    /// The same as `rms` on parts that the fit did not see.
+    pub cross_rms: Vec<f64>,
+    /// Autocorrelation of each joint's residuals from one instant to the next.
+    pub memory: Vec<f64>,
+    /// The equations.
+    pub factors: Factors,
+}
+
+/// Fits the base parameters of `equations` to `samples`.
+///
+/// # Errors
+/// Fewer equations than unknowns.
+pub fn fit(
+    equations: &Equations<'_>,
+    samples: &Samples,
+    weighting: Weighting,
+) -> Result<Fit, IdentifyError> {
+    let unknowns = equations.base.rank();
+    let factors = Factors::of(equations, samples, PARTS);
+    let rows = factors.rows_without(None);
+    let count: usize = rows.iter().sum();
+    // As many as unknowns fit anything.
+    if count < LEAST * unknowns {
+        return Err(IdentifyError::TooFew { equations: count, unknowns });
+    }
+    let merged = factors.merged(None);
+    let (solution, sigma) = reweighted(&merged, weighting, unknowns);
+    let squares = factors.residual_squares(&solution.beta, None);
+    let torque: Vec<f64> =
+        (0..rows.len()).map(|joint| factors.squares.iter().map(|part| part[joint]).sum()).collect();
+    let cross = cross_squares(&factors, weighting, unknowns);
+    let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
+    let Errors { covariance, memory } =
+        errors(equations, samples, &merged, &solution, &weights, weighting);
+    Ok(Fit {
+        condition: solution.condition(),
+        rms: root_mean(&squares, &rows),
+        relative_rms: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
+        cross_rms: root_mean(&cross, &rows),
+        covariance,
+        memory,
+        sigma,
+        rows,
+        solution,
+        factors,
+    })
+}
+
+/// Root mean square of each joint's residuals in a fit without anything else \[Nm\].
+pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
+    let (solution, _) = reweighted(factors, Weighting::Joint, unknowns);
+    root_mean(&factors.residual_squares(&solution.beta, None), &factors.rows_without(None))
+}
+
+/// Root mean squares; not a number where there are none.
+#[must_use]
+pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
+    squares.iter().zip(rows).map(|(sum, n)| (sum / *n as f64).sqrt()).collect()
+}
+
+/// The solution, and the deviation of each joint \[Nm\].
+fn reweighted(factors: &Factors, weighting: Weighting, unknowns: usize) -> (Solution, Vec<f64>) {
+    let rows = factors.rows_without(None);
+    let mut sigma = vec![1.0; rows.len()];
+    let mut solution = solve(&factors.stacked(&sigma, unknowns));
+    if weighting == Weighting::Ordinary {
+        return (solution, sigma);
+    }
+    for _ in 0..ROUNDS {
+        let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
+        let squares = factors.residual_squares(&solution.beta, None);
+        let lost = lost(factors, &solution, &weights);
+        let next: Vec<f64> = (0..rows.len())
+            .map(|joint| {
+                let n = rows[joint] as f64;
+                let torque: f64 = factors.squares.iter().map(|part| part[joint]).sum();
+                let found = (squares[joint] / (n - lost[joint]).max(1.0)).sqrt();
+                // Data without noise have rounding errors left.
+                found.max(1e-9 * (torque / n.max(1.0)).sqrt()).max(1e-12)
+            })
+            .collect();
+        let change = next.iter().zip(&sigma).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        sigma = next;
+        let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
+        solution = solve(&factors.stacked(&weights, unknowns));
+        if change < SETTLED {
+            break;
+        }
+    }
+    (solution, sigma)
+}
+
+/// How many parameters were fitted to the equations of each joint.
+fn lost(factors: &Factors, solution: &Solution, weights: &[f64]) -> Vec<f64> {
+    let inverse = solution.inverse_normal();
+    let place = |column: &usize| solution.determined.iter().position(|known| known == column);
+    factors
+        .layout
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(joint, columns)| {
+            let kept: Vec<(usize, usize)> = columns
+                .iter()
+                .enumerate()
+                .filter_map(|(from, column)| Some((from, place(column)?)))
+                .collect();
+            let mut trace = 0.0;
+            for part in &factors.parts {
+                for row in part[joint].row_iter() {
+                    for (from, to) in &kept {
+                        if row[*from] == 0.0 {
+                            continue;
+                        }
+                        let product: f64 =
+                            kept.iter().map(|(f, t)| inverse[(*to, *t)] * row[*f]).sum();
+                        trace += row[*from] * product;
+                    }
+                }
+            }
+            trace * weights[joint] * weights[joint]
+        })
+        .collect()
+}
+
+/// Sum of squared residuals of each joint in parts that were left out of the fit.
+fn cross_squares(factors: &Factors, weighting: Weighting, unknowns: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; factors.layout.columns.len()];
+    for part in 0..factors.parts.len() {
+        let (solution, _) = reweighted(&factors.merged(Some(part)), weighting, unknowns);
+        let squares = factors.residual_squares(&solution.beta, Some(part));
+        sums.iter_mut().zip(squares).for_each(|(sum, of)| *sum += of);
+    }
+    sums
+}
+
+struct Errors {
+    covariance: DMatrix<f64>,
+    memory: Vec<f64>,
+}
+
+/// Covariance of the parameters with noise as the residuals show it.
+fn errors(
+    equations: &Equations<'_>,
+    samples: &Samples,
+    factors: &Factors,
+    solution: &Solution,
+    weights: &[f64],
+    weighting: Weighting,
+) -> Errors {
+    let joints = weights.len();
+    let layout = &factors.layout;
+    let mut residuals: Vec<Vec<Residual>> = vec![Vec::new(); joints];
+    let mut instants = 0;
+    equations.each(samples, layout, &mut |instant| {
+        instants += 1;
+        let mut from = 0;
+        for (joint, columns) in layout.columns.iter().enumerate() {
+            let to = from + columns.len();
+            if instant.usable[joint] {
+                let of = instant.x[from..to].iter().zip(columns);
+                let predicted: f64 = of.map(|(x, column)| x * solution.beta[*column]).sum();
+                let residual = instant.y[joint] - predicted;
+                residuals[joint].push((instant.block, instant.index, residual));
+            }
+            from = to;
+        }
+    });
+    let lost = lost(factors, solution, weights);
+    let mut noise: Vec<Vec<f64>> =
+        residuals.iter().zip(&lost).map(|(e, lost)| autocovariance(e, *lost)).collect();
+    if let Some(known) = &samples.noise {
+        for (found, known) in noise.iter_mut().zip(known) {
+            // What repetitions tell is free of what was fitted; where much more is left, the
+            // model misses something, and that counts.
+            if found[0] < MISSES * known[0] {
+                found.clone_from(known);
+            }
+        }
+    }
+    drop(residuals);
+    let memory = noise
+        .iter()
+        .map(|of| if of[0] > 0.0 { of.get(1).copied().unwrap_or(0.0) / of[0] } else { 0.0 })
+        .collect();
+    let inverse = solution.inverse_normal();
+    let white = noise.iter().all(|of| of.len() == 1);
+    if white && weighting == Weighting::Joint && samples.noise.is_none() {
+        return Errors { covariance: inverse, memory };
+    }
+    let middle = between(equations, samples, factors, solution, weights, &noise, instants);
+    Errors { covariance: &inverse * middle * &inverse, memory }
+}
+
+/// Σ w⁴ Xᵀ Ω X over the joints, from pieces of the log.
+fn between(
+    equations: &Equations<'_>,
+    samples: &Samples,
+    factors: &Factors,
+    solution: &Solution,
+    weights: &[f64],
+    noise: &[Vec<f64>],
+    instants: usize,
+) -> DMatrix<f64> {
+    let layout = &factors.layout;
+    let lags = noise.iter().map(Vec::len).max().unwrap_or(1);
+    let piece = (PIECE * lags).max(200);
+    let pieces = (INSTANTS / piece).max(2);
+    let period = (instants / pieces).max(piece);
+    let unknowns = solution.beta.len();
+    let mut middle = DMatrix::zeros(unknowns, unknowns);
+    let mut used = vec![0_usize; weights.len()];
+    // The rows of the piece that is being read, unusable ones as zeros.
+    let mut rows: Vec<f64> = Vec::new();
+    let width = layout.width();
+    let mut number = 0;
+    let mut block = 0;
+    let mut close = |rows: &mut Vec<f64>| {
+        if !rows.is_empty() {
+            add_piece(&mut middle, rows, width, factors, weights, noise);
+        }
+        rows.clear();
+    };
+    equations.each(samples, layout, &mut |instant| {
+        if number % period == 0 || number % period == piece || instant.block != block {
+            close(&mut rows);
+        }
+        block = instant.block;
+        if number % period < piece {
+            let mut from = 0;
+            for (joint, columns) in layout.columns.iter().enumerate() {
+                let to = from + columns.len();
+                if instant.usable[joint] {
+                    rows.extend(&instant.x[from..to]);
+                    used[joint] += 1;
+                } else {
+                    rows.resize(rows.len() + columns.len(), 0.0);
+                }
+                from = to;
+            }
+        }
+        number += 1;
+    });
+    close(&mut rows);
+    // Pieces stand for the whole.
+    let all: usize = factors.rows_without(None).iter().sum();
+    let share = all as f64 / used.iter().sum::<usize>().max(1) as f64;
+    let kept = middle.select_columns(&solution.determined).select_rows(&solution.determined);
+    kept * share
+}
+
+fn add_piece(
+    middle: &mut DMatrix<f64>,
+    rows: &[f64],
+    width: usize,
+    factors: &Factors,
+    weights: &[f64],
+    noise: &[Vec<f64>],
+) {
+    let count = rows.len() / width;
+    let mut from = 0;
+    for (joint, columns) in factors.layout.columns.iter().enumerate() {
+        let x = DMatrix::from_fn(count, columns.len(), |i, k| rows[i * width + from + k]);
+        let mut coloured = DMatrix::zeros(count, columns.len());
+        for k in 0..columns.len() {
+            let column = x.column(k);
+            let mut to = coloured.column_mut(k);
+            for (lag, covariance) in noise[joint].iter().enumerate().take(count) {
+                for i in 0..count - lag {
+                    to[i] += covariance * column[i + lag];
+                    if lag > 0 {
+                        to[i + lag] += covariance * column[i];
+                    }
+                }
+            }
+        }
+        let product = x.tr_mul(&coloured) * weights[joint].powi(4);
+        for (a, to) in columns.iter().enumerate() {
+            for (b, other) in columns.iter().enumerate() {
+                middle[(*to, *other)] += product[(a, b)];
+            }
+        }
+        from += columns.len();
+    }
+}

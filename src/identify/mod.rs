@@ -1,0 +1,36 @@
+//! From measured logs to a robot's dynamic model, with standard errors.
+//!
+//! [`prepare`] makes instants of a log, [`Equations`] the rows of the equations of motion,
+//! [`fit`] the base parameters, [`identify`] a model that can be.
+
+mod clean;
+mod consistent;
+mod descent;
+mod equations;
+mod error;
+mod essential;
+mod factors;
+mod fit;
+mod least_squares;
+mod noise;
+mod prepare;
+mod samples;
+mod torque;
+mod triangle;
+mod units;
+mod work;
+mod wrist;
+
+pub use clean::cleaned;
+pub use descent::{Descent, by_descent};
+pub use equations::{Equations, Instant, Known, Layout};
+pub use error::IdentifyError;
+pub use essential::{Collinear, collinear, essential};
+pub use factors::Factors;
+pub use fit::{Fit, Weighting, fit};
+pub use least_squares::{Condition, Solution};
+pub use prepare::{Hints, prepare};
+pub use samples::{Block, Samples, Source};
+pub use torque::{Torques, torques};
+pub use units::{check_angles, check_torques};
+pub use work::{Free, Identified, Misses, Settings, identify};

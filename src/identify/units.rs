@@ -1,0 +1,145 @@
+//! Units that cannot be right, and what they seem to be.
+
+use crate::dynamics::{Data, Load, rnea};
+use crate::log::{Channel, Log, derivatives, median_step};
+use crate::robot::Model;
+
+use super::error::IdentifyError;
+
+/// The share of the rates that counts for the largest.
+const FAST: f64 = 0.99;
+/// Largest rate of a joint whose limit is not known \[rad/s\].
+const LARGEST: f64 = 15.0;
+/// Over a limit by this factor is no overshoot.
+const FAR: f64 = 2.0;
+/// By how much a factor may miss what it is taken for.
+const NEAR: f64 = 1.3;
+/// The same of a torque on the motor's side, as the model is only roughly known.
+const ROUGHLY: f64 = 3.0;
+/// Share of the squared correlation from which on two columns have to do with each other.
+const RELATED: f64 = 0.25;
+/// Rows further apart than this tell no rates \[s\].
+const SLOWEST: f64 = 0.5;
+/// Times its limit that no joint's torque reaches.
+const BEYOND: f64 = 10.0;
+/// Rows that are looked at.
+const ROWS: usize = 4000;
+/// Degrees in one radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// Whether angles and rates are in radians.
+///
+/// # Errors
+/// A column that is in degrees as it seems, or whose rates are not those of its positions.
+pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
+    let t = log.time();
+    let window = ROWS.min(t.len());
+    let differentiated = log.of_joints(Channel::Velocity).is_none()
+        || log.of_joints(Channel::Acceleration).is_none();
+    let step = median_step(t);
+    if differentiated && step > SLOWEST {
+        return Err(IdentifyError::Slow { step });
+    }
+    for joint in 0..log.joints() {
+        let Some(q) = log.column(Channel::Position(joint)) else { continue };
+        let mut rates: Vec<f64> = q
+            .windows(2)
+            .zip(t.windows(2))
+            .map(|(q, t)| ((q[1] - q[0]) / (t[1] - t[0])).abs())
+            .collect();
+        rates.sort_by(f64::total_cmp);
+        let fast = rates.get((FAST * rates.len() as f64) as usize).copied().unwrap_or(0.0);
+        let limit = model.limits.velocity.as_ref().map_or(LARGEST, |limits| limits[joint]);
+        let reach = q.iter().fold(0.0, |m: f64, q| m.max(q.abs()));
+        let [low, high] = model.limits.position[joint];
+        let range = low.abs().max(high.abs());
+        let beyond =
+            |scale: f64| reach * scale > FAR * range.max(1.0) || fast * scale > FAR * limit;
+        if beyond(1.0) && !beyond(1.0 / DEGREES) {
+            return Err(IdentifyError::Degrees { joint: joint + 1, reach, fast });
+        }
+        let qd = log.column(Channel::Velocity(joint));
+        let wrong = |of: &[f64], rates: &[f64]| {
+            factor(&t[..window], &of[..window], rates)
+                .filter(|factor| !(1.0 / NEAR..NEAR).contains(factor))
+        };
+        if let Some(factor) = qd.and_then(|qd| wrong(q, qd)) {
+            return Err(IdentifyError::Rates { joint: joint + 1, factor });
+        }
+        let qdd = log.column(Channel::Acceleration(joint));
+        if let Some(factor) = qd.zip(qdd).and_then(|(qd, qdd)| wrong(qd, qdd)) {
+            return Err(IdentifyError::Accelerations { joint: joint + 1, factor });
+        }
+    }
+    Ok(())
+}
+
+/// How many times the rates of `x` the logged ones are; `None` where they have little to do
+/// with each other.
+fn factor(t: &[f64], x: &[f64], logged: &[f64]) -> Option<f64> {
+    let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
+    for (found, logged) in derivatives(t, x).iter().zip(logged) {
+        if let Some([rate, _]) = found {
+            both += rate * logged;
+            own += rate * rate;
+            theirs += logged * logged;
+        }
+    }
+    let related = own > 0.0 && both * both > RELATED * own * theirs;
+    related.then(|| both / own)
+}
+
+/// Whether torques are those of the joints, as far as limits and a model with dynamics and
+/// motors can tell.
+///
+/// # Errors
+/// They never change, are beyond all limits, or smaller by the gear ratios.
+pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), IdentifyError> {
+    for (joint, tau) in tau.iter().enumerate() {
+        let q = log.column(Channel::Position(joint)).unwrap_or_default();
+        let is_one = |x: &[f64]| x.windows(2).all(|pair| pair[0] == pair[1]);
+        if is_one(tau) && !is_one(q) {
+            return Err(IdentifyError::Dead { joint: joint + 1 });
+        }
+    }
+    if let Some(limits) = &model.limits.torque {
+        let mut sizes: Vec<f64> = Vec::new();
+        for (joint, (tau, limit)) in tau.iter().zip(limits).enumerate() {
+            sizes.clear();
+            sizes.extend(tau.iter().map(|x| x.abs()));
+            sizes.sort_by(f64::total_cmp);
+            let reach = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+            if reach > BEYOND * limit {
+                return Err(IdentifyError::Large { joint: joint + 1, reach, limit: *limit });
+            }
+        }
+    }
+    let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) else {
+        return Ok(());
+    };
+    let q: Vec<&[f64]> = log.of_joints(Channel::Position).unwrap_or_default();
+    let every = log.time().len().div_ceil(ROWS).max(1);
+    let mut data = Data::new();
+    let n = model.dof;
+    let (mut both, mut own) = (vec![0.0; n], vec![0.0; n]);
+    for row in (0..log.time().len()).step_by(every) {
+        let at: Vec<f64> = q.iter().map(|q| q[row]).collect();
+        // Gravity alone says the order of magnitude.
+        let expected = rnea(model, &mut data, &Load::none(), &at, &[], &[]);
+        for joint in 0..n {
+            both[joint] += expected[joint] * tau[joint][row];
+            own[joint] += expected[joint] * expected[joint];
+        }
+    }
+    let largest = own.iter().fold(0.0, |m: f64, x| m.max(*x));
+    let carrying: Vec<usize> = (0..n).filter(|j| own[*j] > 0.01 * largest).collect();
+    let on_motor_side = |joint: &usize| {
+        let factor = both[*joint] / own[*joint] * motors.ratio[*joint];
+        motors.ratio[*joint] > ROUGHLY * ROUGHLY && factor > 1.0 / ROUGHLY && factor < ROUGHLY
+    };
+    if !carrying.is_empty() && carrying.iter().all(on_motor_side) {
+        let ratio = motors.ratio[carrying[0]];
+        return Err(IdentifyError::MotorSide { joint: carrying[0] + 1, ratio });
+    }
+    Ok(())
+}

@@ -1,0 +1,493 @@
+//! The whole identification: free parameters, fit, a consistent model.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
+
+use crate::dynamics::{
+    BaseParameters, JOINT, Load, Parameters, RIGID, base_parameters_among, link_parameters,
+    parameters,
+};
+use crate::robot::{Link, Model, Motors, Origin, Provenance};
+
+use super::consistent::{Piece, Target, consistent, link, margin, pseudo_inertia};
+use super::equations::{Equations, Known};
+use super::error::IdentifyError;
+use super::factors::Factors;
+use super::fit::{Fit, Weighting, fit, root_mean};
+use super::least_squares::solve;
+use super::samples::{Samples, Source};
+use super::wrist::wrist_coupling;
+
+/// What is to be identified.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Free {
+    /// Rigid bodies, rotors, friction, offsets.
+    All,
+    /// Friction and offsets; rigid bodies and rotors as the model has them.
+    Friction,
+    /// What is fixed to the flange; all else as the model has it.
+    Payload,
+}
+
+/// How an identification is done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// What is free.
+    pub free: Free,
+    /// How joints are weighted.
+    pub weighting: Weighting,
+    /// Who says so, for the identified numbers of the model.
+    pub source: String,
+}
+
+/// Errors on samples, by joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misses {
+    /// Root mean square of the residuals \[Nm\].
+    pub rms: Vec<f64>,
+    /// The same over that of the torque \[1\].
+    pub relative: Vec<f64>,
+}
+
+/// The result.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// The model, with identified parameters.
+    pub model: Model,
+    /// The free base parameters.
+    pub base: BaseParameters,
+    /// The fit without constraints.
+    pub fit: Fit,
+    /// All free parameters of the model, in the order of `among`.
+    pub parameters: Vec<f64>,
+    /// Their indices among all, as [`Parameters::name`] counts them.
+    pub among: Vec<usize>,
+    /// The coupling of the wrist that was found in the data, where the model stated none.
+    pub coupling: Option<f64>,
+    /// Errors of the model on the samples that it was fitted to.
+    pub training: Misses,
+    /// The same on those that it was not.
+    pub validation: Option<Misses>,
+    /// Errors of the fit without constraints on these.
+    pub unconstrained_validation: Option<Misses>,
+    /// Whether every link is a body that can be.
+    pub physically_consistent: bool,
+    /// Base parameters that the data do not determine.
+    pub undetermined: Vec<usize>,
+    /// What was added at the flange, where that was free.
+    pub payload: Option<Load>,
+    /// Joints that were not excited, from 0.
+    pub resting: Vec<usize>,
+    /// Where the rates come from.
+    pub source: Source,
+}
+
+/// Identifies a model from `training`; `validation` is only predicted.
+///
+/// # Errors
+/// Too few equations, or a model that lacks what is not free.
+pub fn identify(
+    model: &Model,
+    training: &Samples,
+    validation: &[Samples],
+    settings: &Settings,
+) -> Result<Identified, IdentifyError> {
+    if settings.free != Free::All && !model.has_dynamics() {
+        return Err(IdentifyError::NoDynamics { name: model.name.clone() });
+    }
+    let n = model.dof;
+    let rigid = RIGID * n;
+    let (among, known): (Vec<usize>, Known) = match settings.free {
+        Free::All => ((0..rigid + JOINT * n).collect(), Known::Nothing),
+        Free::Friction => (
+            (rigid..rigid + JOINT * n).filter(|i| !(i - rigid).is_multiple_of(JOINT)).collect(),
+            Known::Rigid,
+        ),
+        Free::Payload => ((rigid - RIGID..rigid).collect(), Known::All),
+    };
+    let mut nominal = model.clone();
+    let among_base = |model: &Model| base_parameters_among(model, Parameters::WithJoints, &among);
+    let mut coupling = None;
+    if settings.free == Free::All && nominal.wrist.coupling == 0.0 {
+        coupling = wrist_coupling(&nominal, &among_base(&nominal), training);
+        nominal.wrist.coupling = coupling.unwrap_or(0.0);
+    }
+    let base = among_base(&nominal);
+    let equations = Equations { model: &nominal, base: &base, known };
+    let fit = fit(&equations, training, settings.weighting)?;
+    let undetermined: Vec<usize> =
+        fit.solution.dependent.iter().map(|(column, _)| *column).collect();
+
+    let pieces = pieces(&nominal, settings.free, &fit, &base, &among);
+    let combination = combination(&base, &fit, &among);
+    let beta = DVector::from_iterator(
+        fit.solution.determined.len(),
+        fit.solution.determined.iter().map(|k| fit.solution.beta[*k]),
+    );
+    // In units of each joint's residuals, also where joints were not weighted; data without
+    // noise would ask for more digits than there are.
+    let weights: Vec<f64> = fit
+        .rms
+        .iter()
+        .zip(&fit.relative_rms)
+        .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
+        .collect();
+    let weighted = solve(&fit.factors.stacked(&weights, base.rank()));
+    let factor = if weighted.determined == fit.solution.determined {
+        &weighted.factor
+    } else {
+        &fit.solution.factor
+    };
+    let least = fit.rows.iter().sum::<usize>() as f64;
+    let target = Target { combination: &combination, factor, beta: &beta, least };
+    let found = consistent(&pieces, &target).ok_or(IdentifyError::Inconsistent)?;
+    let values: Vec<f64> = found.iter().copied().collect();
+
+    let all = spread(&values, &among, rigid + JOINT * n);
+    let of_model = DVector::from_vec(base.of_parameters(&all));
+    let misses = |beta: &DVector<f64>, factors: &[Factors]| misses(beta, factors);
+    let held_out: Vec<Factors> =
+        validation.iter().map(|samples| Factors::of(&equations, samples, 1)).collect();
+    let training_misses = misses(&of_model, std::slice::from_ref(&fit.factors));
+    let on_held_out = |beta: &DVector<f64>| (!held_out.is_empty()).then(|| misses(beta, &held_out));
+    let (validation, unconstrained_validation) =
+        (on_held_out(&of_model), on_held_out(&fit.solution.beta));
+
+    let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
+    // They are in the numbers now.
+    identified.effects.clear();
+    let physically_consistent =
+        identified.links.iter().all(|link| margin(&link_parameters(link)) > 0.0);
+    Ok(Identified {
+        model: identified,
+        parameters: values,
+        among,
+        coupling,
+        training: training_misses,
+        validation,
+        unconstrained_validation,
+        physically_consistent,
+        undetermined,
+        payload,
+        resting: training.resting.clone(),
+        source: training.source.clone(),
+        base,
+        fit,
+    })
+}
+
+fn misses(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
+    let joints = factors.first().map_or(0, |of| of.layout.columns.len());
+    let (mut squares, mut torque, mut rows) =
+        (vec![0.0; joints], vec![0.0; joints], vec![0; joints]);
+    for of in factors {
+        let missed = of.residual_squares(beta, None);
+        let counted = of.rows_without(None);
+        for joint in 0..joints {
+            squares[joint] += missed[joint];
+            rows[joint] += counted[joint];
+            torque[joint] += of.squares.iter().map(|part| part[joint]).sum::<f64>();
+        }
+    }
+    Misses {
+        rms: root_mean(&squares, &rows),
+        relative: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
+    }
+}
+
+impl Identified {
+    /// Time, usable torques (not a number where a joint rests) and those of the model, of each
+    /// instant of samples, and the rates: `[measured, predicted, rate]` by joint.
+    #[must_use]
+    pub fn traces(&self, nominal: &Model, samples: &Samples) -> Vec<(f64, [Vec<f64>; 3])> {
+        let all = spread(&self.parameters, &self.among, (RIGID + JOINT) * nominal.dof);
+        let beta = self.base.of_parameters(&all);
+        let known = match self.payload {
+            Some(_) => Known::All,
+            None if self.among.len() < all.len() => Known::Rigid,
+            None => Known::Nothing,
+        };
+        let mut model = nominal.clone();
+        model.wrist = self.model.wrist.clone();
+        let equations = Equations { model: &model, base: &self.base, known };
+        let layout = equations.layout();
+        let mut rows = Vec::new();
+        equations.each(samples, &layout, &mut |instant| {
+            let n = layout.columns.len();
+            let mut parts = [Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n)];
+            let mut from = 0;
+            for (joint, columns) in layout.columns.iter().enumerate() {
+                let to = from + columns.len();
+                let of = instant.x[from..to].iter().zip(columns);
+                let free: f64 = of.map(|(x, column)| x * beta[*column]).sum();
+                let predicted = free + instant.tau[joint] - instant.y[joint];
+                let shown = |value: f64| if instant.usable[joint] { value } else { f64::NAN };
+                parts[0].push(shown(instant.tau[joint]));
+                parts[1].push(shown(predicted));
+                parts[2].push(instant.qd[joint]);
+                from = to;
+            }
+            rows.push((instant.t, parts));
+        });
+        rows
+    }
+}
+
+/// Values at their indices, the rest 0.
+fn spread(values: &[f64], among: &[usize], count: usize) -> Vec<f64> {
+    let mut all = vec![0.0; count];
+    for (index, value) in among.iter().zip(values) {
+        all[*index] = *value;
+    }
+    all
+}
+
+/// The determined base parameters as combinations of the free ones. What the data do not
+/// tell apart goes together.
+fn combination(base: &BaseParameters, fit: &Fit, among: &[usize]) -> DMatrix<f64> {
+    let place = |index: usize| among.iter().position(|known| *known == index);
+    let row_of = |row: usize| {
+        let mut values = vec![0.0; among.len()];
+        if let Some(head) = place(base.independent[row]) {
+            values[head] = 1.0;
+        }
+        for (k, index) in base.dependent.iter().enumerate() {
+            if let Some(to) = place(*index) {
+                values[to] = base.grouping[(row, k)];
+            }
+        }
+        values
+    };
+    let determined = &fit.solution.determined;
+    let mut rows: Vec<Vec<f64>> = determined.iter().map(|row| row_of(*row)).collect();
+    for (column, parts) in &fit.solution.dependent {
+        let values = row_of(*column);
+        for (to, factor) in parts {
+            if let Some(row) = determined.iter().position(|known| known == to) {
+                for (sum, value) in rows[row].iter_mut().zip(&values) {
+                    *sum += factor * value;
+                }
+            }
+        }
+    }
+    DMatrix::from_fn(rows.len(), among.len(), |row, column| rows[row][column])
+}
+
+/// The free parameters with their priors.
+fn pieces(
+    model: &Model,
+    free: Free,
+    fit: &Fit,
+    base: &BaseParameters,
+    among: &[usize],
+) -> Vec<Piece> {
+    let n = model.dof;
+    let rigid = RIGID * n;
+    if free == Free::Payload {
+        return vec![Piece::Body(pseudo_inertia(&link_parameters(&small_body(model))))];
+    }
+    let mut pieces = Vec::new();
+    if free == Free::All {
+        pieces.extend((0..n).map(|joint| Piece::Body(prior(model, joint))));
+    }
+    let nominal = parameters(model, &Load::none(), Parameters::WithJoints);
+    for index in among.iter().filter(|index| **index >= rigid) {
+        // What the fit says where it says something of this parameter alone.
+        let said = base.independent.iter().position(|known| known == index).and_then(|row| {
+            let k = fit.solution.determined.iter().position(|known| *known == row)?;
+            Some((fit.solution.beta[row], fit.covariance[(k, k)].sqrt()))
+        });
+        let kind = (index - rigid) % JOINT;
+        if kind == JOINT - 1 {
+            let size = said.map_or(1.0, |(value, sd)| value.abs().max(sd));
+            pieces.push(Piece::Any(size.max(SMALL)));
+        } else {
+            let nominal = nominal.get(*index).copied().unwrap_or(0.0);
+            let known = said.map_or(0.0, |(value, sd)| value.max(sd));
+            pieces.push(Piece::Positive(if nominal > 0.0 { nominal } else { known.max(SMALL) }));
+        }
+    }
+    pieces
+}
+
+/// Residuals smaller than this share of the torque are as good as none.
+const DIGITS: f64 = 1e-4;
+/// Size of a parameter of which nothing is known, in its SI unit.
+const SMALL: f64 = 1e-3;
+/// Density of an arm, with what is hollow in it \[kg/m³\].
+const DENSITY: f64 = 1500.0;
+/// Slenderness of a link: its radius over its length.
+const SLENDER: f64 = 0.25;
+/// Least length of a link \[m\].
+const SHORTEST: f64 = 0.1;
+
+/// The pseudo-inertia that a link has before anything was measured: that of the model where
+/// it is one of a body, else of a bar to the next joint.
+fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
+    if let Some(link) = model.links.get(joint) {
+        let values = link_parameters(link);
+        if margin(&values) > 1e-9 {
+            return pseudo_inertia(&values);
+        }
+    }
+    let geometry = &model.kinematics;
+    let to = geometry
+        .joints
+        .get(joint + 1)
+        .map_or(geometry.flange.translation.vector, |next| next.translation);
+    pseudo_inertia(&link_parameters(&bar(to)))
+}
+
+/// The link that a descent begins with.
+pub(super) fn first_guess(model: &Model, joint: usize) -> Link {
+    link(&super::consistent::parameters(&prior(model, joint)))
+}
+
+/// A round bar from the origin to a point.
+fn bar(to: Vector3<f64>) -> Link {
+    let length = to.norm().max(SHORTEST);
+    let radius = SLENDER * length;
+    let mass = DENSITY * std::f64::consts::PI * radius * radius * length;
+    let across = mass * (length * length / 12.0 + radius * radius / 4.0);
+    Link { mass, com: to * 0.5, inertia: Matrix3::identity() * across }
+}
+
+/// A kilogram at the flange, in the last link's frame.
+fn small_body(model: &Model) -> Link {
+    let com = model.kinematics.flange.translation.vector;
+    Link { mass: 1.0, com, inertia: Matrix3::identity() * 1e-3 }
+}
+
+/// The model with the free parameters put in.
+fn assembled(
+    nominal: &Model,
+    settings: &Settings,
+    values: &[f64],
+    samples: &Samples,
+    coupling: Option<f64>,
+) -> (Model, Option<Load>) {
+    let n = nominal.dof;
+    let mut model = nominal.clone();
+    let mut payload = None;
+    let mut tables = Vec::new();
+    if settings.free == Free::Payload {
+        let added = link(values);
+        payload = Some(at_flange(nominal, &added));
+        if let Some(last) = model.links.last_mut() {
+            let both: Vec<f64> =
+                link_parameters(last).iter().zip(values).map(|(a, b)| a + b).collect();
+            *last = link(&both);
+        }
+        tables.push(format!("link {n}"));
+    }
+    let joints = match settings.free {
+        Free::All => {
+            model.links = values[..RIGID * n].chunks(RIGID).map(link).collect();
+            tables.extend((1..=n).map(|joint| format!("link {joint}")));
+            &values[RIGID * n..]
+        }
+        Free::Friction => values,
+        Free::Payload => &[],
+    };
+    if !joints.is_empty() {
+        let width = joints.len() / n;
+        let column = |kind: usize| -> Vec<f64> {
+            (0..n).map(|joint| joints[joint * width + width + kind - JOINT]).collect()
+        };
+        let rests = |joint: &usize| samples.resting.contains(joint);
+        // What a resting joint would take is not known: it stays as it was.
+        let kept = |new: Vec<f64>, old: &[f64]| -> Vec<f64> {
+            let of = |joint: usize| if rests(&joint) { old[joint] } else { new[joint] };
+            (0..n).map(of).collect()
+        };
+        let before = &nominal.friction;
+        let zero = vec![0.0; n];
+        model.friction.viscous = kept(column(1), &before.viscous);
+        model.friction.coulomb = kept(column(2), &before.coulomb);
+        model.friction.coulomb_asymmetry = None;
+        model.sensors.torque_offset = kept(column(3), &zero);
+        model.friction.viscous_asymmetry = None;
+        model.friction.stribeck = None;
+        model.friction.load_friction = None;
+        tables.push("friction".into());
+        tables.push("effects.torque_offset".into());
+        if settings.free == Free::All {
+            let inertia = column(0);
+            let inertia = match &nominal.motors {
+                Some(motors) => {
+                    let before: Vec<f64> = (0..n).map(|j| motors.reflected_inertia(j)).collect();
+                    kept(inertia, &before)
+                }
+                None => inertia,
+            };
+            model.motors = Some(with_rotors(nominal, &inertia));
+        }
+    }
+    model.origins.retain(|origin| {
+        let part = |table: &String| {
+            origin.table == *table || origin.table.starts_with(&format!("{table}."))
+        };
+        !tables.iter().any(part) && !origin.table.starts_with("arm_load")
+    });
+    for table in &tables {
+        let keys: &[&str] = match table.as_str() {
+            "friction" => &["coulomb", "viscous"],
+            "effects.torque_offset" => &["offset"],
+            _ => &["mass", "com", "inertia"],
+        };
+        model.origins.extend(keys.iter().map(|key| origin(table, key, &settings.source)));
+    }
+    if settings.free == Free::All {
+        model.origins.retain(|o| !(o.table == "motors" && o.key == "rotor_inertia"));
+        model.origins.push(origin("motors", "rotor_inertia", &settings.source));
+        if nominal.motors.is_none() {
+            model.origins.push(Origin {
+                table: "motors".into(),
+                key: "ratio".into(),
+                provenance: Some(Provenance::Assumed),
+                source: Some("not known: rotor inertias are given at the joint".into()),
+            });
+        }
+        model.sensors.position_offset.fill(0.0);
+        model.sensors.torque_error.fill(0.0);
+    }
+    if coupling.is_some() {
+        model.origins.retain(|o| o.table != "wrist");
+        model.origins.push(origin("wrist", "coupling", &settings.source));
+    }
+    (model, payload)
+}
+
+fn origin(table: &str, key: &str, source: &str) -> Origin {
+    Origin {
+        table: table.to_owned(),
+        key: key.to_owned(),
+        provenance: Some(Provenance::Identified),
+        source: Some(source.to_owned()),
+    }
+}
+
+/// The motors with rotors of the inertias `inertia`, at the joints \[kg m²\].
+fn with_rotors(nominal: &Model, inertia: &[f64]) -> Motors {
+    let mut motors = nominal.motors.clone().unwrap_or_else(|| Motors {
+        ratio: vec![1.0; nominal.dof],
+        torque_constant: None,
+        rotor_inertia: vec![0.0; nominal.dof],
+        loss_constant: vec![0.0; nominal.dof],
+        peak_current: None,
+        rated_current: None,
+    });
+    motors.rotor_inertia =
+        inertia.iter().zip(&motors.ratio).map(|(at_joint, n)| at_joint / (n * n)).collect();
+    motors
+}
+
+/// A body in the last link's frame, seen from the flange.
+fn at_flange(model: &Model, body: &Link) -> Load {
+    let to = model.kinematics.flange.inverse();
+    let rotation = to.rotation.to_rotation_matrix();
+    Load {
+        mass: body.mass,
+        com: to.transform_point(&body.com.into()).coords,
+        inertia: rotation.matrix() * body.inertia * rotation.matrix().transpose(),
+    }
+}

@@ -1,0 +1,9 @@
+//! Room around the arm: its capsules against planes, boxes and each other.
+
+mod body;
+mod capsule;
+mod obstacle;
+
+pub use body::{Body, Nearest};
+pub use capsule::Capsule;
+pub use obstacle::{KeepOut, Obstacle, Plane};

@@ -1,0 +1,139 @@
+//! Samples at equal intervals.
+
+/// An interval longer than the usual one by this factor ends a section.
+const GAP: f64 = 3.5;
+/// Share of an interval by which a sample may miss its place on the grid.
+const JITTER: f64 = 0.02;
+
+/// Samples of several series at equal intervals, without a gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// Time of the first sample \[s\].
+    pub start: f64,
+    /// Interval \[s\].
+    pub step: f64,
+    /// The series, all of the same length.
+    pub series: Vec<Vec<f64>>,
+}
+
+impl Section {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.series.first().map_or(0, Vec::len)
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Time of a sample \[s\].
+    #[must_use]
+    pub fn time(&self, index: usize) -> f64 {
+        self.start + self.step * index as f64
+    }
+}
+
+/// The median interval of ascending times \[s\]; 0 for fewer than two.
+#[must_use]
+pub fn median_step(t: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The series at equal intervals: as they are where the times `t` (ascending, s) are even,
+/// else from a cubic through the four samples around. A gap begins a new section.
+#[must_use]
+pub fn sections(t: &[f64], series: &[&[f64]]) -> Vec<Section> {
+    let usual = median_step(t);
+    let mut sections = Vec::new();
+    let mut begin = 0;
+    for end in 1..=t.len() {
+        if end == t.len() || t[end] - t[end - 1] > GAP * usual {
+            let part: Vec<&[f64]> = series.iter().map(|x| &x[begin..end]).collect();
+            sections.push(section(&t[begin..end], &part));
+            begin = end;
+        }
+    }
+    sections
+}
+
+fn section(t: &[f64], series: &[&[f64]]) -> Section {
+    let start = t.first().copied().unwrap_or(0.0);
+    let duration = t.last().map_or(0.0, |last| last - start);
+    let usual = median_step(t);
+    let intervals = if usual > 0.0 { (duration / usual).round().max(1.0) } else { 1.0 };
+    let step = if duration > 0.0 { duration / intervals } else { 1.0 };
+    let count = if duration > 0.0 { intervals as usize + 1 } else { t.len().min(1) };
+    let on_grid = |(i, t): (usize, &f64)| (t - start - step * i as f64).abs() <= JITTER * step;
+    let even = t.len() == count && t.iter().enumerate().all(on_grid);
+    let series = series
+        .iter()
+        .map(|x| if even { x.to_vec() } else { interpolated(t, x, start, step, count) })
+        .collect();
+    Section { start, step, series }
+}
+
+/// `x` at `count` times from `start` on.
+#[must_use]
+pub fn interpolated(t: &[f64], x: &[f64], start: f64, step: f64, count: usize) -> Vec<f64> {
+    let mut out = Vec::with_capacity(count);
+    let mut after = 0;
+    for k in 0..count {
+        let at = start + step * k as f64;
+        while after < t.len() && t[after] < at {
+            after += 1;
+        }
+        // Two samples before and two after, moved inwards at the ends.
+        let width = t.len().min(4);
+        let first = after.saturating_sub(2).min(t.len() - width);
+        out.push(lagrange(&t[first..first + width], &x[first..first + width], at));
+    }
+    out
+}
+
+/// The polynomial through some points, at `at`.
+fn lagrange(t: &[f64], x: &[f64], at: f64) -> f64 {
+    let weight = |i: usize| {
+        let others = t.iter().enumerate().filter(|(k, _)| *k != i);
+        others.map(|(_, other)| (at - other) / (t[i] - other)).product::<f64>()
+    };
+    x.iter().enumerate().map(|(i, x)| x * weight(i)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a cubic polynomial, by rounding.
+    const EXACT: f64 = 1e-9;
+
+    #[test]
+    fn uneven_samples_of_a_cubic_become_even_ones_of_it() {
+        let cubic = |t: f64| 1.0 + 2.0 * t - 3.0 * t * t + 0.5 * t * t * t;
+        let mut t: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
+        for (i, t) in t.iter_mut().enumerate() {
+            *t += 0.003 * (1.7 * i as f64).sin();
+        }
+        t.remove(100);
+        let x: Vec<f64> = t.iter().map(|t| cubic(*t)).collect();
+        let found = sections(&t, &[&x]);
+        assert_eq!(found.len(), 1);
+        for (i, x) in found[0].series[0].iter().enumerate() {
+            assert!((x - cubic(found[0].time(i))).abs() < EXACT);
+        }
+    }
+
+    #[test]
+    fn a_gap_parts_the_sections_and_even_samples_stay() {
+        let t: Vec<f64> =
+            (0..60).map(|i| 0.5 * f64::from(i) + if i < 40 { 0.0 } else { 7.0 }).collect();
+        let x: Vec<f64> = t.iter().map(|t| (13.0 * t).sin()).collect();
+        let found = sections(&t, &[&x]);
+        assert_eq!(found.iter().map(Section::len).collect::<Vec<_>>(), [40, 20]);
+        assert_eq!(found[0].series[0], x[..40]);
+    }
+}

@@ -1,0 +1,236 @@
+//! A model as Robot TOML, complete in itself, each number with its origin.
+
+use std::fmt::Write;
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+
+use super::drive::Sharing;
+use super::geometry::{Coupling, Joint};
+use super::model::Model;
+use super::provenance::{Origin, Provenance};
+use super::toml_text::{list, pose, quoted};
+
+/// The text of a model; reading it gives the same one.
+#[must_use]
+pub fn to_toml(model: &Model) -> String {
+    let mut out = Writer { origins: &model.origins, text: String::new() };
+    let _ = writeln!(out.text, "name = {}", quoted(&model.name));
+    geometry(model, &mut out);
+    limits(model, &mut out);
+    for (i, link) in model.links.iter().enumerate() {
+        let m = &link.inertia;
+        let moments = [m.m11, m.m22, m.m33, m.m12, m.m13, m.m23];
+        out.table(
+            "[[link]]",
+            &format!("link {}", i + 1),
+            &[
+                ("mass", number(link.mass)),
+                ("com", list(link.com.as_slice())),
+                ("inertia", list(&moments)),
+            ],
+        );
+    }
+    friction(model, &mut out);
+    if let Some(motors) = &model.motors {
+        let mut entries = vec![("ratio", list(&motors.ratio))];
+        entries.extend(motors.torque_constant.as_ref().map(|x| ("torque_constant", list(x))));
+        entries.push(("rotor_inertia", list(&motors.rotor_inertia)));
+        entries.push(("loss_constant", list(&motors.loss_constant)));
+        entries.extend(motors.peak_current.as_ref().map(|x| ("peak_current", list(x))));
+        entries.extend(motors.rated_current.as_ref().map(|x| ("rated_current", list(x))));
+        out.table("[motors]", "motors", &entries);
+    }
+    if model.wrist.coupling != 0.0 {
+        out.table("[wrist]", "wrist", &[("coupling", number(model.wrist.coupling))]);
+    }
+    power(model, &mut out);
+    // Effects are in the numbers above, but for those of the log.
+    let sensors = &model.sensors;
+    for (id, key, values) in [
+        ("encoder_offset", "offset", &sensors.position_offset),
+        ("torque_offset", "offset", &sensors.torque_offset),
+        ("torque_constant", "error", &sensors.torque_error),
+    ] {
+        if values.iter().any(|value| *value != 0.0) {
+            let table = format!("effects.{id}");
+            out.table(&format!("[{table}]"), &table, &[(key, list(values))]);
+        }
+    }
+    out.text
+}
+
+struct Writer<'a> {
+    origins: &'a [Origin],
+    text: String,
+}
+
+impl Writer<'_> {
+    /// A table with its entries; an origin that all share stands once.
+    fn table(&mut self, header: &str, name: &str, entries: &[(&str, String)]) {
+        let origins = self.origins;
+        let origin = |key: &str| {
+            let of = origins.iter().find(|o| o.table == name && o.key == key);
+            of.map_or((None, None), |o| (o.provenance, o.source.as_deref()))
+        };
+        let first = entries.first().map_or((None, None), |(key, _)| origin(key));
+        let shared = entries.iter().all(|(key, _)| origin(key) == first);
+        let _ = write!(self.text, "\n{header}\n");
+        if shared {
+            self.origin("", first);
+        }
+        for (key, value) in entries {
+            let _ = writeln!(self.text, "{key} = {value}");
+            if !shared {
+                self.origin(&format!("{key}_"), origin(key));
+            }
+        }
+    }
+
+    fn origin(&mut self, prefix: &str, of: (Option<Provenance>, Option<&str>)) {
+        if let Some(source) = of.1 {
+            let _ = writeln!(self.text, "{prefix}source = {}", quoted(source));
+        }
+        if let Some(provenance) = of.0 {
+            let _ = writeln!(self.text, "{prefix}provenance = \"{provenance}\"");
+        }
+    }
+}
+
+fn number(x: f64) -> String {
+    // Adding 0 takes the sign off a zero.
+    format!("{:?}", x + 0.0)
+}
+
+fn geometry(model: &Model, out: &mut Writer<'_>) {
+    let geometry = &model.kinematics;
+    if geometry.coupling == Coupling::Parallelogram {
+        out.table("[kinematics]", "kinematics", &[("coupling", quoted("parallelogram"))]);
+    }
+    if geometry.base != Isometry3::identity() {
+        out.table("[kinematics.base]", "kinematics.base", &placed(&geometry.base));
+    }
+    // An OPW form that was recognised in a chain has rounding errors, the chain has none.
+    let as_opw = geometry.opw.as_ref().filter(|opw| {
+        let (joints, flange) = opw.chain();
+        joints == geometry.joints && flange == geometry.flange
+    });
+    if let Some(opw) = as_opw {
+        let lengths = [opw.a1, opw.a2, opw.b, opw.c1, opw.c2, opw.c3, opw.c4];
+        let names = ["a1", "a2", "b", "c1", "c2", "c3", "c4"];
+        let mut entries: Vec<(&str, String)> = names.into_iter().zip(lengths.map(number)).collect();
+        entries.push(("offsets", list(&opw.offsets)));
+        entries.push(("signs", list(&opw.signs)));
+        out.table("[kinematics.opw]", "kinematics.opw", &entries);
+        return;
+    }
+    if geometry.flange != Isometry3::identity() {
+        out.table("[kinematics.flange]", "kinematics.flange", &placed(&geometry.flange));
+    }
+    for (i, joint) in geometry.joints.iter().enumerate() {
+        let mut entries = placed(&frame(joint));
+        entries.push(("axis", list(joint.axis.as_slice())));
+        out.table("[[joint]]", &format!("joint {}", i + 1), &entries);
+    }
+}
+
+fn frame(joint: &Joint) -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Translation3::from(joint.translation),
+        UnitQuaternion::from_rotation_matrix(&joint.rotation),
+    )
+}
+
+/// The keys `origin` and `rpy`.
+fn placed(at: &Isometry3<f64>) -> Vec<(&'static str, String)> {
+    let text = pose(at);
+    let value = |key: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));
+        line.unwrap_or_default().to_owned()
+    };
+    vec![("origin", value("origin")), ("rpy", value("rpy"))]
+}
+
+fn limits(model: &Model, out: &mut Writer<'_>) {
+    let limits = &model.limits;
+    let ranges: Vec<String> = limits.position.iter().map(|range| list(range)).collect();
+    let mut entries = vec![("position", format!("[{}]", ranges.join(", ")))];
+    entries.extend(limits.coupled.as_ref().map(|range| ("coupled", list(range))));
+    entries.extend(limits.velocity.as_ref().map(|x| ("velocity", list(x))));
+    entries.extend(limits.acceleration.as_ref().map(|x| ("acceleration", list(x))));
+    entries.extend(limits.jerk.as_ref().map(|x| ("jerk", list(x))));
+    entries.extend(limits.torque.as_ref().map(|x| ("torque", list(x))));
+    entries.extend(limits.tcp_speed.map(|x| ("tcp_speed", number(x))));
+    entries.extend(limits.tcp_acceleration.map(|x| ("tcp_acceleration", number(x))));
+    out.table("[limits]", "limits", &entries);
+    for (i, wider) in limits.position_if.iter().enumerate() {
+        out.table(
+            "[[limits.position_if]]",
+            &format!("limits.position_if {}", i + 1),
+            &[
+                ("joint", (wider.joint + 1).to_string()),
+                ("position", list(&wider.position)),
+                ("if_joint", (wider.if_joint + 1).to_string()),
+                ("if_within", list(&wider.if_within)),
+            ],
+        );
+    }
+}
+
+fn friction(model: &Model, out: &mut Writer<'_>) {
+    let friction = &model.friction;
+    let mut entries =
+        vec![("coulomb", list(&friction.coulomb)), ("viscous", list(&friction.viscous))];
+    entries.extend(friction.coulomb_asymmetry.as_ref().map(|x| ("coulomb_asymmetry", list(x))));
+    out.table("[friction]", "friction", &entries);
+    if let Some(law) = &friction.stribeck {
+        let entries = [("stiction", list(&law.stiction)), ("velocity", list(&law.velocity))];
+        out.table("[friction.stribeck]", "friction.stribeck", &entries);
+    }
+    for (table, key, values) in [
+        ("friction.viscous_asymmetry", "asymmetry", &friction.viscous_asymmetry),
+        ("friction.load_friction", "mu", &friction.load_friction),
+    ] {
+        if let Some(values) = values {
+            out.table(&format!("[{table}]"), table, &[(key, list(values))]);
+        }
+    }
+}
+
+fn power(model: &Model, out: &mut Writer<'_>) {
+    let drive = &model.drive;
+    let sharing = match drive.sharing {
+        Sharing::None => "none",
+        Sharing::Bus => "bus",
+    };
+    out.table(
+        "[drive]",
+        "drive",
+        &[
+            ("base_w", number(drive.base_w)),
+            ("sharing", quoted(sharing)),
+            ("regeneration", number(drive.regeneration)),
+        ],
+    );
+    if let Some(brakes) = &model.brakes {
+        out.table(
+            "[brakes]",
+            "brakes",
+            &[
+                ("energy_per_release_j", number(brakes.energy_per_release_j)),
+                ("release_s", number(brakes.release_s)),
+                ("engage_s", number(brakes.engage_s)),
+                ("power_released_w", number(brakes.power_released_w)),
+            ],
+        );
+    }
+    out.table("[standstill]", "standstill", &[("holding_w", list(&model.standstill.holding_w))]);
+    let controller = &model.controller;
+    let mut entries = Vec::new();
+    entries.extend(controller.friction_level.as_ref().map(|x| ("friction_level", list(x))));
+    entries.extend(controller.ramp_s.map(|x| ("ramp_s", number(x))));
+    entries.extend(controller.settling_s.map(|x| ("settling_s", number(x))));
+    entries.extend(controller.interpolation_s.map(|x| ("interpolation_s", number(x))));
+    if !entries.is_empty() {
+        out.table("[controller]", "controller", &entries);
+    }
+}

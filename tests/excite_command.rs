@@ -1,0 +1,148 @@
+//! `excite` through the binary: what it writes keeps the limits and is RAPID.
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::fs;
+use std::process::{Command, Output};
+
+use joulepath::dynamics::Load;
+use joulepath::excite::{Design, Focus, random_feasible};
+use joulepath::kinematics::{Body, KeepOut, Obstacle, Plane, fk};
+use joulepath::robot::find;
+use joulepath::syntax;
+use nalgebra::{Point3, Vector3};
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+/// What the issue asks for.
+const CONDITION: f64 = 20.0;
+/// Random motions that a design has to be as good as.
+const RANDOM: usize = 2000;
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
+}
+
+fn excite(folder: &tempfile::TempDir, more: &[&str]) -> Value {
+    let out = folder.path().to_str().unwrap();
+    let args = ["excite", "--robot", ROBOT, "--out", out, "-q", "--format", "json"];
+    let output = joulepath(&[&args[..], more].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The modules parse without errors and without a tolerance.
+fn is_rapid(folder: &tempfile::TempDir) {
+    for name in ["JoulepathExcitation.mod", "JoulepathLogger.mod"] {
+        let bytes = fs::read(folder.path().join(name)).unwrap();
+        let parse = syntax::parse(&bytes);
+        assert!(parse.errors.is_empty(), "{name}: {:?}", parse.errors);
+        assert!(parse.tolerances.is_empty(), "{name}: {:?}", parse.tolerances);
+    }
+}
+
+#[test]
+fn the_motion_tells_all_parameters_within_all_limits() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = excite(&folder, &["--plane", "1,0,0,-0.8"]);
+    assert_eq!(found["rank"], 58);
+    assert!(found["condition"]["scaled"].as_f64().unwrap() <= CONDITION, "{found}");
+    is_rapid(&folder);
+
+    let model = find(ROBOT).unwrap();
+    let csv = fs::read_to_string(folder.path().join("excitation.csv")).unwrap();
+    let limits = &model.limits;
+    let (velocity, acceleration) =
+        (limits.velocity.as_ref().unwrap(), limits.acceleration.as_ref().unwrap());
+    let torque = limits.torque.as_ref().unwrap();
+    let mut rows = 0;
+    for line in csv.lines().skip(1) {
+        let x: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!((x[0] - 0.001 * f64::from(rows)).abs() < 1e-9);
+        for j in 0..6 {
+            let [low, high] = limits.position_at(&x[1..7], j);
+            assert!((low..=high).contains(&x[1 + j]));
+            assert!(x[7 + j].abs() <= 0.8 * velocity[j]);
+            assert!(x[13 + j].abs() <= acceleration[j]);
+            assert!(x[19 + j].abs() <= torque[j]);
+        }
+        assert!(fk(&model, &x[1..7]).translation.x >= -0.8);
+        rows += 1;
+    }
+    assert_eq!(rows, 10_000);
+
+    let design = Design {
+        focus: Focus::All,
+        base_frequency: 0.1,
+        harmonics: vec![1, 4, 7],
+        speed_share: 0.8,
+        obstacles: vec![
+            Obstacle::Plane(Plane { normal: Vector3::x(), distance: -0.8 }),
+            Obstacle::Plane(Plane { normal: Vector3::z(), distance: 0.0 }),
+        ],
+        tool: Vector3::zeros(),
+        load: Load::none(),
+        seed: 5,
+    };
+    let random = random_feasible(&model, &design, RANDOM).unwrap();
+    assert!(found["log_det"].as_f64().unwrap() >= random, "{random} {found}");
+}
+
+/// Every capsule on a line of points, against the box by clamping.
+#[test]
+fn arm_and_tool_stay_out_of_a_box() {
+    let folder = tempfile::tempdir().unwrap();
+    let tool = ["--tool", "0,0,250"];
+    let found = excite(&folder, &[&["--box", "0.7,-1.5,0,1.2,1.5,0.7"], &tool[..]].concat());
+    assert!(found["condition"]["scaled"].as_f64().unwrap() <= CONDITION, "{found}");
+    assert!(found["workspace_margin_m"].as_f64().unwrap() >= 0.0);
+    let model = find(ROBOT).unwrap();
+    let keep_out = KeepOut::between(Point3::new(0.7, -1.5, 0.0), Point3::new(1.2, 1.5, 0.7));
+    let body = Body::new(&model, Vector3::new(0.0, 0.0, 0.25), &[]);
+    let csv = fs::read_to_string(folder.path().join("excitation.csv")).unwrap();
+    for line in csv.lines().skip(1) {
+        let q: Vec<f64> = line.split(',').skip(1).take(6).map(|x| x.parse().unwrap()).collect();
+        for capsule in body.capsules(&q).iter().skip(1) {
+            for share in 0..=10 {
+                let p = keep_out.pose.inverse_transform_point(&capsule.at(f64::from(share) / 10.0));
+                let outside = p.coords.abs() - keep_out.half;
+                assert!(outside.map(|x| x.max(0.0)).norm() >= capsule.radius, "{q:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn small_experiments_are_rapid_too() {
+    for variant in ["friction", "wrist"] {
+        let folder = tempfile::tempdir().unwrap();
+        let found = excite(&folder, &["--variant", variant]);
+        for (what, ratio) in found["max_ratio"].as_object().unwrap() {
+            assert!(ratio.as_f64().unwrap() <= 1.0, "{variant}: {what} {ratio}");
+        }
+        assert!(found["self_margin_m"].as_f64().unwrap() >= 0.0);
+        is_rapid(&folder);
+    }
+}
+
+#[test]
+fn wrong_options_say_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    for (more, message) in [
+        (&["--plane", "1,0,0"][..], "a normal and a distance"),
+        (&["--plane", "0,0,0,1"], "the normal is 0"),
+        (&["--plane", "1,0,0,5"], "move these"),
+        (&["--box", "0,0,0,1"], "two corners"),
+        (&["--box", "0,0,0,1,1,0"], "no volume"),
+        (&["--harmonics", "0,1"], "whole multiples"),
+        (&["--speed-share", "1.5"], "at most 1"),
+        (&["--spacing", "nan"], "above 0"),
+        (&["--cycles", "0"], "1 or more"),
+    ] {
+        let args = ["excite", "--robot", ROBOT, "--out", out, "-q", "--variant", "friction"];
+        let output = joulepath(&[&args[..], more].concat());
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{more:?}: {text}");
+        assert!(text.contains(message), "{more:?}: {text}");
+    }
+}

@@ -1,0 +1,241 @@
+//! Identification against what is known: simulated robots, other solvers, statistics.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+#![expect(clippy::print_stderr, reason = "tests report figures")]
+
+mod currents;
+mod simulated;
+
+use joulepath::dynamics::{
+    BaseParameters, Load, Parameters, Regressor, base_parameters, parameters, write_rows,
+};
+use joulepath::identify::{
+    Equations, Fit, Free, Hints, Known, Samples, Settings, Source, Weighting, fit, identify,
+    prepare, torques,
+};
+use joulepath::log::{Channel, Log};
+use joulepath::robot::{Model, from_toml, to_toml};
+use nalgebra::{DMatrix, DVector};
+
+use simulated::{With, irb1600, log, series};
+
+/// Relative, of data without noise and of two solvers.
+const EXACT: f64 = 1e-8;
+/// Share of the 95 % intervals that have to hold the truth.
+const COVERED: std::ops::RangeInclusive<f64> = 0.93..=0.97;
+
+fn samples(log: &Log, model: &Model) -> Samples {
+    let tau = torques(model, log).unwrap();
+    prepare(log, &tau.tau, Hints::default()).unwrap()
+}
+
+fn settings(free: Free, weighting: Weighting) -> Settings {
+    Settings { free, weighting, source: "a test".into() }
+}
+
+fn truth(model: &Model, base: &BaseParameters) -> Vec<f64> {
+    base.of_parameters(&parameters(model, &Load::none(), Parameters::WithJoints))
+}
+
+fn fitted(model: &Model, base: &BaseParameters, samples: &Samples, weighting: Weighting) -> Fit {
+    fit(&Equations { model, base, known: Known::Nothing }, samples, weighting).unwrap()
+}
+
+#[test]
+fn data_without_noise_give_the_robot_back() {
+    let model = irb1600();
+    let base = base_parameters(&model, Parameters::WithJoints);
+    let mut random = fastrand::Rng::with_seed(1);
+    let log = log(&model, &series(1), [10.0, 0.01], With::Rates, [0.0, 0.0], &mut random);
+    let found = fitted(&model, &base, &samples(&log, &model), Weighting::Joint);
+    assert_eq!(found.solution.determined.len(), 58);
+    let scale = truth(&model, &base).iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    for (found, truth) in found.solution.beta.iter().zip(truth(&model, &base)) {
+        assert!((found - truth).abs() < EXACT * scale, "{found} {truth}");
+    }
+}
+
+/// Ordinary least squares of all rows at once, by a singular value decomposition.
+#[test]
+fn ordinary_least_squares_are_those_of_a_dense_solver() {
+    let model = irb1600();
+    let base = base_parameters(&model, Parameters::WithJoints);
+    let mut random = fastrand::Rng::with_seed(2);
+    let log = log(&model, &series(2), [10.0, 0.05], With::Rates, [5.0, 0.0], &mut random);
+    let found = fitted(&model, &base, &samples(&log, &model), Weighting::Ordinary);
+    let count = log.time().len();
+    let mut all = DMatrix::zeros(6 * count, 84);
+    let mut right = DVector::zeros(6 * count);
+    let mut scratch = Regressor::new();
+    for row in 0..count {
+        let at = |channel: fn(usize) -> Channel| -> Vec<f64> {
+            log.of_joints(channel).unwrap().iter().map(|x| x[row]).collect()
+        };
+        let (q, qd, qdd) =
+            (at(Channel::Position), at(Channel::Velocity), at(Channel::Acceleration));
+        write_rows(&model, &mut scratch, [&q, &qd, &qdd], base.of, &mut all, 6 * row);
+        right.rows_mut(6 * row, 6).copy_from_slice(&at(Channel::Torque));
+    }
+    let dense = all.select_columns(&base.independent);
+    let expected = dense.svd(true, true).solve(&right, 1e-12).unwrap();
+    for (found, expected) in found.solution.beta.iter().zip(expected.iter()) {
+        assert!((found - expected).abs() < EXACT * expected.amax_one(), "{found} {expected}");
+    }
+}
+
+trait AtLeastOne {
+    fn amax_one(&self) -> f64;
+}
+
+impl AtLeastOne for f64 {
+    fn amax_one(&self) -> f64 {
+        self.abs().max(1.0)
+    }
+}
+
+/// Share of the intervals that hold the truth over many simulated runs.
+fn coverage(runs: u64, simulate: impl Fn(&mut fastrand::Rng) -> Samples) -> (f64, f64) {
+    let model = irb1600();
+    let base = base_parameters(&model, Parameters::WithJoints);
+    let truth = truth(&model, &base);
+    let mut held = vec![0_u64; truth.len()];
+    for run in 0..runs {
+        let samples = simulate(&mut fastrand::Rng::with_seed(100 + run));
+        let found = fitted(&model, &base, &samples, Weighting::Joint);
+        for (k, column) in found.solution.determined.iter().enumerate() {
+            let sd = found.covariance[(k, k)].sqrt();
+            let off = (found.solution.beta[*column] - truth[*column]).abs();
+            held[*column] += u64::from(off <= 1.959_964 * sd);
+        }
+    }
+    let share = |held: u64| held as f64 / runs as f64;
+    let worst = held.iter().map(|h| share(*h)).fold(1.0, f64::min);
+    (held.iter().map(|h| share(*h)).sum::<f64>() / held.len() as f64, worst)
+}
+
+#[test]
+fn intervals_hold_the_truth_with_white_noise() {
+    let model = irb1600();
+    let motion = series(3);
+    let (mean, worst) = coverage(500, |random| {
+        samples(&log(&model, &motion, [10.0, 0.04], With::Rates, [3.0, 0.0], random), &model)
+    });
+    eprintln!("500 runs, white noise: {mean:.4} of the intervals hold, {worst:.3} of the worst");
+    assert!(COVERED.contains(&mean), "{mean}");
+}
+
+#[test]
+fn intervals_hold_the_truth_with_coloured_noise_and_repetitions() {
+    let model = irb1600();
+    let motion = series(4);
+    let (mean, worst) = coverage(200, |random| {
+        let log = log(&model, &motion, [40.0, 0.02], With::Positions, [3.0, 0.7], random);
+        let samples = samples(&log, &model);
+        assert!(matches!(samples.source, Source::Periodic { periods: 4, .. }));
+        samples
+    });
+    eprintln!("200 runs, repetitions: {mean:.4} of the intervals hold, {worst:.3} of the worst");
+    assert!(COVERED.contains(&mean), "{mean}");
+}
+
+#[test]
+fn intervals_hold_the_truth_with_coloured_noise_of_one_run() {
+    let model = irb1600();
+    let motion = series(5);
+    let (mean, worst) = coverage(200, |random| {
+        samples(&log(&model, &motion, [20.0, 0.02], With::Rates, [3.0, 0.7], random), &model)
+    });
+    eprintln!("200 runs, coloured noise: {mean:.4} of the intervals hold, {worst:.3} of the worst");
+    assert!(COVERED.contains(&mean), "{mean}");
+}
+
+/// What the model predicts does not change where it is written and read.
+#[test]
+fn an_identified_model_is_written_and_read() {
+    let model = irb1600();
+    let mut random = fastrand::Rng::with_seed(6);
+    let log = log(&model, &series(6), [10.0, 0.02], With::Rates, [1.0, 0.0], &mut random);
+    let samples = samples(&log, &model);
+    let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
+    assert!(found.physically_consistent);
+    let read = from_toml("identified.toml", &to_toml(&found.model)).unwrap();
+    let of = |model: &Model| parameters(model, &Load::none(), Parameters::WithJoints);
+    for (a, b) in of(&read).iter().zip(of(&found.model)) {
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
+    assert_eq!(read.sensors, found.model.sensors);
+    let ratio = found.training.rms.iter().zip(&found.fit.rms).map(|(a, b)| a / b);
+    assert!(ratio.fold(0.0, f64::max) < 1.02);
+}
+
+#[test]
+fn a_joint_that_rests_is_not_determined() {
+    let model = irb1600();
+    let mut motion = series(7);
+    for pair in &mut motion.amplitude[3] {
+        *pair = [0.0; 2];
+    }
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut log = log(&model, &motion, [10.0, 0.02], With::Rates, [1.0, 0.0], &mut random);
+    // An encoder's noise is no motion.
+    for value in &mut log.values[4] {
+        *value += 1e-5 * simulated::normal(&mut random);
+    }
+    let samples = samples(&log, &model);
+    assert_eq!(samples.resting, [3]);
+    let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
+    let names: Vec<String> = found.undetermined.iter().map(|row| found.base.name(*row)).collect();
+    for name in ["fv4", "fc4", "offset4"] {
+        assert!(names.contains(&name.to_owned()), "{names:?}");
+    }
+    // What is not known stays as it was.
+    assert_eq!(found.model.friction.viscous[3], model.friction.viscous[3]);
+    assert_eq!(found.model.friction.coulomb[3], model.friction.coulomb[3]);
+}
+
+#[test]
+fn friction_alone_and_a_payload_are_found() {
+    let model = irb1600();
+    let mut other = model.clone();
+    other.friction.viscous.iter_mut().for_each(|v| *v *= 1.3);
+    other.friction.coulomb.iter_mut().for_each(|c| *c *= 0.8);
+    let mut random = fastrand::Rng::with_seed(8);
+    let noisy = [0.5, 0.0];
+    let log_of = |robot: &Model, random: &mut fastrand::Rng| {
+        log(robot, &series(8), [10.0, 0.01], With::Rates, noisy, random)
+    };
+    let worn = samples(&log_of(&other, &mut random), &model);
+    let found = identify(&model, &worn, &[], &settings(Free::Friction, Weighting::Joint)).unwrap();
+    for joint in 0..6 {
+        let (a, b) = (found.model.friction.viscous[joint], other.friction.viscous[joint]);
+        assert!((a / b - 1.0).abs() < 0.03, "{a} {b}");
+    }
+    assert_eq!(found.model.links, model.links);
+
+    let text = to_toml(&model) + "\n[effects.payload]\nmass = 4.0\ncom_z = 0.12\n";
+    let loaded = from_toml("loaded.toml", &text).unwrap();
+    let carried = samples(&log_of(&loaded, &mut random), &model);
+    let found =
+        identify(&model, &carried, &[], &settings(Free::Payload, Weighting::Joint)).unwrap();
+    let load = found.payload.unwrap();
+    assert!((load.mass - 4.0).abs() < 0.1, "{load:?}");
+    assert!((load.com.z - 0.12).abs() < 0.01 && load.com.xy().norm() < 0.01, "{load:?}");
+}
+
+#[test]
+fn a_coupled_wrist_is_found_and_a_plain_one_is_not() {
+    let model = irb1600();
+    let mut coupled = model.clone();
+    coupled.wrist.coupling = 0.8;
+    let mut random = fastrand::Rng::with_seed(9);
+    for (robot, expected) in [(&coupled, Some(0.8)), (&model, None)] {
+        let log = log(robot, &series(9), [10.0, 0.01], With::Rates, [1.0, 0.0], &mut random);
+        let samples = samples(&log, &model);
+        let found =
+            identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
+        match (found.coupling, expected) {
+            (Some(found), Some(expected)) => assert!((found - expected).abs() < 0.02, "{found}"),
+            (found, expected) => assert_eq!(found, expected),
+        }
+    }
+}

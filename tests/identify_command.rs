@@ -1,0 +1,269 @@
+//! `identify` through the binary: what it promises, and logs that can't be used.
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use joulepath::dynamics::{Data, Load, torque};
+use joulepath::robot::find;
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+const ROWS: usize = 400;
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
+}
+
+/// Rows of `t`, positions, rates, accelerations and torques.
+fn rows() -> Vec<Vec<f64>> {
+    let model = find(ROBOT).unwrap();
+    let mut data = Data::new();
+    let mut random = fastrand::Rng::with_seed(5);
+    let middle = [0.0, 0.3, -1.2, 0.0, 0.1, 0.0];
+    let size = [1.0, 0.5, 0.6, 1.2, 0.9, 1.5];
+    (0..ROWS)
+        .map(|row| {
+            let t = 0.025 * row as f64;
+            let mut state = [[0.0; 6]; 3];
+            for joint in 0..6 {
+                for (k, w) in [0.7, 1.9, 3.3].into_iter().enumerate() {
+                    let w = w + 0.13 * joint as f64;
+                    let (sin, cos) = (w * t + (joint * 3 + k) as f64).sin_cos();
+                    let a = size[joint] / (1.0 + k as f64);
+                    state[0][joint] += a * sin;
+                    state[1][joint] += a * w * cos;
+                    state[2][joint] -= a * w * w * sin;
+                }
+                state[0][joint] += middle[joint];
+            }
+            let [q, qd, qdd] = &state;
+            let parts = torque(&model, &mut data, &Load::none(), q, qd, qdd);
+            let tau = (0..6).map(|j| parts.rigid[j] + parts.friction[j] + random.f64() - 0.5);
+            let mut values = vec![t];
+            values.extend(state.iter().flatten());
+            values.extend(tau);
+            values
+        })
+        .collect()
+}
+
+fn header() -> Vec<String> {
+    let of = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
+    [vec!["t".into()], of("q"), of("qd"), of("qdd"), of("tau")].concat()
+}
+
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Bench {
+        Bench { folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn write(&self, header: &[String], rows: &[Vec<String>], separator: &str) -> PathBuf {
+        let mut text = header.join(separator) + "\n";
+        for row in rows {
+            let _ = writeln!(text, "{}", row.join(separator));
+        }
+        let path = self.folder.path().join("log.csv");
+        fs::write(&path, text).unwrap();
+        path
+    }
+}
+
+fn identify(log: &Path, more: &[&str]) -> Output {
+    let args = ["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()];
+    joulepath(&[&args[..], more].concat())
+}
+
+fn cells(rows: &[Vec<f64>]) -> Vec<Vec<String>> {
+    rows.iter().map(|row| row.iter().map(f64::to_string).collect()).collect()
+}
+
+#[test]
+fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
+    let bench = Bench::new();
+    let log = bench.write(&header(), &cells(&rows()), ",");
+    let model = bench.folder.path().join("model.toml");
+    let page = bench.folder.path().join("page.html");
+    let out = ["--out", model.to_str().unwrap(), "--report", page.to_str().unwrap()];
+    let output = identify(&log, &[&out[..], &["--format", "json"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["rank"], 58);
+    assert_eq!(found["base_parameters"].as_array().unwrap().len(), 58);
+    assert_eq!(found["physically_consistent"], true);
+    for part in ["train", "validation"] {
+        assert_eq!(found["rms"][part].as_array().unwrap().len(), 6);
+    }
+    assert!(found["condition"]["scaled"].as_f64().unwrap() > 1.0);
+    assert!(fs::read_to_string(&page).unwrap().contains("not determined") || page.exists());
+
+    // Prediction and JSON tell the same error.
+    let args = ["predict", "--robot", model.to_str().unwrap(), "--log", log.to_str().unwrap()];
+    let output = joulepath(&[&args[..], &["-q"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let all = rows();
+    for joint in 0..6 {
+        let mut sum = 0.0;
+        for (line, row) in text.lines().skip(1).zip(&all) {
+            let predicted: f64 = line.split(',').nth(1 + joint).unwrap().parse().unwrap();
+            sum += (predicted - row[19 + joint]).powi(2);
+        }
+        let rms = (sum / all.len() as f64).sqrt();
+        let told = found["rms"]["train"][joint].as_f64().unwrap();
+        assert!((rms / told - 1.0).abs() < 1e-6, "{rms} {told}");
+    }
+    let same = identify(&log, &["--format", "json", "-q"]);
+    let again: Value = serde_json::from_slice(&same.stdout).unwrap();
+    assert_eq!(again["base_parameters"], found["base_parameters"]);
+}
+
+#[test]
+fn what_is_repaired_is_said() {
+    let bench = Bench::new();
+    let mut broken = cells(&rows());
+    broken[10][3] = "NaN".into();
+    broken[20][5] = "abc".into();
+    broken[30][20] = String::new();
+    broken.swap(40, 41);
+    for cell in &mut broken[50][1..] {
+        *cell = "1e200".into();
+    }
+    broken[60][0] = "-1e200".into();
+    broken[70][0] = "5000".into();
+    let log = bench.write(&header(), &broken, ",");
+    let output = identify(&log, &[]);
+    assert!(output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    for text in [
+        "row 12 left out: q3 is 'NaN'",
+        "row 22",
+        "row 32",
+        "row 43",
+        "row 52 left out: q1 is 1e200",
+        "row 62 left out: t is -1e200 s",
+        "row 72 left out: the time leaps",
+    ] {
+        assert!(said.contains(text), "{text}: {said}");
+    }
+    // Rates of some joints are no use, and that is said.
+    let mut few = header();
+    few[12] = "other".into();
+    let output = identify(&bench.write(&few, &cells(&rows()), ","), &[]);
+    assert!(output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{said}");
+    // Semicolons and decimal commas change nothing.
+    let plain = bench.write(&header(), &cells(&rows()), ",");
+    let expected = identify(&plain, &["-q"]).stdout;
+    let commas: Vec<Vec<String>> = cells(&rows())
+        .iter()
+        .map(|row| row.iter().map(|cell| cell.replace('.', ",")).collect())
+        .collect();
+    let log = bench.write(&header(), &commas, ";");
+    assert_eq!(identify(&log, &["-q"]).stdout, expected);
+    let log = bench.write(&header(), &cells(&rows()), "|");
+    assert_eq!(identify(&log, &["-q"]).stdout, expected);
+}
+
+#[test]
+fn what_can_not_be_used_ends_with_the_way_out() {
+    let bench = Bench::new();
+    let scaled = |columns: std::ops::Range<usize>, by: &dyn Fn(usize) -> f64| {
+        let mut all = rows();
+        for row in &mut all {
+            for column in columns.clone() {
+                row[column] *= by(column - columns.start);
+            }
+        }
+        (header(), cells(&all))
+    };
+    let without = |names: &[&str]| {
+        let kept: Vec<usize> =
+            (0..header().len()).filter(|i| !names.contains(&header()[*i].as_str())).collect();
+        let pick = |of: &[String]| kept.iter().map(|i| of[*i].clone()).collect::<Vec<_>>();
+        let all = cells(&rows());
+        (pick(&header()), all.iter().map(|row| pick(row)).collect::<Vec<_>>())
+    };
+    let model = find(ROBOT).unwrap();
+    let ratio = model.motors.as_ref().unwrap().ratio.clone();
+    let degrees = |_: usize| 180.0 / std::f64::consts::PI;
+    let sixth = ["q6", "qd6", "qdd6", "tau6"];
+    let mut more = header();
+    more.push("tau7".into());
+    let mut longer = cells(&rows());
+    for row in &mut longer {
+        row.push("1".into());
+    }
+    let torques = ["tau1", "tau2", "tau3", "tau4", "tau5", "tau6"];
+    for ((header, rows), message) in [
+        (scaled(1..7, &degrees), "name the column q1_deg"),
+        (scaled(7..13, &degrees), "name the column qd1_deg"),
+        (scaled(19..25, &|joint| 1.0 / ratio[joint]), "those of the motors"),
+        (scaled(7..13, &|_| -1.0), "other sense"),
+        (scaled(17..18, &degrees), "name the column qdd5_deg"),
+        (scaled(0..1, &|_| 1000.0), "in ms"),
+        (scaled(21..22, &|_| 0.0), "tau3 never changes"),
+        (scaled(19..25, &|_| 1000.0), "mNm"),
+        (without(&["tau4"]), "joint 4"),
+        (without(&sixth), "positions of 5 joints"),
+        (without(&torques), "no torques"),
+        (without(&["t"]), "no column t"),
+        ((more, longer), "tau7"),
+        ((header(), cells(&rows()[..3])), "3 usable rows"),
+        ((header(), cells(&rows()[..15])), "usable equations"),
+    ] {
+        let log = bench.write(&header, &rows, ",");
+        let output = identify(&log, &[]);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}: {text}");
+        assert!(text.contains(message), "{message}: {text}");
+    }
+}
+
+#[test]
+fn a_constant_joint_is_named() {
+    let bench = Bench::new();
+    let mut all = rows();
+    for row in &mut all {
+        row[4] = 0.3;
+        row[10] = 0.0;
+        row[16] = 0.0;
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let output = identify(&log, &["--format", "json"]);
+    assert!(output.status.success());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("joint 4 does not move"));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let missing = found["not_determined"].as_array().unwrap();
+    assert!(missing.iter().any(|entry| entry["name"] == "fc4"), "{missing:?}");
+    assert_eq!(found["joints"][3]["coulomb"], Value::Null);
+    assert_eq!(found["joints"][3]["excited"], false);
+}
+
+/// The paper's fit can't be better than the free one, and begins at the robot file, which is
+/// right here.
+#[test]
+fn the_descent_of_the_paper_comes_near_the_free_fit() {
+    let bench = Bench::new();
+    let log = bench.write(&header(), &cells(&rows()), ",");
+    let ordinary = ["--method", "ordinary", "--descent", "--format", "json", "-q"];
+    let output = identify(&log, &ordinary);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let of = |list: &Value| -> Vec<f64> {
+        list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let total = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let free = total(&of(&found["unconstrained_rms"]["train"]));
+    let descent = total(&of(&found["descent"]["rms_by_joint"]));
+    assert!((1.0..1.1).contains(&(descent / free)), "{descent} {free}");
+    let [first, last] = ["first_rms", "rms"].map(|key| found["descent"][key].as_f64().unwrap());
+    assert!(last <= first, "{first} {last}");
+}

@@ -1,0 +1,133 @@
+//! Identification of real robots from published logs. The logs are not part of the crate;
+//! where they are absent these tests say so, in a CI run they fail.
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+#![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use joulepath::identify::{
+    Free, Hints, Identified, Settings, Source, Weighting, identify, prepare, torques,
+};
+use joulepath::log::{ColumnMap, Log, read_csv};
+use joulepath::robot::{from_toml, import_urdf};
+
+/// Share of the time that is fitted; the rest is predicted.
+const TRAINED: f64 = 0.7;
+/// By how much the written model may miss more than the free fit, all joints together.
+const CONSISTENT: f64 = 1.04;
+
+fn shared(path: &str) -> Option<String> {
+    let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
+    if let Ok(text) = fs::read_to_string(&full) {
+        return Some(text);
+    }
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", full.display());
+    eprintln!("skipped: {} is missing", full.display());
+    None
+}
+
+/// Rows of a log, as a log of their own.
+fn rows(log: &Log, range: std::ops::Range<usize>) -> Log {
+    Log {
+        channels: log.channels.clone(),
+        values: log.values.iter().map(|x| x[range.clone()].to_vec()).collect(),
+        rows: log.rows[range].to_vec(),
+        rejected: Vec::new(),
+    }
+}
+
+fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Identified> {
+    let (robot, log) = (shared(urdf)?, shared(csv)?);
+    let model = from_toml(urdf, &import_urdf(urdf, &robot).unwrap()).unwrap();
+    let mut map = String::from("t=t_s");
+    for joint in 1..=joints {
+        let _ = write!(map, ",q{joint}=q_rad_{joint},tau{joint}=tau_Nm_{joint}");
+        if rates {
+            let _ = write!(map, ",qd{joint}=qd_rad_s_{joint}");
+        }
+    }
+    let log = read_csv(log.as_bytes(), &ColumnMap::parse(&map).unwrap()).unwrap();
+    let count = log.time().len();
+    let split = (TRAINED * count as f64) as usize;
+    let samples =
+        |log: &Log, hints: Hints| prepare(log, &torques(&model, log).unwrap().tau, hints).unwrap();
+    let training = samples(&rows(&log, 0..split), Hints::default());
+    let Source::Filtered { cutoff } = training.source else { panic!("{:?}", training.source) };
+    let held_out = samples(&rows(&log, split..count), Hints { period: None, cutoff: Some(cutoff) });
+    let settings =
+        Settings { free: Free::All, weighting: Weighting::Joint, source: "a test".into() };
+    let found = identify(&model, &training, &[held_out], &settings).unwrap();
+    assert!(found.physically_consistent);
+    Some(found)
+}
+
+/// Held-out figures against what plain least squares are known to give.
+fn compare(name: &str, found: &Identified, known: &[f64]) {
+    let free = &found.unconstrained_validation.as_ref().unwrap().rms;
+    let written = &found.validation.as_ref().unwrap().rms;
+    eprintln!("{name}: held out {free:.2?}, of the written model {written:.2?}, known {known:?}");
+    for (joint, (rms, known)) in free.iter().zip(known).enumerate() {
+        assert!(rms <= known, "{name}, joint {}: {rms} {known}", joint + 1);
+    }
+    let ratio = written.iter().zip(free).map(|(a, b)| (a / b).powi(2)).sum::<f64>();
+    let ratio = (ratio / written.len() as f64).sqrt();
+    assert!(ratio < CONSISTENT, "{name}: {ratio}");
+}
+
+#[test]
+fn staubli_tx40_has_the_published_friction_and_a_coupled_wrist() {
+    let (urdf, csv) = ("tx40/tx40_mdh_modified.urdf", "tx40/tx40_joint_space.csv");
+    let Some(found) = identified(urdf, csv, 6, false) else { return };
+    compare("TX40", &found, &[2.6, 3.0, 1.5, 0.70, 1.33, 0.70]);
+    assert_eq!(found.fit.solution.determined.len(), 58);
+    let coupling = found.coupling.unwrap();
+    let beta = |name: &str| {
+        let all = &found.fit.solution.determined;
+        let row = all.iter().find(|row| found.base.name(**row) == name).unwrap();
+        found.fit.solution.beta[*row]
+    };
+    // Axis 5 carries the friction of motor 6 too.
+    let fifth = beta("fv5") + coupling * coupling * beta("fv6");
+    let viscous = [beta("fv1"), beta("fv2"), beta("fv3"), beta("fv4"), fifth, beta("fv6")];
+    for (found, known) in viscous.into_iter().zip([8.05, 5.53, 1.97, 1.11, 1.86, 0.65]) {
+        assert!((found / known - 1.0).abs() < 0.10, "{found} {known}");
+    }
+    let fifth = beta("ia5") + coupling * coupling * beta("ia6");
+    for (found, known) in [
+        (beta("fc1"), 7.14),
+        (beta("fc2"), 8.26),
+        (beta("fc3"), 6.34),
+        (beta("fc4"), 2.48),
+        (beta("fc5"), 3.03),
+        (beta("ia3"), 0.0988),
+        (beta("ia4"), 0.0313),
+        (fifth, 0.0468),
+        (beta("ia6"), 0.0105),
+        (coupling * beta("fv6"), 0.605),
+        (beta("fc6"), 2.03),
+        (coupling * beta("ia6"), 0.00865),
+    ] {
+        assert!((found / known - 1.0).abs() < 0.30, "{found} {known}");
+    }
+}
+
+#[test]
+fn universal_robots_ur10() {
+    let (urdf, csv) =
+        ("ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf", "ur10_unisa/ur10_exciting_trajectory.csv");
+    let Some(found) = identified(urdf, csv, 6, true) else { return };
+    assert_eq!(found.coupling, None);
+    // Of joint 4 0.56 is known, on another part of the time.
+    compare("UR10", &found, &[3.2, 3.5, 2.0, 0.85, 0.60, 2.0]);
+}
+
+#[test]
+fn franka_panda() {
+    let (urdf, csv) =
+        ("ur10_unisa/panda_mdh_dummy_inertia.urdf", "ur10_unisa/panda_exciting_trajectory.csv");
+    let Some(found) = identified(urdf, csv, 7, true) else { return };
+    // Of joint 4 0.17 is known, on another part of the time.
+    compare("Panda", &found, &[0.28, 0.18, 0.23, 0.19, 0.15, 0.11, 0.08]);
+}
