@@ -5,8 +5,6 @@
 
 #![expect(clippy::print_stdout, reason = "an example shows something")]
 
-use std::collections::BTreeSet;
-
 use joulepath::dynamics::Load;
 use joulepath::energy::{EnergyParts, account};
 use joulepath::motion::timeline::{Run, What};
@@ -122,7 +120,7 @@ fn points(moves: &[Vec<Measured<'_>>]) -> Vec<Point> {
 /// The time-optimal move on the path of D, and C at its times.
 fn computed(model: &Model, d: &Measured<'_>, fastest: Point) -> (Point, Vec<Option<Point>>) {
     let freedom =
-        |deviation: f64| Freedom { ceilings: Ceilings::Robot, deviation, freed: BTreeSet::new() };
+        |deviation: f64| Freedom { ceilings: Ceilings::Robot, deviation, ..Freedom::none() };
     let (kept, free) = (freedom(0.0), freedom(ANYWHERE));
     let solve = |freedom: &Freedom, goal: Goal| {
         let task = Task {

@@ -8,10 +8,13 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::{listing, output};
+use crate::config::KeepOut;
+use crate::kinematics::clearance::{self, Obstacle, Plane};
 use crate::optimize::corridor::{Ceilings, Freedom};
 use crate::optimize::cost::Cost;
 use crate::optimize::retime::SLOWEST;
@@ -225,6 +228,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
             deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
+            keep_out: job.config.keep_out.iter().map(obstacle).collect::<Result<_, _>>()?,
         },
         cost: match args.energy {
             EnergyArg::Electrical => Cost::Electrical,
@@ -235,6 +239,29 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         },
         pareto: usize::from(args.pareto),
     })
+}
+
+/// A part of the cell.
+fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
+    match part {
+        KeepOut::Box([one, other]) => {
+            if one.iter().chain(other).any(|x| !x.is_finite()) {
+                bail!("keep_out: box {one:?}, {other:?}: give two corners in m");
+            }
+            let corners = [one, other].map(|corner| Point3::from(*corner));
+            Ok(Obstacle::KeepOut(clearance::KeepOut::between(corners[0], corners[1])))
+        }
+        KeepOut::Plane([x, y, z, distance]) => {
+            let normal = Vector3::new(*x, *y, *z);
+            let size = normal.norm();
+            if !(size > 0.0 && size.is_finite() && distance.is_finite()) {
+                bail!(
+                    "keep_out: plane [{x}, {y}, {z}, {distance}]: give a normal and a distance, m"
+                );
+            }
+            Ok(Obstacle::Plane(Plane { normal: normal / size, distance: distance / size }))
+        }
+    }
 }
 
 /// How far free movements may leave their path, m.

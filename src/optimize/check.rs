@@ -4,6 +4,7 @@ use super::corridor::Corridor;
 use super::plant::STILL;
 use crate::dynamics::{Data, Load};
 use crate::energy::power::power;
+use crate::kinematics::clearance::Body;
 use crate::kinematics::{Tcp, fk, limits_ok};
 use crate::motion::stream::{Piece, Stream};
 use crate::motion::timed::JointState;
@@ -34,6 +35,9 @@ pub struct Check {
     pub endpoint_error_rad: f64,
     /// True if every joint stays in its range.
     pub in_range: bool,
+    /// By how much arm and tool come into what the cell keeps free, m; only of what may leave its
+    /// path.
+    pub intrusion_m: f64,
 }
 
 impl Check {
@@ -46,7 +50,7 @@ impl Check {
 
     /// True if nothing is exceeded.
     pub fn holds(&self) -> bool {
-        self.worst() <= 1.0 && self.in_range
+        self.worst() <= 1.0 && self.in_range && self.intrusion_m <= 0.0
     }
 
     /// What is exceeded most, in words; for a check that does not hold.
@@ -60,6 +64,9 @@ impl Check {
             ("distance from the path", self.deviation),
         ];
         let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        if self.worst() <= 1.0 && self.in_range {
+            return format!("the arm would come {:.0} mm too near", 1e3 * self.intrusion_m);
+        }
         if self.worst() <= 1.0 {
             return "a joint would leave its range".to_owned();
         }
@@ -79,6 +86,7 @@ impl Check {
             deviation: self.deviation.max(other.deviation),
             endpoint_error_rad: self.endpoint_error_rad.max(other.endpoint_error_rad),
             in_range: self.in_range && other.in_range,
+            intrusion_m: self.intrusion_m.max(other.intrusion_m),
         }
     }
 
@@ -88,7 +96,8 @@ impl Check {
     }
 }
 
-/// Checks the realised motion of a stream, in the corridor and towards the end of a run.
+/// Checks the realised motion of a stream, in the corridor, towards the end of a run, and with
+/// the arm among what the cell keeps free.
 pub fn check(
     model: &Model,
     load: &Load,
@@ -96,6 +105,7 @@ pub fn check(
     stream: &Stream,
     corridor: &Corridor,
     end: &Joints,
+    body: Option<&Body<'_>>,
 ) -> Check {
     let limits = &model.limits;
     let share = |values: &[f64], limit: &Option<Vec<f64>>| {
@@ -117,6 +127,9 @@ pub fn check(
             let (q, qd, qdd) = piece.at(tau);
             let qd = qd.map(|v| if v.abs() < STILL { 0.0 } else { v });
             result.in_range &= limits_ok(model, &q).is_ok();
+            if let Some(body) = body {
+                result.intrusion_m = result.intrusion_m.max(-body.margins(&q)[0]);
+            }
             let state = JointState { q, qd, qdd };
             let torque = if model.has_dynamics() {
                 share(&power(model, &mut data, load, &state).tau, &limits.torque)

@@ -6,6 +6,7 @@ use nalgebra::{Isometry3, Vector4};
 
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Movement;
+use crate::kinematics::clearance::Obstacle;
 use crate::kinematics::fk;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
@@ -227,12 +228,19 @@ pub struct Freedom {
     pub deviation: f64,
     /// Statements of lines and arcs that the user made free; joint movements are.
     pub freed: BTreeSet<Span>,
+    /// What arm and tool keep out of where they leave their path.
+    pub keep_out: Vec<Obstacle>,
 }
 
 impl Freedom {
     /// None.
     pub fn none() -> Freedom {
-        Freedom { ceilings: Ceilings::Programmed, deviation: 0.0, freed: BTreeSet::new() }
+        Freedom {
+            ceilings: Ceilings::Programmed,
+            deviation: 0.0,
+            freed: BTreeSet::new(),
+            keep_out: Vec::new(),
+        }
     }
 
     /// How far a movement may leave its path, m, more than the least that is always allowed.

@@ -14,7 +14,8 @@
 //! - √b ≤ its tangent at the profile before: the program is an inner approximation that is exact
 //!   there.
 //! - w √b ≥ w g with g d ≥ 1: as a function of the time per length the viscous work is convex.
-//!   This relaxation is exact wherever time is worth more than the friction that it saves.
+//!   This relaxation is exact wherever time is worth more than the friction that it saves. Where
+//!   it is not, √b ≥ its secant over the speeds that the time leaves.
 //!
 //! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
 //! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
@@ -104,6 +105,8 @@ pub(super) struct Programs<'a> {
     /// Largest scaled b at each node, and whether the row is in the program.
     b_max: Vec<(f64, bool)>,
     convex: bool,
+    /// Scaled bounds on √b at the nodes, for the relaxation.
+    roots: Vec<[f64; 2]>,
 }
 
 impl<'a> Programs<'a> {
@@ -128,10 +131,37 @@ impl<'a> Programs<'a> {
         let concave = costs.iter().any(|cost| cost.viscous > 0.0)
             || all[0].iter().any(|limit| limit.row.root != 0.0);
         let b_max = (0..=n).map(|k| (grid.b_max(k) / (speed * speed), false)).collect();
-        let mut programs =
-            Programs { grid, duration, speed, unit, costs, limits: all, b_max, convex: !concave };
+        let mut programs = Programs {
+            grid,
+            duration,
+            speed,
+            unit,
+            costs,
+            limits: all,
+            b_max,
+            convex: !concave,
+            roots: Vec::new(),
+        };
         programs.activate(start.b(), NEAR_AT_FIRST);
         programs
+    }
+
+    /// With bounds on ṡ² at the nodes that every profile in the time keeps.
+    pub(super) fn within(mut self, range: &[(f64, f64)]) -> Programs<'a> {
+        let scaled = |b: f64| b.max(0.0).sqrt() / self.speed;
+        self.roots = range.iter().map(|(lo, hi)| [scaled(*lo), scaled(*hi)]).collect();
+        self
+    }
+
+    /// The secant of √b at a node between its bounds: below √b.
+    fn secant(&self, layout: &Layout, node: usize) -> Affine {
+        match self.roots.get(node) {
+            Some([lo, hi]) if lo + hi > 0.0 => {
+                let slope = 1.0 / (lo + hi);
+                Affine::constant(lo * hi * slope).plus(layout.b(node), slope)
+            }
+            _ => Affine::constant(0.0),
+        }
     }
 
     /// Whether nothing is concave, so that one program with tangents is the problem.
@@ -255,6 +285,10 @@ impl<'a> Programs<'a> {
             if let Some(g) = layout.root(k) {
                 let g = Affine::default().plus(Some(g), 1.0);
                 program.rotated_cone(&g, &d, vec![Affine::constant(1.0)]);
+                if !self.roots.is_empty() {
+                    let ends = self.secant(layout, k).sum(&self.secant(layout, k + 1));
+                    program.at_most_zero(ends.sum(&g.times(-1.0)));
+                }
             }
             for (i, (work, factor)) in cost.brakes.iter().enumerate() {
                 let lost = Some(layout.brake(k, i));

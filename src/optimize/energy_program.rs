@@ -10,7 +10,7 @@ use crate::motion::stream::DOF;
 use crate::motion::timing::grid::{PathGrid, PathPoint};
 use crate::motion::timing::limits::{PathLimits, worst_ratio};
 use crate::motion::timing::profile::Profile;
-use crate::motion::timing::reachability::time_optimal;
+use crate::motion::timing::reachability::{speed_range, time_optimal};
 
 /// A profile and what is known of its quality.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,8 @@ const MAX_TANGENTS: usize = 8;
 const SLOWEST: f64 = 1e3;
 /// Steps of the search for the best time of the start.
 const PACE_STEPS: usize = 16;
+/// Time over that of the fastest profile beyond which it says little about speeds.
+const SLOW: f64 = 4.0;
 /// Bisection steps for a slow profile by a speed cap.
 const CAP_STEPS: usize = 40;
 
@@ -105,7 +107,11 @@ pub fn energy_bound(
         return None;
     }
     let start = slowed(grid, limits, fastest, best_pace(grid, model, fastest, duration))?;
-    let relaxed = Programs::new(grid, limits, model, &start, duration).solve(Root::Relaxed)?;
+    let mut programs = Programs::new(grid, limits, model, &start, duration);
+    if duration <= SLOW * fastest.duration() {
+        programs = programs.within(&speed_range(grid, limits, fastest, duration));
+    }
+    let relaxed = programs.solve(Root::Relaxed)?;
     let lower_bound = path_constant(grid, model) + relaxed.bound.max(0.0);
     Some(EnergyBound { lower_bound, b: relaxed.b })
 }

@@ -10,6 +10,7 @@ pub mod cycle;
 mod energy_cones;
 pub mod energy_program;
 pub mod idle;
+pub mod keep_out;
 mod margins;
 pub mod path_energy;
 pub mod path_grid;

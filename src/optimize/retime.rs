@@ -9,6 +9,7 @@ use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::cost::Cost;
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
+use super::keep_out;
 use super::margins::Margins;
 use super::path_energy::EnergyModel;
 use super::path_grid;
@@ -24,6 +25,7 @@ use super::stream_spacing::{Spacing, adaptive_intervals};
 use crate::dynamics::potential_energy;
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
+use crate::kinematics::clearance::Body;
 use crate::kinematics::fk;
 use crate::motion::controller::motion_limits;
 use crate::motion::sampling::{Loaded, SpeedCap};
@@ -103,6 +105,8 @@ const CORRIDOR: f64 = 0.3;
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
+/// Where a motion is slow, the ramp time is a short step: at least this share of its time.
+const SLOW_STEP: f64 = 0.02;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 
@@ -285,6 +289,7 @@ struct Work<'a> {
     task: &'a Task<'a>,
     path: &'a JointPath,
     corridor: Corridor,
+    body: Option<Body<'a>>,
     limits: StreamLimits,
     /// What the robot takes.
     electrical: EnergyModel,
@@ -313,7 +318,8 @@ impl<'a> Work<'a> {
             jerk: list(&robot.limits.jerk),
         };
         let lever = levers(robot, task.run);
-        Ok(Work { task, path, corridor, limits, electrical, model, lever })
+        let body = keep_out::body(robot, task.run, task.freedom);
+        Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
     }
 
     /// Least energy in a time, settling included, if that takes less than `worth` (J, motion).
@@ -395,8 +401,9 @@ impl<'a> Work<'a> {
             let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
             let mut best: Option<Attempt> = None;
+            let step = ramp.max(SLOW_STEP * fast.duration());
             for share in RAMP_SHARES {
-                let budget = round_up(fast.duration() + share * ramp);
+                let budget = round_up(fast.duration() + share * step);
                 let intended = self.intend(&fast, budget, &margins);
                 match intended.and_then(|intended| self.realise(intended, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
@@ -525,6 +532,7 @@ impl<'a> Work<'a> {
             &rounded,
             &self.corridor,
             &self.task.run.end,
+            self.body.as_ref(),
         );
         let intended = Intended { reference, stream: polished.stream };
         Ok(Attempt { stream: rounded, check, intended })
@@ -621,7 +629,9 @@ impl Plant for RobotPlant<'_> {
         let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
         let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
         let speed = rate.fixed_rows::<3>(0).norm();
-        [speed / (self.margins.speed * ceiling), distance / self.margins.distance]
+        let body = self.work.body.as_ref();
+        let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
+        [speed / (self.margins.speed * ceiling), (distance / self.margins.distance).max(near)]
     }
 }
 

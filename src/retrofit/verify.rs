@@ -10,6 +10,7 @@ use crate::motion::timeline::{Event, Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::{Check, check};
 use crate::optimize::corridor::Corridor;
+use crate::optimize::keep_out::body;
 use crate::optimize::reason::Reason;
 use crate::optimize::site::Site;
 use crate::path::joint_path::DOF;
@@ -200,7 +201,9 @@ fn compare(
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }
-    let check = check(model, &run.load, &run.legs[0].tool, stream, &corridor, &run.end);
+    let body = body(model, run, &settings.freedom);
+    let tool = &run.legs[0].tool;
+    let check = check(model, &run.load, tool, stream, &corridor, &run.end, body.as_ref());
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points".into());
     }

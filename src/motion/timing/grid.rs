@@ -243,7 +243,7 @@ impl PathGrid {
     }
 
     /// The same path with the path speed on each interval capped at a positive number.
-    pub(crate) fn capped(&self, v_max: impl Fn(usize) -> f64) -> PathGrid {
+    pub fn capped(&self, v_max: impl Fn(usize) -> f64) -> PathGrid {
         let mut capped = self.clone();
         for (k, pair) in capped.ends.iter_mut().enumerate() {
             for point in pair {
