@@ -14,7 +14,7 @@ use similar::TextDiff;
 use super::common::{self, Format, Job, ProgramArgs};
 use super::{listing, output};
 use crate::config::KeepOut;
-use crate::kinematics::clearance::{self, Obstacle, Plane};
+use crate::kinematics::{self, Obstacle, Plane};
 use crate::optimize::corridor::{Ceilings, Freedom};
 use crate::optimize::cost::Cost;
 use crate::optimize::retime::SLOWEST;
@@ -249,7 +249,7 @@ fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
                 bail!("keep_out: box {one:?}, {other:?}: give two corners in m");
             }
             let corners = [one, other].map(|corner| Point3::from(*corner));
-            Ok(Obstacle::KeepOut(clearance::KeepOut::between(corners[0], corners[1])))
+            Ok(Obstacle::KeepOut(kinematics::KeepOut::between(corners[0], corners[1])))
         }
         KeepOut::Plane([x, y, z, distance]) => {
             let normal = Vector3::new(*x, *y, *z);

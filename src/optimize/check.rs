@@ -4,8 +4,7 @@ use super::corridor::Corridor;
 use super::plant::STILL;
 use crate::dynamics::{Data, Load};
 use crate::energy::power::power;
-use crate::kinematics::clearance::Body;
-use crate::kinematics::{Tcp, fk, limits_ok};
+use crate::kinematics::{Body, Tcp, fk, limits_ok};
 use crate::motion::stream::{Piece, Stream};
 use crate::motion::timed::JointState;
 use crate::path::joint_path::{DOF, Joints};
@@ -151,13 +150,15 @@ pub fn check(
 /// Distance from the time at which a joint turns, s: dry friction jumps there.
 const BESIDE: f64 = 1e-6;
 
-/// Times in a piece, s: not far apart, and on both sides of where a joint turns.
+/// Times in a piece, s, rising: not far apart, and on both sides of where a joint turns.
 fn samples(piece: &Piece) -> Vec<f64> {
     let steps = (piece.length / STEP).ceil().max(1.0) as usize;
     let turns = (0..DOF).map(|j| -piece.qd[j] / piece.qdd[j]);
     let inside = turns.filter(|turn| *turn > BESIDE && *turn < piece.length - BESIDE);
-    (0..=steps)
+    let mut samples: Vec<f64> = (0..=steps)
         .map(|i| piece.length * i as f64 / steps as f64)
         .chain(inside.flat_map(|turn| [turn - BESIDE, turn + BESIDE]))
-        .collect()
+        .collect();
+    samples.sort_by(f64::total_cmp);
+    samples
 }

@@ -6,8 +6,7 @@ use nalgebra::{Isometry3, Vector4};
 
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Movement;
-use crate::kinematics::clearance::Obstacle;
-use crate::kinematics::fk;
+use crate::kinematics::{Obstacle, fk};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::path::PieceKind;

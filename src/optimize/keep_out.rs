@@ -1,7 +1,6 @@
 //! What a movement that may leave its path must not come near: boxes and planes of the cell.
 
-use crate::kinematics::Tcp;
-use crate::kinematics::clearance::Body;
+use crate::kinematics::{Body, Tcp};
 use crate::motion::timeline::Run;
 use crate::robot::Model;
 

@@ -2,7 +2,7 @@
 
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::timing::grid::{GridError, PathGrid, PathPoint};
-use crate::path::joint_path::{DOF, JointPath, Piece};
+use crate::path::joint_path::{DOF, JointPath, Piece, PieceKind};
 
 /// Parts of a piece in which one turn of a joint is looked for.
 const PARTS: usize = 4;
@@ -10,6 +10,8 @@ const PARTS: usize = 4;
 const BISECTIONS: usize = 40;
 /// Rate of a joint at which its direction is rounding, rad per unit of s.
 const STILL: f64 = 1e-7;
+/// Distance of nodes that is rounding, share of the path.
+const LEAST_DISTANCE: f64 = 1e-8;
 /// Nodes nearer to a turn than this are moved there, m of the path or share of a short one.
 const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
@@ -29,6 +31,25 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
             (_, true) if next < last => nodes[next] = turn,
             (false, false) => nodes.insert(next, turn),
             _ => {}
+        }
+    }
+    nodes
+}
+
+/// The same with every edge of a zone, however near to another: way points that nearly coincide
+/// make zones shorter than the least distance of the nodes, in which a path bends all the same.
+pub fn nodes_with_edges(path: &JointPath, count: usize) -> Vec<f64> {
+    let mut nodes = nodes(path, count);
+    let nearest = LEAST_DISTANCE * path.length();
+    let edges = path
+        .pieces()
+        .iter()
+        .filter(|piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone));
+    for edge in edges.flat_map(|piece| [piece.s, piece.s + piece.length]) {
+        let next = nodes.partition_point(|node| *node < edge);
+        let inside = next > 0 && next < nodes.len();
+        if inside && edge - nodes[next - 1] > nearest && nodes[next] - edge > nearest {
+            nodes.insert(next, edge);
         }
     }
     nodes
@@ -68,24 +89,25 @@ pub fn grid(
     caps: &[SpeedCap],
 ) -> Result<PathGrid, GridError> {
     let grid = sampling::grid(loaded, path, nodes, caps)?;
-    let still =
-        |ends: &[PathPoint; 2]| ends.iter().any(|end| end.q1.iter().any(|rate| rate.abs() < STILL));
-    let mut ends = grid.ends().to_vec();
-    for (pair, s) in ends.iter_mut().zip(nodes.windows(2)).filter(|(pair, _)| still(pair)) {
-        let rate = path.eval(0.5 * (s[0] + s[1])).q1;
-        for end in pair {
-            for j in (0..DOF).filter(|j| rate[*j].abs() >= STILL) {
-                if end.q1[j].abs() < STILL {
-                    end.coulomb[j] = loaded.model.friction.coulomb[j] * rate[j].signum();
+    let last = grid.intervals() - 1;
+    let is_still = |end: &PathPoint| end.q1.iter().any(|rate| rate.abs() < STILL);
+    let dry = &loaded.model.friction.coulomb;
+    Ok(grid.with_dry_friction(|k, pair| {
+        let mut friction = [pair[0].coulomb, pair[1].coulomb];
+        if pair.iter().any(is_still) {
+            let rate = path.eval(0.5 * (nodes[k] + nodes[k + 1])).q1;
+            for (end, friction) in pair.iter().zip(&mut friction) {
+                for j in (0..DOF).filter(|j| rate[*j].abs() >= STILL && end.q1[*j].abs() < STILL) {
+                    friction[j] = dry[j] * rate[j].signum();
                 }
             }
         }
-    }
-    if let Some([begin, _]) = ends.first_mut() {
-        begin.coulomb = [0.0; DOF];
-    }
-    if let Some([_, end]) = ends.last_mut() {
-        end.coulomb = [0.0; DOF];
-    }
-    PathGrid::new(nodes.to_vec(), ends)
+        if k == 0 {
+            friction[0] = [0.0; DOF];
+        }
+        if k == last {
+            friction[1] = [0.0; DOF];
+        }
+        friction
+    }))
 }

@@ -124,10 +124,8 @@ fn torque_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
 
 /// The rows of one place; limits that are infinite and rows that are zero are left out.
 pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item = Row> {
-    let point = *point;
-    let limits = *limits;
     let joints = (0..DOF)
-        .flat_map(move |j| [acceleration_row(&point, &limits, j), torque_row(&point, &limits, j)]);
+        .flat_map(move |j| [acceleration_row(point, limits, j), torque_row(point, limits, j)]);
     joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
 }
 

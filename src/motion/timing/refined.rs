@@ -52,9 +52,9 @@ pub const BETWEEN: f64 = 1e-3;
 const LOOKED_FOR: f64 = 0.4 * BETWEEN;
 /// Share of the time that halving all intervals may still gain. The error falls at least with the
 /// length of the intervals, so that no grid gains more than twice this.
-const GAIN: f64 = 1.5e-3;
+const GAIN: f64 = 1e-3;
 /// Where in an interval the limits are looked at.
-const PROBES: [f64; 4] = [0.1, 0.37, 0.63, 0.9];
+const PROBES: [f64; 6] = [0.06, 0.25, 0.42, 0.58, 0.75, 0.94];
 /// Times that intervals are halved.
 const HALVINGS: usize = 9;
 /// Times that all limits are lowered where halving did not help.
