@@ -244,7 +244,8 @@ impl Freedom {
 
     /// How far a movement may leave its path, m, more than the least that is always allowed.
     pub fn of(&self, movement: &Movement) -> f64 {
-        let free = movement.form == MoveForm::Joint || self.freed.contains(&movement.span);
+        let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
+        let free = joint || self.freed.contains(&movement.span);
         if free { self.deviation } else { 0.0 }
     }
 }

@@ -42,9 +42,4 @@ impl Cost {
             Cost::Torque => EnergyModel { work: 0.0, loss: [1.0; DOF], ..lossless },
         }
     }
-
-    /// True for what the robot takes, so that bounds and joules mean the same.
-    pub fn is_electrical(self) -> bool {
-        self == Cost::Electrical
-    }
 }

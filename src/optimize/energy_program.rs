@@ -109,7 +109,7 @@ pub fn energy_bound(
     let start = slowed(grid, limits, fastest, best_pace(grid, model, fastest, duration))?;
     let mut programs = Programs::new(grid, limits, model, &start, duration);
     if duration <= SLOW * fastest.duration() {
-        programs = programs.within(&speed_range(grid, limits, fastest, duration));
+        programs = programs.within(&speed_range(grid, limits, duration));
     }
     let relaxed = programs.solve(Root::Relaxed)?;
     let lower_bound = path_constant(grid, model) + relaxed.bound.max(0.0);

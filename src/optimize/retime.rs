@@ -86,7 +86,7 @@ pub struct Retiming {
 /// Intervals of the grid besides those of zones.
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 8;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
 /// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
@@ -377,7 +377,7 @@ impl<'a> Work<'a> {
         let (grid, limits) = self.grid(margins)?;
         let fast = fastest_profile(&grid, &limits)?;
         // The relaxation of another cost says nothing of this one.
-        let bound = bound.filter(|_| self.task.cost.is_electrical());
+        let bound = bound.filter(|_| self.model == self.electrical);
         let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;

@@ -271,7 +271,7 @@ fn every_profile_in_the_time_lies_in_the_range_of_speeds() {
         let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
         for factor in [1.05, 1.1, 1.5] {
             let time = factor * fastest.duration();
-            let range = speed_range(&grid, &limits, &fastest, time);
+            let range = speed_range(&grid, &limits, time);
             let uniform = fastest.scaled_to(time).unwrap();
             let others = models().map(|model| converged(&grid, &limits, &model, |_| time).profile);
             for profile in others.iter().chain([&fastest, &uniform]) {
