@@ -60,13 +60,12 @@ pub(crate) struct Case {
 impl Case {
     /// The run that is looked at: the last.
     pub(crate) fn run(&self) -> &Run {
-        let runs = self.simulation.events.iter().rev();
-        runs.filter_map(|event| match &event.what {
+        let mut events = self.simulation.events.iter().rev();
+        let run = events.find_map(|event| match &event.what {
             What::Run(run) => Some(&**run),
             _ => None,
-        })
-        .next()
-        .unwrap()
+        });
+        run.unwrap()
     }
 
     /// Its path, where the robot does not stop on the way.

@@ -256,6 +256,7 @@ impl PathGrid {
     }
 
     /// The same path with the path speed on each interval capped at a positive number.
+    #[must_use]
     pub fn capped(&self, v_max: impl Fn(usize) -> f64) -> PathGrid {
         let mut capped = self.clone();
         for (k, pair) in capped.ends.iter_mut().enumerate() {
