@@ -97,6 +97,12 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
     assert_eq!(found["rank"], 58);
     assert_eq!(found["base_parameters"].as_array().unwrap().len(), 58);
     assert_eq!(found["physically_consistent"], true);
+    assert_eq!(found["quality"]["grade"], "good");
+    // Its noise is white.
+    for of in found["whiteness"].as_array().unwrap() {
+        assert!(of["p_value"].as_f64().unwrap() > 1e-4, "{of}");
+    }
+    assert!(fs::read_to_string(&model).unwrap().contains("quality = \"good: explains"));
     for part in ["train", "validation"] {
         assert_eq!(found["rms"][part].as_array().unwrap().len(), 6);
     }
@@ -225,6 +231,38 @@ fn what_can_not_be_used_ends_with_the_way_out() {
         assert_eq!(output.status.code(), Some(2), "{message}: {text}");
         assert!(text.contains(message), "{message}: {text}");
     }
+}
+
+/// Torques that are not those of the motion: turned round, of another time, of nothing.
+#[test]
+fn torques_of_something_else_are_no_model() {
+    let bench = Bench::new();
+    let tau = 19..25;
+    let all = rows();
+    let reversed: Vec<Vec<f64>> = all
+        .iter()
+        .map(|row| row.iter().enumerate().map(|(k, x)| if k < 19 { *x } else { -x }).collect())
+        .collect();
+    let mut random = fastrand::Rng::with_seed(9);
+    let mixed: Vec<Vec<f64>> = all
+        .iter()
+        .map(|row| [&row[..19], &all[random.usize(..all.len())][19..25]].concat())
+        .collect();
+    for (rows, message) in [(reversed, "would give power"), (mixed, "explains")] {
+        let output = identify(&bench.write(&header(), &cells(&rows), ","), &[]);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}: {text}");
+        assert!(text.contains("no robot that can be") && text.contains(message), "{text}");
+    }
+    // Half a second is 20 rows.
+    let late: Vec<Vec<f64>> = all
+        .iter()
+        .zip(&all[20..])
+        .map(|(old, new)| [&new[..19], &old[tau.clone()]].concat())
+        .collect();
+    let output = identify(&bench.write(&header(), &cells(&late), ","), &[]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(text.contains("0.50 s later than the positions"), "{text}");
 }
 
 #[test]

@@ -609,3 +609,21 @@ fn logic_runs_during_concurrent_movements() {
     let rest = 1.0 + cycle("\\Conc,", "5") - moves;
     assert!((2.5..3.0).contains(&rest), "{rest}");
 }
+
+#[test]
+fn a_wait_for_several_inputs_ends_with_the_one_that_decides() {
+    let inputs = BTreeMap::from([("di3".to_owned(), 4.0), ("di4".to_owned(), 5.5)]);
+    let ends = |wait: &str| {
+        let options = Options { inputs: inputs.clone(), ..Options::default() };
+        let simulation = run_with(&irb1600(), wait, &options);
+        assert!(simulation.inputs_asked.contains("di3") && simulation.inputs_asked.contains("di4"));
+        simulation.cycle_s
+    };
+    assert_eq!(ends("WaitUntil di3=1 AND di4=1;"), 5.5);
+    assert_eq!(ends("WaitUntil di4=1 AND di3=1;"), 5.5);
+    assert_eq!(ends("WaitUntil di3=1 OR di4=1;"), 4.0);
+    assert_eq!(ends("WaitUntil di4=1 OR di3=1;"), 4.0);
+    assert_eq!(ends("WaitUntil NOT (di3=0 OR di4=0);"), 5.5);
+    assert_eq!(ends("WHILE di3=0 OR di4=0 DO\nWaitTime 0.1;\nENDWHILE"), 5.5);
+    assert_eq!(ends("WHILE di3=0 AND di4=0 DO\nWaitTime 0.1;\nENDWHILE"), 4.0);
+}

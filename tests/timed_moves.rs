@@ -210,3 +210,59 @@ fn at_rest_the_joints_are_exactly_the_same() {
         }
     }
 }
+
+#[test]
+fn one_sided_path_acceleration_slows_no_more_than_both() {
+    let time = |settings: &str| {
+        let body = line([850., 100., 700.], "v1000", "fine")
+            + settings
+            + &line([850., 300., 700.], "v1000", "fine");
+        moves(&body)[1].0
+    };
+    let both = time("PathAccLim TRUE\\AccMax:=0.1,TRUE\\DecelMax:=0.1;\n");
+    let up = time("PathAccLim TRUE\\AccMax:=0.1,FALSE;\n");
+    let down = time("PathAccLim FALSE,TRUE\\DecelMax:=0.1;\n");
+    // From rest to rest under a of one side alone: √(2 s / a), with the ramp of the average.
+    assert!((2.0..2.2).contains(&up), "{up} s");
+    assert!((2.0..2.2).contains(&down), "{down} s");
+    assert!((2.8..3.0).contains(&both), "{both} s");
+}
+
+/// Accepted share of a joint's largest speed.
+const JOINT_SPEED: f64 = 1.01;
+
+#[test]
+fn joints_keep_their_speed_next_to_a_singularity() {
+    let model = irb1600();
+    let limits = model.limits.velocity.clone().unwrap();
+    let target =
+        |y: f64, z: f64| format!("[[815,{y},{z}],[0.7071068,0,0.7071068,0],[0,0,0,0],{NONE}]");
+    let mut fastest: f64 = 0.0;
+    for z in [1150.0, 1165.0, 1175.0, 1180.0] {
+        let simulation = run(&format!(
+            "MoveAbsJ [[0,10,10,0,-20,0],{NONE}],v1000,fine,tool0;\nMoveJ {},v1000,fine,tool0;\n\
+             MoveL {},v1000,fine,tool0;\n",
+            target(-200.0, z),
+            target(200.0, z),
+        ));
+        assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
+        let run = runs(&simulation).last().unwrap();
+        for i in 0..=5000 {
+            let state = run.at(run.duration() * f64::from(i) / 5000.0);
+            let ratios = state.qd.iter().zip(&limits).map(|(v, limit)| v.abs() / limit);
+            fastest = fastest.max(ratios.fold(0.0, f64::max));
+        }
+    }
+    assert!(fastest < JOINT_SPEED, "{fastest}");
+    assert!(fastest > 0.9, "no joint was fast: {fastest}");
+}
+
+#[test]
+fn a_very_slow_move_is_no_more_work_than_others() {
+    let body = line([850., 100., 700.], "v1000", "fine")
+        + &line([850., 300., 700.], "v1000\\T:=10000000", "fine");
+    let simulation = run(&body);
+    let joules = joulepath::energy::account(&irb1600(), &simulation).total.energy_j();
+    assert!(joules > 1e8, "{joules} J");
+    assert!((simulation.cycle_s / 1e7 - 1.0).abs() < 1e-3);
+}

@@ -1,6 +1,6 @@
 //! Options that several commands share.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,6 @@ use super::choice;
 use super::input::{self, Input};
 use crate::config::{self, Config};
 use crate::kinematics::limits_ok;
-use crate::motion::timeline::What;
 use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
 use crate::robot::{self, Model};
@@ -50,7 +49,7 @@ pub struct ProgramArgs {
     pub levels: Vec<String>,
 
     /// Override of all speeds in %, as on the operator's panel.
-    #[arg(long = "speed-override", value_name = "PERCENT")]
+    #[arg(long = "speed-override", value_name = "PERCENT", allow_negative_numbers = true)]
     pub speed_override: Option<f64>,
 
     /// How often the loop that never ends runs.
@@ -58,7 +57,7 @@ pub struct ProgramArgs {
     pub passes: Option<u32>,
 
     /// End the simulation after this time, s.
-    #[arg(long = "max-time", value_name = "SECONDS")]
+    #[arg(long = "max-time", value_name = "SECONDS", allow_negative_numbers = true)]
     pub max_time: Option<f64>,
 
     /// How the result is written.
@@ -105,19 +104,11 @@ impl Job {
 
     /// Notes on inputs for which a simulated cycle does not wait.
     pub fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
-        let waited: BTreeSet<&str> = simulation
-            .events
-            .iter()
-            .filter_map(|event| match &event.what {
-                What::Wait(wait) => wait.wait.signal.as_deref(),
-                _ => None,
-            })
-            .collect();
-        let is_waited = |name: &str| waited.iter().any(|signal| signal.to_lowercase() == name);
-        let unused = self.inputs.iter().filter(|name| !is_waited(&name.to_lowercase()));
+        let asked = &simulation.inputs_asked;
+        let unused = self.inputs.iter().filter(|name| !asked.contains(&name.to_lowercase()));
         unused
             .map(|name| {
-                let known = waited.iter().copied();
+                let known = asked.iter().map(String::as_str);
                 let meant = robot::nearest(name, known)
                     .map_or_else(String::new, |near| format!("; did you mean {near}?"));
                 format!("the cycle does not wait for the input {name}: its time is not used{meant}")
@@ -183,9 +174,14 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         bail!("the input {name} comes after {t} s; give a time of 0 or more");
     }
     let mut levels = config.assume.clone();
+    let mut stated = BTreeMap::new();
     for text in &args.levels {
         let (name, level) = input_level(text)?;
-        levels.retain(|known, _| known.to_lowercase() != name.to_lowercase());
+        let key = name.to_lowercase();
+        if stated.insert(key.clone(), level).is_some_and(|before| before != level) {
+            bail!("--assume states two levels of {name}; give one");
+        }
+        levels.retain(|known, _| known.to_lowercase() != key);
         levels.insert(name, level);
     }
     if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {

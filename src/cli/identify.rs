@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use super::{common, output};
 use crate::cli::common::Format;
 use crate::identify::{
-    Free, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
+    Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
     check_torques, cleaned, identify, prepare, torques,
 };
 use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
@@ -172,6 +172,16 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
         );
         tell(args, &mut basis, text);
     }
+    if found.quality.grade == Grade::None {
+        bail!(
+            "no robot that can be has such torques ({}): check their signs, their time and that \
+             robot and log are the same",
+            found.quality.sentence()
+        );
+    }
+    if found.quality.grade == Grade::Poor {
+        tell(args, &mut basis, format!("the model is {}", found.quality.sentence()));
+    }
     for text in doubts(&found) {
         tell(args, &mut basis, text);
     }
@@ -255,7 +265,7 @@ fn doubts(found: &Identified) -> Vec<String> {
             ));
         }
     }
-    for joint in giving_power(found) {
+    for joint in &found.quality.giving_power {
         texts.push(format!(
             "joint {}: its friction would give power: has its torque the wrong sign?",
             joint + 1
@@ -269,21 +279,6 @@ fn doubts(found: &Identified) -> Vec<String> {
         ));
     }
     texts
-}
-
-/// A friction below zero by so many deviations is none.
-const SURE: f64 = 5.0;
-
-/// Joints whose Coulomb friction in the free fit is surely negative, from 0.
-fn giving_power(found: &Identified) -> Vec<usize> {
-    let fit = &found.fit;
-    let negative = |joint: &usize| {
-        let name = format!("fc{}", joint + 1);
-        let all = fit.solution.determined.iter().enumerate();
-        all.filter(|(_, row)| found.base.name(**row) == name)
-            .any(|(k, row)| fit.solution.beta[*row] < -SURE * fit.covariance[(k, k)].sqrt())
-    };
-    (0..found.base.dof).filter(negative).collect()
 }
 
 /// Reads logs; halves of one run become one.

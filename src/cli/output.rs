@@ -22,7 +22,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// Writes a file beside its place.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
     let folder = parent(path);
     let closed = || {
@@ -61,7 +61,7 @@ impl Staged {
 /// their order, and none before all could be written. Their paths start in the folder.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result<()> {
     if folder.exists() {
         let staged: Result<Vec<Staged>, _> =

@@ -13,7 +13,7 @@ use clap::Args;
 
 use self::doubts::doubts;
 use super::{common, load, output};
-use crate::dynamics::{Data, Load};
+use crate::dynamics::{Data, Load, apparent_torques};
 use crate::energy::power::{power_at, supply_w};
 use crate::log::{self, ColumnMap, MIN_ROWS, Motion};
 use crate::robot::{self, Model, Use, ready};
@@ -140,12 +140,13 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>)
         let state: [&[f64]; 3] = [&q, &qd, &qdd];
         let power = power_at(model, &mut data, load, state);
         let supply = supply_w(model, &mut data, load, state, &power);
-        let logged = sensors.torque_error.iter().zip(&sensors.torque_offset);
+        let apparent = apparent_torques(model, &qd, &qdd);
+        let logged = sensors.torque_error.iter().zip(&sensors.torque_offset).zip(apparent);
         let values: Vec<f64> = power
             .tau
             .iter()
             .zip(logged)
-            .map(|(tau, (error, offset))| tau * (1.0 + error) + offset)
+            .map(|(tau, ((error, offset), apparent))| tau * (1.0 + error) + offset + apparent)
             .chain([power.mechanical_w(), supply])
             .collect();
         if !values.iter().all(|value| value.is_finite()) {

@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::bail;
 use clap::Args;
 
 use super::common::{self, Format, ProgramArgs};
 use super::{output, signals};
 use crate::energy::account;
-use crate::energy::trajectory::trajectory;
+use crate::energy::trajectory::{STEP, trajectory};
 use crate::motion;
 use crate::report::html::simulate_report;
 use crate::report::place::Places;
@@ -34,6 +35,9 @@ pub struct SimulateArgs {
     report: Option<PathBuf>,
 }
 
+/// Rows of a trajectory that fit into memory.
+const MAX_ROWS: f64 = 5e6;
+
 /// Runs the command.
 ///
 /// # Errors
@@ -47,6 +51,14 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let sources = job.sources();
     let places = Places::new(&sources);
     if args.trajectory.is_some() || args.report.is_some() {
+        let rows = simulation.cycle_s / STEP;
+        if rows > MAX_ROWS {
+            bail!(
+                "the cycle of {:.0} s has {rows:.0} rows of trajectory, more than {MAX_ROWS:.0}: \
+                 end it earlier with --max-time, or leave --trajectory and --report out",
+                simulation.cycle_s
+            );
+        }
         let samples = trajectory(&job.model, &simulation);
         if let Some(path) = &args.trajectory {
             output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;

@@ -21,6 +21,8 @@ const STATES: usize = 80;
 const TOLERANCE: f64 = 1e-9;
 /// Largest angle \[rad\], velocity \[rad/s\] and acceleration \[rad/s²\] of a state.
 const REACH: [f64; 3] = [3.0, 3.0, 3.0];
+/// A velocity that has a sense but no inertia \[rad/s\].
+const CREEP: f64 = 1e-6;
 
 /// Which parameters stand for themselves, and how the others are grouped.
 #[derive(Clone, Debug)]
@@ -121,13 +123,27 @@ pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
 /// The base parameters of those at the indices `among` (ascending), the others being known.
 #[must_use]
 pub fn base_parameters_among(model: &Model, which: Parameters, among: &[usize]) -> BaseParameters {
+    grouped(model, which, among, REACH)
+}
+
+/// The base parameters of motions so slow that only weight and the sense of friction count.
+#[must_use]
+pub fn base_parameters_at_rest(
+    model: &Model,
+    which: Parameters,
+    among: &[usize],
+) -> BaseParameters {
+    grouped(model, which, among, [REACH[0], CREEP, 0.0])
+}
+
+fn grouped(model: &Model, which: Parameters, among: &[usize], reach: [f64; 3]) -> BaseParameters {
     let n = model.dof;
     let count = which.count(n);
     let mut stacked = DMatrix::zeros(STATES * n, count);
     let mut scratch = Regressor::new();
     for state in 0..STATES {
         let [q, qd, qdd]: [Vec<f64>; 3] = std::array::from_fn(|kind| {
-            (0..n).map(|joint| REACH[kind] * spread(state, kind * MAX_DOF + joint)).collect()
+            (0..n).map(|joint| reach[kind] * spread(state, kind * MAX_DOF + joint)).collect()
         });
         write_rows(model, &mut scratch, [&q, &qd, &qdd], which, &mut stacked, state * n);
     }

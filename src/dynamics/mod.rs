@@ -24,7 +24,9 @@ mod rnea;
 mod spatial;
 mod torque;
 
-pub use base_parameters::{BaseParameters, base_parameters, base_parameters_among, write_rows};
+pub use base_parameters::{
+    BaseParameters, base_parameters, base_parameters_among, base_parameters_at_rest, write_rows,
+};
 pub use crba::crba;
 pub use data::Data;
 pub use derivatives::{Derivatives, rnea_derivatives};
@@ -33,7 +35,7 @@ pub use forward::forward_dynamics;
 pub use friction::{friction, smooth_friction};
 pub use joint_matrix::JointMatrix;
 pub use load::Load;
-pub use motor_side::{motor_rates, motor_torques};
+pub use motor_side::{apparent_torques, motor_rates, motor_torques};
 pub use parameters::{JOINT, Parameters, RIGID, link_parameters, parameters};
 pub use regressor::{Regressor, regressor};
 pub use rnea::{gravity, rnea, rnea_each};

@@ -48,6 +48,20 @@ pub(super) fn rotor_torques(model: &Model, qdd: &[f64]) -> [f64; MAX_DOF] {
     joint_torques(model, tau)
 }
 
+/// Torques that the robot's sensors show beyond its own, in proportion to accelerations and
+/// rates of the motors \[Nm\].
+#[must_use]
+pub fn apparent_torques(model: &Model, qd: &[f64], qdd: &[f64]) -> [f64; MAX_DOF] {
+    let sensors = &model.sensors;
+    let (rates, accelerations) = (motor_rates(model, qd), motor_rates(model, qdd));
+    let mut tau = [0.0; MAX_DOF];
+    for joint in 0..model.dof {
+        tau[joint] = sensors.apparent_inertia[joint] * accelerations[joint]
+            + sensors.apparent_viscous[joint] * rates[joint];
+    }
+    joint_torques(model, tau)
+}
+
 /// Adds the inertia of the rotors, Cᵀ diag(n² `J_m`) C.
 pub(super) fn add_rotors(model: &Model, matrix: &mut JointMatrix) {
     let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) else { return };

@@ -104,6 +104,8 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
 
 /// Longest interval of the quadrature, s.
 const MAX_STEP: f64 = 0.02;
+/// Most intervals between two kinks: a motion so slow changes little in each.
+const MAX_STEPS: f64 = 2000.0;
 /// Kinks nearer to each other than this are integrated over, s: on such a stretch they change the
 /// acceleration by too little to matter.
 const MIN_STEP: f64 = 0.002;
@@ -137,7 +139,7 @@ pub fn motion_energy(
     });
     let mut sum = EnergyParts { mechanical_j: after - before, ..EnergyParts::default() };
     for pair in knots.windows(2) {
-        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
+        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().clamp(1.0, MAX_STEPS);
         let h = (pair[1] - pair[0]) / steps;
         for i in 0..steps as usize {
             let begin = pair[0] + h * i as f64;
@@ -165,7 +167,7 @@ fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
     let mut found = Vec::new();
     let mut before = motion.at(knots[0]).qd;
     for pair in knots.windows(2) {
-        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().max(1.0);
+        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().clamp(1.0, MAX_STEPS);
         let h = (pair[1] - pair[0]) / steps;
         for i in 0..steps as usize {
             let (a, b) = (pair[0] + h * i as f64, pair[0] + h * (i + 1) as f64);

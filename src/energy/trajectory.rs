@@ -10,7 +10,7 @@ use crate::robot::Model;
 use crate::text::Span;
 
 /// Longest step between two samples, s.
-const STEP: f64 = 0.002;
+pub const STEP: f64 = 0.002;
 
 /// One sample.
 #[derive(Clone, Debug)]

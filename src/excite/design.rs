@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::dynamics::{
     BaseParameters, Load, Parameters, RIGID, base_parameters, base_parameters_among,
+    base_parameters_at_rest,
 };
 use crate::kinematics::{Body, Obstacle};
 use crate::robot::Model;
@@ -221,14 +222,15 @@ impl<'a> Problem<'a> {
                 base_parameters_among(model, Parameters::WithJoints, &last)
             }
             Focus::Gravity => {
-                // First moments, masses, Coulomb friction, offsets.
+                // First moments, masses, Coulomb friction, offsets: what weight and the sense of
+                // friction tell. Inertia has no part in so slow a motion.
                 let weights = (0..RIGID * n).filter(|index| index % RIGID < 4);
                 let joints = (0..n).flat_map(|joint| {
                     let first = RIGID * n + crate::dynamics::JOINT * joint;
                     [first + 2, first + 3]
                 });
                 let among: Vec<usize> = weights.chain(joints).collect();
-                base_parameters_among(model, Parameters::WithJoints, &among)
+                base_parameters_at_rest(model, Parameters::WithJoints, &among)
             }
         };
         let fastest = settings.harmonics.iter().copied().max().unwrap_or(1);

@@ -1,7 +1,7 @@
 //! Motions that let a robot's parameters be told from its torques.
 //!
 //! [`design()`] optimises Fourier series for the information that they give, within all
-//! limits; [`plateaus`] and the settings of [`Design`] make the smaller experiments.
+//! limits; the friction plateaus and the settings of [`Design`] make the smaller experiments.
 
 mod blend;
 mod design;

@@ -51,7 +51,7 @@ pub(super) enum Piece {
 }
 
 impl Piece {
-    fn width(&self) -> usize {
+    pub(super) fn width(&self) -> usize {
         match self {
             Piece::Body(_) => RIGID,
             Piece::Positive(_) | Piece::Any(_) => 1,
@@ -69,6 +69,13 @@ pub(super) struct Target<'a> {
     pub beta: &'a DVector<f64>,
     /// Least sum of squares.
     pub least: f64,
+}
+
+impl Target<'_> {
+    /// The sum of squares of parameters.
+    pub(super) fn squares(&self, point: &DVector<f64>) -> f64 {
+        self.least + (self.factor * (self.combination * point - self.beta)).norm_squared()
+    }
 }
 
 /// The parameters, piece after piece; `None` where no point was found, which takes a prior

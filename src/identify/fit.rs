@@ -7,7 +7,9 @@ use super::error::IdentifyError;
 use super::factors::Factors;
 use super::least_squares::{Condition, Solution, solve};
 use super::noise::{Residual, autocovariance};
+use super::repetitions;
 use super::samples::Samples;
+use super::whiteness::{Whiteness, whiteness};
 
 /// Parts of the time for cross-validation.
 const PARTS: usize = 5;
@@ -52,8 +54,13 @@ pub struct Fit {
     pub relative_rms: Vec<f64>,
     /// The same as `rms` on parts that the fit did not see.
     pub cross_rms: Vec<f64>,
+    /// Whether `cross_rms` is of repetitions that the fit did not see, one instant of a
+    /// repetition each; else of fifths of the time.
+    pub over_repetitions: bool,
     /// Autocorrelation of each joint's residuals from one instant to the next.
     pub memory: Vec<f64>,
+    /// The same over several instants; `None` where a joint has too few.
+    pub whiteness: Vec<Option<Whiteness>>,
     /// The equations.
     pub factors: Factors,
 }
@@ -80,17 +87,22 @@ pub fn fit(
     let squares = factors.residual_squares(&solution.beta, None);
     let torque: Vec<f64> =
         (0..rows.len()).map(|joint| factors.squares.iter().map(|part| part[joint]).sum()).collect();
-    let cross = cross_squares(&factors, weighting, unknowns);
+    let repeated = repetitions::cross_squares(equations, samples, weighting);
+    let over_repetitions = repeated.is_some();
+    let (cross, counted) =
+        repeated.unwrap_or_else(|| (cross_squares(&factors, weighting, unknowns), rows.clone()));
     let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
-    let Errors { covariance, memory } =
+    let Errors { covariance, memory, whiteness } =
         errors(equations, samples, &merged, &solution, &weights, weighting);
     Ok(Fit {
         condition: solution.condition(),
         rms: root_mean(&squares, &rows),
         relative_rms: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
-        cross_rms: root_mean(&cross, &rows),
+        cross_rms: root_mean(&cross, &counted),
+        over_repetitions,
         covariance,
         memory,
+        whiteness,
         sigma,
         rows,
         solution,
@@ -111,7 +123,11 @@ pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
 }
 
 /// The solution, and the deviation of each joint \[Nm\].
-fn reweighted(factors: &Factors, weighting: Weighting, unknowns: usize) -> (Solution, Vec<f64>) {
+pub(super) fn reweighted(
+    factors: &Factors,
+    weighting: Weighting,
+    unknowns: usize,
+) -> (Solution, Vec<f64>) {
     let rows = factors.rows_without(None);
     let mut sigma = vec![1.0; rows.len()];
     let mut solution = solve(&factors.stacked(&sigma, unknowns));
@@ -189,6 +205,7 @@ fn cross_squares(factors: &Factors, weighting: Weighting, unknowns: usize) -> Ve
 struct Errors {
     covariance: DMatrix<f64>,
     memory: Vec<f64>,
+    whiteness: Vec<Option<Whiteness>>,
 }
 
 /// Covariance of the parameters with noise as the residuals show it.
@@ -230,6 +247,7 @@ fn errors(
             }
         }
     }
+    let whiteness = residuals.iter().map(|of| whiteness(of)).collect();
     drop(residuals);
     let memory = noise
         .iter()
@@ -238,10 +256,10 @@ fn errors(
     let inverse = solution.inverse_normal();
     let white = noise.iter().all(|of| of.len() == 1);
     if white && weighting == Weighting::Joint && samples.noise.is_none() {
-        return Errors { covariance: inverse, memory };
+        return Errors { covariance: inverse, memory, whiteness };
     }
     let middle = between(equations, samples, factors, solution, weights, &noise, instants);
-    Errors { covariance: &inverse * middle * &inverse, memory }
+    Errors { covariance: &inverse * middle * &inverse, memory, whiteness }
 }
 
 /// Σ w⁴ Xᵀ Ω X over the joints, from pieces of the log.

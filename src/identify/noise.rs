@@ -21,13 +21,14 @@ pub(super) fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
     }
     let correction = n / (n - lost).max(1.0);
     let orders = MAX_ORDER.min(residuals.len() / 20);
-    let sample = sample(residuals, orders, correction);
+    let sample = autocovariances(residuals, orders, correction);
     let model = levinson(&sample, n);
     extended(&sample, &model)
 }
 
-/// Σ e(t) e(t + lag) / n for lags up to `lags`.
-fn sample(residuals: &[Residual], lags: usize, correction: f64) -> Vec<f64> {
+/// Σ e(t) e(t + lag) / n for lags up to `lags`, of residuals in the order of time.
+#[must_use]
+pub(super) fn autocovariances(residuals: &[Residual], lags: usize, correction: f64) -> Vec<f64> {
     let mut sums = vec![0.0; lags + 1];
     for (i, (block, index, value)) in residuals.iter().enumerate() {
         for (other, later, next) in &residuals[i..] {

@@ -63,6 +63,7 @@ pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, Ide
                 rest: vec![0.0; joints],
                 resting,
                 noise: None,
+                repetitions: None,
             }
         }
         (qd, _) => differentiated(log, &q, qd.as_deref(), tau, resting, hints)?,
@@ -155,7 +156,15 @@ fn differentiated(
         return Err(IdentifyError::Short { seconds: 3.0 * step * filter.width() as f64 });
     }
     let rest = (0..joints).map(|joint| slow(&blocks, joint)).collect();
-    Ok(Samples { blocks, source: Source::Filtered { cutoff }, step, rest, resting, noise: None })
+    Ok(Samples {
+        blocks,
+        source: Source::Filtered { cutoff },
+        step,
+        rest,
+        resting,
+        noise: None,
+        repetitions: None,
+    })
 }
 
 /// Of so many samples one is kept; `None` where all are.
@@ -243,6 +252,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
         step: mean.step,
         resting,
         noise: Some(noise),
+        repetitions: Some(mean.spread.into_iter().take(joints).collect()),
     }
 }
 

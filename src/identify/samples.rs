@@ -78,6 +78,8 @@ pub struct Samples {
     /// Autocovariances of the torque's noise, of each joint, at lag 0, 1, … of the instants
     /// \[N²m²\], where repetitions tell them.
     pub noise: Option<Vec<Vec<f64>>>,
+    /// How the torque of each repetition differs from the mean, by joint, by repetition \[Nm\].
+    pub repetitions: Option<Vec<Vec<Vec<f64>>>>,
 }
 
 impl Samples {

@@ -14,6 +14,7 @@ use super::error::IdentifyError;
 use super::factors::Factors;
 use super::fit::{Fit, Weighting, fit, root_mean};
 use super::least_squares::solve;
+use super::quality::{Quality, quality, surely_negative};
 use super::samples::{Samples, Source};
 use super::wrist::wrist_coupling;
 
@@ -79,6 +80,8 @@ pub struct Identified {
     pub resting: Vec<usize>,
     /// Where the rates come from.
     pub source: Source,
+    /// How much the model explains.
+    pub quality: Quality,
 }
 
 /// Identifies a model from `training`; `validation` is only predicted.
@@ -140,6 +143,7 @@ pub fn identify(
     let least = fit.rows.iter().sum::<usize>() as f64;
     let target = Target { combination: &combination, factor, beta: &beta, least };
     let found = consistent(&pieces, &target).ok_or(IdentifyError::Inconsistent)?;
+    let found = with_apparent(&pieces, &target, found, (&fit, &base), &among);
     let values: Vec<f64> = found.iter().copied().collect();
 
     let all = spread(&values, &among, rigid + JOINT * n);
@@ -152,6 +156,14 @@ pub fn identify(
     let (validation, unconstrained_validation) =
         (on_held_out(&of_model), on_held_out(&fit.solution.beta));
 
+    let giving = |joint: &usize| {
+        let name = format!("fc{}", joint + 1);
+        let all = fit.solution.determined.iter().enumerate();
+        all.filter(|(_, row)| base.name(**row) == name)
+            .any(|(k, row)| surely_negative(fit.solution.beta[*row], fit.covariance[(k, k)].sqrt()))
+    };
+    let giving_power = (0..n).filter(giving).collect();
+    let quality = quality(&equations, training, &training_misses, giving_power);
     let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
     // They are in the numbers now.
     identified.effects.clear();
@@ -170,6 +182,7 @@ pub fn identify(
         payload,
         resting: training.resting.clone(),
         source: training.source.clone(),
+        quality,
         base,
         fit,
     })
@@ -309,6 +322,60 @@ fn pieces(
     pieces
 }
 
+/// Where a rotor or a viscous friction that can't be below 0 costs the fit much, the sum of
+/// both as the log shows them: a delay, a filter or elasticity looks like less than nothing.
+fn with_apparent(
+    pieces: &[Piece],
+    target: &Target<'_>,
+    mut found: DVector<f64>,
+    (fit, base): (&Fit, &BaseParameters),
+    among: &[usize],
+) -> DVector<f64> {
+    let rigid = RIGID * base.dof;
+    let kind = |index: usize| index.checked_sub(rigid).map(|k| k % JOINT);
+    let free = |index: usize| matches!(kind(index), Some(0 | 1));
+    // What deviations the parameters of this kind have.
+    let size = |of: usize| -> f64 {
+        let all = fit.solution.determined.iter().enumerate();
+        all.filter(|(_, row)| kind(base.independent[**row]) == kind(of))
+            .map(|(k, _)| fit.covariance[(k, k)].sqrt())
+            .fold(SMALL, f64::max)
+    };
+    let mut pieces = pieces.to_vec();
+    let mut missed = target.squares(&found);
+    for _ in 0..FREED {
+        let mut freed = pieces.clone();
+        let mut at = 0;
+        for piece in &mut freed {
+            let index = among[at];
+            let width = piece.width();
+            if let Piece::Positive(prior) = piece
+                && free(index)
+                && found[at] < BOUND * *prior
+            {
+                *piece = Piece::Any(size(index));
+            }
+            at += width;
+        }
+        if freed == pieces {
+            break;
+        }
+        let Some(next) = consistent(&freed, target) else { break };
+        let misses = target.squares(&next);
+        if misses > (1.0 - WORTH) * missed {
+            break;
+        }
+        (pieces, found, missed) = (freed, next, misses);
+    }
+    found
+}
+
+/// Rounds in which bounds are lifted.
+const FREED: usize = 3;
+/// A positive number this much below its prior is one that the data want below 0.
+const BOUND: f64 = 0.3;
+/// Share of the residuals' power that lifting bounds has to take away.
+const WORTH: f64 = 0.005;
 /// Residuals smaller than this share of the torque are as good as none.
 const DIGITS: f64 = 1e-4;
 /// Size of a parameter of which nothing is known, in its SI unit.
@@ -401,7 +468,9 @@ fn assembled(
         };
         let before = &nominal.friction;
         let zero = vec![0.0; n];
-        model.friction.viscous = kept(column(1), &before.viscous);
+        let (viscous, apparent) = parted(column(1));
+        model.friction.viscous = kept(viscous, &before.viscous);
+        model.sensors.apparent_viscous = kept(apparent, &zero);
         model.friction.coulomb = kept(column(2), &before.coulomb);
         model.friction.coulomb_asymmetry = None;
         model.sensors.torque_offset = kept(column(3), &zero);
@@ -410,8 +479,10 @@ fn assembled(
         model.friction.load_friction = None;
         tables.push("friction".into());
         tables.push("effects.torque_offset".into());
+        tables.push("effects.apparent_torque".into());
         if settings.free == Free::All {
-            let inertia = column(0);
+            let (inertia, apparent) = parted(column(0));
+            model.sensors.apparent_inertia = kept(apparent, &zero);
             let inertia = match &nominal.motors {
                 Some(motors) => {
                     let before: Vec<f64> = (0..n).map(|j| motors.reflected_inertia(j)).collect();
@@ -432,6 +503,7 @@ fn assembled(
         let keys: &[&str] = match table.as_str() {
             "friction" => &["coulomb", "viscous"],
             "effects.torque_offset" => &["offset"],
+            "effects.apparent_torque" => &["inertia", "viscous"],
             _ => &["mass", "com", "inertia"],
         };
         model.origins.extend(keys.iter().map(|key| origin(table, key, &settings.source)));
@@ -455,6 +527,11 @@ fn assembled(
         model.origins.push(origin("wrist", "coupling", &settings.source));
     }
     (model, payload)
+}
+
+/// What a robot can have of numbers, and what only its log can: those below 0.
+fn parted(values: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
+    values.into_iter().map(|value| (value.max(0.0), value.min(0.0))).unzip()
 }
 
 fn origin(table: &str, key: &str, source: &str) -> Origin {

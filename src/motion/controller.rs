@@ -60,6 +60,16 @@ impl Planning {
     }
 }
 
+impl Planning {
+    /// The same with a motion that ends as the average does, and the rest behind it shorter.
+    #[must_use]
+    pub fn complete(self) -> Planning {
+        let Planning { average, settling_s } = self;
+        let settling_s = (settling_s - average.closing).max(0.0);
+        Planning { average: Average { closing: 0.0, ..average }, settling_s }
+    }
+}
+
 /// The limits of the robot with a share of its accelerations. Where its file has none they are
 /// those with which an IRB6640 gets to its speeds.
 pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {

@@ -50,22 +50,27 @@ pub fn plan(
     planning: &Planning,
     times: &[Option<f64>],
 ) -> Result<(TimedMotion, Vec<Pace>), NoTiming> {
-    let nodes = sampling::nodes(path, INTERVALS);
+    let nodes = sampling::nodes(loaded.model, path, caps, INTERVALS);
     let limits = PathLimits::new(limits.acceleration, limits.torque).map_err(|_| NoTiming)?;
     let task = Task { loaded, path, nodes: &nodes, limits: &limits, planning, times };
     let planned = task.plan(caps)?;
-    if !tcp_limits::limited(path, caps) {
+    if !tcp_limits::limited(&caps[path.legs()]) {
         return Ok(planned);
     }
     let mut tightened = caps.to_vec();
     let mut planned = planned;
     for _ in 0..TIGHTENINGS {
         let worst = tcp_limits::worst(loaded.model, path, caps, &planned.0);
-        if worst <= 1.0 + TCP_TOLERANCE {
+        let excess = |leg: usize| worst.get(leg).copied().filter(|x| *x > 1.0 + TCP_TOLERANCE);
+        if (0..worst.len()).all(|leg| excess(leg).is_none()) {
             break;
         }
-        let factor = (1.0 - TCP_TOLERANCE) / worst;
-        for cap in &mut tightened {
+        for (i, leg) in path.legs().enumerate() {
+            // A corner is made by both of its legs.
+            let around = [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten();
+            let Some(worst) = around.filter_map(excess).max_by(f64::total_cmp) else { continue };
+            let factor = (1.0 - TIGHTER) / worst;
+            let cap = &mut tightened[leg];
             cap.path_acceleration = cap.path_acceleration.map(|x| x * factor);
             cap.world_acceleration *= factor;
         }
@@ -75,7 +80,9 @@ pub fn plan(
 }
 
 /// Times that the limits on the TCP's acceleration are tightened.
-const TIGHTENINGS: usize = 8;
+const TIGHTENINGS: usize = 6;
+/// By how much more than needed they are, so that few rounds do.
+const TIGHTER: f64 = 0.01;
 /// Accepted excess of the TCP's acceleration over its limit, share.
 const TCP_TOLERANCE: f64 = 1e-3;
 

@@ -7,6 +7,7 @@ use super::pace::Pace;
 use super::planner::plan;
 use super::sampling::{Loaded, SpeedCap};
 use super::stream::Stream;
+use super::tcp_limits;
 use super::timed::TimedMotion;
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::{Movement, Settings};
@@ -110,9 +111,11 @@ fn plan_paths(
     settings: &Settings,
 ) -> Planned {
     let model = loaded.model;
-    let planning = Planning::new(model, settings);
     let caps: Vec<SpeedCap> =
         legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
+    let planning = Planning::new(model, settings);
+    // An early end needs more acceleration than the rest of the motion.
+    let planning = if tcp_limits::limited(&caps) { planning.complete() } else { planning };
     let limits = motion_limits(model, 1.0);
     let mut pieces = vec![(0.0, Pace::None); legs.len()];
     let (paths, mut problem) = match build(model, legs) {
@@ -121,7 +124,8 @@ fn plan_paths(
             // For the time alone: the same points joint by joint.
             let joint: Vec<Leg> =
                 legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
-            let problem = Some((error.leg(), error.to_string()));
+            let hint = "its time is estimated joint by joint, the real one is longer";
+            let problem = Some((error.leg(), format!("{error}; {hint}")));
             (build(model, &joint).unwrap_or_default(), problem)
         }
     };

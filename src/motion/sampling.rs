@@ -53,8 +53,8 @@ const END_HALVINGS: i32 = 8;
 const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
 /// Nodes in s: about `count` intervals in all, closer towards the ends of the legs, where speeds
-/// change; and the edges and kinks of the zones.
-pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
+/// change; the edges and kinks of the zones; and places between where joints are the fastest.
+pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
     let length = path.length();
     let mut nodes = vec![0.0];
     let mut begin = 0.0;
@@ -85,7 +85,53 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
     if let Some(last) = kept.last_mut() {
         *last = length;
     }
-    kept
+    let Some(joints) = &model.limits.velocity else { return kept };
+    let bounds = SpeedBounds { joints, path, caps };
+    let mut nodes = Vec::with_capacity(kept.len());
+    let mut begin = (kept[0], bounds.square(kept[0]));
+    for node in &kept[1..] {
+        let end = (*node, bounds.square(*node));
+        nodes.push(begin.0);
+        bounds.peaks([begin, end], PEAK_HALVINGS, &mut nodes);
+        begin = end;
+    }
+    nodes.push(begin.0);
+    nodes
+}
+
+/// By how much a joint may exceed its largest speed between two nodes.
+const PEAK: f64 = 1.002;
+/// Times that an interval is halved for that.
+const PEAK_HALVINGS: usize = 8;
+
+/// The largest ṡ² that the joints' speeds and the programmed one allow at a place.
+struct SpeedBounds<'a> {
+    joints: &'a [f64],
+    path: &'a JointPath,
+    caps: &'a [SpeedCap],
+}
+
+impl SpeedBounds<'_> {
+    fn square(&self, s: f64) -> f64 {
+        let piece = self.path.piece_at(s);
+        let extent = self.path.extent(piece.leg);
+        let programmed = self.caps[piece.leg].tcp * extent.extent / extent.length;
+        let q1 = piece.eval(s).q1;
+        let joints = (0..DOF).map(|j| self.joints[j] / q1[j].abs()).fold(f64::INFINITY, f64::min);
+        programmed.min(joints).powi(2)
+    }
+
+    /// Adds nodes between two where ṡ², linear between them, would exceed the bound: near a
+    /// singularity the speeds of joints have narrow peaks.
+    fn peaks(&self, [begin, end]: [(f64, f64); 2], halvings: usize, nodes: &mut Vec<f64>) {
+        let s = 0.5 * (begin.0 + end.0);
+        let middle = (s, self.square(s));
+        if halvings > 0 && 0.5 * (begin.1 + end.1) > PEAK * PEAK * middle.1 {
+            self.peaks([begin, middle], halvings - 1, nodes);
+            nodes.push(s);
+            self.peaks([middle, end], halvings - 1, nodes);
+        }
+    }
 }
 
 /// Begin and end of each zone.

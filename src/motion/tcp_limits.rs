@@ -13,32 +13,33 @@ const STEP: f64 = 0.002;
 /// A TCP slower than this has no direction, m/s.
 const SLOW: f64 = 1e-4;
 
-/// True if a leg of the path has a limit on the acceleration of its TCP.
-pub(super) fn limited(path: &JointPath, caps: &[SpeedCap]) -> bool {
-    caps[path.legs()].iter().any(|cap| {
+/// True if a leg has a limit on the acceleration of its TCP.
+pub(super) fn limited(caps: &[SpeedCap]) -> bool {
+    caps.iter().any(|cap| {
         cap.world_acceleration.is_finite() || cap.path_acceleration.iter().any(|x| x.is_finite())
     })
 }
 
-/// The largest share of these limits that the motion uses.
+/// The largest share of these limits that the motion uses on each leg of the path.
 pub(super) fn worst(
     model: &Model,
     path: &JointPath,
     caps: &[SpeedCap],
     motion: &TimedMotion,
-) -> f64 {
-    let mut worst: f64 = 0.0;
+) -> Vec<f64> {
     let mut begin = 0.0;
-    for leg in path.legs() {
+    let leg_worst = |leg: usize| {
         let end = motion.time_at(path.leg_end(leg));
         let tool = path.extent(leg).tool;
         let steps = ((end - begin) / STEP).ceil().max(1.0);
+        let mut worst: f64 = 0.0;
         for i in 0..=steps as usize {
             let state = motion.at(begin + (end - begin) * i as f64 / steps);
+            let qd = nalgebra::Vector6::from(state.qd);
             let jacobian = tool.jacobian(model, &state.q);
-            let v = (jacobian * nalgebra::Vector6::from(state.qd)).fixed_rows::<3>(0).into_owned();
+            let v = (jacobian * qd).fixed_rows::<3>(0).into_owned();
             let a = jacobian * nalgebra::Vector6::from(state.qdd)
-                + tool.jacobian_dot(model, &state.q, &state.qd) * nalgebra::Vector6::from(state.qd);
+                + tool.jacobian_dot(model, &state.q, &state.qd) * qd;
             let a = a.fixed_rows::<3>(0).into_owned();
             worst = worst.max(a.norm() / caps[leg].world_acceleration);
             if v.norm() > SLOW {
@@ -48,6 +49,7 @@ pub(super) fn worst(
             }
         }
         begin = end;
-    }
-    worst
+        worst
+    };
+    path.legs().map(leg_worst).collect()
 }

@@ -1,5 +1,7 @@
 //! The result of a simulation: runs, waits and outputs on one time line.
 
+use std::collections::BTreeSet;
+
 use super::pace::Pace;
 use super::timed::{JointState, TimedMotion};
 use crate::dynamics::Load;
@@ -21,6 +23,8 @@ pub struct Simulation {
     pub unresolved: Vec<Note>,
     /// What was assumed about the program.
     pub assumed: Vec<String>,
+    /// Lower-case names of the inputs that the cycle waits for.
+    pub inputs_asked: BTreeSet<String>,
 }
 
 /// Something on the time line.

@@ -3,7 +3,7 @@
 mod load;
 mod time_limit;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::Isometry3;
@@ -75,6 +75,8 @@ pub fn simulate(
         notes: Vec::new(),
         repeats_from: None,
         waited: BTreeMap::new(),
+        asked: BTreeSet::new(),
+        moves: 0,
     };
     let execution = execute(program, entry, &mut machine);
     machine.flush();
@@ -93,6 +95,7 @@ pub fn simulate(
         repeats_from: machine.repeats_from.filter(|first| *first < count),
         unresolved,
         assumed: assumptions,
+        inputs_asked: machine.asked,
     }
 }
 
@@ -133,6 +136,10 @@ struct VirtualController<'a> {
     repeats_from: Option<usize>,
     /// End of the last wait for each input.
     waited: BTreeMap<String, f64>,
+    /// Lower-case names of the inputs that were waited for.
+    asked: BTreeSet<String>,
+    /// Movements that were told.
+    moves: usize,
 }
 
 /// A run to a stop that is not planned yet.
@@ -185,9 +192,12 @@ const SERVO_S: f64 = 0.05;
 
 /// Events of a simulation: more are not kept.
 const MAX_EVENTS: usize = 200_000;
+/// Movements of a simulation: their motions take memory.
+const MAX_MOVES: usize = 50_000;
 
 impl Machine for VirtualController<'_> {
     fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+        self.moves += 1;
         let movement = match movement {
             Ok(movement) => movement,
             Err(unresolved) => {
@@ -229,7 +239,7 @@ impl Machine for VirtualController<'_> {
 
     fn waits(&mut self, wait: Wait) -> Waited {
         self.flush();
-        let may_time_out = wait.max_time.is_some() && self.comes_at(&wait).is_some();
+        let may_time_out = wait.max_time.is_some() && self.input_at(&wait).is_some();
         let load = self
             .tool
             .as_ref()
@@ -267,14 +277,21 @@ impl Machine for VirtualController<'_> {
 
     fn has_come(&mut self, signal: &str) -> Option<bool> {
         let key = signal.to_lowercase();
-        let delay = *self.options.inputs.get(&key)?;
-        self.lay_out();
-        let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
+        let at = self.comes_at(signal)?;
         let come = self.time + self.pending_s >= at;
         if come {
             self.waited.insert(key, at);
         }
         Some(come)
+    }
+
+    fn comes_at(&mut self, signal: &str) -> Option<f64> {
+        let key = signal.to_lowercase();
+        let delay = self.options.inputs.get(&key).copied();
+        self.asked.insert(key.clone());
+        let delay = delay?;
+        self.lay_out();
+        Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
     }
 
     fn passes(&self) -> u32 {
@@ -286,7 +303,7 @@ impl Machine for VirtualController<'_> {
     }
 
     fn is_full(&self) -> bool {
-        self.events.len() + self.drafts.len() + self.pending.len() > MAX_EVENTS || self.late
+        self.is_long() || self.late
     }
 }
 
@@ -488,7 +505,8 @@ impl VirtualController<'_> {
     }
 
     /// When what a wait waits for comes, s from the start, if the user states it.
-    fn comes_at(&self, wait: &Wait) -> Option<f64> {
+    /// When the input of a wait comes, if that is stated, s.
+    fn input_at(&self, wait: &Wait) -> Option<f64> {
         let key = wait.signal.as_ref()?.to_lowercase();
         let delay = self.options.inputs.get(&key)?;
         Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
@@ -517,7 +535,7 @@ impl VirtualController<'_> {
         // What the logic does while a movement with \Conc is under way takes no time of its own.
         let begin = self.time - self.ahead;
         self.waited_last = Waited::Ended;
-        let (length, basis) = match (wait.duration, self.comes_at(&wait)) {
+        let (length, basis) = match (wait.duration, self.input_at(&wait)) {
             (Some(duration), _) => (duration, WaitBasis::Stated),
             (None, Some(at)) => {
                 let rest = (at - begin).max(0.0);
@@ -544,6 +562,9 @@ impl VirtualController<'_> {
                 (0.0, WaitBasis::Unknown)
             }
         };
+        if let Some(signal) = &wait.signal {
+            self.asked.insert(signal.to_lowercase());
+        }
         if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == Waited::Ended) {
             self.waited.insert(signal.to_lowercase(), begin + length);
         }

@@ -5,7 +5,9 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::dynamics::{JOINT, RIGID};
-use crate::identify::{Descent, Identified, Misses, Source, collinear, essential};
+use crate::identify::{
+    Descent, Grade, Identified, Misses, Source, Whiteness, collinear, essential,
+};
 use crate::robot::to_toml;
 
 /// What a result rests on, beside the result itself.
@@ -64,13 +66,31 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
             "train": found.training.relative,
             "validation": held_out.map(|misses| &misses.relative),
         },
-        "validation_basis": if held_out.is_some() { "logs" } else { "cross-validation" },
+        "validation_basis": if held_out.is_some() {
+            "logs"
+        } else if fit.over_repetitions {
+            "repetitions"
+        } else {
+            "cross-validation"
+        },
         "unconstrained_rms": {
             "train": fit.rms,
             "validation":
                 found.unconstrained_validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms),
         },
         "residual_memory": fit.memory,
+        "whiteness": whiteness(found),
+        "quality": {
+            "grade": grade(found.quality.grade), "statement": found.quality.sentence(),
+            "explained": found.quality.explained,
+            "friction_gives_power": found.quality.giving_power.iter().map(|j| j + 1)
+                .collect::<Vec<_>>(),
+            "torques_late_s": found.quality.late,
+        },
+        "apparent_torque": {
+            "inertia": found.model.sensors.apparent_inertia,
+            "viscous": found.model.sensors.apparent_viscous,
+        },
         "physically_consistent": found.physically_consistent,
         "condition": {"scaled": fit.condition.scaled, "raw": fit.condition.raw},
         "joints": joints(found),
@@ -100,6 +120,27 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
         })),
         "model": path,
     })
+}
+
+fn grade(grade: Grade) -> &'static str {
+    match grade {
+        Grade::Good => "good",
+        Grade::Fair => "fair",
+        Grade::Poor => "poor",
+        Grade::None => "none",
+    }
+}
+
+/// What the residuals of each joint remember.
+fn whiteness(found: &Identified) -> Vec<Value> {
+    let joint = |(joint, of): (usize, &Option<Whiteness>)| match of {
+        Some(of) => json!({
+            "joint": joint + 1, "autocorrelation": of.autocorrelation, "band": of.band,
+            "outside": of.outside, "ljung_box": of.ljung_box, "p_value": of.p_value,
+        }),
+        None => json!({"joint": joint + 1, "autocorrelation": null}),
+    };
+    found.fit.whiteness.iter().enumerate().map(joint).collect()
 }
 
 /// What the data do not determine, in words.
@@ -179,6 +220,7 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
         let _ = writeln!(text, "date = {}", quoted(date));
     }
     let _ = writeln!(text, "torque = {}", quoted(&basis.torque));
+    let _ = writeln!(text, "quality = {}", quoted(&found.quality.sentence()));
     let _ = writeln!(text, "rank = {}", found.fit.solution.determined.len());
     let list = |values: &[f64]| -> String {
         // TOML's not a number is in small letters.
@@ -220,6 +262,14 @@ fn shown(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
 }
 
+/// How many of the lags of a joint's residuals look like white noise.
+pub(super) fn white(whiteness: Option<&Whiteness>) -> String {
+    whiteness.map_or_else(
+        || "-".into(),
+        |of| format!("{} (p = {:.2})", of.autocorrelation.len() - of.outside, of.p_value),
+    )
+}
+
 /// For people.
 pub fn text(found: &Identified, basis: &Basis) -> String {
     let fit = &found.fit;
@@ -235,19 +285,26 @@ pub fn text(found: &Identified, basis: &Basis) -> String {
     let _ = writeln!(text, "torque: {}", basis.torque);
     let consistent = if found.physically_consistent { "yes" } else { "no" };
     let _ = writeln!(text, "physically consistent: {consistent}");
+    let _ = writeln!(text, "quality: {}", found.quality.sentence());
     let held_out = match &found.validation {
         Some(misses) => ("held-out logs", &misses.rms),
+        None if fit.over_repetitions => ("held-out cycles", &fit.cross_rms),
         None => ("cross-validated", &fit.cross_rms),
     };
-    let _ = writeln!(text, "\njoint  RMS [Nm]  {:>15}  relative [%]", held_out.0);
+    let _ = writeln!(
+        text,
+        "\njoint  RMS [Nm]  {:>15}  relative [%]  white [lags out of 20]",
+        held_out.0
+    );
     for joint in 0..found.base.dof {
         let _ = writeln!(
             text,
-            "{:>5}  {:>8}  {:>15}  {:>12}",
+            "{:>5}  {:>8}  {:>15}  {:>12}  {}",
             joint + 1,
             shown(found.training.rms[joint], 3),
             shown(held_out.1[joint], 3),
-            shown(100.0 * found.training.relative[joint], 1)
+            shown(100.0 * found.training.relative[joint], 1),
+            white(fit.whiteness[joint].as_ref())
         );
     }
     if let Some(of) = &basis.descent {

@@ -153,6 +153,7 @@ fn empty() -> Simulation {
         repeats_from: None,
         unresolved: Vec::new(),
         assumed: Vec::new(),
+        inputs_asked: BTreeSet::new(),
     }
 }
 

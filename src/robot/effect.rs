@@ -39,7 +39,8 @@ const fn known(id: &'static str, of: Of, parameters: &'static [&'static str]) ->
     Known { id, of, parameters }
 }
 
-const KNOWN: [Known; 14] = [
+const KNOWN: [Known; 15] = [
+    known("apparent_torque", Of::Joint, &["inertia", "viscous"]),
     known("base_load", Of::Robot, &["power"]),
     known("brake_power", Of::Robot, &["power"]),
     known("copper_loss", Of::Joint, &["loss"]),

@@ -76,6 +76,11 @@ impl EffectParameters {
                 self.change("offset", &mut model.sensors.torque_offset);
                 Ok(())
             }
+            "apparent_torque" => {
+                self.change("inertia", &mut model.sensors.apparent_inertia);
+                self.change("viscous", &mut model.sensors.apparent_viscous);
+                Ok(())
+            }
             "torque_constant" => {
                 self.change("error", &mut model.sensors.torque_error);
                 Ok(())

@@ -46,14 +46,22 @@ pub fn to_toml(model: &Model) -> String {
     power(model, &mut out);
     // Effects are in the numbers above, but for those of the log.
     let sensors = &model.sensors;
-    for (id, key, values) in [
-        ("encoder_offset", "offset", &sensors.position_offset),
-        ("torque_offset", "offset", &sensors.torque_offset),
-        ("torque_constant", "error", &sensors.torque_error),
+    let (inertia, viscous) = (&sensors.apparent_inertia, &sensors.apparent_viscous);
+    for (id, parameters) in [
+        ("apparent_torque", vec![("inertia", inertia), ("viscous", viscous)]),
+        ("encoder_offset", vec![("offset", &sensors.position_offset)]),
+        ("torque_offset", vec![("offset", &sensors.torque_offset)]),
+        ("torque_constant", vec![("error", &sensors.torque_error)]),
     ] {
-        if values.iter().any(|value| *value != 0.0) {
+        let given = |values: &Vec<f64>| values.iter().any(|value| *value != 0.0);
+        let entries: Vec<(&str, String)> = parameters
+            .into_iter()
+            .filter(|(_, values)| given(values))
+            .map(|(key, values)| (key, list(values)))
+            .collect();
+        if !entries.is_empty() {
             let table = format!("effects.{id}");
-            out.table(&format!("[{table}]"), &table, &[(key, list(values))]);
+            out.table(&format!("[{table}]"), &table, &entries);
         }
     }
     out.text

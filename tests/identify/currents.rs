@@ -63,6 +63,11 @@ fn parameters_come_back_from_phase_currents() {
     let settings =
         Settings { free: Free::All, weighting: Weighting::Joint, source: "a test".into() };
     let found = identify(&model, &samples, &[], &settings).unwrap();
+    // One repetition has the noise of one, the fit that of the mean of six or seven.
+    assert!(found.fit.over_repetitions);
+    for (one, mean) in found.fit.cross_rms.iter().zip(&found.fit.rms) {
+        assert!((1.8..3.6).contains(&(one / mean)), "{one} {mean}");
+    }
     let all = parameters(&model, &Load::none(), Parameters::WithJoints);
     let expected = found.base.of_parameters(&all);
     let deviations: Vec<f64> = found

@@ -227,7 +227,7 @@ impl Executor<'_> {
 
     fn wait_until(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) -> Flow {
         let condition = arguments.positional.first().copied();
-        let signal = condition.and_then(|expr| self.first_signal(expr));
+        let signal = condition.and_then(|expr| self.deciding_signal(expr, true));
         if let Some(condition) = condition {
             let value = self.eval(condition);
             let value = self.level(value);

@@ -162,7 +162,7 @@ impl Executor<'_> {
                 }
                 Condition::Assumed(true) => {
                     // A loop that polls an input is a wait for it.
-                    self.wait_for("WHILE", condition, None);
+                    self.wait_for("WHILE", (condition, false), None);
                     self.flip(&Poll { condition: condition.clone(), value: true });
                     self.forced = None;
                     return Flow::Next;

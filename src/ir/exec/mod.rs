@@ -45,6 +45,10 @@ pub trait Machine {
     fn has_come(&mut self, _signal: &str) -> Option<bool> {
         None
     }
+    /// When an input comes that the program waits for, if that is known, s.
+    fn comes_at(&mut self, _signal: &str) -> Option<f64> {
+        None
+    }
     /// How often the loop that never ends is to run.
     fn passes(&self) -> u32 {
         1

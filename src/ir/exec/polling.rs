@@ -18,6 +18,9 @@ const MAX_WAITS: u32 = 20;
 /// Passes after which a loop that counts while it asks for an input is taken as a wait.
 const MAX_COUNTED: u32 = 1000;
 
+/// Inputs of one condition whose order is looked at.
+const MAX_TOGETHER: usize = 6;
+
 /// A condition on inputs, and what it was.
 pub(super) struct Poll {
     pub(super) condition: Expr,
@@ -94,7 +97,7 @@ impl Executor<'_> {
         // Of several inputs the one whose time is known decides.
         let mut coming: Option<(usize, bool)> = None;
         for (i, poll) in asked.iter().enumerate() {
-            if let Some(signal) = self.first_signal(&poll.condition)
+            if let Some(signal) = self.deciding_signal(&poll.condition, !poll.value)
                 && let Some(come) = self.machine.has_come(&signal)
                 && coming.is_none_or(|(_, before)| come && !before)
             {
@@ -126,7 +129,11 @@ impl Executor<'_> {
             );
             return self.comes(mark, &poll);
         }
-        match self.wait_for(instruction, &poll.condition, passes_left.map(|n| n * took)) {
+        match self.wait_for(
+            instruction,
+            (&poll.condition, !poll.value),
+            passes_left.map(|n| n * took),
+        ) {
             Waited::Ended => self.comes(mark, &poll),
             Waited::TimedOut => Pass::TimedOut,
         }
@@ -136,10 +143,10 @@ impl Executor<'_> {
     pub(super) fn wait_for(
         &mut self,
         instruction: &str,
-        condition: &Expr,
+        (condition, wanted): (&Expr, bool),
         max_time: Option<f64>,
     ) -> Waited {
-        let signal = self.first_signal(condition);
+        let signal = self.deciding_signal(condition, wanted);
         self.machine.waits(Wait {
             instruction: instruction.into(),
             span: condition.span,
@@ -171,13 +178,7 @@ impl Executor<'_> {
             let before = self.signals.get(&key).copied();
             for level in &levels {
                 self.signals.insert(key.clone(), *level);
-                let value = self.eval(&poll.condition);
-                let now = match self.level(value).datum {
-                    Datum::Bool(b) => Some(b),
-                    Datum::Num(x) => Some(x != 0.0),
-                    _ => None,
-                };
-                if now == Some(!poll.value) {
+                if self.holds(&poll.condition) == Some(!poll.value) {
                     return;
                 }
             }
@@ -187,6 +188,66 @@ impl Executor<'_> {
             };
         }
         self.forced = Some(poll.condition.span);
+    }
+
+    /// The input of a condition that brings it to `wanted` when all inputs whose times are known
+    /// have changed once, in their order; the first of its signals where that is not known.
+    pub(super) fn deciding_signal(&mut self, condition: &Expr, wanted: bool) -> Option<Arc<str>> {
+        let first = self.first_signal(condition);
+        let mut signals: Vec<Arc<str>> = Vec::new();
+        self.parts(condition, &mut signals, &mut Vec::new());
+        signals.sort_by_key(|signal| signal.to_lowercase());
+        signals.dedup_by_key(|signal| signal.to_lowercase());
+        if signals.len() < 2 || signals.len() > MAX_TOGETHER {
+            return first;
+        }
+        let mut coming: Vec<(f64, Arc<str>)> = Vec::new();
+        for signal in signals {
+            // What nobody states is taken to be there at once, as where it is alone.
+            let at = self.machine.comes_at(&signal).unwrap_or(f64::NEG_INFINITY);
+            coming.push((at, signal));
+        }
+        coming.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let before = self.signals.clone();
+        let decides = self.last_needed(condition, wanted, &coming);
+        self.signals = before;
+        decides.map(|i| coming[i].1.clone()).or(first)
+    }
+
+    /// Which of the inputs, changing one after the other, makes the condition `wanted`.
+    fn last_needed(
+        &mut self,
+        condition: &Expr,
+        wanted: bool,
+        coming: &[(f64, Arc<str>)],
+    ) -> Option<usize> {
+        // The levels to which they change: all high first, as most conditions ask.
+        for target in (0..1_u32 << coming.len()).rev() {
+            let level = |i: usize, come: bool| f64::from(u8::from((target >> i & 1 == 1) == come));
+            for (i, (_, signal)) in coming.iter().enumerate() {
+                self.signals.insert(signal.to_lowercase(), level(i, false));
+            }
+            if self.holds(condition) != Some(!wanted) {
+                continue;
+            }
+            for (i, (_, signal)) in coming.iter().enumerate() {
+                self.signals.insert(signal.to_lowercase(), level(i, true));
+                if self.holds(condition) == Some(wanted) {
+                    return Some(i);
+                }
+            }
+        }
+        None
+    }
+
+    /// The truth of a condition at the levels that the signals have.
+    fn holds(&mut self, condition: &Expr) -> Option<bool> {
+        let value = self.eval(condition);
+        match self.level(value).datum {
+            Datum::Bool(b) => Some(b),
+            Datum::Num(x) => Some(x != 0.0),
+            _ => None,
+        }
     }
 
     /// The signals of an expression, and levels that it may compare them with or that lie beyond.

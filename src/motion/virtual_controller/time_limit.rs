@@ -1,6 +1,6 @@
 //! Where a simulation ends that would last too long.
 
-use super::{MAX_EVENTS, MAX_TIME, Planned, RunDraft, VirtualController, What};
+use super::{MAX_EVENTS, MAX_MOVES, MAX_TIME, Planned, RunDraft, VirtualController, What};
 use crate::ir::movement::Movement;
 use crate::kinematics::fk;
 use crate::path::{Leg, LegKind};
@@ -11,6 +11,11 @@ const SHORTEST: f64 = 0.5;
 impl VirtualController<'_> {
     pub(super) fn max_time(&self) -> f64 {
         self.options.max_time.unwrap_or(MAX_TIME)
+    }
+
+    pub(super) fn is_long(&self) -> bool {
+        let events = self.events.len() + self.drafts.len() + self.pending.len();
+        self.moves > MAX_MOVES || events > MAX_EVENTS
     }
 
     /// Time that a movement takes without acceleration, s.
@@ -65,10 +70,10 @@ impl VirtualController<'_> {
                 self.max_time(),
                 self.time
             )
-        } else if self.events.len() > MAX_EVENTS {
+        } else if self.is_long() {
             format!(
-                "more than {MAX_EVENTS} movements, waits and outputs, as if the program did not \
-                 end: the cycle is shown up to here"
+                "more than {MAX_MOVES} movements or {MAX_EVENTS} stops, waits and outputs, as if \
+                 the program did not end: the cycle is shown up to here (--max-time ends it earlier)"
             )
         } else {
             return;

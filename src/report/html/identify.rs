@@ -6,7 +6,7 @@ use tera::{Context, Tera};
 use super::ReportError;
 use super::format::fixed;
 use crate::identify::{Identified, collinear, essential};
-use crate::report::identify::{Basis, undetermined};
+use crate::report::identify::{Basis, undetermined, white};
 use crate::report::svg::{Curve, Plot, Size};
 
 /// Size of the plots, px.
@@ -34,6 +34,7 @@ struct JointRow {
     held_out: String,
     relative: String,
     memory: String,
+    white: String,
 }
 
 #[derive(Serialize)]
@@ -69,6 +70,7 @@ pub fn identify_report(
             held_out: fixed(held_out[joint], 3),
             relative: fixed(100.0 * found.training.relative[joint], 1),
             memory: fixed(fit.memory[joint], 2),
+            white: white(fit.whiteness[joint].as_ref()),
         })
         .collect();
     let kept = essential(fit);
@@ -120,6 +122,7 @@ pub fn identify_report(
     context.insert("missing", &missing);
     context.insert("alike", &alike);
     context.insert("notes", &basis.notes);
+    context.insert("quality", &found.quality.sentence());
     context.insert("logs", &basis.logs.iter().map(|log| &log.0).collect::<Vec<_>>());
     context.insert("title", &traces.title);
     context.insert("plots", &plots(traces));

@@ -1,0 +1,99 @@
+//! Whether residuals are noise: their autocorrelation and the test of G. Ljung and G. Box,
+//! "On a measure of lack of fit in time series models", Biometrika 65, 1978.
+
+use super::noise::{Residual, autocovariances};
+
+/// Lags that are looked at, an even number.
+const LAGS: usize = 20;
+/// The quantile of the normal distribution of an interval of 95 %.
+const INTERVAL: f64 = 1.96;
+
+/// What the residuals of a joint remember.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Whiteness {
+    /// Autocorrelation at lag 1, 2, … of the instants.
+    pub autocorrelation: Vec<f64>,
+    /// Largest size that 95 % of those of white noise have.
+    pub band: f64,
+    /// How many lie outside.
+    pub outside: usize,
+    /// Q = n (n + 2) Σ ρ²/(n − lag).
+    pub ljung_box: f64,
+    /// Probability of so much or more in white noise.
+    pub p_value: f64,
+}
+
+/// Of residuals in the order of time; `None` where there are too few.
+#[must_use]
+pub(super) fn whiteness(residuals: &[Residual]) -> Option<Whiteness> {
+    if residuals.len() < 4 * LAGS {
+        return None;
+    }
+    let covariance = autocovariances(residuals, LAGS, 1.0);
+    if covariance[0] <= 0.0 {
+        return None;
+    }
+    let n = residuals.len() as f64;
+    let autocorrelation: Vec<f64> = covariance[1..].iter().map(|c| c / covariance[0]).collect();
+    let band = INTERVAL / n.sqrt();
+    let of = |(lag, rho): (usize, &f64)| rho * rho / (n - (lag + 1) as f64);
+    let ljung_box = n * (n + 2.0) * autocorrelation.iter().enumerate().map(of).sum::<f64>();
+    Some(Whiteness {
+        outside: autocorrelation.iter().filter(|rho| rho.abs() > band).count(),
+        p_value: chi_square_beyond(ljung_box),
+        autocorrelation,
+        band,
+        ljung_box,
+    })
+}
+
+/// P(χ² > x) of [`LAGS`] degrees of freedom, an even number 2 m: e^(−x/2) Σ (x/2)^k / k!, k < m.
+fn chi_square_beyond(x: f64) -> f64 {
+    let half = 0.5 * x;
+    let mut term = (-half).exp();
+    let mut sum = 0.0;
+    for k in 0..LAGS / 2 {
+        sum += term;
+        term *= half / (k + 1) as f64;
+    }
+    sum.clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+    use super::*;
+
+    /// Runs of white noise, and the share of them that the test may refuse at 5 %.
+    const RUNS: u64 = 400;
+    const REFUSED: std::ops::RangeInclusive<f64> = 0.02..=0.08;
+
+    fn noise(seed: u64, memory: f64) -> Vec<Residual> {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut value = 0.0;
+        (0..500)
+            .map(|i| {
+                value = memory * value + (0..12).map(|_| random.f64()).sum::<f64>() - 6.0;
+                (0, i, value)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn white_noise_passes_as_often_as_promised_and_coloured_noise_does_not() {
+        let refused = |memory: f64| {
+            let sure = |seed: &u64| whiteness(&noise(*seed, memory)).unwrap().p_value < 0.05;
+            (0..RUNS).filter(sure).count() as f64 / RUNS as f64
+        };
+        assert!(REFUSED.contains(&refused(0.0)), "{}", refused(0.0));
+        assert!(refused(0.4) > 0.99);
+    }
+
+    /// 31.41 is the tabled quantile of 95 % for 20 degrees of freedom.
+    #[test]
+    fn the_distribution_is_the_tabled_one() {
+        assert!((chi_square_beyond(31.410_43) - 0.05).abs() < 1e-6);
+        assert!((chi_square_beyond(0.0) - 1.0).abs() < 1e-12);
+    }
+}
