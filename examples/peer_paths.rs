@@ -123,7 +123,8 @@ fn path(case: &Case) -> Value {
     let model = Cost::Electrical.model(&case.model);
     let mut sizes = Vec::new();
     for n in SIZES {
-        let set_up = || path_grid::grid(loaded, path, &path_grid::nodes(path, n), &caps).unwrap();
+        let nodes = |n| path_grid::nodes(&case.model, path, &caps, n);
+        let set_up = || path_grid::grid(loaded, path, &nodes(n), &caps).unwrap();
         let grid = set_up();
         let seconds = least_s(REPEATS, || time_optimal(&set_up(), &limits));
         let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
@@ -168,7 +169,8 @@ fn coefficients(grid: &PathGrid) -> Value {
 fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     let path = case.path().unwrap();
     let loaded = Loaded { model: &case.model, load: &case.run().load };
-    let grid = path_grid::grid(loaded, path, &path_grid::nodes(path, SIZES[0]), caps).unwrap();
+    let nodes = path_grid::nodes(&case.model, path, caps, SIZES[0]);
+    let grid = path_grid::grid(loaded, path, &nodes, caps).unwrap();
     let fastest = time_optimal(&grid, limits).into_profile().unwrap();
     let list = |values: &Option<Vec<f64>>| -> Joints {
         std::array::from_fn(|j| values.as_ref().map_or(f64::INFINITY, |list| list[j]))

@@ -97,7 +97,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let cap = |leg| SpeedCap { tcp: Ceilings::Programmed.of(case.movement(leg)), ..SpeedCap::NONE };
     let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
     let loaded = Loaded { model: &case.model, load: &run.load };
-    let nodes = path_grid::nodes_with_edges(path, INTERVALS);
+    let nodes = path_grid::nodes_with_edges(&case.model, path, &caps, INTERVALS);
     let refined =
         time_optimal_between(nodes, &limits, |nodes| path_grid::grid(loaded, path, nodes, &caps));
     let refined = refined.ok()?.held()?;

@@ -3,6 +3,7 @@
 use crate::motion::sampling::{self, Loaded, SpeedCap};
 use crate::motion::timing::grid::{GridError, PathGrid, PathPoint};
 use crate::path::joint_path::{DOF, JointPath, Piece, PieceKind};
+use crate::robot::Model;
 
 /// Parts of a piece in which one turn of a joint is looked for.
 const PARTS: usize = 4;
@@ -17,8 +18,8 @@ const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
 /// Nodes in s: about `count` intervals, closer where speeds change, and the places where a joint
 /// turns, since its dry friction jumps there.
-pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
-    let mut nodes = sampling::nodes(path, count);
+pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
+    let mut nodes = sampling::nodes(model, path, caps, count);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * path.length());
     for turn in path.pieces().iter().flat_map(turns) {
         let next = nodes.partition_point(|node| *node < turn);
@@ -38,8 +39,13 @@ pub fn nodes(path: &JointPath, count: usize) -> Vec<f64> {
 
 /// The same with every edge of a zone, however near to another: way points that nearly coincide
 /// make zones shorter than the least distance of the nodes, in which a path bends all the same.
-pub fn nodes_with_edges(path: &JointPath, count: usize) -> Vec<f64> {
-    let mut nodes = nodes(path, count);
+pub fn nodes_with_edges(
+    model: &Model,
+    path: &JointPath,
+    caps: &[SpeedCap],
+    count: usize,
+) -> Vec<f64> {
+    let mut nodes = nodes(model, path, caps, count);
     let nearest = LEAST_DISTANCE * path.length();
     let edges = path
         .pieces()

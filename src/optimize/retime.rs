@@ -466,11 +466,7 @@ impl<'a> Work<'a> {
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-<<<<<<< HEAD
-        let nodes = path_grid::nodes(self.path, INTERVALS);
-=======
-        let nodes = sampling::nodes(self.task.model, self.path, &caps, INTERVALS);
->>>>>>> main
+        let nodes = path_grid::nodes(self.task.model, self.path, &caps, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
         let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;

@@ -107,7 +107,7 @@ fn the_fastest_profile_keeps_all_limits_between_the_nodes() {
         .par_iter()
         .filter_map(|case| {
             let path = case.path().unwrap();
-            let nodes = path_grid::nodes_with_edges(path, COARSE);
+            let nodes = path_grid::nodes_with_edges(&case.model, path, &caps(case), COARSE);
             let plain = time_optimal(&grid(case, path, &nodes), &limits(case)).into_profile();
             let refined = time_optimal_between(nodes.clone(), &limits(case), |nodes| {
                 Ok(grid(case, path, nodes))
@@ -127,7 +127,7 @@ fn the_fastest_profile_keeps_all_limits_between_the_nodes() {
                     return Some(format!("{}: infeasible at {s} of {}", case.name, path.length()));
                 }
             };
-            let fine = grid(case, path, &path_grid::nodes_with_edges(path, FINE));
+            let fine = grid(case, path, &path_grid::nodes_with_edges(&case.model, path, &caps(case), FINE));
             let Some(fine) = time_optimal(&fine, &limits(case)).into_profile() else {
                 return Some(format!("{}: the fine grid is infeasible", case.name));
             };
