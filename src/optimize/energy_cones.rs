@@ -22,6 +22,8 @@
 //! those that come near their bound are in a program, and it is solved again when others turn up.
 //! The rest at both ends is eliminated: there the cones would have no interior.
 
+use nalgebra::SMatrix;
+
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::path_energy::{EnergyModel, Sharing, evaluate};
 use crate::motion::stream::DOF;
@@ -56,9 +58,9 @@ pub(super) struct Step {
 /// leaves open does not break them.
 const MARGIN: f64 = 1e-5;
 /// Share of its limit from which a row is part of the first program.
-const NEAR_AT_FIRST: f64 = 0.8;
+const NEAR_AT_FIRST: f64 = 0.6;
 /// Share of its limit from which a row is added when another one is broken.
-const NEAR: f64 = 0.95;
+const NEAR: f64 = 0.85;
 /// Rounds in which rows are added.
 const MAX_ROUNDS: usize = 8;
 /// Smallest scaled speed at which a tangent is taken.
@@ -400,25 +402,32 @@ impl IntervalCost {
         let square = scale.speed * scale.speed;
         let before = (k > 0).then(|| Layout::b_of(k));
         let after = (k + 1 < grid.intervals()).then(|| Layout::b_of(k + 1));
-        // ℓ, Nm: linear in b at both nodes.
-        let linear = |j: usize| {
+        // ℓ, Nm: linear in b at both nodes; the factors of these and the rest.
+        let factors = |j: usize| {
             let (u, b) = (middle.m[j] * 0.5 / delta, 0.5 * middle.c[j]);
-            Affine::constant(middle.g[j] + middle.coulomb[j])
-                .plus(before, (b - u) * square)
-                .plus(after, (b + u) * square)
+            [(b - u) * square, (b + u) * square, middle.g[j] + middle.coulomb[j]]
         };
-        let (mut copper, mut cross, mut viscous) = (Vec::new(), Affine::default(), 0.0);
+        let affine = |[x, y, rest]: [f64; 3]| Affine::constant(rest).plus(before, x).plus(after, y);
+        let linear = |j: usize| affine(factors(j));
+        let (mut cross, mut viscous) = (Affine::default(), 0.0);
+        let mut losses = SMatrix::<f64, DOF, 3>::zeros();
         for j in 0..DOF {
             let friction = middle.viscous[j];
             viscous += friction * (model.work * middle.q1[j] + model.loss[j] * friction)
                 + model.speed * middle.q1[j] * middle.q1[j];
             if model.loss[j] > 0.0 {
                 let per_unit = 2.0 * delta * model.loss[j] / (scale.unit * scale.speed);
-                copper.push(linear(j).times(per_unit.sqrt()));
+                losses.row_mut(j).copy_from_slice(&factors(j).map(|x| x * per_unit.sqrt()));
                 let factor = 2.0 * delta * model.loss[j] * friction / scale.unit;
                 cross = cross.sum(&linear(j).times(factor));
             }
         }
+        // All joints together depend on two variables: the same square in three terms.
+        let copper = if losses.iter().any(|x| *x != 0.0) {
+            losses.qr().r().row_iter().map(|row| affine([row[0], row[1], row[2]])).collect()
+        } else {
+            Vec::new()
+        };
         let lost = (1.0 - model.regeneration) * delta / scale.unit;
         let joint_work = |j: usize| {
             let factor = middle.viscous[j] * middle.q1[j] * scale.speed;

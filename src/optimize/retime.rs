@@ -173,18 +173,16 @@ fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     match goal {
         Goal::Within(time) => {
             let before = task.energy_before.motion_energy_j();
-            let retiming = work.least_energy(time, before - WORTHWHILE * before.abs())?;
+            let worth = before - WORTHWHILE * before.abs();
+            let retiming =
+                work.least_energy(time, worth).or_else(|reason| work.instead(reason, time))?;
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
         Goal::Exactly(time) => {
             work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
                 Reason::NoSaving => work.within(time),
-                // Near the least time there may be no other stream.
-                Reason::NoStream(_) if time < task.run.duration() => {
-                    work.within(time).or(Err(reason))
-                }
-                other => Err(other),
+                reason => work.instead(reason, time),
             })
         }
         Goal::Fastest => work.least_time(),
@@ -423,14 +421,42 @@ impl<'a> Work<'a> {
         Err(problem)
     }
 
-    /// Least time, where the time is too short for more.
+    /// The fastest stream made as slow, where the time is too short for more.
     fn within(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
-        if retiming.duration_s <= time + quantum() {
-            Ok(retiming)
-        } else {
-            Err(Reason::TooShort(retiming.duration_s))
+        if retiming.duration_s > time + quantum() {
+            return Err(Reason::TooShort(retiming.duration_s));
         }
+        let slowed = self.slowed(&retiming.stream, round_down(time - self.task.run.settling));
+        let better = slowed.filter(|slow| slow.energy.energy_j() < retiming.energy.energy_j());
+        Ok(better.unwrap_or(retiming))
+    }
+
+    /// The same where no attempt at a stream of its own held; else the reason for that.
+    fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
+        match reason {
+            Reason::NoStream(_) => self.within(time).or(Err(reason)),
+            other => Err(other),
+        }
+    }
+
+    /// A stream with all its intervals longer, if it still holds: friction and weight don't fall
+    /// with the speed.
+    fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
+        let longer = duration / stream.duration();
+        let intervals: Vec<f64> = stream.intervals().iter().map(|x| x * longer).collect();
+        let intervals = rounded_intervals(&intervals, duration);
+        let slow = Stream::new(*stream.start(), stream.points().to_vec(), intervals).ok()?;
+        let check = self.check(&slow);
+        let bound = self.bound(duration).map(|bound| bound.lower_bound);
+        check.holds().then(|| self.retiming(slow, check, bound))
+    }
+
+    /// What a stream does as the controller will realise it.
+    fn check(&self, stream: &Stream) -> Check {
+        let Task { model, run, .. } = self.task;
+        let tool = &run.legs[0].tool;
+        check(model, &run.load, tool, stream, &self.corridor, &run.end, self.body.as_ref())
     }
 
     /// How far the motion may leave the path somewhere, m, before the polishing minds.
@@ -523,16 +549,7 @@ impl<'a> Work<'a> {
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let tool = self.task.run.legs[0].tool;
-        let check = check(
-            self.task.model,
-            &self.task.run.load,
-            &tool,
-            &rounded,
-            &self.corridor,
-            &self.task.run.end,
-            self.body.as_ref(),
-        );
+        let check = self.check(&rounded);
         let intended = Intended { reference, stream: polished.stream };
         Ok(Attempt { stream: rounded, check, intended })
     }

@@ -9,7 +9,7 @@
 use super::banded::Banded;
 use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{DIFFERENCES, Plant, ROOM, Realised, realise};
+use super::plant::{DIFFERENCES, Plant, ROOM, Realised, direction, realise};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -52,9 +52,9 @@ const DEVIATION_PRICE: f64 = 0.02;
 /// Energies that the full violation of a limit at one place costs.
 const VIOLATION_PRICE: f64 = 5.0;
 /// Steps.
-const MAX_STEPS: usize = 25;
+const MAX_STEPS: usize = 80;
 /// Relative fall of the merit at which the steps end.
-const CONVERGED: f64 = 3e-4;
+const CONVERGED: f64 = 3e-5;
 /// Share of its limit from which a row is part of a program.
 const NEAR: f64 = 0.75;
 /// Gap of the programs: a step is judged by what it does, not by what it promises.
@@ -74,6 +74,8 @@ const NEAREST_STEPS: usize = 6;
 const SLOWEST: f64 = 1e-6;
 /// Share of the peak power about which the loss of braking is rounded.
 const ROUND_POWER: f64 = 0.02;
+/// Share of the peak speed about which dry friction is rounded.
+const ROUND_SPEED: f64 = 0.02;
 /// Peak power below which a stream is taken to need no rounding finer, W.
 const LEAST_POWER: f64 = 1.0;
 /// Simpson's rule on a piece: share of its length and weight.
@@ -109,8 +111,21 @@ pub fn polish_stream(
     let rows = points.limit_rows(limits);
     let unit = realise(stream, plant, model).energy.total().abs().max(f64::MIN_POSITIVE);
     let round_power = ROUND_POWER * peak_power(stream, plant).max(LEAST_POWER);
-    let polish =
-        Polish { reference, plant, model, corridor, points, limits, rows, unit, round_power };
+    let round_speed = (ROUND_SPEED * peak_speed(stream)).max(f64::MIN_POSITIVE);
+    let dry = plant.dry_friction();
+    let polish = Polish {
+        reference,
+        plant,
+        model,
+        corridor,
+        points,
+        limits,
+        rows,
+        unit,
+        round_power,
+        round_speed,
+        dry,
+    };
     let mut best = polish.judge(stream.clone());
     let mut damping = DAMPING;
     let mut status = PolishStatus::Stopped;
@@ -171,6 +186,10 @@ struct Polish<'a, P> {
     unit: f64,
     /// Power about which the loss of braking is rounded, W.
     round_power: f64,
+    /// Speed about which dry friction is rounded, rad/s.
+    round_speed: f64,
+    /// Dry friction, Nm.
+    dry: Joints,
 }
 
 /// Torque, shares of the limits of the path and their derivatives at one place: `by[kind][i]` holds the change of
@@ -359,7 +378,9 @@ impl<P: Plant> Polish<'_, P> {
                 slope += per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + work);
             }
             let speed = 2.0 * self.model.speed * place.qd[a.joint];
-            slope += per * a.w1 * (self.model.work * lin.torque[a.joint] + speed);
+            let (dry, _) = self.rounded_friction(a.joint, place.qd[a.joint]);
+            let torque = lin.torque[a.joint] + dry;
+            slope += per * a.w1 * (self.model.work * torque + speed);
             model.gradient[a.index] += slope;
             for b in &columns[..=n] {
                 let mut curve: f64 = (0..DOF)
@@ -368,7 +389,9 @@ impl<P: Plant> Polish<'_, P> {
                 let mut normal = -along[a.joint] * along[b.joint];
                 if a.joint == b.joint {
                     normal += 1.0;
-                    let friction = self.model.work * lin.torque_by[1][a.joint][a.joint].max(0.0);
+                    let viscous = lin.torque_by[1][a.joint][a.joint].max(0.0);
+                    let (_, dry) = self.rounded_friction(a.joint, place.qd[a.joint]);
+                    let friction = self.model.work * (viscous + 0.5 * dry);
                     curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
                 }
                 curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
@@ -389,6 +412,17 @@ impl<P: Plant> Polish<'_, P> {
         for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
             model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
         }
+    }
+
+    /// What rounding changes of the dry friction of a joint at a velocity, Nm, and the slope of the
+    /// rounded friction, Nms: without them no step would take a joint over the kink in its work.
+    fn rounded_friction(&self, joint: usize, velocity: f64) -> (f64, f64) {
+        let root = velocity.hypot(self.round_speed);
+        let dry = self.dry[joint];
+        (
+            dry * (velocity / root - direction(velocity)),
+            dry * (self.round_speed / root).powi(2) / root,
+        )
     }
 
     /// Adds the loss of the powers at a place that are braked away: (√(p² + ε²) − p) / 2 for
@@ -497,6 +531,11 @@ fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
         (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
     };
     places(stream, &SIMPSON).iter().map(power).fold(0.0, f64::max)
+}
+
+/// The largest speed of a joint, rad/s.
+fn peak_speed(stream: &Stream) -> f64 {
+    stream.max_velocity().into_iter().fold(0.0, f64::max)
 }
 
 fn norm(vector: &Joints) -> f64 {
