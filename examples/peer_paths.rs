@@ -146,23 +146,11 @@ fn path(case: &Case) -> Value {
     json!({ "name": case.name, "sizes": sizes, "free": free(case, &limits, &caps) })
 }
 
-/// What a peer needs: the nodes, the path there, and the torques per s̈, per ṡ² and at rest with
-/// dry friction.
+/// What a peer needs: the nodes and the path there.
 fn coefficients(grid: &PathGrid) -> Value {
-    let points: Vec<_> =
-        grid.ends().iter().map(|pair| pair[0]).chain(grid.ends().last().map(|p| p[1])).collect();
-    let column = |f: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
-        (0..points.len()).map(|k| (0..DOF).map(|j| f(k, j)).collect()).collect()
-    };
-    json!({
-        "s": grid.s(),
-        "q": column(&|k, j| points[k].q[j]),
-        "q1": column(&|k, j| points[k].q1[j]),
-        "q2": column(&|k, j| points[k].q2[j]),
-        "m": column(&|k, j| points[k].m[j]),
-        "c": column(&|k, j| points[k].c[j]),
-        "g": column(&|k, j| points[k].g[j] + points[k].coulomb[j]),
-    })
+    let ends = grid.ends();
+    let points = ends.iter().map(|pair| pair[0].q).chain(ends.last().map(|pair| pair[1].q));
+    json!({ "s": grid.s(), "q": points.collect::<Vec<_>>() })
 }
 
 /// A stream that may leave its path, from the fastest profile made slower.

@@ -1,6 +1,7 @@
 //! What a stream really does, against every limit.
 
 use super::corridor::Corridor;
+use super::keep_out::least_room;
 use super::plant::STILL;
 use crate::dynamics::{Data, Load};
 use crate::energy::power::power;
@@ -117,6 +118,7 @@ pub fn check(
         acceleration: share(&stream.max_acceleration(), &limits.acceleration),
         jerk: share(&stream.max_jerk(), &limits.jerk),
         endpoint_error_rad: (0..DOF).map(|j| (stream.end()[j] - end[j]).abs()).fold(0.0, f64::max),
+        intrusion_m: body.map_or(0.0, |body| (-least_room(model, body, stream)).max(0.0)),
         ..Check::none()
     };
     let mut data = Data::new();
@@ -126,9 +128,6 @@ pub fn check(
             let (q, qd, qdd) = piece.at(tau);
             let qd = qd.map(|v| if v.abs() < STILL { 0.0 } else { v });
             result.in_range &= limits_ok(model, &q).is_ok();
-            if let Some(body) = body {
-                result.intrusion_m = result.intrusion_m.max(-body.margins(&q)[0]);
-            }
             let state = JointState { q, qd, qdd };
             let torque = if model.has_dynamics() {
                 share(&power(model, &mut data, load, &state).tau, &limits.torque)

@@ -242,6 +242,12 @@ impl Freedom {
         }
     }
 
+    /// The same without leaving any path.
+    #[must_use]
+    pub fn strict(&self) -> Freedom {
+        Freedom { deviation: 0.0, ..self.clone() }
+    }
+
     /// How far a movement may leave its path, m, more than the least that is always allowed.
     pub fn of(&self, movement: &Movement) -> f64 {
         let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);

@@ -3,6 +3,9 @@
 use super::path_energy::{EnergyModel, EnergyParts};
 use crate::motion::stream::{DOF, Joints, Stream};
 
+/// Shares of the limits of a path.
+pub type PathShares = [f64; 3];
+
 /// The robot that runs a stream.
 pub trait Plant {
     /// Torques without dry friction, Nm, at positions (rad), velocities and accelerations.
@@ -29,11 +32,11 @@ pub trait Plant {
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// What else has a limit, over that limit: the speed of the tool and its distance from the
-    /// path. `place` says where on its path the robot was a moment ago, and then where it is: a
+    /// What else has a limit, over that limit: the speed of the tool, its distance from the path,
+    /// and how near arm and tool come to what the cell keeps free. `place` says where on its path the robot was a moment ago, and then where it is: a
     /// path may cross itself.
-    fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> [f64; 2] {
-        [0.0; 2]
+    fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> PathShares {
+        PathShares::default()
     }
 
     /// Torques with dry friction, Nm; none at rest.

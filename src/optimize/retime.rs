@@ -13,7 +13,7 @@ use super::keep_out;
 use super::margins::Margins;
 use super::path_energy::EnergyModel;
 use super::path_grid;
-use super::plant::Plant;
+use super::plant::{PathShares, Plant};
 use super::reason::Reason;
 use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use super::stream_fit::{StreamFit, fit_stream};
@@ -81,6 +81,19 @@ pub struct Retiming {
     pub duration_s: f64,
     /// No timing of the path takes less in this time, J, all six parts.
     pub lower_bound_j: f64,
+    /// Whether it keeps to the path.
+    pub path: PathUse,
+}
+
+/// What a stream makes of the path of its run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PathUse {
+    /// It keeps to it, within the tolerance.
+    Kept,
+    /// It keeps to it for this reason, although it was free.
+    KeptFor(Reason),
+    /// It leaves it, as far as it is free.
+    Left,
 }
 
 /// Intervals of the grid besides those of zones.
@@ -133,9 +146,15 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         return on_path(task, goal);
     }
     // What is free is never worse than what keeps to the path.
-    let strict = Freedom { deviation: 0.0, ..task.freedom.clone() };
+    let strict = task.freedom.strict();
     let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
-    match (kept, on_path(task, goal)) {
+    let body = keep_out::body(task.model, task.run, task.freedom);
+    if body.is_some_and(|body| keep_out::enters(&body, task.run)) {
+        let path = PathUse::KeptFor(Reason::KeepOut);
+        return kept.map(|kept| Retiming { path, ..kept });
+    }
+    let free = on_path(task, goal).map(|free| Retiming { path: PathUse::Left, ..free });
+    match (kept, free) {
         (Ok(kept), Ok(free)) => {
             let bound = free_bound(task, free.duration_s - task.run.settling);
             let idle = free.energy.energy_j() - free.energy.motion_energy_j();
@@ -607,6 +626,7 @@ impl<'a> Work<'a> {
             energy_before_j: task.energy_before.energy_j(),
             duration_s: duration + task.run.settling,
             lower_bound_j: bound + idle,
+            path: PathUse::Kept,
         }
     }
 }
@@ -638,7 +658,7 @@ impl Plant for RobotPlant<'_> {
         motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
     }
 
-    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> [f64; 2] {
+    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
         let pose = tool.pose(&fk(task.model, q));
@@ -647,7 +667,7 @@ impl Plant for RobotPlant<'_> {
         let speed = rate.fixed_rows::<3>(0).norm();
         let body = self.work.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
-        [speed / (self.margins.speed * ceiling), (distance / self.margins.distance).max(near)]
+        [speed / (self.margins.speed * ceiling), distance / self.margins.distance, near]
     }
 }
 

@@ -9,7 +9,7 @@
 use super::banded::Banded;
 use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{DIFFERENCES, Plant, ROOM, Realised, direction, realise};
+use super::plant::{DIFFERENCES, PathShares, Plant, ROOM, Realised, direction, realise};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -196,10 +196,10 @@ struct Polish<'a, P> {
 /// them per change of q, q̇ or q̈ of joint i.
 struct Linearised {
     torque: Joints,
-    path: [f64; 2],
+    path: PathShares,
     torque_by: [[Joints; DOF]; 3],
-    /// Of each share of the path, by q and q̇; zero where both are far from their limits.
-    path_by: [[[f64; DOF]; 2]; 2],
+    /// Of each share of the path, by q and q̇; zero where all are far from their limits.
+    path_by: [[[f64; DOF]; 2]; 3],
 }
 
 impl<P: Plant> Polish<'_, P> {
@@ -503,7 +503,7 @@ struct Column {
     w: f64,
     w1: f64,
     torque: Joints,
-    path: [f64; 2],
+    path: PathShares,
 }
 
 /// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is broken.

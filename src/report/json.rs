@@ -193,6 +193,7 @@ fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
         "line_last": place.last,
         "kind": match segment.kind {
             SegmentKind::Timing => "timing",
+            SegmentKind::Path => "path",
             SegmentKind::Idle => "idle",
         },
         "rewritten": segment.rewritten,

@@ -23,6 +23,8 @@ pub struct Figures {
 pub enum SegmentKind {
     /// Movements, to be timed anew on their path.
     Timing,
+    /// Movements that leave their path.
+    Path,
     /// A dwell.
     Idle,
 }

@@ -9,9 +9,10 @@ use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::{Check, check};
-use crate::optimize::corridor::Corridor;
+use crate::optimize::corridor::{Corridor, Freedom};
 use crate::optimize::keep_out::body;
 use crate::optimize::reason::Reason;
+use crate::optimize::retime::{PathUse, Retiming};
 use crate::optimize::site::Site;
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
@@ -102,11 +103,16 @@ pub(super) fn verify(
     }
     if failed.is_empty() && same_events {
         let mut worst = Check::none();
+        let strict = settings.freedom.strict();
         for i in rewritten {
             let way = &ways[i];
             for event in &sites[way.site].variants[way.variant].events {
                 let (before, after) = (&original.events[*event], &simulation.events[*event]);
-                match compare(model, settings, before, after) {
+                let freedom = match &way.outcome {
+                    Ok(Retiming { path: PathUse::Left, .. }) => &settings.freedom,
+                    _ => &strict,
+                };
+                match compare(model, freedom, before, after) {
                     Ok(check) => worst = worst.max(&check),
                     Err(why) => {
                         failed.push((i, Reason::Verification(why)));
@@ -187,7 +193,7 @@ fn same_ends(a: &Run, b: &Run) -> bool {
 /// The stream that runs now against the run that was.
 fn compare(
     model: &Model,
-    settings: &Settings,
+    freedom: &Freedom,
     before: &Event,
     after: &Event,
 ) -> Result<Check, String> {
@@ -198,11 +204,11 @@ fn compare(
         return Err("the emitted points do not run as a stream".into());
     };
     let corridor =
-        Corridor::new(model, run, &settings.freedom).ok_or("the original path is not one piece")?;
+        Corridor::new(model, run, freedom).ok_or("the original path is not one piece")?;
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }
-    let body = body(model, run, &settings.freedom);
+    let body = body(model, run, freedom);
     let tool = &run.legs[0].tool;
     let check = check(model, &run.load, tool, stream, &corridor, &run.end, body.as_ref());
     if !check.holds() {

@@ -5,7 +5,7 @@ use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
 use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
-use joulepath::optimize::plant::{Plant, realise};
+use joulepath::optimize::plant::{PathShares, Plant, realise};
 use joulepath::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
 use joulepath::optimize::stream_polish::{Corridor, polish_stream};
@@ -286,8 +286,8 @@ impl Plant for Flywheel {
         [1e3; DOF]
     }
 
-    fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> [f64; 2] {
-        [qd[0].abs() / self.ceiling, 0.0]
+    fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> PathShares {
+        [qd[0].abs() / self.ceiling, 0.0, 0.0]
     }
 }
 

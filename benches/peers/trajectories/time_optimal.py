@@ -1,6 +1,6 @@
 """toppra on the paths of the example `peer_paths`: time-optimal with limits on velocity,
-acceleration and torque. It gets the torques along the path for nothing, without viscous friction,
-which it has no place for."""
+acceleration and torque, the torques by Pinocchio. Viscous friction is left out: it has no place
+for that."""
 
 import json
 import logging
@@ -9,30 +9,30 @@ import sys
 import time
 
 import numpy as np
+import pinocchio as pin
 import toppra
 from toppra import algorithm, constraint
 
 REPEATS = 5
 
 
-class Torque(constraint.LinearConstraint):
-    """|m u + c x + g| at most the limit, with coefficients at the nodes."""
+def inverse_dynamics(robot):
+    """The robot as a function of Pinocchio."""
+    model, parent = pin.Model(), 0
+    model.gravity.linear = np.array([0.0, 0.0, -9.81])
+    for index, joint in enumerate(robot["joints"]):
+        place = pin.SE3(np.array(joint["rotation"]).reshape(3, 3), np.array(joint["origin"]))
+        axis = pin.JointModelRevoluteUnaligned(np.array(joint["axis"]))
+        parent = model.addJoint(parent, axis, place, f"j{index + 1}")
+        about = np.array(joint["inertia"]).reshape(3, 3)
+        body = pin.Inertia(joint["mass"], np.array(joint["com"]), about)
+        model.appendBodyToJoint(parent, body, pin.SE3.Identity())
+    model.armature = np.array(robot["rotor"])
+    data = model.createData()
+    return lambda q, qd, qdd: pin.rnea(model, data, q, qd, qdd)
 
-    def __init__(self, grid, limit):
-        super().__init__()
-        self.identical = True
-        self.set_discretization_type(constraint.DiscretizationType.Collocation)
-        self.dof = 6
-        self.grid = [np.array(grid[name]) for name in "mcg"]
-        self.matrix = np.vstack([np.eye(6), -np.eye(6)])
-        self.bound = np.hstack([limit, limit])
 
-    def compute_constraint_params(self, path, gridpoints):
-        m, c, g = self.grid
-        return m, c, g, self.matrix, self.bound, None, None
-
-
-def solve(grid, robot):
+def solve(grid, robot, torque):
     """Duration and the time that it takes to find it, s."""
     nodes, q = np.array(grid["s"]), np.array(grid["q"])
     limits = {
@@ -45,7 +45,9 @@ def solve(grid, robot):
         constraint.JointAccelerationConstraint(
             np.c_[-limits["acceleration"], limits["acceleration"]]
         ),
-        Torque(grid, limits["torque"]),
+        constraint.JointTorqueConstraint(
+            torque, np.c_[-limits["torque"], limits["torque"]], np.array(robot["coulomb"])
+        ),
     ]
     instance = algorithm.TOPPRA(rows, path, gridpoints=nodes, solver_wrapper="seidel")
     _, speed, _ = instance.compute_parameterization(0.0, 0.0)
@@ -59,11 +61,12 @@ def main():
     logging.getLogger("toppra").setLevel(logging.ERROR)
     with open(sys.argv[1], encoding="utf-8") as file:
         data = json.load(file)
+    torque = inverse_dynamics(data["robot"])
     ratios, energies = {}, []
     print("path, nodes: toppra ms, joulepath ms, ratio; durations s")
     for path in data["paths"]:
         for size, label in zip(path["sizes"], (100, 1000)):
-            results = [solve(size["grid"], data["robot"]) for _ in range(REPEATS)]
+            results = [solve(size["grid"], data["robot"], torque) for _ in range(REPEATS)]
             peer = min(seconds for _, seconds in results)
             own = size["time_optimal_s"]
             ratios.setdefault(label, []).append(peer / own)

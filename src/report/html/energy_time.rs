@@ -35,7 +35,7 @@ struct Point {
 /// The figure; none where nothing moves.
 pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<String> {
     let points: Vec<Point> = numbered(retrofit)
-        .filter(|(_, segment)| segment.kind == SegmentKind::Timing && segment.time_before_s > 0.0)
+        .filter(|(_, segment)| segment.kind != SegmentKind::Idle && segment.time_before_s > 0.0)
         .map(|(number, segment)| {
             let n = segment.executions as f64;
             Point {
