@@ -1,5 +1,5 @@
 //! What timing saves on reference paths, and what streams realise of it:
-//! `cargo run --release --example savings`. `docs/savings.md` has the table.
+//! `cargo run --release --example savings`. `docs/trajectories.md` has the table.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
@@ -16,7 +16,7 @@ use joulepath::motion::controller::motion_limits;
 use joulepath::motion::sampling::{Loaded, SpeedCap};
 use joulepath::motion::timed::TimedMotion;
 use joulepath::motion::timing::limits::PathLimits;
-use joulepath::motion::timing::refined::time_optimal_between;
+use joulepath::motion::timing::refined::{Refined, time_optimal_between};
 use joulepath::optimize::corridor::{Ceilings, Freedom};
 use joulepath::optimize::cost::Cost;
 use joulepath::optimize::energy_program::minimize_energy;
@@ -65,6 +65,10 @@ fn main() {
     let ratios: Vec<f64> = joint.par_iter().filter_map(|case| lateness(case)).collect();
     println!("time of the fastest stream over the least with its jerk, {} moves:", ratios.len());
     println!("                    {}", quartiles(ratios));
+    let others = cases.par_iter().filter(|case| case.kind != Kind::EasyJoint);
+    let ratios: Vec<f64> = others.filter_map(slowness).collect();
+    println!("and over the least without a limit on jerk, {} lines and blends:", ratios.len());
+    println!("                    {}", quartiles(ratios));
 }
 
 /// Lowest, quarter, median, three quarters, highest.
@@ -90,7 +94,8 @@ fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
     }
 }
 
-fn saving(case: &Case, factor: f64) -> Option<Saving> {
+/// The fastest profile on the path of a case, without a limit on jerk.
+fn fastest(case: &Case) -> Option<(PathLimits, Refined)> {
     let (path, run) = (case.path()?, case.run());
     let limits = motion_limits(&case.model, 1.0);
     let limits = PathLimits::new(limits.acceleration, limits.torque).ok()?;
@@ -100,7 +105,21 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let nodes = path_grid::nodes_with_edges(&case.model, path, &caps, INTERVALS);
     let refined =
         time_optimal_between(nodes, &limits, |nodes| path_grid::grid(loaded, path, nodes, &caps));
-    let refined = refined.ok()?.held()?;
+    Some((limits, refined.ok()?.held()?))
+}
+
+/// Time of the fastest stream over the least of its path without a limit on jerk: more than what
+/// the limit costs any controller.
+fn slowness(case: &Case) -> Option<f64> {
+    let least = fastest(case)?.1.profile.duration();
+    let freedom = Freedom::none();
+    let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
+}
+
+fn saving(case: &Case, factor: f64) -> Option<Saving> {
+    let run = case.run();
+    let (limits, refined) = fastest(case)?;
     let (grid, fastest) = (&refined.grid, &refined.profile);
     let model = Cost::Electrical.model(&case.model);
     let time = factor * fastest.duration();
