@@ -113,14 +113,21 @@ fn arm_and_tool_stay_out_of_a_box() {
 
 #[test]
 fn small_experiments_are_rapid_too() {
-    for variant in ["friction", "wrist"] {
+    for (variant, more) in
+        [("friction", &[][..]), ("wrist", &["--torque", "motor-torque", "--spacing", "adaptive"])]
+    {
         let folder = tempfile::tempdir().unwrap();
-        let found = excite(&folder, &["--variant", variant]);
+        let found = excite(&folder, &[&["--variant", variant], more].concat());
         for (what, ratio) in found["max_ratio"].as_object().unwrap() {
             assert!(ratio.as_f64().unwrap() <= 1.0, "{variant}: {what} {ratio}");
         }
         assert!(found["self_margin_m"].as_f64().unwrap() >= 0.0);
         is_rapid(&folder);
+        let logger = fs::read_to_string(folder.path().join("JoulepathLogger.mod")).unwrap();
+        assert_eq!(logger.contains("TestSignDefine"), more.is_empty());
+        let ratio = find(ROBOT).unwrap().motors.unwrap().ratio[3];
+        let line = format!("tau.rax_4:={ratio}*GetMotorTorque(\\MecUnit:=ROB_1,4);");
+        assert_eq!(logger.contains(&line), !more.is_empty(), "{logger}");
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::str::FromStr;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
@@ -14,7 +15,7 @@ use serde_json::{Value, json};
 use super::common::{self, Format};
 use super::{load, output};
 use crate::dynamics::{Data, Load, torque};
-use crate::emit::{Excitation, Points, excitation};
+use crate::emit::{Excitation, LoggedTorques, Points, excitation};
 use crate::excite::{
     Blend, Checked, Design, Focus, Information, Plateaus, Series, State, blends, check, design,
     friction_plateaus, wrist_plateaus,
@@ -24,6 +25,9 @@ use crate::robot::{self, Model};
 
 /// Interval of the rows of the table \[s\]: the grid on which limits are checked.
 const FINE: f64 = 0.001;
+/// What adaptive points may lie off the path \[rad\], and their largest distance \[s\].
+const OFF_PATH: f64 = 1e-3;
+const WIDEST: f64 = 0.1;
 /// Share of joint 1's range by which its marks lie off its middle.
 const MARKS: f64 = 0.02;
 
@@ -69,9 +73,14 @@ pub struct ExciteArgs {
     #[arg(long, value_name = "SHARE", default_value_t = 0.8)]
     speed_share: f64,
 
-    /// Time between the points of the stream, seconds.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
-    spacing: f64,
+    /// Time between the points of the stream, seconds, or `adaptive`: as far apart as keeps the
+    /// path within 1 mrad.
+    #[arg(long, value_name = "SECONDS", default_value = "0.01")]
+    spacing: Spacing,
+
+    /// Where the logger has torques from.
+    #[arg(long, value_enum, default_value_t = TorqueArg::TestSignal)]
+    torque: TorqueArg,
 
     /// Where the tool reaches, tool0, mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
@@ -92,6 +101,55 @@ pub struct ExciteArgs {
     /// No notes and no progress on standard error.
     #[arg(long, short)]
     quiet: bool,
+}
+
+/// Time between points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Spacing {
+    /// \[s\].
+    Seconds(f64),
+    /// As the motion allows.
+    Adaptive,
+}
+
+impl FromStr for Spacing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Spacing, String> {
+        if text == "adaptive" {
+            return Ok(Spacing::Adaptive);
+        }
+        match text.parse() {
+            Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => {
+                Ok(Spacing::Seconds(seconds))
+            }
+            _ => Err("give a number of seconds above 0, or adaptive".into()),
+        }
+    }
+}
+
+impl Spacing {
+    /// For a motion with such states \[s\].
+    fn of(self, states: &[State]) -> f64 {
+        match self {
+            Spacing::Seconds(seconds) => seconds,
+            Spacing::Adaptive => {
+                let hardest = states.iter().flat_map(|[_, _, qdd]| qdd.iter());
+                let hardest = hardest.fold(0.0, |m: f64, x| m.max(x.abs()));
+                // A corner is cut in the middle between points: q̈ Δt²/8 off.
+                (8.0 * OFF_PATH / hardest).sqrt().min(WIDEST)
+            }
+        }
+    }
+}
+
+/// Where the logger has torques from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TorqueArg {
+    /// Test signal 4002, arm side.
+    TestSignal,
+    /// `GetMotorTorque`, for controllers without test signals; needs the robot's gear ratios.
+    MotorTorque,
 }
 
 /// Experiments.
@@ -161,7 +219,6 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         bail!("{option} {value}: give a number above 0")
     };
     positive("--base-frequency", args.base_frequency)?;
-    positive("--spacing", args.spacing)?;
     positive("--speed-share", args.speed_share)?;
     if args.speed_share > 1.0 {
         bail!("--speed-share {}: give a share of the speed limits, at most 1", args.speed_share);
@@ -260,7 +317,6 @@ fn of_design(
     };
     let found = design(model, settings, &progress)?;
     bar.finish_and_clear();
-    let series = &found.series;
     let fits = |states: &[State]| {
         let checked = check(model, body, &settings.load, states);
         let r = &checked.ratios;
@@ -269,21 +325,24 @@ fn of_design(
             && checked.to_obstacles >= 0.0
             && checked.to_itself >= 0.0
     };
-    let blends = blends(model, series, &fits);
-    if blends.is_none() {
+    let Some((series, blends)) = blends(model, &found.series, &fits) else {
         bail!("no way from rest into the motion keeps the limits: give another --seed");
-    }
+    };
+    let states = sampled(&series);
     // A period is a whole number of points; a slow motion needs no more of them.
-    let slower = args.base_frequency / settings.base_frequency;
-    let points = (series.period() / (slower * args.spacing)).round().max(3.0) as usize;
+    let spacing = match args.spacing {
+        Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
+        Spacing::Adaptive => 1.0,
+    } * args.spacing.of(&states);
+    let points = (series.period() / spacing - 1e-6).ceil().max(3.0) as usize;
     let cycles =
         if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
     Ok(Motion {
         period: series.period(),
         cycles,
-        states: sampled(series),
+        states,
         points: series.sampled(points),
-        blends,
+        blends: Some(blends),
         information: Some(found.information),
         checked: found.checked,
     })
@@ -310,7 +369,10 @@ fn of_plateaus(
     Motion {
         period: plateaus.duration(),
         cycles: 1,
-        points: plateaus.sampled(EVEN * args.spacing),
+        points: plateaus.sampled(match args.spacing {
+            Spacing::Seconds(seconds) => EVEN * seconds,
+            Spacing::Adaptive => args.spacing.of(&states),
+        }),
         blends: None,
         information: None,
         checked: check(model, body, &settings.load, &states),
@@ -363,6 +425,7 @@ fn write(
         lists,
         stop: stop.unwrap_or_default(),
         marks: [middle - MARKS * range, middle + MARKS * range],
+        torques: logged_torques(args.torque, model)?,
     })?;
     let mut outputs = Vec::new();
     let table = table(model, load, motion);
@@ -372,6 +435,19 @@ fn write(
         outputs.push(path.display().to_string());
     }
     Ok(outputs)
+}
+
+fn logged_torques(from: TorqueArg, model: &Model) -> anyhow::Result<LoggedTorques> {
+    if from == TorqueArg::TestSignal {
+        return Ok(LoggedTorques::TestSignals);
+    }
+    let Some(motors) = &model.motors else {
+        bail!(
+            "--torque motor-torque: {} has no gear ratios; give them in [motors] of a robot file",
+            model.name
+        );
+    };
+    Ok(LoggedTorques::Motors { ratio: motors.ratio.clone(), coupling: model.wrist.coupling })
 }
 
 fn title(variant: Variant) -> &'static str {

@@ -150,6 +150,17 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
         let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
         tell(args, &mut basis, text);
     }
+    for (joint, share) in samples.share_at_limits().into_iter().enumerate() {
+        if share > 0.0 {
+            let text = format!(
+                "joint {}: the torque stands at a limit for {:.2} % of the time while the joint \
+                 changes its speed: left out, for that joint",
+                joint + 1,
+                100.0 * share
+            );
+            tell(args, &mut basis, text);
+        }
+    }
     let files: Vec<&str> = basis.logs.iter().map(|log| log.0.as_str()).collect();
     let when = args.date.as_ref().map_or_else(String::new, |date| format!(", {date}"));
     let settings = Settings {

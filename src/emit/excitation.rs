@@ -11,6 +11,8 @@ const PREFIX: &str = "jpExcite";
 const TASK: &str = "T_ROB1";
 const UNIT: &str = "ROB_1";
 const SIGNAL: &str = "doJpSync";
+/// Decimals of gear ratios.
+const RATIO_DECIMALS: usize = 5;
 /// Interval of the logger \[s\]: the fastest that test signals have.
 const INTERVAL: f64 = 0.004;
 /// Rows of the logger at most: what a RAPID array takes from a task's memory.
@@ -27,6 +29,20 @@ pub struct Points {
     pub repeated: bool,
     /// \[rad\].
     pub points: Vec<[f64; 6]>,
+}
+
+/// Where a controller tells the torques.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoggedTorques {
+    /// Test signal 4002: arm side.
+    TestSignals,
+    /// `GetMotorTorque`, motor side.
+    Motors {
+        /// Gear ratios.
+        ratio: Vec<f64>,
+        /// Turns of motor 6 for a turn of axis 5, relative to its ratio.
+        coupling: f64,
+    },
 }
 
 /// A motion to emit.
@@ -50,6 +66,8 @@ pub struct Excitation {
     pub stop: [f64; 6],
     /// Angles of joint 1 at which the mark falls and rises \[rad\].
     pub marks: [f64; 2],
+    /// Where the logger has torques from.
+    pub torques: LoggedTorques,
 }
 
 /// Two modules with their names.
@@ -126,6 +144,16 @@ pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
     context.insert("mark_low", &number(of.marks[0].to_degrees(), 2));
     context.insert("mark_high", &number(of.marks[1].to_degrees(), 2));
     context.insert("joints", &["1", "2", "3", "4", "5", "6"]);
+    match &of.torques {
+        LoggedTorques::TestSignals => context.insert("test_signals", &true),
+        LoggedTorques::Motors { ratio, coupling } => {
+            let shown: Vec<String> = ratio.iter().map(|n| number(*n, RATIO_DECIMALS)).collect();
+            context.insert("test_signals", &false);
+            context.insert("ratios", &shown);
+            let coupled = *coupling != 0.0;
+            context.insert("coupling", &coupled.then(|| number(*coupling, RATIO_DECIMALS)));
+        }
+    }
     let logger_text = tera.render("logger", &context)?;
     Ok(ExcitationModules {
         motion: (format!("{motion}.mod"), motion_text),

@@ -10,7 +10,7 @@ pub mod names;
 pub mod stream_module;
 
 pub use brake_note::{BrakeDwell, brake_note};
-pub use excitation::{Excitation, ExcitationModules, Points, excitation};
+pub use excitation::{Excitation, ExcitationModules, LoggedTorques, Points, excitation};
 pub use generated::{
     GeneratedMove, GeneratedNames, egm_module, generated_module, jointtarget, main_module,
     stream_time,

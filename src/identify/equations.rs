@@ -13,6 +13,7 @@ use crate::dynamics::{
 use crate::log::LowPass;
 use crate::robot::{MAX_DOF, Model};
 
+use super::clipped::is_clipped;
 use super::samples::{Block, Samples, Source};
 
 /// Instants that are kept for each period of the filter's cut-off frequency.
@@ -49,7 +50,8 @@ pub struct Instant<'a> {
     pub y: &'a [f64],
     /// Torques \[Nm\].
     pub tau: &'a [f64],
-    /// Whether the equation of each joint can be used: its friction has a sense.
+    /// Whether the equation of each joint can be used: its friction has a sense, and its
+    /// torque was recorded whole.
     pub usable: [bool; MAX_DOF],
 }
 
@@ -116,7 +118,7 @@ impl Equations<'_> {
                     x: &x,
                     y: &y[..n],
                     tau: &y[n..],
-                    usable: self.usable(samples, &qd),
+                    usable: self.usable(samples, &qd, of, of.t[index], 0.5 * samples.step),
                 });
             }
         }
@@ -142,6 +144,7 @@ impl Equations<'_> {
         let mut sum = vec![0.0; span];
         let weights = filter.weights(0);
         let mut kept = 0;
+        let reach = filter.half as f64 * samples.step;
         for index in 0..of.len() {
             let place = index % width;
             let row = &mut ring[place * span..(place + 1) * span];
@@ -169,7 +172,7 @@ impl Equations<'_> {
                 x,
                 y: &y[..n],
                 tau: &y[n..],
-                usable: self.usable(samples, &qd),
+                usable: self.usable(samples, &qd, of, of.t[centre], reach),
             });
             kept += 1;
         }
@@ -217,7 +220,16 @@ impl Equations<'_> {
 
     /// A joint at rest takes any friction up to the static one, so its equation says
     /// nothing. With a coupled wrist the motor of axis 6 has to turn too.
-    fn usable(&self, samples: &Samples, qd: &[f64; MAX_DOF]) -> [bool; MAX_DOF] {
+    ///
+    /// Nor does one whose torque stands at a limit within `reach` of the time \[s\].
+    fn usable(
+        &self,
+        samples: &Samples,
+        qd: &[f64; MAX_DOF],
+        block: &Block,
+        t: f64,
+        reach: f64,
+    ) -> [bool; MAX_DOF] {
         let n = self.model.dof;
         let turning = |joint: usize, rate: f64| rate.abs() > samples.rest[joint];
         let mut usable = [false; MAX_DOF];
@@ -228,6 +240,9 @@ impl Equations<'_> {
             let sixth = turning(5, motor_rates(self.model, &qd[..n])[5]);
             usable[4] &= sixth;
             usable[5] = sixth;
+        }
+        for (usable, spans) in usable.iter_mut().zip(&block.clipped) {
+            *usable &= !is_clipped(spans, t, reach);
         }
         usable
     }

@@ -4,6 +4,7 @@
 //! [`fit`] the base parameters, [`identify`] a model that can be.
 
 mod clean;
+mod clipped;
 mod consistent;
 mod descent;
 mod equations;

@@ -5,6 +5,7 @@ use crate::log::{
     sections,
 };
 
+use super::clipped::{Spans, clipped, folded};
 use super::error::IdentifyError;
 use super::noise::autocovariance;
 use super::samples::{Block, Samples, Source};
@@ -53,9 +54,10 @@ pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, Ide
     let q = owned(log, Channel::Position).unwrap_or_default();
     let (qd, qdd) = (owned(log, Channel::Velocity), owned(log, Channel::Acceleration));
     let resting: Vec<usize> = (0..joints).filter(|joint| range(&q[*joint]) < MOVES).collect();
+    let clipped = clipped(log.time(), &q, tau);
     let mut samples = match (qd, qdd) {
         (Some(qd), Some(qdd)) => {
-            let block = Block { t: log.time().to_vec(), q, qd, qdd, tau: tau.to_vec() };
+            let block = Block { t: log.time().to_vec(), q, qd, qdd, tau: tau.to_vec(), clipped };
             Samples {
                 step: median_step(&block.t),
                 blocks: vec![block],
@@ -66,7 +68,7 @@ pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, Ide
                 repetitions: None,
             }
         }
-        (qd, _) => differentiated(log, &q, qd.as_deref(), tau, resting, hints)?,
+        (qd, _) => differentiated(log, &q, qd.as_deref(), (tau, &clipped), resting, hints)?,
     };
     still(&mut samples);
     Ok(samples)
@@ -104,7 +106,7 @@ fn differentiated(
     log: &Log,
     q: &[Vec<f64>],
     qd: Option<&[Vec<f64>]>,
-    tau: &[Vec<f64>],
+    (tau, clipped): (&[Vec<f64>], &Spans),
     resting: Vec<usize>,
     hints: Hints,
 ) -> Result<Samples, IdentifyError> {
@@ -127,6 +129,8 @@ fn differentiated(
         && let Some(periods) = find_periods(&positions, step, known)
     {
         let mut samples = periodic(longest, &periods, joints, resting);
+        let start = samples.blocks[0].t[0];
+        samples.blocks[0].clipped = folded(clipped, start, periods.period);
         for (joint, rest) in samples.rest.iter_mut().enumerate() {
             let hard = samples.blocks[0].qdd[joint].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
             *rest = rest.max(hard * smeared);
@@ -150,7 +154,7 @@ fn differentiated(
         .iter()
         // Twice the kernel, and some instants to use.
         .filter(|section| section.len() > 3 * filter.width())
-        .map(|section| block(section, joints, &filter))
+        .map(|section| block(section, joints, &filter, clipped))
         .collect();
     if blocks.is_empty() {
         return Err(IdentifyError::Short { seconds: 3.0 * step * filter.width() as f64 });
@@ -239,6 +243,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
         qd,
         qdd,
         tau: mean.mean[..joints].to_vec(),
+        clipped: vec![Vec::new(); joints],
     };
     let blocks = vec![block];
     Samples {
@@ -266,7 +271,7 @@ fn is_settling(spread: &[Vec<Vec<f64>>]) -> bool {
     })
 }
 
-fn block(section: &Section, joints: usize, filter: &LowPass) -> Block {
+fn block(section: &Section, joints: usize, filter: &LowPass, clipped: &Spans) -> Block {
     let all = |from: usize, order: usize| -> Vec<Vec<f64>> {
         section.series[from..from + joints].iter().map(|x| filter.filtered(x, order)).collect()
     };
@@ -279,8 +284,11 @@ fn block(section: &Section, joints: usize, filter: &LowPass) -> Block {
         .iter()
         .map(|x| x[filter.half..filter.half + count].to_vec())
         .collect();
-    let t = (0..count).map(|i| section.time(i + filter.half)).collect();
-    Block { t, q, qd, qdd, tau }
+    let t: Vec<f64> = (0..count).map(|i| section.time(i + filter.half)).collect();
+    let here =
+        |span: &&[f64; 2]| span[1] >= section.start && span[0] <= section.time(section.len());
+    let clipped = clipped.iter().map(|of| of.iter().filter(here).copied().collect()).collect();
+    Block { t, q, qd, qdd, tau, clipped }
 }
 
 /// The rate below which a joint counts as at rest \[rad/s\].

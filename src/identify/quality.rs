@@ -191,6 +191,7 @@ fn missed(equations: &Equations<'_>, samples: &Samples, block: &Block, shift: f6
         qd: of(&block.qd),
         qdd: of(&block.qdd),
         tau,
+        clipped: block.clipped.clone(),
     };
     let samples = Samples { blocks: vec![part], noise: None, repetitions: None, ..samples.clone() };
     let factors = Factors::of(equations, &samples, 1);

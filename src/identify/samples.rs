@@ -2,6 +2,8 @@
 
 use crate::robot::MAX_DOF;
 
+use super::clipped::is_clipped;
+
 /// Where the rates and accelerations come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
@@ -36,6 +38,8 @@ pub struct Block {
     pub qdd: Vec<Vec<f64>>,
     /// Torques at each joint \[Nm\].
     pub tau: Vec<Vec<f64>>,
+    /// Of each joint, spans of time in which its torque stands at a limit \[s\].
+    pub clipped: Vec<Vec<[f64; 2]>>,
 }
 
 impl Block {
@@ -93,5 +97,20 @@ impl Samples {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Of each joint, instants at which its torque stands at a limit, as a share of all.
+    #[must_use]
+    pub fn share_at_limits(&self) -> Vec<f64> {
+        let joints = self.blocks.first().map_or(0, |block| block.clipped.len());
+        let mut counts = vec![0_usize; joints];
+        for block in &self.blocks {
+            for (count, spans) in counts.iter_mut().zip(&block.clipped) {
+                if !spans.is_empty() {
+                    *count += block.t.iter().filter(|t| is_clipped(spans, **t, 0.0)).count();
+                }
+            }
+        }
+        counts.iter().map(|count| *count as f64 / self.len().max(1) as f64).collect()
     }
 }

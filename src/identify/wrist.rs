@@ -90,6 +90,7 @@ fn shortened(samples: &Samples) -> Samples {
         qd: of(&longest.qd),
         qdd: of(&longest.qdd),
         tau: of(&longest.tau),
+        clipped: longest.clipped.clone(),
     };
     Samples { blocks: vec![block], ..samples.clone() }
 }

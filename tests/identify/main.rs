@@ -21,6 +21,8 @@ use simulated::{With, irb1600, log, series};
 
 /// Relative, of data without noise and of two solvers.
 const EXACT: f64 = 1e-8;
+/// Standard deviations that none of 58 estimates is off by, but for one time in 5,000.
+const SD_OF_ALL: f64 = 4.5;
 /// Share of the 95 % intervals that have to hold the truth.
 const COVERED: std::ops::RangeInclusive<f64> = 0.93..=0.97;
 
@@ -236,6 +238,32 @@ fn a_coupled_wrist_is_found_and_a_plain_one_is_not() {
         match (found.coupling, expected) {
             (Some(found), Some(expected)) => assert!((found - expected).abs() < 0.02, "{found}"),
             (found, expected) => assert_eq!(found, expected),
+        }
+    }
+}
+
+/// What a drive at its limit records is the limit: with it the estimate is biased.
+#[test]
+fn torques_at_a_limit_are_left_out() {
+    let model = irb1600();
+    for (seed, with, duration) in [(8, With::Rates, 10.0), (9, With::Positions, 30.0)] {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut log = log(&model, &series(seed), [duration, 0.005], with, [1.0, 0.0], &mut random);
+        let tau = log.channels.iter().position(|c| *c == Channel::Torque(1)).unwrap();
+        let highest = log.values[tau].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let limit = 0.7 * highest;
+        log.values[tau].iter_mut().for_each(|x| *x = x.clamp(-limit, limit));
+        let samples = samples(&log, &model);
+        let shares = samples.share_at_limits();
+        assert!(shares[1] > 0.01 && shares[0] == 0.0, "{shares:?}");
+        let found =
+            identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
+        let solution = &found.fit.solution;
+        let truth = truth(&model, &found.base);
+        for (row, column) in solution.determined.iter().enumerate() {
+            let sd = found.fit.covariance[(row, row)].sqrt();
+            let off = (solution.beta[*column] - truth[*column]) / sd;
+            assert!(off.abs() < SD_OF_ALL, "{}: {off}", found.base.name(*column));
         }
     }
 }
