@@ -122,16 +122,6 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
 }
 
 #[test]
-fn streams_save_more_than_speeds() {
-    let folder = tempfile::tempdir().unwrap();
-    let speeds = run(folder.path(), &["--emit", "retime", "--input", "diPart=4"]);
-    let folder = tempfile::tempdir().unwrap();
-    let streams = run(folder.path(), &["--input", "diPart=4"]);
-    let saved = |result: &Value| number(result, "/motion_saving_percent");
-    assert!(saved(&streams) > saved(&speeds), "{} {}", saved(&streams), saved(&speeds));
-}
-
-#[test]
 fn positions_for_a_guide_stand_beside_an_unchanged_program() {
     let folder = tempfile::tempdir().unwrap();
     let streams = run(folder.path(), &[]);
