@@ -7,6 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::emit::Layout;
 use joulepath::motion::Options;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::retrofit::{Budget, Form, Objective, Settings, Source, retrofit};
 use joulepath::robot;
 use joulepath::text::{FileId, SourceFile};
@@ -36,6 +37,8 @@ fn pick_place(c: &mut Criterion) {
         freedom: Freedom::none(),
         form: Form::Streams,
         layout: Layout::Auto,
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let mut group = c.benchmark_group("retrofit");
     group.sample_size(10);

@@ -11,6 +11,7 @@ use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::optimize::check::Check;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{
@@ -60,6 +61,8 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         freedom: Freedom::none(),
         form: Form::Streams,
         layout: Layout::Auto,
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();
@@ -169,6 +172,7 @@ fn small(path: &str) -> Small {
             points: 9,
             potential_j: if kind == SegmentKind::Idle { 12.5 } else { 0.0 },
             events: events.to_vec(),
+            pareto: Vec::new(),
         }
     };
     let home = "MoveAbsJ jHome,v1000,fine,tool0;";

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use joulepath::emit::Layout;
 use joulepath::motion::Options;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::retrofit::{
     Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
 };
@@ -51,6 +52,8 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
         freedom: Freedom::none(),
         form: Form::Streams,
         layout: Layout::Auto,
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let model = find("IRB1600-10/1.45").unwrap();
     let result = retrofit(&files, &model, &settings, &|_, _| ());

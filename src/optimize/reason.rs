@@ -50,6 +50,8 @@ pub enum Reason {
     TooShort(f64),
     /// No stream within the limits was found.
     NoStream(String),
+    /// It might leave its path, which comes into what the cell keeps free already.
+    KeepOut,
     /// More variants than a program should carry.
     TooManyVariants(usize),
     /// The emitted text did not hold what was promised.
@@ -89,6 +91,7 @@ impl Reason {
             Reason::NoSaving => "no-saving",
             Reason::TooShort(_) => "too-short",
             Reason::NoStream(_) => "no-stream",
+            Reason::KeepOut => "keep-out",
             Reason::TooManyVariants(_) => "too-many-variants",
             Reason::Verification(_) => "verification",
             Reason::ShortDwell(_) => "short-dwell",
@@ -110,6 +113,7 @@ impl Reason {
                 | Reason::NoSaving
                 | Reason::Timed
                 | Reason::NotReached
+                | Reason::KeepOut
                 | Reason::ShortDwell(_)
                 | Reason::UnknownDwell
                 | Reason::NeedsSetting(_)
@@ -158,6 +162,9 @@ impl std::fmt::Display for Reason {
             Reason::NoMotion => f.write_str("the robot is there already"),
             Reason::NoSaving => f.write_str("no energy is saved in the time that there is"),
             Reason::TooShort(least) => write!(f, "it takes at least {least:.3} s"),
+            Reason::KeepOut => f.write_str(
+                "it keeps to its path, which comes into what the cell keeps free already",
+            ),
             Reason::TooManyVariants(n) => write!(f, "it runs in {n} different ways"),
             Reason::ShortDwell(break_even) if break_even.is_infinite() => {
                 f.write_str("nothing is to be held, or no brake is known")

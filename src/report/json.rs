@@ -9,6 +9,7 @@ use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::optimize::check::Check;
+use crate::optimize::retime::TimeEnergy;
 use crate::retrofit::{
     Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind, SignalShift,
 };
@@ -203,12 +204,13 @@ fn ratios(check: &Check) -> Value {
 
 fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
     let place = places.of(segment.span);
-    json!({
+    let mut value = json!({
         "file": place.file,
         "line_first": place.first,
         "line_last": place.last,
         "kind": match segment.kind {
             SegmentKind::Timing => "timing",
+            SegmentKind::Path => "path",
             SegmentKind::Idle => "idle",
         },
         "rewritten": segment.rewritten,
@@ -222,7 +224,18 @@ fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
         "lower_bound_j": segment.lower_bound_j,
         "points": segment.points,
         "potential_j": segment.potential_j,
-    })
+    });
+    if !segment.pareto.is_empty() {
+        let point = |point: &TimeEnergy| {
+            json!({
+                "time_s": point.time_s,
+                "energy_j": point.energy_j,
+                "lower_bound_j": point.lower_bound_j,
+            })
+        };
+        value["pareto"] = segment.pareto.iter().map(point).collect();
+    }
+    value
 }
 
 fn file(output: &OutputFile) -> Value {

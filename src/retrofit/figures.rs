@@ -5,6 +5,7 @@ use crate::energy::Account;
 use crate::motion::Simulation;
 use crate::optimize::check::Check;
 use crate::optimize::reason::Reason;
+use crate::optimize::retime::TimeEnergy;
 use crate::text::Span;
 
 /// Time and energy of one cycle.
@@ -23,6 +24,8 @@ pub struct Figures {
 pub enum SegmentKind {
     /// Movements, to be timed anew on their path.
     Timing,
+    /// Movements that leave their path.
+    Path,
     /// A dwell.
     Idle,
 }
@@ -59,6 +62,8 @@ pub struct Segment {
     pub potential_j: f64,
     /// Events of the simulations in which it runs, for plots.
     pub events: Vec<usize>,
+    /// Least energy over time of one execution, in its first way; empty where not asked for.
+    pub pareto: Vec<TimeEnergy>,
 }
 
 impl Segment {
@@ -79,6 +84,7 @@ impl Segment {
             points: 0,
             potential_j: 0.0,
             events: Vec::new(),
+            pareto: Vec::new(),
         }
     }
 }

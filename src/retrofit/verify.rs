@@ -10,8 +10,10 @@ use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::{Check, check};
-use crate::optimize::corridor::Corridor;
+use crate::optimize::corridor::{Corridor, Freedom};
+use crate::optimize::keep_out::body;
 use crate::optimize::reason::Reason;
+use crate::optimize::retime::PathUse;
 use crate::optimize::site::Site;
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
@@ -112,12 +114,17 @@ pub(super) fn verify(
     if failed.is_empty() && same_events {
         let mut worst = Check::none();
         let mut strayed: f64 = 0.0;
+        let strict = settings.freedom.strict();
         for i in rewritten {
             let way = &ways[i];
             for event in &sites[way.site].variants[way.variant].events {
                 let (before, after) = (&original.events[*event], &simulation.events[*event]);
                 let Ok(retiming) = &way.outcome else { continue };
-                match compare(model, settings, before, after, &retiming.stream) {
+                let freedom = match retiming.path {
+                    PathUse::Left => &settings.freedom,
+                    _ => &strict,
+                };
+                match compare(model, freedom, before, after, &retiming.stream) {
                     Ok((check, distance)) => {
                         worst = worst.max(&check);
                         strayed = strayed.max(distance);
@@ -225,7 +232,7 @@ fn same_ends(a: &Run, b: &Run) -> bool {
 /// one.
 fn compare(
     model: &Model,
-    settings: &Settings,
+    freedom: &Freedom,
     before: &Event,
     after: &Event,
     intended: &Stream,
@@ -237,11 +244,13 @@ fn compare(
         return Err("the emitted points do not run as a stream".into());
     };
     let corridor =
-        Corridor::new(model, run, &settings.freedom).ok_or("the original path is not one piece")?;
+        Corridor::new(model, run, freedom).ok_or("the original path is not one piece")?;
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }
-    let check = check(model, &run.load, &run.legs[0].tool, stream, &corridor, &run.end);
+    let body = body(model, run, freedom);
+    let tool = &run.legs[0].tool;
+    let check = check(model, &run.load, tool, stream, &corridor, &run.end, body.as_ref());
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points".into());
     }

@@ -14,9 +14,10 @@ use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
 use crate::optimize::corridor::Freedom;
+use crate::optimize::cost::Cost;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Goal, Retiming, Task, retime};
+use crate::optimize::retime::{Goal, Retiming, Task, TimeEnergy, pareto, retime};
 use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
@@ -89,6 +90,10 @@ pub struct Settings {
     pub form: Form,
     /// How the points of streams are written.
     pub layout: Layout,
+    /// What stands for energy.
+    pub cost: Cost,
+    /// Points of the curve of energy over time of each segment; 0 for none.
+    pub pareto: usize,
 }
 
 /// Why a program can't be retrofitted at all.
@@ -277,12 +282,14 @@ pub(super) struct Way {
     pub(super) variant: usize,
     /// Its stream, or why there is none.
     pub(super) outcome: Outcome,
+    /// Its curve of energy over time, if that is asked for.
+    pub(super) pareto: Vec<TimeEnergy>,
 }
 
 impl Way {
     /// A way without more than its outcome.
     pub(super) fn new(site: usize, variant: usize, outcome: Outcome) -> Way {
-        Way { site, variant, outcome }
+        Way { site, variant, outcome, pareto: Vec::new() }
     }
 }
 
@@ -432,6 +439,7 @@ fn retime_all(
                 energy_before: energy,
                 spacing_s: settings.spacing_s,
                 freedom: &settings.freedom,
+                cost: settings.cost,
             };
             Some((*i, task))
         })
@@ -475,6 +483,13 @@ fn retime_all(
     }
     for (i, outcome) in outcomes {
         ways[i].outcome = outcome;
+    }
+    if settings.pareto > 0 {
+        let curves: Vec<(usize, Vec<TimeEnergy>)> =
+            tasks.par_iter().map(|(i, task)| (*i, pareto(task, settings.pareto))).collect();
+        for (i, curve) in curves {
+            ways[i].pareto = curve;
+        }
     }
     Ok(ways)
 }
