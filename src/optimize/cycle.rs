@@ -25,30 +25,17 @@ pub struct Known {
 
 /// Points of a curve for each stretch of it.
 const REFINEMENT: usize = 12;
-/// What one more second saves falls with this power of the time. Measured on the runs of
-/// `fixtures/pick_place`: 3.6 to 4.6 for longer times than before, 4 to 7.6 for shorter ones.
-const LONGER: i32 = 4;
-const SHORTER: i32 = 6;
 
 impl TradeOff {
-    /// The curve from `shortest` to `longest` (s) about a time at which it is known, and another
-    /// one, the longest, if that is known too. `None` where a figure is not finite.
-    pub fn about(here: Known, shortest: f64, longest: f64, far: Option<Known>) -> Option<TradeOff> {
-        // ∫ slope (T/t)^k dt from T to t
-        let power = |t: f64, k: i32| {
-            let fall = 1.0 - (here.time / t).powi(k - 1);
-            here.energy + here.slope * here.time / f64::from(k - 1) * fall
+    /// The curve through some known times, which rise. `None` without any that are finite.
+    pub fn through(known: &[Known]) -> Option<TradeOff> {
+        let between = |pair: &[Known]| {
+            let (a, b) = (pair[0], pair[1]);
+            let time = move |i: usize| a.time + (b.time - a.time) * i as f64 / REFINEMENT as f64;
+            (1..REFINEMENT).map(move |i| (time(i), hermite(a, b, time(i))))
         };
-        let slow = |t: f64| match far {
-            Some(far) => hermite(here, far, t),
-            None => power(t, LONGER),
-        };
-        let between = |from: f64, to: f64| {
-            (0..=REFINEMENT).map(move |i| from + (to - from) * i as f64 / REFINEMENT as f64)
-        };
-        let quicker = between(shortest.min(here.time), here.time).map(|t| (t, power(t, SHORTER)));
-        let slower = between(here.time, longest.max(here.time)).map(|t| (t, slow(t)));
-        TradeOff::new(quicker.chain(slower).collect())
+        let nodes = known.iter().map(|known| (known.time, known.energy));
+        TradeOff::new(nodes.chain(known.windows(2).flat_map(between)).collect())
     }
 
     /// The lower convex hull of some points; `None` without any.
@@ -220,18 +207,19 @@ mod tests {
     }
 
     #[test]
-    fn one_known_time_makes_a_close_curve() {
+    fn a_few_known_times_make_a_close_curve() {
         // What one more second saves falls with the fourth power of the time.
-        let known = |t: f64| Known { time: t, energy: 90.0 / t.powi(3), slope: -270.0 / t.powi(4) };
-        for far in [None, Some(known(2.0))] {
-            let curve = TradeOff::about(known(1.0), 0.9, 2.0, far).expect("points");
-            assert_eq!(curve.range(), (0.9, 2.0));
-            for (t, energy) in curve.points.iter().filter(|(t, _)| *t >= 1.0) {
-                assert!((energy - 90.0 / t.powi(3)).abs() < 8.0, "{t}: {energy}");
-            }
-        }
-        let exact = TradeOff::about(known(1.0), 1.0, 1.3, None).expect("points");
-        assert!(exact.points.iter().all(|(t, e)| (e - 90.0 / t.powi(3)).abs() < 1e-9));
+        let energy = |t: f64| 90.0 / t.powi(3);
+        let known = |t: f64| Known { time: t, energy: energy(t), slope: -270.0 / t.powi(4) };
+        let worst = |times: &[f64]| {
+            let known: Vec<Known> = times.iter().map(|t| known(*t)).collect();
+            let curve = TradeOff::through(&known).expect("points");
+            assert_eq!(curve.range(), (times[0], times[times.len() - 1]));
+            let errors = curve.points.iter().map(|(t, e)| (e - energy(*t)).abs() / energy(*t));
+            errors.fold(0.0, f64::max)
+        };
+        assert!(worst(&[1.0, 1.4, 2.0]) < 0.02, "{}", worst(&[1.0, 1.4, 2.0]));
+        assert!(worst(&[1.0, 1.2, 1.4, 1.7, 2.0]) < 2e-3);
     }
 
     #[test]

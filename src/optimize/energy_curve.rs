@@ -1,10 +1,14 @@
 //! The curve of least energy over time of a run, and what is read from it.
 
 use super::cycle::{Known, TradeOff};
-use super::energy_program::{energy_bound, minimize_energy, minimize_energy_from};
+use super::energy_program::{energy_bound, minimize_energy_from};
+use super::path_energy::evaluate;
 use super::margins::Margins;
-use super::retime::{SLOWEST, Task, Work, fastest_profile};
+use super::retime::{Task, Work, fastest_profile};
 use crate::energy::account;
+use crate::motion::timing::grid::PathGrid;
+use crate::motion::timing::limits::PathLimits;
+use crate::motion::timing::profile::Profile;
 
 /// The curve begins at the least time times this, where programs have room.
 const RESERVE_OF_CURVE: f64 = 1.001;
@@ -13,8 +17,10 @@ const CURVE: f64 = 2.0;
 
 /// A stream needs this much more time than the fastest profile, at least.
 const RESERVE: f64 = 1.05;
-/// Times this much longer than before are worth a look of their own.
-const FAR: f64 = 1.5;
+/// Share of a time within which a curve is known well enough.
+const NEAR: f64 = 0.02;
+/// Share by which a profile is made longer to see what that costs.
+const LONGER: f64 = 1e-3;
 
 /// A point of the curve of energy over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,34 +65,70 @@ pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     curve().unwrap_or_default()
 }
 
-/// The time, s, beyond which a run takes more motion energy again since the motors hold the arm up
-/// for longer; at most [`SLOWEST`] times as long as before. `None` where there is no stream. Base
-/// power does not count: the rest of a takt has to be waited for anyway.
-pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
-    let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
-    let fast = fastest_profile(&grid, &limits).ok()?;
-    let longest = SLOWEST * task.run.duration();
-    let model = &work.electrical;
-    let optimum = minimize_energy(&grid, &limits, model, &fast, longest).into_optimum()?;
-    Some(optimum.profile.duration() + task.run.settling)
+/// What a run takes over the time that it gets, settling included: energies of the motion alone,
+/// known at some times and learnt at others.
+pub struct Curve<'a> {
+    work: Work<'a>,
+    grid: PathGrid,
+    limits: PathLimits,
+    fast: Profile,
+    /// Of rising time.
+    known: Vec<Known>,
+    range: (f64, f64),
 }
 
-/// What a run takes over the time that it gets, settling included: the energies are of the
-/// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
-pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
-    let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
-    let fast = fastest_profile(&grid, &limits).ok()?;
-    let settling = task.run.settling;
-    let shortest = shortest.max(RESERVE * fast.duration() + settling);
-    let known = |time: f64| {
+impl<'a> Curve<'a> {
+    /// The curve of a run from `shortest` (s, if a stream can be as quick) to `longest`, known at
+    /// both and at the time that the run takes now. `None` where there is no stream.
+    pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
+        let work = Work::new(task).ok()?;
+        let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
+        let fast = fastest_profile(&grid, &limits).ok()?;
+        let shortest = shortest.max(RESERVE * fast.duration() + task.run.settling);
+        let range = (shortest, longest.max(shortest));
+        let mut curve = Curve { work, grid, limits, fast, known: Vec::new(), range };
+        for time in [shortest, task.run.duration(), longest] {
+            curve.learn(time);
+        }
+        (!curve.known.is_empty()).then_some(curve)
+    }
+
+    /// Finds out what the run takes in a time, s, where that is not known well enough. Whether
+    /// there was something to learn.
+    pub fn learn(&mut self, time: f64) -> bool {
+        let time = time.clamp(self.range.0, self.range.1);
+        let place = self.known.partition_point(|known| known.time < time);
+        let near = |known: &Known| (known.time - time).abs() <= NEAR * time;
+        let neighbours = self.known[place.saturating_sub(1)..].iter().take(2);
+        if neighbours.into_iter().any(near) {
+            return false;
+        }
+        let found = self.at(time);
+        self.known.splice(place..place, found);
+        found.is_some()
+    }
+
+    fn at(&self, time: f64) -> Option<Known> {
+        let moving = time - self.work.task.run.settling;
+        let (grid, model) = (&self.grid, &self.work.electrical);
         let outcome =
-            minimize_energy_from(&grid, &limits, &work.electrical, &fast, time - settling, None);
+            minimize_energy_from(grid, &self.limits, model, &self.fast, moving, None);
         let optimum = outcome.into_optimum()?;
-        Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
-    };
-    let before = task.run.duration().max(shortest);
-    let far = if longest > FAR * before { Some(known(longest)?) } else { None };
-    TradeOff::about(known(before)?, shortest, longest.max(before), far)
+        if optimum.marginal > 0.0 {
+            let energy = optimum.energy.total();
+            return Some(Known { time, energy, slope: -optimum.marginal });
+        }
+        // The motors hold the arm up for longer: more time costs energy then.
+        let energy = |duration: f64| {
+            let slow = optimum.profile.scaled_to(duration)?;
+            Some(evaluate(grid, &slow, model).total())
+        };
+        let (here, later) = (energy(moving)?, energy(moving * (1.0 + LONGER))?);
+        Some(Known { time, energy: here, slope: (later - here) / (moving * LONGER) })
+    }
+
+    /// What is known of it by now.
+    pub fn trade_off(&self) -> Option<TradeOff> {
+        TradeOff::through(&self.known)
+    }
 }

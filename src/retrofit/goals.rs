@@ -7,17 +7,17 @@ use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{Event, WaitBasis, What};
 use crate::optimize::cycle::{Part, TradeOff, cycle_time, share};
-use crate::optimize::energy_curve::{thriftiest, trade_off};
-use crate::optimize::retime::{Goal, Task, fastest};
+use crate::optimize::energy_curve::Curve;
+use crate::optimize::retime::{Goal, SLOWEST, Task, fastest};
 use crate::optimize::site::Site;
 use crate::robot::Model;
 
-/// A run is not asked for less than this share of its time where the cycle may stay as it is.
-const QUICKEST: f64 = 0.87;
-/// Nor for more than this share.
-const LAZIEST: f64 = 1.3;
-/// Nor for more than this share where it may use up a wait.
-const AWAITED: f64 = 3.0;
+/// Where the cycle may stay as it is, a run is not asked for more than this many times its time.
+const LAZIEST: f64 = 3.0;
+/// Times at which the curves are looked at besides the first ones.
+const LOOKS: usize = 4;
+/// Goals that differ by less are the same, s.
+const QUANTUM: f64 = 1e-4;
 /// Rounding of a sum of times, s.
 const TIME_TOLERANCE: f64 = 1e-6;
 
@@ -26,7 +26,15 @@ pub(super) struct Plan {
     /// One for each task.
     pub(super) goals: Vec<Goal>,
     /// The cycle, if its time is shared.
-    shared: Option<(Vec<Part>, f64)>,
+    shared: Option<Shared>,
+}
+
+/// A cycle whose time is shared among its runs.
+struct Shared {
+    curves: Vec<TradeOff>,
+    parts: Vec<Part>,
+    /// s.
+    takt: f64,
 }
 
 /// The goal of each task: its share of the time.
@@ -54,30 +62,48 @@ pub(super) fn goals(
                 _ => false,
             };
             let awaited = simulation.events.iter().any(is_awaited);
-            let laziest = if awaited { AWAITED } else { LAZIEST };
-            let bounds =
-                |(_, task): &(usize, Task<'_>)| (QUICKEST * before(task), laziest * before(task));
+            let laziest = if awaited { SLOWEST } else { LAZIEST };
+            let bounds = |(_, task): &(usize, Task<'_>)| (0.0, laziest * before(task));
             (simulation.cycle_s, tasks.iter().map(bounds).collect())
         }
         Budget::Takt(takt) => (takt, possible(simulation, sites, ways, tasks, takt)?),
     };
-    let parts = parts(model, settings, simulation, sites, ways, tasks);
-    let curves: Vec<TradeOff> = tasks
+    let mut parts = parts(model, settings, simulation, sites, ways, tasks);
+    let mut curves: Vec<Option<Curve<'_>>> = tasks
         .par_iter()
         .zip(&bounds)
-        .map(|((_, task), (shortest, longest))| {
-            // Where nothing is known of its energy, a run keeps its time.
-            trade_off(task, *shortest, *longest)
-                .or_else(|| TradeOff::new(vec![(before(task).clamp(*shortest, *longest), 0.0)]))
-        })
-        .collect::<Option<_>>()
-        .unwrap_or_default();
-    match share(&curves, &parts, takt) {
-        Some(times) => Ok(Plan {
-            goals: times.into_iter().map(Goal::Exactly).collect(),
-            shared: Some((parts, takt)),
-        }),
-        None => Ok(each(&|task| Goal::Within(before(task)))),
+        .map(|((_, task), (shortest, longest))| Curve::new(task, *shortest, *longest))
+        .collect();
+    let mut looks = 0;
+    loop {
+        let known = tasks.iter().zip(&bounds).zip(&curves);
+        let known: Option<Vec<TradeOff>> = known
+            .map(|(((_, task), (shortest, longest)), curve)| {
+                // Where nothing is known of its energy, a run keeps its time.
+                let kept = || vec![(before(task).max(*shortest).min(*longest), 0.0)];
+                curve.as_ref().and_then(Curve::trade_off).or_else(|| TradeOff::new(kept()))
+            })
+            .collect();
+        let mut shared = Shared { curves: known.unwrap_or_default(), parts, takt };
+        let Some(times) = shared.times() else {
+            return Ok(each(&|task| Goal::Within(before(task))));
+        };
+        looks += 1;
+        let learnt = curves
+            .par_iter_mut()
+            .zip(&times)
+            .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.learn(*time)));
+        if looks > LOOKS || learnt.filter(|learnt| *learnt).count() == 0 {
+            let goals = times.into_iter().map(Goal::Exactly).collect();
+            return Ok(Plan { goals, shared: Some(shared) });
+        }
+        parts = std::mem::take(&mut shared.parts);
+    }
+}
+
+impl Shared {
+    fn times(&self) -> Option<Vec<f64>> {
+        share(&self.curves, &self.parts, self.takt)
     }
 }
 
@@ -85,7 +111,31 @@ impl Plan {
     /// Whether the cycle takes no longer than it may where the tasks take `times` (s).
     pub(super) fn holds(&self, times: &[f64]) -> bool {
         let shared = self.shared.as_ref();
-        shared.is_none_or(|(parts, takt)| cycle_time(parts, times) <= takt + TIME_TOLERANCE)
+        shared.is_none_or(|s| cycle_time(&s.parts, times) <= s.takt + TIME_TOLERANCE)
+    }
+
+    /// Shares the time anew where the tasks take `times` (s), and those that take longer than they
+    /// should cannot be quicker. The tasks with new goals; none where that helps no more.
+    pub(super) fn share_anew(&mut self, times: &[f64]) -> Vec<usize> {
+        let Some(shared) = self.shared.as_mut() else { return Vec::new() };
+        let mut is_late = vec![false; times.len()];
+        for (task, time) in times.iter().enumerate() {
+            if matches!(self.goals[task], Goal::Exactly(goal) if *time > goal + TIME_TOLERANCE)
+                && let Some(curve) = TradeOff::new(vec![(*time, 0.0)])
+            {
+                shared.curves[task] = curve;
+                is_late[task] = true;
+            }
+        }
+        let Some(new) = shared.times() else { return Vec::new() };
+        let goals = self.goals.iter_mut().zip(new).zip(is_late).enumerate();
+        goals
+            .filter_map(|(task, ((goal, time), is_late))| {
+                let kept = matches!(*goal, Goal::Exactly(old) if (old - time).abs() < QUANTUM);
+                *goal = Goal::Exactly(time);
+                (!kept && !is_late).then_some(task)
+            })
+            .collect()
     }
 }
 
@@ -109,9 +159,9 @@ fn possible(
         return Err(RetrofitError::Takt { takt, least, fixed });
     }
     let bounds = |((_, task), least): (&(usize, Task<'_>), &f64)| {
-        (*least, thriftiest(task).unwrap_or(before(task)).max(*least))
+        (*least, (SLOWEST * before(task)).max(*least))
     };
-    Ok(tasks.par_iter().zip(&least).map(bounds).collect())
+    Ok(tasks.iter().zip(&least).map(bounds).collect())
 }
 
 /// The cycle as the tasks see it.

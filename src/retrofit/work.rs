@@ -29,6 +29,8 @@ pub(super) const TIME_TOLERANCE: f64 = 1e-6;
 
 /// Rounds of leaving out what did not hold; in the last one nothing is kept.
 const MOST_ROUNDS: usize = 12;
+/// Times that the cycle's time is shared anew, at most.
+const MOST_SHARINGS: usize = 4;
 
 /// A file of the program.
 #[derive(Clone, Debug)]
@@ -445,7 +447,7 @@ fn retime_all(
             Some((*i, task))
         })
         .collect();
-    let plan = goals(model, settings, simulation, sites, &ways, &tasks)?;
+    let mut plan = goals(model, settings, simulation, sites, &ways, &tasks)?;
     let done = Arc::new(std::sync::atomic::AtomicUsize::new(0));
     let mut outcomes: Vec<(usize, Outcome)> = tasks
         .par_iter()
@@ -462,7 +464,7 @@ fn retime_all(
         })
         .collect();
     if settings.budget == Budget::AsBefore {
-        keep_to_the_cycle(&plan, &tasks, &mut outcomes);
+        keep_to_the_cycle(&mut plan, &tasks, &mut outcomes);
         if settings.objective == Objective::Energy {
             let executions =
                 |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
@@ -508,12 +510,31 @@ fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
 }
 
 /// Where a run did not get quicker as it should have, so that the others were given too much time,
-/// every run goes back to its time before.
-fn keep_to_the_cycle(plan: &Plan, tasks: &[(usize, Task<'_>)], outcomes: &mut [(usize, Outcome)]) {
+/// the time is shared anew; where that does not help, every run goes back to its time before.
+fn keep_to_the_cycle(
+    plan: &mut Plan,
+    tasks: &[(usize, Task<'_>)],
+    outcomes: &mut [(usize, Outcome)],
+) {
     let time = |((_, task), (_, outcome)): (&(usize, Task<'_>), &(usize, Outcome))| match outcome {
         Ok(retiming) => retiming.duration_s,
         Err(_) => task.run.duration(),
     };
+    for _ in 0..MOST_SHARINGS {
+        let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
+        if plan.holds(&times) {
+            return;
+        }
+        let changed = plan.share_anew(&times);
+        if changed.is_empty() {
+            break;
+        }
+        let found: Vec<Outcome> =
+            changed.par_iter().map(|i| useful(&tasks[*i].1, plan.goals[*i])).collect();
+        for (i, outcome) in changed.into_iter().zip(found) {
+            outcomes[i].1 = outcome;
+        }
+    }
     let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
     if plan.holds(&times) {
         return;
