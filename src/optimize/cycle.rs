@@ -169,19 +169,41 @@ pub fn share(curves: &[TradeOff], parts: &[Part], takt: f64) -> Option<Vec<f64>>
 
 /// The time of a cycle, s, whose runs take `times` (s).
 pub fn cycle_time(parts: &[Part], times: &[f64]) -> f64 {
+    let now = |ends: &[f64]| ends.last().copied().unwrap_or(0.0);
     let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
-    let mut now = 0.0_f64;
     for part in parts {
-        now = match part {
-            Part::Run(run) => now + times[*run],
-            Part::Fixed(seconds) => now + seconds,
-            Part::Arrival { since, delay, .. } => {
-                now.max(since.map_or(0.0, |part| ends[part]) + delay)
-            }
-        };
-        ends.push(now);
+        ends.push(now(&ends) + part_time(part, times, &ends));
     }
-    now
+    now(&ends)
+}
+
+/// The energy of a cycle's runs, J, and of standing where signals are waited for, whose runs take
+/// `times` (s) and `energies` (J).
+pub fn cycle_energy(parts: &[Part], times: &[f64], energies: &[f64]) -> f64 {
+    let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
+    let mut energy = 0.0;
+    for part in parts {
+        let time = part_time(part, times, &ends);
+        energy += match part {
+            Part::Run(run) => energies[*run],
+            Part::Fixed(_) => 0.0,
+            Part::Arrival { holding_w, .. } => holding_w * time,
+        };
+        ends.push(ends.last().copied().unwrap_or(0.0) + time);
+    }
+    energy
+}
+
+/// How long a part takes, s, where those before it end at `ends` (s).
+fn part_time(part: &Part, times: &[f64], ends: &[f64]) -> f64 {
+    match part {
+        Part::Run(run) => times[*run],
+        Part::Fixed(seconds) => *seconds,
+        Part::Arrival { since, delay, .. } => {
+            let now = ends.last().copied().unwrap_or(0.0);
+            (since.map_or(0.0, |part| ends[part]) + delay - now).max(0.0)
+        }
+    }
 }
 
 #[cfg(test)]
@@ -233,6 +255,9 @@ mod tests {
             "{times:?}"
         );
         assert!((cycle_time(&parts, &times) - 4.5).abs() < TOLERANCE);
+        // Quicker runs wait for the signal: two seconds at 1 W.
+        let waiting = cycle_energy(&parts, &[1.0, 1.0], &[7.0, 5.0]);
+        assert!((waiting - (7.0 + 5.0 + 2.0)).abs() < TOLERANCE, "{waiting}");
         // The second signal counts from the first one: only the way between has to wait for it.
         let again = Part::Arrival { since: Some(1), delay: 2.5, holding_w: 1.0 };
         let parts = [Part::Run(0), wait, Part::Run(1), again];

@@ -6,7 +6,7 @@ use super::work::{Budget, Objective, RetrofitError, Settings, Way, rounded_up};
 use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{Event, WaitBasis, What};
-use crate::optimize::cycle::{Part, TradeOff, cycle_time, share};
+use crate::optimize::cycle::{Part, TradeOff, cycle_energy, cycle_time, share};
 use crate::optimize::energy_curve::Curve;
 use crate::optimize::retime::{Goal, SLOWEST, Task, fastest};
 use crate::optimize::site::Site;
@@ -112,6 +112,17 @@ impl Plan {
     pub(super) fn holds(&self, times: &[f64]) -> bool {
         let shared = self.shared.as_ref();
         shared.is_none_or(|s| cycle_time(&s.parts, times) <= s.takt + TIME_TOLERANCE)
+    }
+
+    /// Energy of motions and known waits of the cycle where the tasks take these times (s) and
+    /// energies (J); infinite where the cycle takes longer than it may.
+    pub(super) fn cost(&self, taken: &[(f64, f64)]) -> f64 {
+        let (times, energies): (Vec<f64>, Vec<f64>) = taken.iter().copied().unzip();
+        match &self.shared {
+            Some(_) if !self.holds(&times) => f64::INFINITY,
+            Some(shared) => cycle_energy(&shared.parts, &times, &energies),
+            None => energies.iter().sum(),
+        }
     }
 
     /// Shares the time anew where the tasks take `times` (s), and those that take longer than they

@@ -466,9 +466,7 @@ fn retime_all(
     if settings.budget == Budget::AsBefore {
         keep_to_the_cycle(&mut plan, &tasks, &mut outcomes);
         if settings.objective == Objective::Energy {
-            let executions =
-                |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
-            leave_what_does_not_pay(&plan, &tasks, &executions, &mut outcomes);
+            leave_what_does_not_pay(&plan, &tasks, &mut outcomes);
         }
     }
     if let Budget::Factor(factor) = settings.budget {
@@ -499,14 +497,15 @@ fn retime_all(
 
 /// A stream in the run's share of the cycle; where there is none, in its time before.
 fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
-    let before = task.run.duration();
-    if let Ok(retiming) = retime(task, goal) {
-        let quicker = retiming.duration_s < before - TIME_TOLERANCE;
-        if quicker || retiming.energy.energy_j() < retiming.energy_before_j {
-            return Ok(retiming);
-        }
+    retime(task, goal).or_else(|_| retime(task, Goal::Within(task.run.duration())))
+}
+
+/// What a run takes with its outcome: time, s, and energy of the motion, J.
+fn taken(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
+    match outcome {
+        Ok(retiming) => (retiming.duration_s, retiming.energy.motion_energy_j()),
+        Err(_) => (task.run.duration(), task.energy_before.motion_energy_j()),
     }
-    retime(task, Goal::Within(before))
 }
 
 /// Where a run did not get quicker as it should have, so that the others were given too much time,
@@ -516,10 +515,8 @@ fn keep_to_the_cycle(
     tasks: &[(usize, Task<'_>)],
     outcomes: &mut [(usize, Outcome)],
 ) {
-    let time = |((_, task), (_, outcome)): (&(usize, Task<'_>), &(usize, Outcome))| match outcome {
-        Ok(retiming) => retiming.duration_s,
-        Err(_) => task.run.duration(),
-    };
+    let time =
+        |((_, task), (_, outcome)): (&(usize, Task<'_>), &(usize, Outcome))| taken(task, outcome).0;
     for _ in 0..MOST_SHARINGS {
         let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
         if plan.holds(&times) {
@@ -544,37 +541,36 @@ fn keep_to_the_cycle(
     );
 }
 
-/// A run that is quicker at the cost of energy has to give its time to others that save more.
-/// Where the cycle is kept without it, or nothing is saved in all, it goes back to its time before.
+/// A run that takes more energy than before has to give its time to others that save more, or to
+/// spare the arm a wait. Where the cycle is no worse without it, it goes back to its time before,
+/// and so do all where nothing is saved in all.
 fn leave_what_does_not_pay(
     plan: &Plan,
     tasks: &[(usize, Task<'_>)],
-    executions: &dyn Fn(usize) -> f64,
     outcomes: &mut [(usize, Outcome)],
 ) {
-    let excess = |outcome: &Outcome| {
-        outcome.as_ref().map_or(0.0, |r| r.energy.energy_j() - r.energy_before_j)
-    };
-    let time = |task: &Task<'_>, outcome: &Outcome| {
-        outcome.as_ref().map_or(task.run.duration(), |retiming| retiming.duration_s)
-    };
-    let mut times: Vec<f64> =
-        tasks.iter().zip(&*outcomes).map(|((_, task), (_, outcome))| time(task, outcome)).collect();
-    let mut costly: Vec<usize> =
-        (0..tasks.len()).filter(|i| excess(&outcomes[*i].1) > 0.0).collect();
-    costly.sort_by(|a, b| excess(&outcomes[*b].1).total_cmp(&excess(&outcomes[*a].1)));
+    let before = |task: &Task<'_>| (task.run.duration(), task.energy_before.motion_energy_j());
+    let mut now: Vec<(f64, f64)> = tasks
+        .iter()
+        .zip(&*outcomes)
+        .map(|((_, task), (_, outcome))| taken(task, outcome))
+        .collect();
+    let excess = |i: usize| now[i].1 - before(&tasks[i].1).1;
+    let mut costly: Vec<usize> = (0..tasks.len()).filter(|i| excess(*i) > 0.0).collect();
+    costly.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
     for i in costly {
         let task = &tasks[i].1;
-        let patient = std::mem::replace(&mut times[i], task.run.duration());
-        if plan.holds(&times) {
+        let cost = plan.cost(&now);
+        let patient = std::mem::replace(&mut now[i], before(task));
+        if plan.cost(&now) < cost {
             outcomes[i].1 = retime(task, Goal::Within(task.run.duration()));
-            times[i] = time(task, &outcomes[i].1);
+            now[i] = taken(task, &outcomes[i].1);
         } else {
-            times[i] = patient;
+            now[i] = patient;
         }
     }
-    let in_all: f64 = outcomes.iter().map(|(i, o)| executions(*i) * excess(o)).sum();
-    if in_all >= 0.0 {
+    let all_before: Vec<(f64, f64)> = tasks.iter().map(|(_, task)| before(task)).collect();
+    if plan.cost(&now) >= plan.cost(&all_before) {
         outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
             |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
         );
