@@ -122,6 +122,22 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
 }
 
 #[test]
+fn streams_save_more_than_speeds() {
+    for input in [&[][..], &["--input", "diPart=4"]] {
+        let folder = tempfile::tempdir().unwrap();
+        let speeds = run(folder.path(), &[&["--emit", "retime"], input].concat());
+        let folder = tempfile::tempdir().unwrap();
+        let streams = run(folder.path(), input);
+        let saved = |result: &Value| number(result, "/saving_percent");
+        assert!(saved(&streams) > saved(&speeds), "{} {}", saved(&streams), saved(&speeds));
+        // What is waited for anyway is used up, and the cycle takes as long as it may.
+        let cycle = |which: &str| number(&streams, &format!("/{which}/cycle_s"));
+        assert!(cycle("optimized") <= cycle("original") + TIME, "{streams}");
+        assert!(cycle("optimized") > 0.995 * cycle("original"), "{streams}");
+    }
+}
+
+#[test]
 fn positions_for_a_guide_stand_beside_an_unchanged_program() {
     let folder = tempfile::tempdir().unwrap();
     let streams = run(folder.path(), &[]);

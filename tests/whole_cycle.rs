@@ -65,8 +65,8 @@ fn a_wait_of_known_length_is_used_up() {
     let known = optimize(&text, &["--input", "diPart=3"]);
     let [before, after] = times(&known, 8);
     assert!(after > 1.5 * before, "{before} s, {after} s");
-    // A wait of unknown length gives nothing away.
-    assert!(times(&unknown, 8)[1] < 1.3 * before);
+    // A wait of unknown length gives nothing away: the run gets what the others can do without.
+    assert!(after > 1.2 * times(&unknown, 8)[1], "{after} s, {} s", times(&unknown, 8)[1]);
     let saving = |result| number(result, "/motion_saving_percent");
     assert!(saving(&known) > saving(&unknown) + 5.0);
 }

@@ -2,8 +2,8 @@
 
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{energy_bound, minimize_energy_from};
-use super::path_energy::evaluate;
 use super::margins::Margins;
+use super::path_energy::evaluate;
 use super::retime::{Task, Work, fastest_profile};
 use crate::energy::account;
 use crate::motion::timing::grid::PathGrid;
@@ -111,8 +111,7 @@ impl<'a> Curve<'a> {
     fn at(&self, time: f64) -> Option<Known> {
         let moving = time - self.work.task.run.settling;
         let (grid, model) = (&self.grid, &self.work.electrical);
-        let outcome =
-            minimize_energy_from(grid, &self.limits, model, &self.fast, moving, None);
+        let outcome = minimize_energy_from(grid, &self.limits, model, &self.fast, moving, None);
         let optimum = outcome.into_optimum()?;
         if optimum.marginal > 0.0 {
             let energy = optimum.energy.total();
