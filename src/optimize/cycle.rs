@@ -23,19 +23,36 @@ pub struct Known {
     pub slope: f64,
 }
 
+impl Known {
+    /// Energy at another time, s, where what one more second costs falls with a power of the time.
+    fn law(&self, power: i32, time: f64) -> f64 {
+        let fall = 1.0 - (self.time / time).powi(power - 1);
+        self.energy + self.slope * self.time / f64::from(power - 1) * fall
+    }
+}
+
 /// Points of a curve for each stretch of it.
 const REFINEMENT: usize = 12;
+/// What one more second saves falls with this power of the time. Measured on the runs of
+/// `fixtures/pick_place`: 3.6 to 4.6 for longer times than before, 4 to 7.6 for shorter ones.
+const LONGER: i32 = 4;
+const SHORTER: i32 = 6;
 
 impl TradeOff {
-    /// The curve through some known times, which rise. `None` without any that are finite.
-    pub fn through(known: &[Known]) -> Option<TradeOff> {
-        let between = |pair: &[Known]| {
-            let (a, b) = (pair[0], pair[1]);
-            let time = move |i: usize| a.time + (b.time - a.time) * i as f64 / REFINEMENT as f64;
-            (1..REFINEMENT).map(move |i| (time(i), hermite(a, b, time(i))))
+    /// The curve from the shortest to the longest time (s) through some known ones, which rise.
+    /// `None` without any that are finite.
+    pub fn through(known: &[Known], (shortest, longest): (f64, f64)) -> Option<TradeOff> {
+        let (first, last) = (*known.first()?, *known.last()?);
+        let between = |from: f64, to: f64, energy: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
+            let time = |i: usize| from + (to - from) * i as f64 / REFINEMENT as f64;
+            (0..=REFINEMENT).map(|i| (time(i), energy(time(i)))).collect()
         };
-        let nodes = known.iter().map(|known| (known.time, known.energy));
-        TradeOff::new(nodes.chain(known.windows(2).flat_map(between)).collect())
+        let quicker = between(shortest.min(first.time), first.time, &|t| first.law(SHORTER, t));
+        let slower = between(last.time, longest.max(last.time), &|t| last.law(LONGER, t));
+        let inside = known.windows(2).flat_map(|pair| {
+            between(pair[0].time, pair[1].time, &|t| hermite(pair[0], pair[1], t))
+        });
+        TradeOff::new(quicker.into_iter().chain(inside).chain(slower).collect())
     }
 
     /// The lower convex hull of some points; `None` without any.
@@ -235,13 +252,16 @@ mod tests {
         let known = |t: f64| Known { time: t, energy: energy(t), slope: -270.0 / t.powi(4) };
         let worst = |times: &[f64]| {
             let known: Vec<Known> = times.iter().map(|t| known(*t)).collect();
-            let curve = TradeOff::through(&known).expect("points");
-            assert_eq!(curve.range(), (times[0], times[times.len() - 1]));
+            let curve = TradeOff::through(&known, (0.9, 2.0)).expect("points");
+            assert_eq!(curve.range(), (0.9, 2.0));
             let errors = curve.points.iter().map(|(t, e)| (e - energy(*t)).abs() / energy(*t));
             errors.fold(0.0, f64::max)
         };
-        assert!(worst(&[1.0, 1.4, 2.0]) < 0.02, "{}", worst(&[1.0, 1.4, 2.0]));
-        assert!(worst(&[1.0, 1.2, 1.4, 1.7, 2.0]) < 2e-3);
+        // What lies before the first one rises more steeply than it does here.
+        assert!(worst(&[1.0, 1.4, 2.0]) < 0.05, "{}", worst(&[1.0, 1.4, 2.0]));
+        assert!(worst(&[0.9, 1.0, 1.2, 1.4, 1.7, 2.0]) < 2e-3);
+        // One is enough where the law holds.
+        assert!(worst(&[0.9]) < 1e-9);
     }
 
     #[test]

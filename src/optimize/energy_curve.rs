@@ -1,7 +1,7 @@
 //! The curve of least energy over time of a run, and what is read from it.
 
 use super::cycle::{Known, TradeOff};
-use super::energy_program::{energy_bound, minimize_energy_from};
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
 use super::margins::Margins;
 use super::path_energy::evaluate;
 use super::retime::{Task, Work, fastest_profile};
@@ -17,8 +17,10 @@ const CURVE: f64 = 2.0;
 
 /// A stream needs this much more time than the fastest profile, at least.
 const RESERVE: f64 = 1.05;
+/// Intervals of the grid of a curve besides those of zones: its slopes need no more.
+const COARSE: usize = 20;
 /// Share of a time within which a curve is known well enough.
-const NEAR: f64 = 0.02;
+const NEAR: f64 = 0.03;
 /// Share by which a profile is made longer to see what that costs.
 const LONGER: f64 = 1e-3;
 
@@ -72,50 +74,58 @@ pub struct Curve<'a> {
     grid: PathGrid,
     limits: PathLimits,
     fast: Profile,
-    /// Of rising time.
-    known: Vec<Known>,
+    /// Of rising time, with ṡ² at the nodes.
+    known: Vec<(Known, Vec<f64>)>,
     range: (f64, f64),
 }
 
 impl<'a> Curve<'a> {
     /// The curve of a run from `shortest` (s, if a stream can be as quick) to `longest`, known at
-    /// both and at the time that the run takes now. `None` where there is no stream.
+    /// the time that the run takes now. `None` where there is no stream.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
         let work = Work::new(task).ok()?;
-        let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
+        let (grid, limits) = work.grid_of(&Margins::first(work.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         let shortest = shortest.max(RESERVE * fast.duration() + task.run.settling);
         let range = (shortest, longest.max(shortest));
         let mut curve = Curve { work, grid, limits, fast, known: Vec::new(), range };
-        for time in [shortest, task.run.duration(), longest] {
-            curve.learn(time);
-        }
-        (!curve.known.is_empty()).then_some(curve)
+        curve.learn(task.run.duration()).then_some(curve)
     }
 
     /// Finds out what the run takes in a time, s, where that is not known well enough. Whether
     /// there was something to learn.
     pub fn learn(&mut self, time: f64) -> bool {
         let time = time.clamp(self.range.0, self.range.1);
-        let place = self.known.partition_point(|known| known.time < time);
-        let near = |known: &Known| (known.time - time).abs() <= NEAR * time;
+        let place = self.known.partition_point(|(known, _)| known.time < time);
+        let near = |(known, _): &(Known, Vec<f64>)| (known.time - time).abs() <= NEAR * time;
         let neighbours = self.known[place.saturating_sub(1)..].iter().take(2);
         if neighbours.into_iter().any(near) {
             return false;
         }
-        let found = self.at(time);
-        self.known.splice(place..place, found);
-        found.is_some()
+        let before = self.known.len();
+        self.known.splice(place..place, self.at(time));
+        self.known.len() > before
     }
 
-    fn at(&self, time: f64) -> Option<Known> {
-        let moving = time - self.work.task.run.settling;
+    fn at(&self, time: f64) -> Option<(Known, Vec<f64>)> {
+        let settling = self.work.task.run.settling;
+        let moving = time - settling;
         let (grid, model) = (&self.grid, &self.work.electrical);
-        let outcome = minimize_energy_from(grid, &self.limits, model, &self.fast, moving, None);
+        // The speeds at another time are a good guess of those at this one.
+        let far = |(known, _): &&(Known, Vec<f64>)| (known.time / time).ln().abs();
+        let nearest = self.known.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        let guess = nearest.map(|(known, b)| {
+            let slower = ((known.time - settling) / moving).powi(2);
+            let b = b.iter().map(|b| b * slower).collect();
+            EnergyBound { lower_bound: f64::NEG_INFINITY, b }
+        });
+        let (limits, guess) = (&self.limits, guess.as_ref());
+        let outcome = minimize_energy_from(grid, limits, model, &self.fast, moving, guess);
         let optimum = outcome.into_optimum()?;
+        let b = optimum.profile.b().to_vec();
         if optimum.marginal > 0.0 {
             let energy = optimum.energy.total();
-            return Some(Known { time, energy, slope: -optimum.marginal });
+            return Some((Known { time, energy, slope: -optimum.marginal }, b));
         }
         // The motors hold the arm up for longer: more time costs energy then.
         let energy = |duration: f64| {
@@ -123,11 +133,12 @@ impl<'a> Curve<'a> {
             Some(evaluate(grid, &slow, model).total())
         };
         let (here, later) = (energy(moving)?, energy(moving * (1.0 + LONGER))?);
-        Some(Known { time, energy: here, slope: (later - here) / (moving * LONGER) })
+        Some((Known { time, energy: here, slope: (later - here) / (moving * LONGER) }, b))
     }
 
     /// What is known of it by now.
     pub fn trade_off(&self) -> Option<TradeOff> {
-        TradeOff::through(&self.known)
+        let known: Vec<Known> = self.known.iter().map(|(known, _)| *known).collect();
+        TradeOff::through(&known, self.range)
     }
 }

@@ -407,11 +407,28 @@ impl<'a> Work<'a> {
 
     /// The problem on the path, shaped so that a stream can follow its solution.
     pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
-        let (grid, limits) = self.bare_grid(margins)?;
+        self.grid_of(margins, INTERVALS)
+    }
+
+    /// The same with so many intervals besides those of zones.
+    pub(super) fn grid_of(
+        &self,
+        margins: &Margins,
+        intervals: usize,
+    ) -> Result<(PathGrid, PathLimits), Reason> {
+        let (grid, limits) = self.bare_grid_of(margins, intervals)?;
         Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
     }
 
     pub(super) fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+        self.bare_grid_of(margins, INTERVALS)
+    }
+
+    fn bare_grid_of(
+        &self,
+        margins: &Margins,
+        intervals: usize,
+    ) -> Result<(PathGrid, PathLimits), Reason> {
         let caps: Vec<SpeedCap> = self
             .task
             .run
@@ -424,7 +441,7 @@ impl<'a> Work<'a> {
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-        let nodes = path_grid::nodes(self.task.model, self.path, &caps, INTERVALS);
+        let nodes = path_grid::nodes(self.task.model, self.path, &caps, intervals);
         let no_grid = |why: String| Reason::NoStream(why);
         let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
