@@ -38,6 +38,7 @@ fn pick_place(c: &mut Criterion) {
         form: Form::Streams,
         layout: Layout::Auto,
         cost: Cost::Electrical,
+        dwell_pose: None,
         pareto: 0,
     };
     let mut group = c.benchmark_group("retrofit");

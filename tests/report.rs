@@ -62,6 +62,7 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         form: Form::Streams,
         layout: Layout::Auto,
         cost: Cost::Electrical,
+        dwell_pose: None,
         pareto: 0,
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();

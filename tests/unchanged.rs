@@ -53,6 +53,7 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
         form: Form::Streams,
         layout: Layout::Auto,
         cost: Cost::Electrical,
+        dwell_pose: None,
         pareto: 0,
     };
     let model = find("IRB1600-10/1.45").unwrap();

@@ -103,6 +103,19 @@ pub struct OptimizeArgs {
     #[arg(long, value_name = "MM", requires = "free_path", allow_negative_numbers = true)]
     deviation: Option<f64>,
 
+    /// Spend waits of stated length at a pose nearby where holding takes less, no joint farther
+    /// away than this, degrees. A wait after an output of the same place stays, unless its line
+    /// has the comment `! joulepath: free`. Only the keep-outs of joulepath.toml are known to
+    /// stand in the way.
+    #[arg(
+        long,
+        value_name = "DEG",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "15"
+    )]
+    dwell_pose: Option<f64>,
+
     /// Exit with 1 if some movement was refused.
     #[arg(long)]
     strict: bool,
@@ -165,6 +178,9 @@ const SPACING_S: f64 = 0.05;
 const DEVIATION_MM: f64 = 50.0;
 /// Beyond this a path says nothing any more, mm.
 const LARGEST_DEVIATION_MM: f64 = 1000.0;
+
+/// Beyond this a pose is not nearby, degrees.
+const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
 
 /// Runs the command.
 ///
@@ -246,6 +262,9 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         (None, None) => Budget::AsBefore,
     };
     let spacing_s = spacing(args.spacing.or(job.config.spacing_s))?;
+    if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
+        bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
+    }
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),
@@ -278,6 +297,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             EnergyArg::Velocity => Cost::Velocity,
             EnergyArg::Torque => Cost::Torque,
         },
+        dwell_pose: args.dwell_pose.map(dwell_pose).transpose()?,
         pareto: usize::from(args.pareto),
     })
 }
@@ -312,6 +332,16 @@ fn deviation(asked: Option<f64>) -> anyhow::Result<f64> {
         bail!("--deviation {mm}: give more than 0 and at most {LARGEST_DEVIATION_MM} mm");
     }
     Ok(mm * 1e-3)
+}
+
+/// How far a joint may go to where waiting takes less, rad.
+fn dwell_pose(degrees: f64) -> anyhow::Result<f64> {
+    if !(degrees > 0.0 && degrees <= LARGEST_DWELL_POSE_DEG) {
+        bail!(
+            "--dwell-pose {degrees}: give more than 0 and at most {LARGEST_DWELL_POSE_DEG} degrees"
+        );
+    }
+    Ok(degrees.to_radians())
 }
 
 /// Least time between two points of a stream, s.

@@ -18,4 +18,6 @@ pub use generated::{
 };
 pub use layout::Layout;
 pub use names::{Names, missing_streams};
-pub use stream_module::{EmitError, Emitted, EmittedStream, Site, can_guard, emit, end_of_line};
+pub use stream_module::{
+    EmitError, Emitted, EmittedStream, Pause, Site, can_guard, emit, end_of_line,
+};

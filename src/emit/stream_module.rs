@@ -21,6 +21,9 @@ const ORIENTATION_TOLERANCE: f64 = 0.000_01;
 /// The same for numbers.
 const NUMBER_TOLERANCE: f64 = 0.0005;
 
+/// Decimals of a pause, s: with the ways to it and back it takes as long as the wait did.
+const PAUSE_DECIMALS: usize = 7;
+
 /// A stream to emit.
 #[derive(Clone, Debug)]
 pub struct EmittedStream {
@@ -30,6 +33,8 @@ pub struct EmittedStream {
     pub points: Vec<[f64; 6]>,
     /// `\T` of each, s.
     pub intervals: Vec<f64>,
+    /// Where the robot stands still on the way.
+    pub pause: Option<Pause>,
     /// Where the external axes stand meanwhile, as the program writes it.
     pub external: [f64; 6],
     /// Values that loop variables and parameters must have.
@@ -42,6 +47,15 @@ pub struct EmittedStream {
     pub before: String,
     /// After, for comments.
     pub after: String,
+}
+
+/// Standing still at a point of a stream.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pause {
+    /// The index of the point.
+    pub after: usize,
+    /// s.
+    pub seconds: f64,
 }
 
 /// A place of the original with the streams that may stand for it.
@@ -109,6 +123,8 @@ struct PointText {
     target: String,
     time: String,
     zone: &'static str,
+    /// How long the robot stands there, s; empty where it flies on.
+    pause: String,
 }
 
 #[derive(Serialize)]
@@ -201,7 +217,7 @@ fn stream_text(
     let count = stream.points.len();
     let last = count.saturating_sub(1);
     let external = stream.external.map(external_axis).join(",");
-    let array = layout.is_array(count).then(|| ArrayText {
+    let array = (stream.pause.is_none() && layout.is_array(count)).then(|| ArrayText {
         points: format!("{prefix}Points{index}"),
         times: format!("{prefix}Times{index}"),
         last: format!("{{{count}}}"),
@@ -212,10 +228,14 @@ fn stream_text(
         .iter()
         .zip(&stream.intervals)
         .enumerate()
-        .map(|(i, (q, t))| PointText {
-            target: format!("[[{}],[{external}]]", joints(q)),
-            time: number(*t, TIME_DECIMALS),
-            zone: if i == last { "fine" } else { "z200" },
+        .map(|(i, (q, t))| {
+            let pause = stream.pause.filter(|pause| pause.after == i);
+            PointText {
+                target: format!("[[{}],[{external}]]", joints(q)),
+                time: number(*t, TIME_DECIMALS),
+                zone: if i == last || pause.is_some() { "fine" } else { "z200" },
+                pause: pause.map_or(String::new(), |pause| number(pause.seconds, PAUSE_DECIMALS)),
+            }
         })
         .collect();
     let text = StreamText {

@@ -1,6 +1,6 @@
 //! What a stream really does, against every limit.
 
-use super::corridor::Corridor;
+use super::corridor::{Corridor, Offset};
 use super::keep_out::least_room;
 use super::plant::STILL;
 use crate::dynamics::{Data, Load};
@@ -96,14 +96,14 @@ impl Check {
     }
 }
 
-/// Checks the realised motion of a stream, in the corridor, towards the end of a run, and with
-/// the arm among what the cell keeps free.
+/// Checks the realised motion of a stream, in the corridor if it has one, towards where it is to
+/// end, and with the arm among what the cell keeps free.
 pub fn check(
     model: &Model,
     load: &Load,
     tool: &Tcp,
     stream: &Stream,
-    corridor: &Corridor,
+    corridor: Option<&Corridor>,
     end: &Joints,
     body: Option<&Body<'_>>,
 ) -> Check {
@@ -121,6 +121,8 @@ pub fn check(
         intrusion_m: body.map_or(0.0, |body| (-least_room(model, body, stream)).max(0.0)),
         ..Check::none()
     };
+    let ceiling = limits.tcp_speed.unwrap_or(f64::INFINITY);
+    let anywhere = Offset { distance: 0.0, tolerance: f64::INFINITY, ceiling };
     let mut data = Data::new();
     let mut at = 0;
     for piece in stream.pieces() {
@@ -135,7 +137,8 @@ pub fn check(
                 0.0
             };
             result.torque = result.torque.max(torque);
-            let offset = corridor.offset(&tool.pose(&fk(model, &q)), &mut at);
+            let offset = corridor
+                .map_or(anywhere, |corridor| corridor.offset(&tool.pose(&fk(model, &q)), &mut at));
             result.deviation_m = result.deviation_m.max(offset.distance);
             result.deviation = result.deviation.max(offset.distance / offset.tolerance);
             let rate = tool.jacobian(model, &q) * nalgebra::Vector6::from(qd);

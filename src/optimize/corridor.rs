@@ -225,7 +225,7 @@ pub struct Freedom {
     pub ceilings: Ceilings,
     /// How far free movements may leave their path, m; 0 where none is free.
     pub deviation: f64,
-    /// Statements of lines and arcs that the user made free; joint movements are.
+    /// Statements of lines, arcs and waits that the user made free; joint movements are.
     pub freed: BTreeSet<Span>,
     /// What arm and tool keep out of where they leave their path.
     pub keep_out: Vec<Obstacle>,

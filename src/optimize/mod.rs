@@ -17,6 +17,7 @@ pub mod path_energy;
 pub mod path_grid;
 pub mod plant;
 pub mod reason;
+pub mod rest;
 pub mod retime;
 pub mod robot_plant;
 mod run_plant;

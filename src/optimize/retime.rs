@@ -388,7 +388,7 @@ impl<'a> Work<'a> {
     fn check(&self, stream: &Stream) -> Check {
         let Task { model, run, .. } = self.task;
         let tool = &run.legs[0].tool;
-        check(model, &run.load, tool, stream, &self.corridor, &run.end, self.body.as_ref())
+        check(model, &run.load, tool, stream, Some(&self.corridor), &run.end, self.body.as_ref())
     }
 
     /// How far the motion may leave the path somewhere, m, before the polishing minds.

@@ -10,6 +10,7 @@ mod guided;
 mod hazards;
 mod notes;
 mod outputs;
+mod rests;
 mod segments;
 mod signals;
 mod speeds;

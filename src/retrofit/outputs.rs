@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::figures::{OutputFile, OutputKind};
+use super::rests::{self, Resting};
 use super::work::{RetrofitError, Source, Way, run_of};
 use crate::emit::{self, EmittedStream, Layout, Names};
 use crate::ir::number::number;
@@ -32,6 +33,7 @@ pub(super) fn emit(
     simulation: &Simulation,
     sites: &[Site],
     ways: &[Way],
+    restings: &[Resting],
 ) -> Result<Vec<OutputFile>, RetrofitError> {
     let files = writing.files;
     let mut emitted_sites = Vec::new();
@@ -43,6 +45,13 @@ pub(super) fn emit(
             .collect();
         if !streams.is_empty() {
             emitted_sites.push(emit::Site { span: site.span, streams });
+        }
+    }
+    for resting in restings {
+        let streams: Vec<EmittedStream> =
+            rests::emitted(files, simulation, resting).into_iter().collect();
+        if !streams.is_empty() {
+            emitted_sites.push(emit::Site { span: resting.span, streams });
         }
     }
     let mut outputs = Vec::new();
@@ -130,6 +139,7 @@ fn stream(
         start: run.start,
         points: retiming.stream.points().to_vec(),
         intervals: retiming.stream.intervals().to_vec(),
+        pause: None,
         external: run.moves.first()?.movement.external?,
         locals: site.variants[way.variant].locals.clone(),
         tool: argument(files, run.moves.first()?.movement.tool_span),
@@ -150,7 +160,7 @@ fn argument(files: &[Source], span: Span) -> String {
 }
 
 /// Comments are plain ASCII, whatever the file's encoding.
-fn ascii(text: &str) -> String {
+pub(super) fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::figures::{Segment, SegmentKind};
+use super::rests::Resting;
 use super::work::Way;
 use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
@@ -22,7 +23,7 @@ pub(super) fn segments(
     (after, after_account): (&Simulation, &Account),
     sites: &[Site],
     ways: &[Way],
-    dwells: &[Dwell],
+    (dwells, restings): (&[Dwell], &[Resting]),
     not_reached: &[Span],
 ) -> Vec<Segment> {
     let cost = |simulation: &Simulation, account: &Account, events: &[usize]| {
@@ -79,7 +80,7 @@ pub(super) fn segments(
             .iter()
             .map(|span| Segment::new(*span, SegmentKind::Timing, Some(Reason::NotReached))),
     );
-    segments.extend(idle(before, before_account, after_account, dwells));
+    segments.extend(idle(before, before_account, after_account, dwells, restings));
     segments.sort_by_key(|segment| segment.span);
     segments
 }
@@ -105,6 +106,7 @@ fn idle(
     before: &Account,
     after: &Account,
     dwells: &[Dwell],
+    restings: &[Resting],
 ) -> Vec<Segment> {
     let mut by_place: BTreeMap<_, Segment> = BTreeMap::new();
     for dwell in dwells {
@@ -119,6 +121,12 @@ fn idle(
             Segment::new(dwell.span, SegmentKind::Idle, Some(dwell.reason.clone()))
         });
         segment.executions += 1;
+        let resting = restings.iter().find(|r| r.events.iter().any(|e| dwell.events.contains(e)));
+        if let Some(Resting { rest, .. }) = resting {
+            segment.rewritten = true;
+            segment.rewritten_executions += 1;
+            segment.points = rest.out.points().len() + rest.back.points().len();
+        }
         segment.time_before_s += time;
         segment.time_after_s += time;
         segment.energy_before_j += energy(before);

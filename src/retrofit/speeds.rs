@@ -130,7 +130,7 @@ pub(super) fn retrofit(
         (&tried.simulation, &tried.account),
         sites,
         &ways,
-        &dwells_before,
+        (&dwells_before, &[]),
         &not_reached(before.program, &before.simulation),
     );
     for segment in &mut segments {

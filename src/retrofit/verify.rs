@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{OutputFile, OutputKind, Verification};
 use super::outputs::read_again;
+use super::rests::{self, Fault, Resting};
 use super::work::{Settings, Source, Way, nothing_to_verify, read_program};
+use crate::energy::{Account, account};
 use crate::motion::stream::Stream;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, What};
@@ -31,12 +33,16 @@ const STEP: f64 = 0.002;
 
 /// One attempt.
 pub(super) struct Attempt {
-    /// The cycle of the emitted program.
+    /// The cycle of the emitted program, with the waits where they were.
     pub(super) simulation: Simulation,
+    /// Its energy.
+    pub(super) account: Account,
     /// What was seen.
     pub(super) verification: Verification,
     /// Ways that did not hold, with the reason.
     pub(super) failed: Vec<(usize, Reason)>,
+    /// Waits that are not spent elsewhere as intended, by their index.
+    pub(super) restless: BTreeMap<usize, Fault>,
 }
 
 /// Verifies an emitted program. Every way that fails is named; where the fault can't be given
@@ -47,8 +53,7 @@ pub(super) fn verify(
     model: &Model,
     settings: &Settings,
     original: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
+    (sites, ways, restings): (&[Site], &[Way], &[Resting]),
 ) -> Attempt {
     let rewritten: Vec<usize> = (0..ways.len()).filter(|i| ways[*i].outcome.is_ok()).collect();
     let emitted = read_again(outputs);
@@ -82,9 +87,16 @@ pub(super) fn verify(
         note("the emitted program has its entry", false);
         verification.passed = false;
         let failed = everything("the emitted text could not be read again");
-        return Attempt { simulation: empty(), verification, failed };
+        let restless = (0..restings.len()).map(|index| (index, Fault::Other)).collect();
+        let simulation = empty();
+        let account = account(model, &simulation);
+        return Attempt { simulation, account, verification, failed, restless };
     };
     let simulation = simulate(&program, entry, model, &settings.options);
+    let joules = account(model, &simulation);
+    let ((simulation, joules), mut restless) =
+        rests::folded(model, settings, simulation, joules, restings);
+    note("waits that are spent elsewhere take their time", restless.is_empty());
     let mut failed = if clean && bytes_kept {
         Vec::new()
     } else {
@@ -93,7 +105,12 @@ pub(super) fn verify(
 
     let same_events = same_order(original, &simulation);
     note("movements, waits and outputs come in the same order", same_events);
-    if !same_events && failed.is_empty() {
+    if !same_events && !restings.is_empty() {
+        // Rather than judge the streams by it, the waits go back to where they were.
+        for index in 0..restings.len() {
+            restless.entry(index).or_insert(Fault::Other);
+        }
+    } else if !same_events && failed.is_empty() {
         let why = "the emitted program runs in another order";
         failed = match reordering(original, &simulation, sites, ways) {
             Some(way) => vec![(way, Reason::Verification(why.into()))],
@@ -143,7 +160,7 @@ pub(super) fn verify(
         verification.checks.push(("every stream runs as intended at each moment".into(), held));
     }
     verification.passed = failed.is_empty() && verification.checks.iter().all(|(_, held)| *held);
-    Attempt { simulation, verification, failed }
+    Attempt { simulation, account: joules, verification, failed, restless }
 }
 
 /// The stream at the first event that is another one than before, or the last one before it.
@@ -250,7 +267,7 @@ fn compare(
     }
     let body = body(model, run, freedom);
     let tool = &run.legs[0].tool;
-    let check = check(model, &run.load, tool, stream, &corridor, &run.end, body.as_ref());
+    let check = check(model, &run.load, tool, stream, Some(&corridor), &run.end, body.as_ref());
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points".into());
     }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::figures::{Figures, Retrofit, Verification};
 use super::goals::{Plan, goals};
-use super::{guided, hazards, notes, outputs, segments, signals, speeds, verify};
+use super::{guided, hazards, notes, outputs, rests, segments, signals, speeds, verify};
 use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
@@ -95,6 +95,9 @@ pub struct Settings {
     pub layout: Layout,
     /// What stands for energy.
     pub cost: Cost,
+    /// How far each joint may go to a pose at which waiting takes less, rad; `None` where the robot
+    /// waits where it stands.
+    pub dwell_pose: Option<f64>,
     /// Points of the curve of energy over time of each segment; 0 for none.
     pub pareto: usize,
 }
@@ -330,16 +333,23 @@ pub fn retrofit(
         layout: settings.layout,
     };
     let dwells_before = dwells(model, &simulation);
+    let mut restings = rests::restings(model, settings, files, &simulation, &sites, &ways);
 
     // Each round leaves out what did not hold in the emitted text.
     let mut rounds = 0;
     let mut checked = loop {
-        let emitted = outputs::emit(&writing, &simulation, &sites, &ways)?;
-        let attempt = verify::verify(files, &emitted, model, settings, &simulation, &sites, &ways);
-        if attempt.verification.passed || ways.iter().all(|way| way.outcome.is_err()) {
+        let emitted = outputs::emit(&writing, &simulation, &sites, &ways, &restings)?;
+        let what = (sites.as_slice(), ways.as_slice(), restings.as_slice());
+        let attempt = verify::verify(files, &emitted, model, settings, &simulation, what);
+        let nothing_left = restings.is_empty() && ways.iter().all(|way| way.outcome.is_err());
+        if attempt.verification.passed || nothing_left {
             break (emitted, attempt);
         }
         rounds += 1;
+        if !attempt.restless.is_empty() {
+            rests::mend(&mut restings, &attempt.restless, rounds == 1);
+            continue;
+        }
         if attempt.failed.is_empty() || rounds == MOST_ROUNDS {
             // No single stream is at fault: none is kept.
             let broken = attempt.verification.checks.iter().find(|(_, held)| !held);
@@ -352,19 +362,21 @@ pub fn retrofit(
             ways[way].outcome = Err(reason);
         }
     };
-    let verify::Attempt { simulation: mut after_simulation, verification, .. } = checked.1;
+    let verify::Attempt {
+        simulation: mut after_simulation, account: mut after, verification, ..
+    } = checked.1;
     if settings.form == Form::Guided {
         checked.0 = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
         after_simulation = simulate(&program, entry, model, &settings.options);
+        after = account(model, &after_simulation);
     }
-    let after = account(model, &after_simulation);
     let segments = segments::segments(
         (&simulation, &before),
         (&after_simulation, &after),
         &sites,
         &ways,
-        &dwells_before,
+        (&dwells_before, &restings),
         &not_reached(&program, &simulation),
     );
     outputs::add_brake_note(&mut checked.0, model, &dwells(model, &after_simulation));

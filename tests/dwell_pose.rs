@@ -1,0 +1,145 @@
+//! `optimize --dwell-pose`: waits spent where holding takes less.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+/// Rounding of a sum of times, s.
+const TIME: f64 = 1e-6;
+/// Two integrations of the same energy, relative.
+const ENERGY: f64 = 1e-6;
+
+const FAR: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+
+/// Two long waits with the arm stretched out, the second one after an output.
+fn program(end_of_line: &str) -> String {
+    format!(
+        "MODULE M\n\
+         CONST jointtarget jA:=[[0,0,0,0,40,0],{FAR}];\n\
+         CONST jointtarget jB:=[[40,60,-30,0,30,10],{FAR}];\n\
+         PROC main()\n\
+         MoveAbsJ jA,v1000,fine,tool0;\n\
+         FOR i FROM 1 TO 2 DO\n\
+         MoveAbsJ jB,v1000,fine,tool0;\n\
+         WaitTime 40; ! cools down\n\
+         MoveAbsJ jA,v1000,fine,tool0;\n\
+         ENDFOR\n\
+         MoveAbsJ jB,v1000,fine,tool0;\n\
+         SetDO doSpray,1;\n\
+         WaitTime 40;{end_of_line}\n\
+         SetDO doSpray,0;\n\
+         MoveAbsJ jA,v1000,fine,tool0;\n\
+         ENDPROC\n\
+         ENDMODULE\n"
+    )
+}
+
+fn command(folder: &Path, text: &str, options: &[&str]) -> Output {
+    let path = folder.join("m.mod");
+    fs::write(&path, text).unwrap();
+    Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .current_dir(folder)
+        .args(["optimize", "m.mod", "--robot", ROBOT, "--format", "json", "--quiet"])
+        .args(["--out", "out"])
+        .args(options)
+        .output()
+        .unwrap()
+}
+
+fn optimize(folder: &Path, text: &str, options: &[&str]) -> Value {
+    let output = command(folder, text, options);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(result["verification"]["passed"], true, "{result}");
+    result
+}
+
+fn number(value: &Value, pointer: &str) -> f64 {
+    value.pointer(pointer).and_then(Value::as_f64).unwrap()
+}
+
+/// Lines of the waits that are spent elsewhere.
+fn rewritten(result: &Value) -> Vec<u64> {
+    let segments = result["segments"].as_array().unwrap();
+    let idle = segments.iter().filter(|s| s["kind"] == "idle" && s["rewritten"] == true);
+    idle.map(|s| s["line_first"].as_u64().unwrap()).collect()
+}
+
+#[test]
+fn a_wait_is_spent_where_holding_takes_less() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let standing = optimize(folder, &program(""), &[]);
+    let result = optimize(folder, &program(""), &["--dwell-pose=30"]);
+    assert_eq!(rewritten(&standing), [] as [u64; 0]);
+    assert_eq!(rewritten(&result), [8], "{result}");
+    let energy = |result: &Value| number(result, "/optimized/energy_j");
+    assert!(energy(&result) < 0.99 * energy(&standing), "{result}");
+    let cycle = |result: &Value| number(result, "/optimized/cycle_s");
+    assert!((cycle(&result) - cycle(&standing)).abs() < TIME, "{result}");
+    let wait = result["segments"].as_array().unwrap().iter().find(|s| s["line_first"] == 8);
+    let [before, after] =
+        ["time_before_s", "time_after_s"].map(|key| wait.unwrap()[key].as_f64().unwrap());
+    assert!((before - 80.0).abs() < TIME && (after - 80.0).abs() < TIME, "{before} {after}");
+
+    // The original wait is still there, for a robot that stands elsewhere.
+    let written = fs::read_to_string(folder.join("out/m.mod")).unwrap();
+    assert!(written.contains("ELSE\nWaitTime 40;\nENDIF ! cools down"), "{written}");
+    // The promise is what the written program does.
+    let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .current_dir(folder)
+        .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
+        .output()
+        .unwrap();
+    let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
+    assert!((number(&simulated, "/energy_j") / energy(&result) - 1.0).abs() < ENERGY);
+    assert!((number(&simulated, "/cycle_s") - cycle(&result)).abs() < TIME);
+    // There is nothing left to do.
+    let again = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .current_dir(folder)
+        .args(["optimize", "out", "--robot", ROBOT, "--dwell-pose=30", "--out", "again", "--quiet"])
+        .output()
+        .unwrap();
+    assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));
+    assert_eq!(fs::read_to_string(folder.join("again/m.mod")).unwrap(), written);
+}
+
+#[test]
+fn a_wait_after_an_output_moves_only_where_its_line_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = program(" ! joulepath: free");
+    let result = optimize(folder.path(), &text, &["--dwell-pose"]);
+    assert_eq!(rewritten(&result), [8, 13], "{result}");
+}
+
+#[test]
+fn what_the_cell_keeps_free_is_not_entered() {
+    let folder = tempfile::tempdir().unwrap();
+    // Nothing of the arm may come higher than where it stretches out.
+    fs::write(
+        folder.path().join("joulepath.toml"),
+        "[[keep_out]]\nbox = [[-2.0, -2.0, 0.0], [2.0, 2.0, 3.0]]\n",
+    )
+    .unwrap();
+    let result = optimize(folder.path(), &program(""), &["--dwell-pose=30"]);
+    assert_eq!(rewritten(&result), [] as [u64; 0], "{result}");
+}
+
+#[test]
+fn distances_that_cannot_be_meant_say_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    for (option, says) in [("--dwell-pose=-3", "more than 0"), ("--dwell-pose=180", "at most 90")] {
+        let output = command(folder.path(), &program(""), &[option]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(says), "{message}");
+    }
+    let output = command(folder.path(), &program(""), &["--dwell-pose", "--emit", "retime"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!folder.path().join("out").exists());
+}
