@@ -17,7 +17,7 @@ pub use generated::{
     main_module, stream_time,
 };
 pub use layout::Layout;
-pub use names::{Names, missing_streams};
+pub use names::{Names, has_streams, missing_streams, own_name};
 pub use stream_module::{
     EmitError, Emitted, EmittedStream, Pause, Site, can_guard, emit, end_of_line,
 };

@@ -81,6 +81,24 @@ pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
     })
 }
 
+/// Whether a module of streams, or of positions for a guide, is among those of the program.
+pub fn has_streams(program: &Program) -> bool {
+    program.modules.iter().any(|module| {
+        let ours = module.name.key.starts_with(&module_name(1).to_lowercase());
+        let is_at = |routine: &Routine| round_of(&routine.name.key).is_some();
+        ours && (module.name.key.contains("egm") || module.routines.iter().any(is_at))
+    })
+}
+
+/// A name that a module of streams uses as RAPID has it, and the program has otherwise.
+pub fn own_name(program: &Program) -> Option<&'static str> {
+    USED.into_iter().find(|name| program.resolve_global(&name.to_lowercase()).is_some())
+}
+
+/// What RAPID declares and streams use.
+const USED: [&str; 8] =
+    ["Abs", "CJointT", "Distance", "MoveAbsJ", "WaitTime", "fine", "v1000", "z200"];
+
 fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStreams> {
     block.iter().find_map(|stmt| {
         if let StmtKind::If { branches, .. } = &stmt.kind

@@ -10,6 +10,7 @@ use crate::kinematics::{Obstacle, fk};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::path::PieceKind;
+use crate::path::joint_path::DOF;
 use crate::robot::Model;
 use crate::text::Span;
 
@@ -97,7 +98,11 @@ impl Corridor {
             let tolerance = tolerance.max(free);
             let extent = path.extent(piece.leg);
             let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
-            let n = (piece.length * share / SPACING).ceil().max(1.0) as usize;
+            // A turn of the tool by more than half a turn looks shorter from its ends.
+            let ends = [piece.s, piece.s + piece.length].map(|s| piece.eval(s).q);
+            let turned = (0..DOF).map(|j| (ends[1][j] - ends[0][j]).abs()).fold(0.0, f64::max);
+            let way = (piece.length * share).max(METRES_PER_RADIAN * turned);
+            let n = (way / SPACING).ceil().max(1.0) as usize;
             for i in 0..=n {
                 let s = piece.s + piece.length * i as f64 / n as f64;
                 let pose = extent.tool.pose(&fk(model, &piece.eval(s).q));

@@ -21,12 +21,17 @@ const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
     let mut nodes = sampling::nodes(model, path, caps, count);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * path.length());
+    let nearest = LEAST_DISTANCE * path.length();
     for turn in path.pieces().iter().flat_map(turns) {
         let next = nodes.partition_point(|node| *node < turn);
         if next == 0 || next == nodes.len() {
             continue;
         }
         let last = nodes.len() - 1;
+        // Two joints may turn at the same place.
+        if turn - nodes[next - 1] < nearest || nodes[next] - turn < nearest {
+            continue;
+        }
         match (turn - nodes[next - 1] < apart, nodes[next] - turn < apart) {
             (true, _) if next > 1 => nodes[next - 1] = turn,
             (_, true) if next < last => nodes[next] = turn,

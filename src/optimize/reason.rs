@@ -37,6 +37,13 @@ pub enum Reason {
     Scattered,
     /// Runs that begin or end at different statements at different times.
     Overlapping,
+    /// The last movement of the program does not stop, and what comes after it is not known or the
+    /// beginning of the program again.
+    FliesOn,
+    /// The program has streams of joulepath already.
+    Already,
+    /// The program declares a name of its own that streams need in RAPID's sense.
+    OwnName(String),
     /// A point passed without a stop and without room for a zone.
     SharpCorner,
     /// It has an equivalent for externally guided motion beside the program, which takes so much
@@ -85,6 +92,9 @@ impl Reason {
             Reason::LogicBetween => "logic-between",
             Reason::Scattered => "scattered",
             Reason::Overlapping => "overlapping",
+            Reason::FliesOn => "flies-on",
+            Reason::Already => "already",
+            Reason::OwnName(_) => "own-name",
             Reason::SharpCorner => "sharp-corner",
             Reason::Guided(_) => "guided",
             Reason::NoMotion => "no-motion",
@@ -108,6 +118,7 @@ impl Reason {
         !matches!(
             self,
             Reason::FirstMovement
+                | Reason::Already
                 | Reason::Guided(_)
                 | Reason::NoMotion
                 | Reason::NoSaving
@@ -151,6 +162,15 @@ impl std::fmt::Display for Reason {
             }
             Reason::Overlapping => {
                 f.write_str("it begins or ends at another statement in another execution")
+            }
+            Reason::FliesOn => {
+                f.write_str("it ends in a zone at the end of the program, which may begin again")
+            }
+            Reason::Already => f.write_str(
+                "the program has streams of joulepath; start from the original to time it anew",
+            ),
+            Reason::OwnName(name) => {
+                write!(f, "the program declares {name} itself, which streams need as RAPID has it")
             }
             Reason::SharpCorner => {
                 f.write_str("it passes a point without a stop and without room for a zone")

@@ -94,6 +94,8 @@ pub enum PathUse {
     Left,
 }
 
+/// Points of a stream, at least.
+const LEAST_POINTS: usize = 2;
 /// Intervals of the grid besides those of zones.
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
@@ -115,6 +117,8 @@ const CORRIDOR: f64 = 0.3;
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
+/// Share of the energy that more polishing is not expected to take off a stream.
+const HOPELESS: f64 = 0.05;
 /// Where a motion is slow, the ramp time is a short step: at least this share of its time.
 const SLOW_STEP: f64 = 0.02;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
@@ -273,8 +277,9 @@ impl<'a> Work<'a> {
                     return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
                 }
                 Ok(attempt) => {
-                    // Tighter margins do not make it cheaper.
-                    if self.moving(&attempt.stream).motion_energy_j() >= worth {
+                    // Tighter margins do not make it cheaper, more polishing a little.
+                    let energy = self.moving(&attempt.stream).motion_energy_j();
+                    if energy - HOPELESS * energy.abs() >= worth {
                         return Err(Reason::NoSaving);
                     }
                     problem = Some(attempt.check.fault());
@@ -471,6 +476,14 @@ impl<'a> Work<'a> {
         if intervals.iter().any(|interval| *interval > ZONE_SHARE * reach) {
             spacing.longest = CLOSER * reach;
             intervals = adaptive_intervals(&reference, duration, &spacing);
+        }
+        // A stop after one point alone comes without settling in the controller's law.
+        if intervals.len() < LEAST_POINTS {
+            let interval = duration / LEAST_POINTS as f64;
+            if interval < self.task.spacing_s {
+                return Err(failed("it is too short for two points"));
+            }
+            intervals = vec![interval; LEAST_POINTS];
         }
         let intervals = rounded_intervals(&intervals, duration);
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)

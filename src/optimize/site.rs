@@ -61,7 +61,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
             .or_else(|| places.neighbours(run).err())
-            .or_else(|| joined.contains(&index).then_some(Reason::Overlapping));
+            .or_else(|| joined.contains(&index).then_some(Reason::FliesOn));
         let same_file = head.file == tail.file;
         let span = if same_file { head.to(tail) } else { head };
         let site = sites.entry((head, tail)).or_insert_with(|| Site {

@@ -167,7 +167,7 @@ fn possible(
     let fixed = simulation.cycle_s - movable;
     if takt < fixed + shortest {
         let least = rounded_up(fixed + shortest);
-        return Err(RetrofitError::Takt { takt, least, fixed });
+        return Err(RetrofitError::Takt { takt, least, fixed: fixed.max(0.0) });
     }
     let bounds = |((_, task), least): (&(usize, Task<'_>), &f64)| {
         (*least, (SLOWEST * before(task)).max(*least))

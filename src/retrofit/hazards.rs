@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::emit;
 use crate::ir::hir::{BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::ir::instructions::is_movement;
 use crate::ir::movement::Stop;
@@ -42,8 +43,12 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
     let handled = handlers(program);
     let interrupt = interrupts(program);
     let moved = external_axes(simulation);
+    let whole = of_the_whole(program);
     for site in sites {
         for variant in &mut site.variants {
+            if variant.reason.is_none() {
+                variant.reason.clone_from(&whole);
+            }
             let elsewhere = stands_elsewhere(simulation, &variant.events);
             let reason = variant.events.iter().find_map(|event| {
                 let What::Run(run) = &simulation.events[*event].what else { return None };
@@ -62,6 +67,12 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
             }
         }
     }
+}
+
+/// Why no movement of the program can become a stream.
+fn of_the_whole(program: &Program) -> Option<Reason> {
+    let own_name = || emit::own_name(program).map(|name| Reason::OwnName(name.into()));
+    emit::has_streams(program).then_some(Reason::Already).or_else(own_name)
 }
 
 /// A stop point that waits for more than standing would lose that at the end of a stream.
@@ -197,7 +208,10 @@ fn interrupts(program: &Program) -> Option<Reason> {
                     reach.block(program, id.module, &program.routine(id).body);
                 }
                 if let Some(what) = reach.hazard() {
-                    let why = format!("the interrupt routine {trap} may run {what} meanwhile");
+                    let why = format!(
+                        "the interrupt routine {trap} is connected somewhere in the program and may run \
+                         {what} meanwhile"
+                    );
                     return Some(Reason::Interrupt(why));
                 }
             }

@@ -25,7 +25,11 @@ pub(super) fn notes(
     (original, optimized): (&Figures, &Figures),
 ) -> Vec<String> {
     let mut notes: Vec<String> = unchanged(segments).into_iter().collect();
-    if settings.objective == Objective::Time || settings.budget == Budget::AsBefore {
+    if settings.objective == Objective::Time {
+        return notes;
+    }
+    if settings.budget == Budget::AsBefore {
+        notes.extend(shared(segments));
         return notes;
     }
     if let Budget::Takt(takt) = settings.budget
@@ -69,6 +73,30 @@ pub(super) fn notes(
         );
     }
     notes.push(note);
+    notes
+}
+
+/// A run that is quicker than before by more than this is worth a note.
+const QUICK: f64 = 0.5;
+
+/// What the sharing of the cycle's time does to single runs.
+fn shared(segments: &[Segment]) -> Vec<String> {
+    let rewritten = || segments.iter().filter(|s| s.kind != SegmentKind::Idle && s.rewritten);
+    let dearer = rewritten().filter(|s| s.energy_after_j > s.energy_before_j + ROUNDING_J).count();
+    let quick = rewritten().filter(|s| s.time_after_s < QUICK * s.time_before_s).count();
+    let mut notes = Vec::new();
+    if dearer > 0 {
+        notes.push(format!(
+            "{dearer} of the rewritten runs take more energy than before, base load included: the \
+             time of the cycle is shared so that all together take less"
+        ));
+    }
+    if quick > 0 {
+        notes.push(format!(
+            "{quick} of the rewritten runs take less than half of their time: the speed of a joint \
+             movement is no limit for its stream; a line keeps its programmed speed"
+        ));
+    }
     notes
 }
 
