@@ -54,7 +54,7 @@ const SHARES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
 /// Points of a way, fewest and most.
 const POINTS: (usize, usize) = (4, 16);
 /// Step between the times of a way that are tried.
-const SLOWER: f64 = 1.15;
+const SLOWER: f64 = 1.25;
 /// Share of the wait that the ways may take.
 const MOVING: f64 = 0.8;
 /// A rest has to save this share of what the holding takes, at least.
@@ -80,16 +80,14 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
         let mut best: Option<Rest> = None;
         let mut time = POINTS.0 as f64 * spacing;
         while 2.0 * time <= MOVING * duration {
-            let found = trip(standstill, &low, time, spacing);
-            // Slower ways leave less time at the pose: beyond the best one it only gets worse.
-            if found.is_none() && best.is_some() {
-                break;
-            }
-            if let Some(found) = found {
-                if best.as_ref().is_some_and(|best| taken(best) <= taken(&found)) {
+            match trip(standstill, &low, time, spacing) {
+                // Slower ways leave less time at the pose: beyond the best one it only gets worse.
+                Ok(found) if best.as_ref().is_some_and(|best| taken(best) <= taken(&found)) => {
                     break;
                 }
-                best = Some(found);
+                Ok(found) => best = Some(found),
+                Err(Obstructed::Anyway) => break,
+                Err(Obstructed::Quick) => {}
             }
             time *= SLOWER;
         }
@@ -98,16 +96,32 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
     best.min_by(|a, b| taken(a).total_cmp(&taken(b))).filter(|rest| taken(rest) < worth)
 }
 
+/// Why there is no way.
+enum Obstructed {
+    /// It is too quick.
+    Quick,
+    /// However slow it is.
+    Anyway,
+}
+
 /// There and back in `time` (s) each, if that keeps the limits.
-fn trip(standstill: &Standstill<'_>, low: &Joints, time: f64, spacing: f64) -> Option<Rest> {
+fn trip(
+    standstill: &Standstill<'_>,
+    low: &Joints,
+    time: f64,
+    spacing: f64,
+) -> Result<Rest, Obstructed> {
     let Standstill { model, load, tool, q, duration, body } = standstill;
-    let out = way(q, low, time, spacing)?;
-    let back = way(out.end(), q, time, spacing)?;
+    let out = way(q, low, time, spacing).ok_or(Obstructed::Anyway)?;
+    let back = way(out.end(), q, time, spacing).ok_or(Obstructed::Anyway)?;
     let checked =
         |stream: &Stream, end: &Joints| check(model, load, tool, stream, None, end, *body);
     let check = checked(&out, low).max(&checked(&back, q));
+    if check.intrusion_m > 0.0 || !check.in_range {
+        return Err(Obstructed::Anyway);
+    }
     if !check.holds() {
-        return None;
+        return Err(Obstructed::Quick);
     }
     let moving = |stream: &Stream| {
         let time = stream.duration();
@@ -117,7 +131,7 @@ fn trip(standstill: &Standstill<'_>, low: &Joints, time: f64, spacing: f64) -> O
     let wait_s = duration - out.duration() - back.duration();
     let energy = moving(&out) + account::at_rest(model, load, out.end(), wait_s) + moving(&back);
     let energy_before_j = account::at_rest(model, load, q, *duration).energy_j();
-    Some(Rest { out, wait_s, back, check, energy, energy_before_j })
+    Ok(Rest { out, wait_s, back, check, energy, energy_before_j })
 }
 
 /// A stream along the straight line between two poses that eases in and out.
