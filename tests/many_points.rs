@@ -45,6 +45,7 @@ fn stream(from: usize) -> EmittedStream {
         start: ENDS[from].map(f64::to_radians),
         points: points(from),
         intervals: vec![INTERVAL; POINTS],
+        pause: None,
         external: [9e9; 6],
         locals: Vec::new(),
         tool: "tool0".into(),
