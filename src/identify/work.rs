@@ -163,7 +163,7 @@ pub fn identify(
             .any(|(k, row)| surely_negative(fit.solution.beta[*row], fit.covariance[(k, k)].sqrt()))
     };
     let giving_power = (0..n).filter(giving).collect();
-    let quality = quality(&equations, training, &training_misses, giving_power);
+    let quality = quality(&equations, training, &training_misses, giving_power, &fit.whiteness);
     let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
     // They are in the numbers now.
     identified.effects.clear();
