@@ -267,6 +267,9 @@ fn traces(found: &Identified, model: &Model, samples: &Samples, title: String) -
 }
 
 fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
+    if basis.notes.contains(&text) {
+        return;
+    }
     common::note(args.quiet, &text);
     basis.notes.push(text);
 }
@@ -276,12 +279,15 @@ const MISSED: f64 = 0.35;
 /// Share of a torque that is as good as nothing.
 const NOTHING: f64 = 1e-3;
 
+/// No link of an arm has such a mass \[kg\].
+const HEAVIEST: f64 = 1500.0;
+
 /// What a reader should not overlook.
 fn doubts(found: &Identified) -> Vec<String> {
     let mut texts = Vec::new();
     let (with, without) = match (&found.validation, &found.unconstrained_validation) {
         (Some(with), Some(without)) => (&with.rms, &without.rms),
-        _ => (&found.training.rms, &found.fit.rms),
+        _ => (&found.cross_rms, &found.fit.cross_rms),
     };
     for (joint, (with, without)) in with.iter().zip(without).enumerate() {
         let relative = found.training.relative[joint];
@@ -307,6 +313,16 @@ fn doubts(found: &Identified) -> Vec<String> {
             "joint {}: its friction would give power: has its torque the wrong sign?",
             joint + 1
         ));
+    }
+    for (k, link) in found.model.links.iter().enumerate() {
+        if link.mass > HEAVIEST {
+            texts.push(format!(
+                "link {}: {:.0} kg are no arm's: the motion does not tell masses, only what torques \
+                 need of them; start from a robot file with the masses of the drawings",
+                k + 1,
+                link.mass
+            ));
+        }
     }
     let poor = found.fit.condition.scaled;
     if poor > 100.0 {

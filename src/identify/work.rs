@@ -12,8 +12,8 @@ use super::consistent::{Piece, Target, consistent, link, margin, pseudo_inertia}
 use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
-use super::fit::{Fit, Weighting, fit, root_mean};
-use super::least_squares::solve;
+use super::fit::{Fit, Weighting, fit, reweighted, root_mean};
+use super::least_squares::{Solution, solve};
 use super::quality::{Quality, quality, surely_negative};
 use super::samples::{Samples, Source};
 use super::wrist::wrist_coupling;
@@ -70,6 +70,9 @@ pub struct Identified {
     pub validation: Option<Misses>,
     /// Errors of the fit without constraints on these.
     pub unconstrained_validation: Option<Misses>,
+    /// Root mean square of each joint's residuals \[Nm\] with consistent models of the other parts
+    /// of the data, which are those of the fit's `cross_rms`.
+    pub cross_rms: Vec<f64>,
     /// Whether every link is a body that can be.
     pub physically_consistent: bool,
     /// Base parameters that the data do not determine.
@@ -121,29 +124,19 @@ pub fn identify(
         fit.solution.dependent.iter().map(|(column, _)| *column).collect();
 
     let pieces = pieces(&nominal, settings.free, &fit, &base, &among);
-    let combination = combination(&base, &fit, &among);
-    let beta = DVector::from_iterator(
-        fit.solution.determined.len(),
-        fit.solution.determined.iter().map(|k| fit.solution.beta[*k]),
-    );
-    // In units of each joint's residuals, also where joints were not weighted; data without
-    // noise would ask for more digits than there are.
-    let weights: Vec<f64> = fit
-        .rms
-        .iter()
-        .zip(&fit.relative_rms)
-        .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
-        .collect();
-    let weighted = solve(&fit.factors.stacked(&weights, base.rank()));
-    let factor = if weighted.determined == fit.solution.determined {
-        &weighted.factor
-    } else {
-        &fit.solution.factor
+    let written = Written { pieces: &pieces, base: &base, fit: &fit, among: &among };
+    let found = written.of(&fit.solution, &fit.factors).ok_or(IdentifyError::Inconsistent)?;
+    let of_parts = |part: &Factors| -> DVector<f64> {
+        let (solution, _) = reweighted(part, settings.weighting, base.rank());
+        match written.of(&solution, part) {
+            Some(found) => {
+                let all = spread(found.as_slice(), &among, rigid + JOINT * n);
+                DVector::from_vec(base.of_parameters(&all))
+            }
+            None => solution.beta,
+        }
     };
-    let least = fit.rows.iter().sum::<usize>() as f64;
-    let target = Target { combination: &combination, factor, beta: &beta, least };
-    let found = consistent(&pieces, &target).ok_or(IdentifyError::Inconsistent)?;
-    let found = with_apparent(&pieces, &target, found, (&fit, &base), &among);
+    let cross_rms = fit.held_out.rms(&fit.factors, &of_parts);
     let values: Vec<f64> = found.iter().copied().collect();
 
     let all = spread(&values, &among, rigid + JOINT * n);
@@ -177,6 +170,7 @@ pub fn identify(
         training: training_misses,
         validation,
         unconstrained_validation,
+        cross_rms,
         physically_consistent,
         undetermined,
         payload,
@@ -186,6 +180,45 @@ pub fn identify(
         base,
         fit,
     })
+}
+
+/// How the free parameters of a model that can be are found; sizes are those of the fit of all
+/// data.
+struct Written<'a> {
+    pieces: &'a [Piece],
+    base: &'a BaseParameters,
+    fit: &'a Fit,
+    among: &'a [usize],
+}
+
+impl Written<'_> {
+    /// The parameters nearest to a free solution of some equations.
+    fn of(&self, solution: &Solution, factors: &Factors) -> Option<DVector<f64>> {
+        let combination = combination(self.base, solution, self.among);
+        let beta = DVector::from_iterator(
+            solution.determined.len(),
+            solution.determined.iter().map(|k| solution.beta[*k]),
+        );
+        // In units of each joint's residuals, also where joints were not weighted; data without
+        // noise would ask for more digits than there are.
+        let fit = self.fit;
+        let weights: Vec<f64> = fit
+            .rms
+            .iter()
+            .zip(&fit.relative_rms)
+            .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
+            .collect();
+        let weighted = solve(&factors.stacked(&weights, self.base.rank()));
+        let factor = if weighted.determined == solution.determined {
+            &weighted.factor
+        } else {
+            &solution.factor
+        };
+        let least = factors.rows_without(None).iter().sum::<usize>() as f64;
+        let target = Target { combination: &combination, factor, beta: &beta, least };
+        let found = consistent(self.pieces, &target)?;
+        Some(with_apparent(self.pieces, &target, found, (fit, self.base), self.among))
+    }
 }
 
 fn misses(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
@@ -256,7 +289,7 @@ fn spread(values: &[f64], among: &[usize], count: usize) -> Vec<f64> {
 
 /// The determined base parameters as combinations of the free ones. What the data do not
 /// tell apart goes together.
-fn combination(base: &BaseParameters, fit: &Fit, among: &[usize]) -> DMatrix<f64> {
+fn combination(base: &BaseParameters, solution: &Solution, among: &[usize]) -> DMatrix<f64> {
     let place = |index: usize| among.iter().position(|known| *known == index);
     let row_of = |row: usize| {
         let mut values = vec![0.0; among.len()];
@@ -270,9 +303,9 @@ fn combination(base: &BaseParameters, fit: &Fit, among: &[usize]) -> DMatrix<f64
         }
         values
     };
-    let determined = &fit.solution.determined;
+    let determined = &solution.determined;
     let mut rows: Vec<Vec<f64>> = determined.iter().map(|row| row_of(*row)).collect();
-    for (column, parts) in &fit.solution.dependent {
+    for (column, parts) in &solution.dependent {
         let values = row_of(*column);
         for (to, factor) in parts {
             if let Some(row) = determined.iter().position(|known| known == to) {
