@@ -122,8 +122,7 @@ pub fn fit(
     let folds = repetitions::folds(equations, samples);
     let over_repetitions = folds.is_some();
     let held_out = HeldOut { folds };
-    let cross_rms =
-        held_out.rms(&factors, &|part| reweighted(part, weighting, unknowns).0.beta);
+    let cross_rms = held_out.rms(&factors, &|part| reweighted(part, weighting, unknowns).0.beta);
     let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
     let Errors { covariance, memory, whiteness } =
         errors(equations, samples, &merged, &solution, &weights, weighting);

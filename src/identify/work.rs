@@ -157,7 +157,13 @@ pub fn identify(
     };
     let giving_power = (0..n).filter(giving).collect();
     let quality = quality(&equations, training, &training_misses, giving_power, &fit.whiteness);
-    let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
+    let (mut identified, payload) = assembled(
+        &nominal,
+        settings,
+        &values,
+        training,
+        (coupling, &told_links(&base, &fit.solution)),
+    );
     // They are in the numbers now.
     identified.effects.clear();
     let physically_consistent =
@@ -463,7 +469,7 @@ fn assembled(
     settings: &Settings,
     values: &[f64],
     samples: &Samples,
-    coupling: Option<f64>,
+    (coupling, told): (Option<f64>, &[bool]),
 ) -> (Model, Option<Load>) {
     let n = nominal.dof;
     let mut model = nominal.clone();
@@ -481,8 +487,15 @@ fn assembled(
     }
     let joints = match settings.free {
         Free::All => {
-            model.links = values[..RIGID * n].chunks(RIGID).map(link).collect();
-            tables.extend((1..=n).map(|joint| format!("link {joint}")));
+            // A link of which the motion says nothing stays as it was.
+            let found = values[..RIGID * n].chunks(RIGID).map(link).enumerate();
+            model.links = found
+                .map(|(k, new)| match nominal.links.get(k) {
+                    Some(old) if !told[k] => old.clone(),
+                    _ => new,
+                })
+                .collect();
+            tables.extend((0..n).filter(|k| told[*k]).map(|k| format!("link {}", k + 1)));
             &values[RIGID * n..]
         }
         Free::Friction => values,
@@ -526,6 +539,24 @@ fn assembled(
             model.motors = Some(with_rotors(nominal, &inertia));
         }
     }
+    // Of a list with joints that rest not all is identified.
+    let of_joints = |table: &str, key: &str| -> Origin {
+        let mut new = origin(table, key, &settings.source);
+        if samples.resting.is_empty() {
+            return new;
+        }
+        let before = nominal.origins.iter().find(|o| o.table == table && o.key == key);
+        new.provenance = before.map_or(Some(Provenance::Assumed), |before| before.provenance);
+        let resting: Vec<String> = samples.resting.iter().map(|j| (j + 1).to_string()).collect();
+        let was = before.and_then(|before| before.source.as_deref());
+        let was = was.map_or_else(String::new, |was| format!(": {was}"));
+        new.source = Some(format!(
+            "{}; not identified, as it was, of joints {}, which rest{was}",
+            settings.source,
+            resting.join(", ")
+        ));
+        new
+    };
     model.origins.retain(|origin| {
         let part = |table: &String| {
             origin.table == *table || origin.table.starts_with(&format!("{table}."))
@@ -539,11 +570,17 @@ fn assembled(
             "effects.apparent_torque" => &["inertia", "viscous"],
             _ => &["mass", "com", "inertia"],
         };
-        model.origins.extend(keys.iter().map(|key| origin(table, key, &settings.source)));
+        model.origins.extend(keys.iter().map(|key| {
+            if table.starts_with("link") {
+                origin(table, key, &settings.source)
+            } else {
+                of_joints(table, key)
+            }
+        }));
     }
     if settings.free == Free::All {
         model.origins.retain(|o| !(o.table == "motors" && o.key == "rotor_inertia"));
-        model.origins.push(origin("motors", "rotor_inertia", &settings.source));
+        model.origins.push(of_joints("motors", "rotor_inertia"));
         if nominal.motors.is_none() {
             model.origins.push(Origin {
                 table: "motors".into(),
@@ -560,6 +597,25 @@ fn assembled(
         model.origins.push(origin("wrist", "coupling", &settings.source));
     }
     (model, payload)
+}
+
+/// Links of which a determined base parameter says something.
+fn told_links(base: &BaseParameters, solution: &Solution) -> Vec<bool> {
+    let mut told = vec![false; base.dof];
+    let mut tell = |index: usize| {
+        if let Some(told) = told.get_mut(index / RIGID) {
+            *told = true;
+        }
+    };
+    for row in &solution.determined {
+        tell(base.independent[*row]);
+        for (k, index) in base.dependent.iter().enumerate() {
+            if base.grouping[(*row, k)] != 0.0 {
+                tell(*index);
+            }
+        }
+    }
+    told
 }
 
 /// What a robot can have of numbers, and what only its log can: those below 0.
