@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Pages that people are sent to.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 10] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -15,6 +15,7 @@ const PAGES: [&str; 9] = [
     "docs/identification.md",
     "docs/reasons.md",
     "docs/robots.md",
+    "docs/trajectories.md",
     "fixtures/README.md",
 ];
 

@@ -6,24 +6,28 @@
 
 use super::check::{Check, check};
 use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::cost::Cost;
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
+use super::keep_out;
 use super::margins::Margins;
-use super::path_energy::{EnergyModel, Sharing};
-use super::plant::Plant;
+use super::path_energy::EnergyModel;
+use super::path_grid;
+use super::plant::{PathShares, Plant};
 use super::reason::Reason;
+use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
-use crate::dynamics::{Data, potential_energy, rnea};
+use crate::dynamics::potential_energy;
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::kinematics::fk;
+use crate::kinematics::{Body, fk};
 use crate::motion::controller::motion_limits;
-use crate::motion::sampling::{self, Loaded, SpeedCap};
+use crate::motion::sampling::{Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
@@ -32,7 +36,7 @@ use crate::motion::timing::limits::PathLimits;
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
 use crate::path::joint_path::{DOF, JointPath, Joints};
-use crate::robot::{self, Model};
+use crate::robot::Model;
 
 /// A run to be timed anew.
 #[derive(Clone, Copy)]
@@ -47,6 +51,8 @@ pub struct Task<'a> {
     pub spacing_s: f64,
     /// What the stream may do that the run did not.
     pub freedom: &'a Freedom,
+    /// What is minimised.
+    pub cost: Cost,
 }
 
 /// The time of a run, settling included.
@@ -75,12 +81,25 @@ pub struct Retiming {
     pub duration_s: f64,
     /// No timing of the path takes less in this time, J, all six parts.
     pub lower_bound_j: f64,
+    /// Whether it keeps to the path.
+    pub path: PathUse,
+}
+
+/// What a stream makes of the path of its run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PathUse {
+    /// It keeps to it, within the tolerance.
+    Kept,
+    /// It keeps to it for this reason, although it was free.
+    KeptFor(Reason),
+    /// It leaves it, as far as it is free.
+    Left,
 }
 
 /// Intervals of the grid besides those of zones.
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 8;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
 /// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
@@ -98,6 +117,8 @@ const CORRIDOR: f64 = 0.3;
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
+/// Where a motion is slow, the ramp time is a short step: at least this share of its time.
+const SLOW_STEP: f64 = 0.02;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 
@@ -125,9 +146,15 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         return on_path(task, goal);
     }
     // What is free is never worse than what keeps to the path.
-    let strict = Freedom { deviation: 0.0, ..task.freedom.clone() };
+    let strict = task.freedom.strict();
     let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
-    match (kept, on_path(task, goal)) {
+    let body = keep_out::body(task.model, task.run, task.freedom);
+    if body.is_some_and(|body| keep_out::enters(&body, task.run)) {
+        let path = PathUse::KeptFor(Reason::KeepOut);
+        return kept.map(|kept| Retiming { path, ..kept });
+    }
+    let free = on_path(task, goal).map(|free| Retiming { path: PathUse::Left, ..free });
+    match (kept, free) {
         (Ok(kept), Ok(free)) => {
             let bound = free_bound(task, free.duration_s - task.run.settling);
             let idle = free.energy.energy_j() - free.energy.motion_energy_j();
@@ -165,18 +192,16 @@ fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     match goal {
         Goal::Within(time) => {
             let before = task.energy_before.motion_energy_j();
-            let retiming = work.least_energy(time, before - WORTHWHILE * before.abs())?;
+            let worth = before - WORTHWHILE * before.abs();
+            let retiming =
+                work.least_energy(time, worth).or_else(|reason| work.instead(reason, time))?;
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
         Goal::Exactly(time) => {
             work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
                 Reason::NoSaving => work.within(time),
-                // Near the least time there may be no other stream.
-                Reason::NoStream(_) if time < task.run.duration() => {
-                    work.within(time).or(Err(reason))
-                }
-                other => Err(other),
+                reason => work.instead(reason, time),
             })
         }
         Goal::Fastest => work.least_time(),
@@ -199,7 +224,8 @@ pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
     let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
     let fast = fastest_profile(&grid, &limits).ok()?;
     let longest = SLOWEST * task.run.duration();
-    let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
+    let model = &work.electrical;
+    let optimum = minimize_energy(&grid, &limits, model, &fast, longest).into_optimum()?;
     Some(optimum.profile.duration() + task.run.settling)
 }
 
@@ -213,7 +239,7 @@ pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOf
     let shortest = shortest.max(RESERVE * fast.duration() + settling);
     let known = |time: f64| {
         let outcome =
-            minimize_energy_from(&grid, &limits, &work.model, &fast, time - settling, None);
+            minimize_energy_from(&grid, &limits, &work.electrical, &fast, time - settling, None);
         let optimum = outcome.into_optimum()?;
         Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
     };
@@ -221,6 +247,54 @@ pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOf
     let far = if longest > FAR * before { Some(known(longest)?) } else { None };
     TradeOff::about(known(before)?, shortest, longest.max(before), far)
 }
+
+/// A point of the curve of energy over time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeEnergy {
+    /// Time of the run, settling included, s.
+    pub time_s: f64,
+    /// Energy of the run with the best timing of its path in this time, all six parts, J.
+    pub energy_j: f64,
+    /// No timing of the path takes less in this time, J.
+    pub lower_bound_j: f64,
+}
+
+/// `count` points of the curve of energy over time of a run, from the least time of its path to
+/// the longest that is asked for or a multiple of the least. Without a limit on the jerk: what a
+/// stream can be compared with. Empty where the path has no timing.
+pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
+    let curve = || {
+        let work = Work::new(task).ok()?;
+        let (grid, limits) = work.bare_grid(&Margins::none()).ok()?;
+        let fast = fastest_profile(&grid, &limits).ok()?;
+        let (run, robot) = (task.run, task.model);
+        let least = RESERVE_OF_CURVE * fast.duration();
+        let longest = (CURVE * least).max(run.duration() - run.settling);
+        let held = account::at_rest(robot, &run.load, &run.end, run.settling).energy_j();
+        let point = |i: usize| {
+            let share = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
+            let time = least * (longest / least).powf(share);
+            let bound = energy_bound(&grid, &limits, &work.electrical, &fast, time);
+            let from = bound.as_ref();
+            let model = &work.electrical;
+            let optimum = minimize_energy_from(&grid, &limits, model, &fast, time, from);
+            let optimum = optimum.into_optimum()?;
+            let idle = account::base(robot, time).energy_j() + held;
+            Some(TimeEnergy {
+                time_s: time + run.settling,
+                energy_j: optimum.energy.total() + idle,
+                lower_bound_j: optimum.lower_bound.min(optimum.energy.total()) + idle,
+            })
+        };
+        Some((0..count).filter_map(point).collect())
+    };
+    curve().unwrap_or_default()
+}
+
+/// The curve of energy over time begins at the least time times this, where programs have room.
+const RESERVE_OF_CURVE: f64 = 1.001;
+/// And goes on to this many times that, at least.
+const CURVE: f64 = 2.0;
 
 /// A stream needs this much more time than the fastest profile, at least.
 const RESERVE: f64 = 1.05;
@@ -231,7 +305,11 @@ struct Work<'a> {
     task: &'a Task<'a>,
     path: &'a JointPath,
     corridor: Corridor,
+    body: Option<Body<'a>>,
     limits: StreamLimits,
+    /// What the robot takes.
+    electrical: EnergyModel,
+    /// What is minimised.
     model: EnergyModel,
     lever: Joints,
 }
@@ -249,22 +327,15 @@ impl<'a> Work<'a> {
                 values.as_ref().and_then(|v| v.get(j)).copied().unwrap_or(f64::INFINITY)
             })
         };
-        let motors = robot.motors.as_ref();
-        let model = EnergyModel {
-            loss: std::array::from_fn(|j| motors.map_or(0.0, |m| m.loss_constant[j])),
-            base_w: 0.0,
-            sharing: match robot.drive.sharing {
-                robot::Sharing::None => Sharing::PerJoint,
-                robot::Sharing::Bus => Sharing::Bus,
-            },
-            regeneration: robot.drive.regeneration,
-        };
+        let (electrical, model) = (Cost::Electrical.model(robot), task.cost.model(robot));
         let limits = StreamLimits {
             velocity: list(&robot.limits.velocity),
             acceleration: list(&robot.limits.acceleration),
             jerk: list(&robot.limits.jerk),
         };
-        Ok(Work { task, path, corridor, limits, model, lever: levers(robot, task.run) })
+        let lever = levers(robot, task.run);
+        let body = keep_out::body(robot, task.run, task.freedom);
+        Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
     }
 
     /// Least energy in a time, settling included, if that takes less than `worth` (J, motion).
@@ -322,6 +393,8 @@ impl<'a> Work<'a> {
     ) -> Result<Intended, Reason> {
         let (grid, limits) = self.grid(margins)?;
         let fast = fastest_profile(&grid, &limits)?;
+        // The relaxation of another cost says nothing of this one.
+        let bound = bound.filter(|_| self.model == self.electrical);
         let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;
@@ -332,7 +405,7 @@ impl<'a> Work<'a> {
     fn bound(&self, budget: f64) -> Option<EnergyBound> {
         let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        energy_bound(&grid, &limits, &self.model, &fast, budget)
+        energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
@@ -344,8 +417,9 @@ impl<'a> Work<'a> {
             let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
             let mut best: Option<Attempt> = None;
+            let step = ramp.max(SLOW_STEP * fast.duration());
             for share in RAMP_SHARES {
-                let budget = round_up(fast.duration() + share * ramp);
+                let budget = round_up(fast.duration() + share * step);
                 let intended = self.intend(&fast, budget, &margins);
                 match intended.and_then(|intended| self.realise(intended, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
@@ -366,14 +440,42 @@ impl<'a> Work<'a> {
         Err(problem)
     }
 
-    /// Least time, where the time is too short for more.
+    /// The fastest stream made as slow, where the time is too short for more.
     fn within(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
-        if retiming.duration_s <= time + quantum() {
-            Ok(retiming)
-        } else {
-            Err(Reason::TooShort(retiming.duration_s))
+        if retiming.duration_s > time + quantum() {
+            return Err(Reason::TooShort(retiming.duration_s));
         }
+        let slowed = self.slowed(&retiming.stream, round_down(time - self.task.run.settling));
+        let better = slowed.filter(|slow| slow.energy.energy_j() < retiming.energy.energy_j());
+        Ok(better.unwrap_or(retiming))
+    }
+
+    /// The same where no attempt at a stream of its own held; else the reason for that.
+    fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
+        match reason {
+            Reason::NoStream(_) => self.within(time).or(Err(reason)),
+            other => Err(other),
+        }
+    }
+
+    /// A stream with all its intervals longer, if it still holds: friction and weight don't fall
+    /// with the speed.
+    fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
+        let longer = duration / stream.duration();
+        let intervals: Vec<f64> = stream.intervals().iter().map(|x| x * longer).collect();
+        let intervals = rounded_intervals(&intervals, duration);
+        let slow = Stream::new(*stream.start(), stream.points().to_vec(), intervals).ok()?;
+        let check = self.check(&slow);
+        let bound = self.bound(duration).map(|bound| bound.lower_bound);
+        check.holds().then(|| self.retiming(slow, check, bound))
+    }
+
+    /// What a stream does as the controller will realise it.
+    fn check(&self, stream: &Stream) -> Check {
+        let Task { model, run, .. } = self.task;
+        let tool = &run.legs[0].tool;
+        check(model, &run.load, tool, stream, &self.corridor, &run.end, self.body.as_ref())
     }
 
     /// How far the motion may leave the path somewhere, m, before the polishing minds.
@@ -409,9 +511,9 @@ impl<'a> Work<'a> {
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-        let nodes = sampling::nodes(self.task.model, self.path, &caps, INTERVALS);
+        let nodes = path_grid::nodes(self.task.model, self.path, &caps, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
-        let grid = sampling::grid(loaded, self.path, &nodes, &caps)
+        let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
         let full = motion_limits(self.task.model, margins.load);
         let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
@@ -466,15 +568,7 @@ impl<'a> Work<'a> {
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let tool = self.task.run.legs[0].tool;
-        let check = check(
-            self.task.model,
-            &self.task.run.load,
-            &tool,
-            &rounded,
-            &self.corridor,
-            &self.task.run.end,
-        );
+        let check = self.check(&rounded);
         let intended = Intended { reference, stream: polished.stream };
         Ok(Attempt { stream: rounded, check, intended })
     }
@@ -532,6 +626,7 @@ impl<'a> Work<'a> {
             energy_before_j: task.energy_before.energy_j(),
             duration_s: duration + task.run.settling,
             lower_bound_j: bound + idle,
+            path: PathUse::Kept,
         }
     }
 }
@@ -547,9 +642,12 @@ struct RobotPlant<'a> {
 impl Plant for RobotPlant<'_> {
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
         let task = self.work.task;
-        let mut data = Data::new();
-        let tau = rnea(task.model, &mut data, &task.run.load, q, qd, qdd);
-        std::array::from_fn(|j| tau[j] + task.model.friction.viscous[j] * qd[j])
+        smooth_torque(task.model, &task.run.load, q, qd, qdd)
+    }
+
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        let task = self.work.task;
+        smooth_torque_derivatives(task.model, &task.run.load, q, qd, qdd)
     }
 
     fn dry_friction(&self) -> Joints {
@@ -560,14 +658,16 @@ impl Plant for RobotPlant<'_> {
         motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
     }
 
-    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> [f64; 2] {
+    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {
         let task = self.work.task;
         let tool = &task.run.legs[0].tool;
         let pose = tool.pose(&fk(task.model, q));
         let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
         let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
         let speed = rate.fixed_rows::<3>(0).norm();
-        [speed / (self.margins.speed * ceiling), distance / self.margins.distance]
+        let body = self.work.body.as_ref();
+        let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
+        [speed / (self.margins.speed * ceiling), distance / self.margins.distance, near]
     }
 }
 

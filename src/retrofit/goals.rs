@@ -114,7 +114,7 @@ fn possible(
 }
 
 /// The cycle as the tasks see it.
-fn parts(
+pub(super) fn parts(
     model: &Model,
     settings: &Settings,
     simulation: &Simulation,
