@@ -6,10 +6,11 @@ use std::fs;
 use std::path::Path;
 
 /// Pages that people are sent to.
-const PAGES: [&str; 10] = [
+const PAGES: [&str; 11] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
+    "docs/blind.md",
     "docs/controller.md",
     "docs/energy.md",
     "docs/identification.md",

@@ -294,7 +294,7 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
         };
         assert!(off <= 1.0, "{name}: {off} of the allowed distance from the path at {t} s");
         if let Some((then, power, from)) = before
-            && *t > then
+            && *t - then > STEP * 1e-6
         {
             let speed = apart(place, from) / (t - then);
             assert!(speed <= LIMIT * ceiling, "{name}: {speed} mm/s at {t} s");

@@ -7,15 +7,13 @@
 use super::check::{Check, check};
 use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::cost::Cost;
-use super::cycle::{Known, TradeOff};
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
 use super::keep_out;
 use super::margins::Margins;
 use super::path_energy::EnergyModel;
 use super::path_grid;
-use super::plant::{PathShares, Plant};
 use super::reason::Reason;
-use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
+use super::run_plant::RunPlant;
 use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
@@ -216,106 +214,21 @@ pub fn fastest(task: &Task<'_>) -> Option<f64> {
 /// A run is made slower by this factor at most.
 pub const SLOWEST: f64 = 10.0;
 
-/// The time, s, beyond which a run takes more motion energy again since the motors hold the arm up
-/// for longer; at most [`SLOWEST`] times as long as before. `None` where there is no stream. Base
-/// power does not count: the rest of a takt has to be waited for anyway.
-pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
-    let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
-    let fast = fastest_profile(&grid, &limits).ok()?;
-    let longest = SLOWEST * task.run.duration();
-    let model = &work.electrical;
-    let optimum = minimize_energy(&grid, &limits, model, &fast, longest).into_optimum()?;
-    Some(optimum.profile.duration() + task.run.settling)
-}
-
-/// What a run takes over the time that it gets, settling included: the energies are of the
-/// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
-pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
-    let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
-    let fast = fastest_profile(&grid, &limits).ok()?;
-    let settling = task.run.settling;
-    let shortest = shortest.max(RESERVE * fast.duration() + settling);
-    let known = |time: f64| {
-        let outcome =
-            minimize_energy_from(&grid, &limits, &work.electrical, &fast, time - settling, None);
-        let optimum = outcome.into_optimum()?;
-        Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
-    };
-    let before = task.run.duration().max(shortest);
-    let far = if longest > FAR * before { Some(known(longest)?) } else { None };
-    TradeOff::about(known(before)?, shortest, longest.max(before), far)
-}
-
-/// A point of the curve of energy over time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeEnergy {
-    /// Time of the run, settling included, s.
-    pub time_s: f64,
-    /// Energy of the run with the best timing of its path in this time, all six parts, J.
-    pub energy_j: f64,
-    /// No timing of the path takes less in this time, J.
-    pub lower_bound_j: f64,
-}
-
-/// `count` points of the curve of energy over time of a run, from the least time of its path to
-/// the longest that is asked for or a multiple of the least. Without a limit on the jerk: what a
-/// stream can be compared with. Empty where the path has no timing.
-pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
-    let curve = || {
-        let work = Work::new(task).ok()?;
-        let (grid, limits) = work.bare_grid(&Margins::none()).ok()?;
-        let fast = fastest_profile(&grid, &limits).ok()?;
-        let (run, robot) = (task.run, task.model);
-        let least = RESERVE_OF_CURVE * fast.duration();
-        let longest = (CURVE * least).max(run.duration() - run.settling);
-        let held = account::at_rest(robot, &run.load, &run.end, run.settling).energy_j();
-        let point = |i: usize| {
-            let share = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
-            let time = least * (longest / least).powf(share);
-            let bound = energy_bound(&grid, &limits, &work.electrical, &fast, time);
-            let from = bound.as_ref();
-            let model = &work.electrical;
-            let optimum = minimize_energy_from(&grid, &limits, model, &fast, time, from);
-            let optimum = optimum.into_optimum()?;
-            let idle = account::base(robot, time).energy_j() + held;
-            Some(TimeEnergy {
-                time_s: time + run.settling,
-                energy_j: optimum.energy.total() + idle,
-                lower_bound_j: optimum.lower_bound.min(optimum.energy.total()) + idle,
-            })
-        };
-        Some((0..count).filter_map(point).collect())
-    };
-    curve().unwrap_or_default()
-}
-
-/// The curve of energy over time begins at the least time times this, where programs have room.
-const RESERVE_OF_CURVE: f64 = 1.001;
-/// And goes on to this many times that, at least.
-const CURVE: f64 = 2.0;
-
-/// A stream needs this much more time than the fastest profile, at least.
-const RESERVE: f64 = 1.05;
-/// Times this much longer than before are worth a look of their own.
-const FAR: f64 = 1.5;
-
-struct Work<'a> {
-    task: &'a Task<'a>,
+pub(super) struct Work<'a> {
+    pub(super) task: &'a Task<'a>,
     path: &'a JointPath,
-    corridor: Corridor,
-    body: Option<Body<'a>>,
+    pub(super) corridor: Corridor,
+    pub(super) body: Option<Body<'a>>,
     limits: StreamLimits,
     /// What the robot takes.
-    electrical: EnergyModel,
+    pub(super) electrical: EnergyModel,
     /// What is minimised.
     model: EnergyModel,
     lever: Joints,
 }
 
 impl<'a> Work<'a> {
-    fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
+    pub(super) fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
         let [(_, TimedMotion::Path(path, _))] = task.run.motions.as_slice() else {
             return Err(Reason::SharpCorner);
         };
@@ -486,19 +399,19 @@ impl<'a> Work<'a> {
     }
 
     /// The smallest tolerance on the path, m.
-    fn tolerance(&self) -> f64 {
+    pub(super) fn tolerance(&self) -> f64 {
         let line =
             self.task.run.legs.iter().any(|leg| !matches!(leg.kind, crate::path::LegKind::Joint));
         if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
     }
 
     /// The problem on the path, shaped so that a stream can follow its solution.
-    fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+    pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         let (grid, limits) = self.bare_grid(margins)?;
         Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
     }
 
-    fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+    pub(super) fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         let caps: Vec<SpeedCap> = self
             .task
             .run
@@ -557,11 +470,8 @@ impl<'a> Work<'a> {
     /// The stream polished, rounded as it will be emitted and checked.
     fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
         let Intended { reference, stream } = intended;
-        let plant = RobotPlant {
-            work: self,
-            margins,
-            ceilings: self.corridor.eased(margins.reach, EASING),
-        };
+        let plant =
+            RunPlant { work: self, margins, ceilings: self.corridor.eased(margins.reach, EASING) };
         let corridor = PolishCorridor { tolerance: self.looseness(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
@@ -631,50 +541,10 @@ impl<'a> Work<'a> {
     }
 }
 
-/// The robot with its load, as the polishing of a stream sees it.
-struct RobotPlant<'a> {
-    work: &'a Work<'a>,
-    margins: &'a Margins,
-    /// TCP speed at the places of the corridor, m/s.
-    ceilings: Vec<f64>,
-}
-
-impl Plant for RobotPlant<'_> {
-    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
-        let task = self.work.task;
-        smooth_torque(task.model, &task.run.load, q, qd, qdd)
-    }
-
-    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
-        let task = self.work.task;
-        smooth_torque_derivatives(task.model, &task.run.load, q, qd, qdd)
-    }
-
-    fn dry_friction(&self) -> Joints {
-        std::array::from_fn(|j| self.work.task.model.friction.coulomb[j])
-    }
-
-    fn torque_limit(&self) -> Joints {
-        motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
-    }
-
-    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {
-        let task = self.work.task;
-        let tool = &task.run.legs[0].tool;
-        let pose = tool.pose(&fk(task.model, q));
-        let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
-        let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
-        let speed = rate.fixed_rows::<3>(0).norm();
-        let body = self.work.body.as_ref();
-        let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
-        [speed / (self.margins.speed * ceiling), distance / self.margins.distance, near]
-    }
-}
-
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
-fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
+pub(super) fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)
         .into_profile()
         .ok_or_else(|| Reason::NoStream("the torque limits leave no timing on the path".into()))

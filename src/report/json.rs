@@ -9,7 +9,7 @@ use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::optimize::check::Check;
-use crate::optimize::retime::TimeEnergy;
+use crate::optimize::energy_curve::TimeEnergy;
 use crate::retrofit::{
     Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind, SignalShift,
 };

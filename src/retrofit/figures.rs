@@ -4,8 +4,8 @@ use super::signals::SignalShift;
 use crate::energy::Account;
 use crate::motion::Simulation;
 use crate::optimize::check::Check;
+use crate::optimize::energy_curve::TimeEnergy;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::TimeEnergy;
 use crate::text::Span;
 
 /// Time and energy of one cycle.

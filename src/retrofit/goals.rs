@@ -7,7 +7,8 @@ use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{Event, WaitBasis, What};
 use crate::optimize::cycle::{Part, TradeOff, cycle_time, share};
-use crate::optimize::retime::{Goal, Task, fastest, thriftiest, trade_off};
+use crate::optimize::energy_curve::{thriftiest, trade_off};
+use crate::optimize::retime::{Goal, Task, fastest};
 use crate::optimize::site::Site;
 use crate::robot::Model;
 
