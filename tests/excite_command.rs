@@ -142,9 +142,9 @@ fn wrong_options_say_the_way_out() {
         (&["--box", "0,0,0,1"], "two corners"),
         (&["--box", "0,0,0,1,1,0"], "no volume"),
         (&["--harmonics", "0,1"], "whole multiples"),
-        (&["--speed-share", "1.5"], "at most 1"),
+        (&["--speed-share", "1.5"], "from 0.001 to 1"),
         (&["--spacing", "nan"], "above 0"),
-        (&["--cycles", "0"], "1 or more"),
+        (&["--cycles", "0"], "give 1 to 10000"),
     ] {
         let args = ["excite", "--robot", ROBOT, "--out", out, "-q", "--variant", "friction"];
         let output = joulepath(&[&args[..], more].concat());

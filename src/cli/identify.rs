@@ -515,17 +515,14 @@ fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
     for row in rejected {
         let text = format!("row {} left out: {}", row.row, row.reason);
         let kind = kind(&row.reason);
-        match kinds.iter_mut().find(|(known, _)| *known == kind) {
-            Some((_, count)) => {
-                *count += 1;
-                if *count <= TOLD {
-                    texts.push(text);
-                }
-            }
-            None => {
-                kinds.push((kind, 1));
+        if let Some((_, count)) = kinds.iter_mut().find(|(known, _)| *known == kind) {
+            *count += 1;
+            if *count <= TOLD {
                 texts.push(text);
             }
+        } else {
+            kinds.push((kind, 1));
+            texts.push(text);
         }
     }
     for (kind, count) in kinds.into_iter().filter(|(_, count)| *count > TOLD) {
