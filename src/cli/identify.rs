@@ -115,6 +115,9 @@ struct Ready {
     record: (String, String, usize, usize),
     samples: Samples,
     origin: String,
+    /// How many times the weight of the robot file's masses the torques carry, where that is
+    /// strange.
+    weight: Option<f64>,
 }
 
 /// A day that the calendar has.
@@ -171,6 +174,7 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     }
     basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
     basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
+    let weight = training.iter().find_map(|ready| ready.weight);
     let samples = joined(training)?;
     for joint in &samples.resting {
         let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
@@ -201,7 +205,10 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
         },
         source: format!("joulepath identify, {}{when}", files.join(", ")),
     };
-    let found = identify(&model, &samples, &validation, &settings)?;
+    let mut found = identify(&model, &samples, &validation, &settings)?;
+    if let Some(factor) = weight {
+        found.quality.doubt_weight(factor);
+    }
     if let Some(coupling) = found.coupling {
         let text = format!(
             "the wrist is coupled: motor 6 turns {coupling:.3} times with axis 5; the robot did not \
@@ -420,7 +427,9 @@ fn ready(
     check_angles(model, &log).with_context(|| shown.clone())?;
     let torque = torques(model, &log).with_context(|| shown.clone())?;
     check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
-    for text in clocks.into_iter().chain(weight(model, &log, &torque.tau)) {
+    let weight = weight_factor(model, &log, &torque.tau);
+    let strange = weight.map(|(factor, joint)| of_weight(factor, joint));
+    for text in clocks.into_iter().chain(strange) {
         tell(args, basis, format!("{shown}: {text}"));
     }
     for text in torque.notes {
@@ -433,7 +442,12 @@ fn ready(
     if let Some(text) = unfitting(args.period, &samples.source) {
         tell(args, basis, format!("{shown}: {text}"));
     }
-    Ok(Ready { record: (shown, hash, usable, left_out), samples, origin: torque.origin })
+    Ok(Ready {
+        record: (shown, hash, usable, left_out),
+        samples,
+        origin: torque.origin,
+        weight: weight.map(|(factor, _)| factor),
+    })
 }
 
 /// Logs that were given twice.
@@ -460,10 +474,9 @@ fn repeated<'a>(
 }
 
 /// Torques that do not carry the masses of the robot file.
-fn weight(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<String> {
-    let (factor, joint) = weight_factor(model, log, tau)?;
+fn of_weight(factor: f64, joint: usize) -> String {
     let times = |times: f64| if times < 10.0 { times } else { times.round() };
-    Some(if factor < 1.0 {
+    if factor < 1.0 {
         format!(
             "the torques carry {:.0} times less than the masses of the robot file weigh (joint {}): \
              are they those of the motors, before the gear? Then multiply each tau by its ratio",
@@ -477,7 +490,7 @@ fn weight(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<String> {
             times(factor),
             joint + 1
         )
-    })
+    }
 }
 
 /// A period that was given and is not that of the motion.

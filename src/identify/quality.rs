@@ -34,6 +34,8 @@ const LITTLE: f64 = 0.05;
 const SHORT: f64 = 0.01;
 const LONGEST: f64 = 0.4;
 const TOLD: f64 = 0.003;
+/// Share of the joints to which a shift has to be of use.
+const AGREE: f64 = 0.7;
 /// Residuals that noise has with less than this probability have more in them.
 const WHITE: f64 = 1e-3;
 
@@ -62,9 +64,24 @@ pub struct Quality {
     pub giving_power: Vec<usize>,
     /// By how much the torques fit the motion better if they are taken from later, \[s\].
     pub late: Option<f64>,
+    /// How many times the weight of the robot file's masses the torques carry, where that is
+    /// strange.
+    pub weight: Option<f64>,
 }
 
 impl Quality {
+    /// Takes note that the torques carry `factor` times the weight of the robot file's masses: far
+    /// less are those of motors or of another unit, far more may be a file without true masses.
+    pub fn doubt_weight(&mut self, factor: f64) {
+        self.weight = Some(factor);
+        self.grade = match self.grade {
+            Grade::None => Grade::None,
+            _ if factor < 1.0 => Grade::Poor,
+            Grade::Good => Grade::Fair,
+            grade => grade,
+        };
+    }
+
     /// The mean share of the moving joints.
     #[must_use]
     pub fn mean(&self) -> f64 {
@@ -96,6 +113,13 @@ impl Quality {
             let joints = named(self.giving_power.clone());
             let _ = write!(text, ", friction of joints {joints} would give power");
         }
+        if let Some(factor) = self.weight {
+            let _ = write!(
+                text,
+                ", which carry {} times the weight of the robot file's masses",
+                if factor < 1.0 { format!("{factor:.3}") } else { format!("{factor:.0}") }
+            );
+        }
         if let Some(late) = self.late {
             let when = if late > 0.0 { "later" } else { "earlier" };
             let late = late.abs();
@@ -124,7 +148,8 @@ pub(super) fn quality(
         })
         .collect();
     let moving = misses.rms.len() - samples.resting.len();
-    let mut quality = Quality { grade: Grade::Good, explained, giving_power, late: None };
+    let mut quality =
+        Quality { grade: Grade::Good, explained, giving_power, late: None, weight: None };
     let mean = quality.mean();
     // A joint that is not explained is not made good by the others.
     let worst = quality.explained.iter().copied().fold(1.0, f64::min);
@@ -197,10 +222,11 @@ fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> O
         rms.iter().map(|rms| if *rms > 0.0 { 1.0 / rms } else { 0.0 }).collect();
     let width = (SHORT / samples.step).round().max(1.0) as isize;
     let most = (LONGEST / samples.step) as isize;
-    let miss = |k: isize| {
+    let by_joint = |k: isize| {
         let part = shifted(samples, block, k)?;
         Some(missed_by(equations, &part, |_| weights.clone()))
     };
+    let miss = |k: isize| Some(by_joint(k)?.iter().sum::<f64>());
     let none = miss(0)?;
     let (mut middle, mut here) = (0, none);
     let [mut before, mut after] = [miss(-width)?, miss(width)?];
@@ -219,7 +245,14 @@ fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> O
     let place = if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
     let late = (middle as f64 + place * width as f64) * samples.step;
     let least = here - 0.25 * (before - after) * place;
-    (late.abs() >= TOLD && least < (1.0 - LITTLE) * none).then_some(late)
+    if late.abs() < TOLD || least > (1.0 - LITTLE) * none {
+        return None;
+    }
+    // Clocks are those of all joints; what a few of them like is something else.
+    let (earlier, later) = (by_joint(-width)?, by_joint(width)?);
+    let pairs = || earlier.iter().zip(&later).filter(|(a, b)| **a > 0.0 && **b > 0.0);
+    let agree = pairs().filter(|(a, b)| (*a > *b) == (late > 0.0)).count();
+    (agree as f64 >= AGREE * pairs().count() as f64).then_some(late)
 }
 
 /// Sum over the joints of the share of the torque's power that a free fit misses, with the
@@ -230,20 +263,20 @@ fn missed(equations: &Equations<'_>, samples: &Samples, block: &Block, shift: f6
         let torque = factors.squares.iter().flatten();
         torque.map(|sum| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 }).collect()
     };
-    Some(missed_by(equations, &part, of_torque))
+    Some(missed_by(equations, &part, of_torque).iter().sum())
 }
 
-/// The weighted power that a free fit misses.
+/// The weighted power that a free fit misses, by joint.
 fn missed_by(
     equations: &Equations<'_>,
     samples: &Samples,
     weights: impl Fn(&Factors) -> Vec<f64>,
-) -> f64 {
+) -> Vec<f64> {
     let factors = Factors::of(equations, samples, 1);
     let weights = weights(&factors);
     let beta: DVector<f64> = solve(&factors.stacked(&weights, equations.base.rank())).beta;
     let squares = factors.residual_squares(&beta, None);
-    squares.iter().zip(&weights).map(|(e, w)| e * w * w).sum()
+    squares.iter().zip(&weights).map(|(e, w)| e * w * w).collect()
 }
 
 /// Instants from the middle of a block with the torques of so many samples later; `None` where

@@ -125,15 +125,14 @@ pub fn identify(
 
     let pieces = pieces(&nominal, settings.free, &fit, &base, &among);
     let written = Written { pieces: &pieces, base: &base, fit: &fit, among: &among };
-    let found = written.of(&fit.solution, &fit.factors).ok_or(IdentifyError::Inconsistent)?;
+    let found = written.of(&fit.factors).ok_or(IdentifyError::Inconsistent)?;
     let of_parts = |part: &Factors| -> DVector<f64> {
-        let (solution, _) = reweighted(part, settings.weighting, base.rank());
-        match written.of(&solution, part) {
+        match written.of(part) {
             Some(found) => {
                 let all = spread(found.as_slice(), &among, rigid + JOINT * n);
                 DVector::from_vec(base.of_parameters(&all))
             }
-            None => solution.beta,
+            None => reweighted(part, settings.weighting, base.rank()).0.beta,
         }
     };
     let cross_rms = fit.held_out.rms(&fit.factors, &of_parts);
@@ -198,13 +197,8 @@ struct Written<'a> {
 }
 
 impl Written<'_> {
-    /// The parameters nearest to a free solution of some equations.
-    fn of(&self, solution: &Solution, factors: &Factors) -> Option<DVector<f64>> {
-        let combination = combination(self.base, solution, self.among);
-        let beta = DVector::from_iterator(
-            solution.determined.len(),
-            solution.determined.iter().map(|k| solution.beta[*k]),
-        );
+    /// The parameters nearest to the free solution of some equations.
+    fn of(&self, factors: &Factors) -> Option<DVector<f64>> {
         // In units of each joint's residuals, also where joints were not weighted; data without
         // noise would ask for more digits than there are.
         let fit = self.fit;
@@ -215,13 +209,16 @@ impl Written<'_> {
             .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
             .collect();
         let weighted = solve(&factors.stacked(&weights, self.base.rank()));
-        let factor = if weighted.determined == solution.determined {
-            &weighted.factor
-        } else {
-            &solution.factor
+        let beta = DVector::from_iterator(
+            weighted.determined.len(),
+            weighted.determined.iter().map(|k| weighted.beta[*k]),
+        );
+        let target = Target {
+            combination: &combination(self.base, &weighted, self.among),
+            factor: &weighted.factor,
+            beta: &beta,
+            least: factors.rows_without(None).iter().sum::<usize>() as f64,
         };
-        let least = factors.rows_without(None).iter().sum::<usize>() as f64;
-        let target = Target { combination: &combination, factor, beta: &beta, least };
         let found = consistent(self.pieces, &target)?;
         Some(with_apparent(self.pieces, &target, found, (fit, self.base), self.among))
     }
