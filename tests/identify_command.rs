@@ -306,10 +306,8 @@ fn the_descent_of_the_paper_comes_near_the_free_fit() {
     assert!(last <= first, "{first} {last}");
 }
 
-/// A URDF without gear ratios has its rotors at the joint; what is written is read again.
-#[test]
-fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
-    let bench = Bench::new();
+/// A robot file with masses, without gear ratios.
+fn without_motors(bench: &Bench) -> PathBuf {
     let robot = bench.folder.path().join("direct.toml");
     let text = to_toml(&find(ROBOT).unwrap());
     let mut lines: Vec<&str> = Vec::new();
@@ -323,6 +321,34 @@ fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
         }
     }
     fs::write(&robot, lines.join("\n")).unwrap();
+    robot
+}
+
+/// Without ratios torques of motors are only known by the weight that they carry.
+#[test]
+fn torques_that_carry_too_little_are_no_good_model() {
+    let bench = Bench::new();
+    let robot = without_motors(&bench);
+    let ratio = find(ROBOT).unwrap().motors.unwrap().ratio;
+    let mut all = rows();
+    for row in &mut all {
+        row[19..25].iter_mut().zip(&ratio).for_each(|(tau, ratio)| *tau /= ratio);
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let [robot, log] = [&robot, &log].map(|path| path.to_str().unwrap());
+    let output = joulepath(&["identify", "--robot", robot, "--log", log, "--format", "json"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("multiply each tau by its ratio"), "{said}");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
+    assert!(found["quality"]["statement"].as_str().unwrap().contains("weight"));
+}
+
+/// A URDF without gear ratios has its rotors at the joint; what is written is read again.
+#[test]
+fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
+    let bench = Bench::new();
+    let robot = without_motors(&bench);
     // Heavy rotors on all joints.
     let mut all = rows();
     for row in &mut all {

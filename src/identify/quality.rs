@@ -34,8 +34,8 @@ const LITTLE: f64 = 0.05;
 const SHORT: f64 = 0.01;
 const LONGEST: f64 = 0.4;
 const TOLD: f64 = 0.003;
-/// Share of the joints to which a shift has to be of use.
-const AGREE: f64 = 0.7;
+/// Share by which the residuals' power of a joint may grow with a shift of the clocks.
+const SPOILED: f64 = 0.1;
 /// Residuals that noise has with less than this probability have more in them.
 const WHITE: f64 = 1e-3;
 
@@ -245,14 +245,20 @@ fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> O
     let place = if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
     let late = (middle as f64 + place * width as f64) * samples.step;
     let least = here - 0.25 * (before - after) * place;
-    if late.abs() < TOLD || least > (1.0 - LITTLE) * none {
+    // Rows far apart tell no less than half of their distance.
+    let told = if samples.step > SHORT { 0.5 * samples.step } else { TOLD };
+    if late.abs() < told || least > (1.0 - LITTLE) * none {
         return None;
     }
-    // Clocks are those of all joints; what a few of them like is something else.
-    let (earlier, later) = (by_joint(-width)?, by_joint(width)?);
-    let pairs = || earlier.iter().zip(&later).filter(|(a, b)| **a > 0.0 && **b > 0.0);
-    let agree = pairs().filter(|(a, b)| (*a > *b) == (late > 0.0)).count();
-    (agree as f64 >= AGREE * pairs().count() as f64).then_some(late)
+    // Clocks are those of all joints: what spoils one of them is something else.
+    let [none, before, here, after] =
+        [by_joint(0)?, by_joint(middle - width)?, by_joint(middle)?, by_joint(middle + width)?];
+    let spoiled = (0..none.len()).any(|j| {
+        let (slope, bend) = (after[j] - before[j], before[j] + after[j] - 2.0 * here[j]);
+        let there = here[j] + 0.5 * place * (slope + bend * place);
+        there > (1.0 + SPOILED) * none[j]
+    });
+    (!spoiled).then_some(late)
 }
 
 /// Sum over the joints of the share of the torque's power that a free fit misses, with the
