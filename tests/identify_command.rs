@@ -403,6 +403,7 @@ fn options_that_do_not_fit_the_logs_are_said() {
         ("--date", "2026-02-29", "2026-11-30"),
         ("--date", "1.2.2026", "2026-11-30"),
         ("--period", "-1", "more than 0"),
+        ("--period", "1e300", "at most 100000"),
     ] {
         let output = joulepath(&[&args[..], &[option, value]].concat());
         assert_eq!(output.status.code(), Some(2));

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Write as _};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -148,8 +149,11 @@ fn date(text: &str) -> Result<String, String> {
 pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let model = robot::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
-    if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
-        bail!("--period {period}: give the duration of a repetition in seconds, more than 0");
+    if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {
+        bail!(
+            "--period {period:?}: give the duration of a repetition in seconds, more than 0, at most {}",
+            PERIODS.end()
+        );
     }
     let hints = Hints { period: args.period, cutoff: None };
     let mut basis = report::Basis { date: args.date.clone(), ..report::Basis::default() };
@@ -509,6 +513,9 @@ fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
         )),
     }
 }
+
+/// Repetitions that a log can hold \[s\].
+const PERIODS: RangeInclusive<f64> = 1e-3..=1e5;
 
 /// Share by which a period may differ from the one that was given.
 const OTHER_PERIOD: f64 = 0.01;
