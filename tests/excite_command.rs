@@ -142,9 +142,9 @@ fn wrong_options_say_the_way_out() {
         (&["--box", "0,0,0,1"], "two corners"),
         (&["--box", "0,0,0,1,1,0"], "no volume"),
         (&["--harmonics", "0,1"], "whole multiples"),
-        (&["--speed-share", "1.5"], "at most 1"),
+        (&["--speed-share", "1.5"], "from 0.001 to 1"),
         (&["--spacing", "nan"], "above 0"),
-        (&["--cycles", "0"], "1 or more"),
+        (&["--cycles", "0"], "give 1 to 10000"),
     ] {
         let args = ["excite", "--robot", ROBOT, "--out", out, "-q", "--variant", "friction"];
         let output = joulepath(&[&args[..], more].concat());
@@ -152,4 +152,49 @@ fn wrong_options_say_the_way_out() {
         assert_eq!(output.status.code(), Some(2), "{more:?}: {text}");
         assert!(text.contains(message), "{more:?}: {text}");
     }
+}
+
+/// Numbers that no motion can be made of, and those that are in reach of one.
+#[test]
+fn impossible_numbers_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    for (option, value) in [
+        ("--spacing", "5"),
+        ("--spacing", "1e-9"),
+        ("--spacing", "-1"),
+        ("--base-frequency", "0.0001"),
+        ("--base-frequency", "-1"),
+        ("--base-frequency", "1e300"),
+        ("--speed-share", "1e-300"),
+        ("--speed-share", "-1"),
+        ("--cycles", "0"),
+        ("--cycles", "18446744073709551615"),
+        ("--cycles", "-1"),
+        ("--harmonics", "-1"),
+        ("--seed", "-1"),
+        ("--tool", "0,0,1e300"),
+        ("--plane", "1,0,0,3"),
+    ] {
+        let out = folder.path().to_str().unwrap();
+        let output = joulepath(&["excite", "--robot", ROBOT, "--out", out, option, value]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{option} {value}: {said}");
+        assert!(!said.contains("unexpected argument"), "{option} {value}: {said}");
+        assert!(!folder.path().join("excitation.csv").exists());
+    }
+}
+
+/// Repetitions of points that are a rounded time apart would last longer than the period.
+#[test]
+fn adaptive_points_make_a_whole_period() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = excite(&folder, &["--spacing", "adaptive", "--plane", "1,0,0,-0.8"]);
+    let text = fs::read_to_string(folder.path().join("JoulepathExcitation.mod")).unwrap();
+    let stated = text.split("interval:=").nth(1).unwrap();
+    let stated: f64 = stated.split('*').next().unwrap().parse().unwrap();
+    let points = found["points"].as_f64().unwrap();
+    assert!(
+        (stated * points - found["period_s"].as_f64().unwrap()).abs() < 1e-9,
+        "{stated} {points}"
+    );
 }

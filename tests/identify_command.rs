@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use joulepath::dynamics::{Data, Load, torque};
-use joulepath::robot::find;
+use joulepath::robot::{Provenance, find, load, to_toml};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
@@ -304,4 +304,196 @@ fn the_descent_of_the_paper_comes_near_the_free_fit() {
     assert!((1.0..1.1).contains(&(descent / free)), "{descent} {free}");
     let [first, last] = ["first_rms", "rms"].map(|key| found["descent"][key].as_f64().unwrap());
     assert!(last <= first, "{first} {last}");
+}
+
+/// A robot file with masses, without gear ratios.
+fn without_motors(bench: &Bench) -> PathBuf {
+    let robot = bench.folder.path().join("direct.toml");
+    let text = to_toml(&find(ROBOT).unwrap());
+    let mut lines: Vec<&str> = Vec::new();
+    let mut of_motors = false;
+    for line in text.lines() {
+        if line.starts_with('[') {
+            of_motors = line == "[motors]";
+        }
+        if !of_motors {
+            lines.push(line);
+        }
+    }
+    fs::write(&robot, lines.join("\n")).unwrap();
+    robot
+}
+
+/// Without ratios torques of motors are only known by the weight that they carry.
+#[test]
+fn torques_that_carry_too_little_are_no_good_model() {
+    let bench = Bench::new();
+    let robot = without_motors(&bench);
+    let ratio = find(ROBOT).unwrap().motors.unwrap().ratio;
+    let mut all = rows();
+    for row in &mut all {
+        row[19..25].iter_mut().zip(&ratio).for_each(|(tau, ratio)| *tau /= ratio);
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let [robot, log] = [&robot, &log].map(|path| path.to_str().unwrap());
+    let output = joulepath(&["identify", "--robot", robot, "--log", log, "--format", "json"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("multiply each tau by its ratio"), "{said}");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
+    assert!(found["quality"]["statement"].as_str().unwrap().contains("weight"));
+}
+
+/// A URDF without gear ratios has its rotors at the joint; what is written is read again.
+#[test]
+fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
+    let bench = Bench::new();
+    let robot = without_motors(&bench);
+    // Heavy rotors on all joints.
+    let mut all = rows();
+    for row in &mut all {
+        for joint in 0..6 {
+            row[19 + joint] += 3.0 * row[13 + joint];
+        }
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let model = bench.folder.path().join("model.toml");
+    let [robot, log, model] = [&robot, &log, &model].map(|path| path.to_str().unwrap());
+    let output = joulepath(&["identify", "--robot", robot, "--log", log, "--out", model]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = joulepath(&["predict", "--robot", model, "--log", log]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rotors = load(model).unwrap().motors.unwrap().rotor_inertia;
+    assert!(rotors.iter().any(|inertia| *inertia > 1.0), "{rotors:?}");
+}
+
+#[test]
+fn a_log_in_which_nothing_moves_is_refused() {
+    let bench = Bench::new();
+    let first = rows().remove(0);
+    let still: Vec<Vec<f64>> = (0..ROWS)
+        .map(|k| {
+            let noise = (k as f64).sin();
+            let mut row = [&[0.025 * k as f64], &first[1..7], &first[19..25]].concat();
+            row[7..].iter_mut().for_each(|tau| *tau += noise);
+            row
+        })
+        .collect();
+    let names = header();
+    let names = [&names[..7], &names[19..25]].concat();
+    let output = identify(&bench.write(&names, &cells(&still), ","), &[]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("no joint moves"), "{said}");
+}
+
+#[test]
+fn options_that_do_not_fit_the_logs_are_said() {
+    let bench = Bench::new();
+    let log = bench.write(&header(), &cells(&rows()), ",");
+    let log = log.to_str().unwrap();
+    let args = ["identify", "--robot", ROBOT, "--log", log, log];
+    let output = joulepath(&[&args[..], &["--validate", log, "--period", "3"]].concat());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    for text in ["it counts twice", "that the model was fitted to", "--period 3 is not used"] {
+        assert_eq!(said.matches(text).count(), 1, "{text}: {said}");
+    }
+    for (option, value, text) in [
+        ("--date", "2026-02-29", "2026-11-30"),
+        ("--date", "1.2.2026", "2026-11-30"),
+        ("--period", "-1", "more than 0"),
+        ("--period", "1e300", "at most 100000"),
+    ] {
+        let output = joulepath(&[&args[..], &[option, value]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(text), "{option} {value}");
+    }
+}
+
+/// 10 to 100 ms late, torques are still explained well; the delay is named.
+#[test]
+fn a_short_delay_is_named() {
+    let bench = Bench::new();
+    for (delay, least, most) in [(0, f64::NAN, f64::NAN), (1, 0.015, 0.035), (3, 0.06, 0.09)] {
+        let all = rows();
+        let late: Vec<Vec<f64>> = all
+            .iter()
+            .zip(&all[delay..])
+            .map(|(old, new)| [&new[..19], &old[19..25]].concat())
+            .collect();
+        let output =
+            identify(&bench.write(&header(), &cells(&late), ","), &["--format", "json", "-q"]);
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let told = found["quality"]["torques_late_s"].as_f64();
+        if delay == 0 {
+            assert_eq!(told, None);
+            assert_eq!(found["quality"]["grade"], "good");
+        } else {
+            assert!((least..most).contains(&told.unwrap()), "{told:?}");
+            assert_eq!(found["quality"]["grade"], "fair");
+        }
+    }
+}
+
+/// One joint on the motor's side spoils a model, however well the others are explained.
+#[test]
+fn the_worst_joint_counts() {
+    let bench = Bench::new();
+    let mut all = rows();
+    let mut random = fastrand::Rng::with_seed(3);
+    for row in &mut all {
+        row[21] = 200.0 * (random.f64() - 0.5);
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let output = identify(&log, &["--format", "json", "-q"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
+}
+
+/// What is held out judges the model that is written, not the free fit.
+#[test]
+fn without_other_logs_the_written_model_is_judged() {
+    let bench = Bench::new();
+    let mut all = rows();
+    // Friction that gives power, which no model that can be has.
+    for row in &mut all {
+        row[20] -= 200.0 * row[8].signum();
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let output = identify(&log, &["--format", "json", "-q"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let of = |key: &str| found[key]["validation"][1].as_f64().unwrap();
+    assert!(of("rms") > 2.0 * of("unconstrained_rms"), "{found}");
+}
+
+#[test]
+fn many_rows_of_one_kind_are_summed_up() {
+    let bench = Bench::new();
+    let mut broken = cells(&rows());
+    for row in broken.iter_mut().step_by(20) {
+        row[3] = "NaN".into();
+    }
+    let output = identify(&bench.write(&header(), &broken, ","), &[]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(said.matches("left out: q3").count(), 3, "{said}");
+    assert!(said.contains("17 more rows left out"), "{said}");
+}
+
+#[test]
+fn what_a_resting_joint_keeps_is_not_called_identified() {
+    let bench = Bench::new();
+    let mut all = rows();
+    for row in &mut all {
+        (row[4], row[10], row[16]) = (0.3, 0.0, 0.0);
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let model = bench.folder.path().join("model.toml");
+    let output = identify(&log, &["--out", model.to_str().unwrap(), "-q"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = load(model.to_str().unwrap()).unwrap();
+    let coulomb = found.origins.iter().find(|o| o.table == "friction" && o.key == "coulomb");
+    let coulomb = coulomb.unwrap();
+    assert_ne!(coulomb.provenance, Some(Provenance::Identified), "{coulomb:?}");
+    assert!(coulomb.source.as_ref().unwrap().contains("of joints 4"), "{coulomb:?}");
 }

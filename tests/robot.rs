@@ -238,7 +238,7 @@ fn wrong_files_name_the_place_and_the_way_out() {
         ),
         with("[[arm_load]]\njoint = 1\nmass = 4\ncom = [0,0,0]\ninertia = [0,0.02,0,0,0,0]\n"),
         with("[motors]\nratio = [1,1]\ntorque_constant = [470, 470]\n"),
-        with("[motors]\nratio = [1,1]\nrotor_inertia = [1, 1]\n"),
+        with("[motors]\nratio = [100,100]\nrotor_inertia = [1, 1]\n"),
         with("[brakes]\nenergy_per_release_j = 12\nrelease_s = 200\nengage_s = 0.1\n"),
         with("[controller]\nramp_s = 100\n"),
         with("[motors]\nratio = [1,1]\nloss_constant = [0,0]\nresistance = [1,1]\n"),

@@ -28,6 +28,21 @@ const FINE: f64 = 0.001;
 /// What adaptive points may lie off the path \[rad\], and their largest distance \[s\].
 const OFF_PATH: f64 = 1e-3;
 const WIDEST: f64 = 0.1;
+/// Base frequencies of a motion that can be designed and recorded \[Hz\].
+const SLOWEST: f64 = 0.01;
+const FASTEST: f64 = 10.0;
+/// Least share of the speed limits: slower, joints stick.
+const LEAST_SPEED: f64 = 0.001;
+/// Most repetitions.
+const MOST_CYCLES: usize = 10_000;
+/// Points in a period of the fastest harmonic, at least.
+const LEAST_POINTS: f64 = 6.0;
+/// What the RAPID can tell of the time between points \[s\], and how many more points than
+/// were asked for may be needed to make a period of such times.
+const TICK: f64 = 1e-4;
+const MORE_POINTS: f64 = 1.3;
+/// No length is so large, in m or mm.
+const BEYOND: f64 = 1e6;
 /// Share of joint 1's range by which its marks lie off its middle.
 const MARKS: f64 = 0.02;
 
@@ -50,15 +65,15 @@ pub struct ExciteArgs {
     variant: Variant,
 
     /// Base frequency, Hz.
-    #[arg(long, value_name = "HZ", default_value_t = 0.1)]
+    #[arg(long, allow_negative_numbers = true, value_name = "HZ", default_value_t = 0.1)]
     base_frequency: f64,
 
     /// Harmonics of it that are used.
-    #[arg(long, value_name = "K,…", value_delimiter = ',', default_values_t = [1, 4, 7])]
+    #[arg(long, allow_negative_numbers = true, value_name = "K,…", value_delimiter = ',', default_values_t = [1, 4, 7])]
     harmonics: Vec<usize>,
 
     /// Repetitions.
-    #[arg(long, value_name = "N", default_value_t = 7)]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 7)]
     cycles: usize,
 
     /// Keep arm and tool where n·x ≥ d: a normal and a distance in m, base frame; repeatable.
@@ -70,12 +85,12 @@ pub struct ExciteArgs {
     boxes: Vec<String>,
 
     /// Share of the joints' speed limits that is used.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.8)]
+    #[arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.8)]
     speed_share: f64,
 
     /// Time between the points of the stream, seconds, or `adaptive`: as far apart as keeps the
     /// path within 1 mrad.
-    #[arg(long, value_name = "SECONDS", default_value = "0.01")]
+    #[arg(long, allow_negative_numbers = true, value_name = "SECONDS", default_value = "0.01")]
     spacing: Spacing,
 
     /// Where the logger has torques from.
@@ -91,7 +106,7 @@ pub struct ExciteArgs {
     load: Option<String>,
 
     /// Another seed starts the search elsewhere.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 1)]
     seed: u64,
 
     /// How the result is written.
@@ -220,11 +235,21 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     };
     positive("--base-frequency", args.base_frequency)?;
     positive("--speed-share", args.speed_share)?;
-    if args.speed_share > 1.0 {
-        bail!("--speed-share {}: give a share of the speed limits, at most 1", args.speed_share);
+    if !(SLOWEST..=FASTEST).contains(&args.base_frequency) {
+        bail!(
+            "--base-frequency {}: a repetition would last {:.3} s; give {SLOWEST} to {FASTEST} Hz",
+            args.base_frequency,
+            1.0 / args.base_frequency
+        );
     }
-    if args.cycles == 0 {
-        bail!("--cycles 0: give 1 or more");
+    if !(LEAST_SPEED..=1.0).contains(&args.speed_share) {
+        bail!(
+            "--speed-share {}: give a share of the speed limits, from {LEAST_SPEED} to 1",
+            args.speed_share
+        );
+    }
+    if !(1..=MOST_CYCLES).contains(&args.cycles) {
+        bail!("--cycles {}: give 1 to {MOST_CYCLES}", args.cycles);
     }
     let mut harmonics = args.harmonics.clone();
     harmonics.sort_unstable();
@@ -233,6 +258,16 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         bail!(
             "--harmonics: give whole multiples of the base frequency from 1 to 100, such as 1,4,7"
         );
+    }
+    if let Spacing::Seconds(spacing) = args.spacing {
+        let fastest = args.base_frequency * harmonics[harmonics.len() - 1] as f64;
+        let widest = WIDEST.min(1.0 / (LEAST_POINTS * fastest));
+        if !(FINE..=widest).contains(&spacing) {
+            bail!(
+                "--spacing {spacing}: points have to be {FINE} to {widest:.4} s apart, {LEAST_POINTS} \
+                 or more in a period of the fastest harmonic"
+            );
+        }
     }
     let mut obstacles = Vec::new();
     for text in &args.planes {
@@ -298,7 +333,7 @@ fn keep_out(text: &str) -> anyhow::Result<KeepOut> {
 fn numbers<const N: usize>(option: &str, text: &str, help: &str) -> anyhow::Result<[f64; N]> {
     let wrong = || format!("{option} {text}: give {help}");
     let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.is_finite()));
+    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < BEYOND));
     values.and_then(|x| <[f64; N]>::try_from(x).ok()).with_context(wrong)
 }
 
@@ -334,7 +369,7 @@ fn of_design(
         Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
         Spacing::Adaptive => 1.0,
     } * args.spacing.of(&states);
-    let points = (series.period() / spacing - 1e-6).ceil().max(3.0) as usize;
+    let points = whole(series.period(), spacing);
     let cycles =
         if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
     Ok(Motion {
@@ -346,6 +381,18 @@ fn of_design(
         information: Some(found.information),
         checked: found.checked,
     })
+}
+
+/// Points of a period that are at most `spacing` \[s\] apart, by a time that the RAPID can
+/// state exactly where there is one: else repetitions would last longer than the period.
+fn whole(period: f64, spacing: f64) -> usize {
+    let least = (period / spacing - 1e-6).ceil().max(3.0) as usize;
+    let most = (MORE_POINTS * least as f64) as usize;
+    let is_exact = |points: &usize| {
+        let ticks = period / (TICK * *points as f64);
+        (ticks - ticks.round()).abs() < 1e-6 * ticks
+    };
+    (least..=most).find(is_exact).unwrap_or(least)
 }
 
 /// How much further apart the points of straight moves may be.
@@ -396,7 +443,7 @@ fn write(
     let out = motion.blends.as_ref().map(|[_, out]| out.sampled(spacing));
     if let Some(into) = &into {
         start = into.first().map(six);
-        let points = of(&into[1..]);
+        let points = of(into.get(1..).unwrap_or_default());
         lists.push(Points { what: "From rest", name: "In", repeated: false, points });
     }
     // A blend ends where the period begins, and the period where the next one does.
@@ -408,7 +455,7 @@ fn write(
     lists.push(Points { what: "One repetition", name: "Q", repeated, points: of(&period) });
     if let Some(out) = &out {
         stop = out.last().map(six);
-        let points = of(&out[1..out.len() - 1]);
+        let points = of(out.get(1..out.len().saturating_sub(1)).unwrap_or_default());
         lists.push(Points { what: "To rest", name: "Out", repeated: false, points });
     }
     let first: Vec<f64> = motion.states.iter().map(|state| state[0][0]).collect();

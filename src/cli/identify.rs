@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Write as _};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -13,9 +14,9 @@ use super::{common, output};
 use crate::cli::common::Format;
 use crate::identify::{
     Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
-    check_torques, cleaned, identify, prepare, torques,
+    check_torques, cleaned, identify, prepare, synchronised, torques, weight_factor,
 };
-use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
+use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
 use crate::report::html::{Traces, identify_report};
 use crate::report::identify as report;
 use crate::robot::{self, Model};
@@ -52,11 +53,11 @@ pub struct IdentifyArgs {
     map: String,
 
     /// Duration of a repetition, seconds; otherwise it is found.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     period: Option<f64>,
 
-    /// When the logs were recorded, for the model's record.
-    #[arg(long, value_name = "DATE")]
+    /// When the logs were recorded, as 2026-11-30, for the model's record.
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
     date: Option<String>,
 
     /// Also fits masses, centres and moments by descent from the robot file, as the paper did,
@@ -106,6 +107,8 @@ struct Read {
     shown: String,
     hash: String,
     log: Log,
+    /// How well its halves were brought together, where it has two.
+    clocks: Option<String>,
 }
 
 /// A log ready to be used.
@@ -113,6 +116,30 @@ struct Ready {
     record: (String, String, usize, usize),
     samples: Samples,
     origin: String,
+    /// How many times the weight of the robot file's masses the torques carry, where that is
+    /// strange.
+    weight: Option<f64>,
+}
+
+/// A day that the calendar has.
+fn date(text: &str) -> Result<String, String> {
+    let wrong = || "give a day as 2026-11-30".to_owned();
+    let parts: Vec<&str> = text.split('-').collect();
+    let widths = parts.iter().map(|part| part.len());
+    let digits = parts.iter().all(|part| part.bytes().all(|b| b.is_ascii_digit()));
+    if !widths.eq([4, 2, 2]) || !digits {
+        return Err(wrong());
+    }
+    let [year, month, day] = [0, 1, 2].map(|k| parts[k].parse::<u32>().unwrap_or_default());
+    let leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let last = match month {
+        2 if leap => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        1..=12 => 31,
+        _ => 0,
+    };
+    if (1..=last).contains(&day) { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 
 /// Runs the command.
@@ -122,13 +149,16 @@ struct Ready {
 pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let model = robot::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
-    if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
-        bail!("--period {period}: give the duration of a repetition in seconds, more than 0");
+    if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {
+        bail!(
+            "--period {period:?}: give the duration of a repetition in seconds, more than 0, at most {}",
+            PERIODS.end()
+        );
     }
     let hints = Hints { period: args.period, cutoff: None };
     let mut basis = report::Basis { date: args.date.clone(), ..report::Basis::default() };
     let mut training = Vec::new();
-    for read in read_all(&args.log, &map)? {
+    for read in read_all(&args.log, &map, &model)? {
         training.push(ready(args, &model, read, hints, &mut basis)?);
     }
     // One filter for all: what is compared has to have the same band.
@@ -138,13 +168,17 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     });
     let mut validation = Vec::new();
     let held_out = Hints { period: args.period, cutoff };
-    for read in read_all(&args.validate, &map)? {
+    for read in read_all(&args.validate, &map, &model)? {
         let ready = ready(args, &model, read, held_out, &mut basis)?;
         basis.validation.push(ready.record);
         validation.push(ready.samples);
     }
+    for text in repeated(training.iter().map(|ready| &ready.record), &basis.validation) {
+        tell(args, &mut basis, text);
+    }
     basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
     basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
+    let weight = training.iter().find_map(|ready| ready.weight);
     let samples = joined(training)?;
     for joint in &samples.resting {
         let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
@@ -175,7 +209,10 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
         },
         source: format!("joulepath identify, {}{when}", files.join(", ")),
     };
-    let found = identify(&model, &samples, &validation, &settings)?;
+    let mut found = identify(&model, &samples, &validation, &settings)?;
+    if let Some(factor) = weight {
+        found.quality.doubt_weight(factor);
+    }
     if let Some(coupling) = found.coupling {
         let text = format!(
             "the wrist is coupled: motor 6 turns {coupling:.3} times with axis 5; the robot did not \
@@ -241,6 +278,9 @@ fn traces(found: &Identified, model: &Model, samples: &Samples, title: String) -
 }
 
 fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
+    if basis.notes.contains(&text) {
+        return;
+    }
     common::note(args.quiet, &text);
     basis.notes.push(text);
 }
@@ -250,12 +290,15 @@ const MISSED: f64 = 0.35;
 /// Share of a torque that is as good as nothing.
 const NOTHING: f64 = 1e-3;
 
+/// No link of an arm has such a mass \[kg\].
+const HEAVIEST: f64 = 1500.0;
+
 /// What a reader should not overlook.
 fn doubts(found: &Identified) -> Vec<String> {
     let mut texts = Vec::new();
     let (with, without) = match (&found.validation, &found.unconstrained_validation) {
         (Some(with), Some(without)) => (&with.rms, &without.rms),
-        _ => (&found.training.rms, &found.fit.rms),
+        _ => (&found.cross_rms, &found.fit.cross_rms),
     };
     for (joint, (with, without)) in with.iter().zip(without).enumerate() {
         let relative = found.training.relative[joint];
@@ -282,6 +325,16 @@ fn doubts(found: &Identified) -> Vec<String> {
             joint + 1
         ));
     }
+    for (k, link) in found.model.links.iter().enumerate() {
+        if link.mass > HEAVIEST {
+            texts.push(format!(
+                "link {}: {:.0} kg are no arm's: the motion does not tell masses, only what torques \
+                 need of them; start from a robot file with the masses of the drawings",
+                k + 1,
+                link.mass
+            ));
+        }
+    }
     let poor = found.fit.condition.scaled;
     if poor > 100.0 {
         texts.push(format!(
@@ -293,7 +346,7 @@ fn doubts(found: &Identified) -> Vec<String> {
 }
 
 /// Reads logs; halves of one run become one.
-fn read_all(paths: &[PathBuf], map: &ColumnMap) -> anyhow::Result<Vec<Read>> {
+fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Result<Vec<Read>> {
     let mut logs: Vec<Read> = Vec::new();
     for path in paths {
         let read = read(path, map)?;
@@ -311,7 +364,8 @@ fn read_all(paths: &[PathBuf], map: &ColumnMap) -> anyhow::Result<Vec<Read>> {
         };
         let both = aligned(positions, currents)
             .with_context(|| format!("{} and {}", other.shown, read.shown))?;
-        other.log = both;
+        let (both, said) = synchronised(model, both);
+        (other.log, other.clocks) = (both, Some(said));
         other.shown = format!("{} + {}", other.shown, read.shown);
         other.hash = format!("{} + {}", other.hash, read.hash);
     }
@@ -325,7 +379,7 @@ fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
     let mut stream = Hashed { stream: file, hash: Sha256::new() };
     let log = log::read_from(&mut stream, map).with_context(|| shown.clone())?;
     let hash = format!("{:x}", stream.hash.finalize());
-    Ok(Read { shown, hash, log })
+    Ok(Read { shown, hash, log, clocks: None })
 }
 
 /// A stream whose bytes are hashed as they are read.
@@ -350,7 +404,7 @@ fn ready(
     hints: Hints,
     basis: &mut report::Basis,
 ) -> anyhow::Result<Ready> {
-    let Read { shown, hash, log } = read;
+    let Read { shown, hash, log, clocks } = read;
     if log.joints() != model.dof {
         bail!(
             "{shown}: positions of {} joints are logged, {} has {}; give a log with q1 to q{}, or \
@@ -362,9 +416,8 @@ fn ready(
         );
     }
     let (log, impossible) = cleaned(&log);
-    for rejected in log.rejected.iter().chain(&impossible) {
-        let text = format!("{shown}: row {} left out: {}", rejected.row, rejected.reason);
-        common::note(args.quiet, &text);
+    for text in summed_up(log.rejected.iter().chain(&impossible)) {
+        common::note(args.quiet, &format!("{shown}: {text}"));
     }
     let left_out = log.rejected.len() + impossible.len();
     let usable = log.time().len();
@@ -378,6 +431,11 @@ fn ready(
     check_angles(model, &log).with_context(|| shown.clone())?;
     let torque = torques(model, &log).with_context(|| shown.clone())?;
     check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
+    let weight = weight_factor(model, &log, &torque.tau);
+    let strange = weight.map(|(factor, joint)| of_weight(factor, joint));
+    for text in clocks.into_iter().chain(strange) {
+        tell(args, basis, format!("{shown}: {text}"));
+    }
     for text in torque.notes {
         tell(args, basis, format!("{shown}: {text}"));
     }
@@ -385,7 +443,112 @@ fn ready(
         tell(args, basis, format!("{shown}: {text}"));
     }
     let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
-    Ok(Ready { record: (shown, hash, usable, left_out), samples, origin: torque.origin })
+    if let Some(text) = unfitting(args.period, &samples.source) {
+        tell(args, basis, format!("{shown}: {text}"));
+    }
+    Ok(Ready {
+        record: (shown, hash, usable, left_out),
+        samples,
+        origin: torque.origin,
+        weight: weight.map(|(factor, _)| factor),
+    })
+}
+
+/// Logs that were given twice.
+fn repeated<'a>(
+    training: impl Iterator<Item = &'a (String, String, usize, usize)>,
+    validation: &[(String, String, usize, usize)],
+) -> Vec<String> {
+    let training: Vec<_> = training.collect();
+    let mut texts = Vec::new();
+    for (k, (shown, hash, ..)) in training.iter().enumerate() {
+        if let Some((first, ..)) = training[..k].iter().find(|(_, known, ..)| known == hash) {
+            texts.push(format!("{shown} is the same log as {first}: it counts twice"));
+        }
+    }
+    for (shown, hash, ..) in validation {
+        if let Some((first, ..)) = training.iter().find(|(_, known, ..)| known == hash) {
+            texts.push(format!(
+                "--validate {shown} is the log {first} that the model was fitted to: it tells \
+                 nothing of other motions"
+            ));
+        }
+    }
+    texts
+}
+
+/// Torques that do not carry the masses of the robot file.
+fn of_weight(factor: f64, joint: usize) -> String {
+    let times = |times: f64| if times < 10.0 { times } else { times.round() };
+    if factor < 1.0 {
+        format!(
+            "the torques carry {:.0} times less than the masses of the robot file weigh (joint {}): \
+             are they those of the motors, before the gear? Then multiply each tau by its ratio",
+            times(1.0 / factor),
+            joint + 1
+        )
+    } else {
+        format!(
+            "the torques carry {:.0} times what the masses of the robot file weigh (joint {}): are \
+             they in Nm, and is it this robot?",
+            times(factor),
+            joint + 1
+        )
+    }
+}
+
+/// A period that was given and is not that of the motion.
+fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
+    let given = period?;
+    match source {
+        Source::Periodic { period, .. } if (period / given - 1.0).abs() <= OTHER_PERIOD => None,
+        Source::Periodic { period, .. } => {
+            Some(format!("--period {given}: the motion repeats every {period:.4} s; that was used"))
+        }
+        Source::Logged => {
+            Some(format!("--period {given} is not used: rates and accelerations are logged"))
+        }
+        Source::Filtered { .. } => Some(format!(
+            "--period {given}: the motion does not repeat so; it is differentiated by a filter"
+        )),
+    }
+}
+
+/// Repetitions that a log can hold \[s\].
+const PERIODS: RangeInclusive<f64> = 1e-3..=1e5;
+
+/// Share by which a period may differ from the one that was given.
+const OTHER_PERIOD: f64 = 0.01;
+
+/// Rows of one kind that are told one by one.
+const TOLD: usize = 3;
+
+/// What was left out; of many rows for one reason the first ones and the number of the others.
+fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
+    // Numbers differ from row to row, the words tell the kind.
+    let kind = |reason: &str| -> String {
+        let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
+        reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
+    };
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    let mut texts = Vec::new();
+    for row in rejected {
+        let text = format!("row {} left out: {}", row.row, row.reason);
+        let kind = kind(&row.reason);
+        if let Some((_, count)) = kinds.iter_mut().find(|(known, _)| *known == kind) {
+            *count += 1;
+            if *count <= TOLD {
+                texts.push(text);
+            }
+        } else {
+            kinds.push((kind, 1));
+            texts.push(text);
+        }
+    }
+    for (kind, count) in kinds.into_iter().filter(|(_, count)| *count > TOLD) {
+        texts.push(format!("{} more rows left out for the same reason ({kind})", count - TOLD));
+    }
+    texts
 }
 
 /// Rates and accelerations that are logged, but not of all joints.
@@ -441,7 +604,11 @@ fn write(
 ) -> anyhow::Result<ExitCode> {
     let path = args.out.as_ref().map_or_else(String::new, |path| path.display().to_string());
     if let Some(path) = &args.out {
-        output::write(path, report::toml(found, basis).as_bytes())?;
+        let text = report::toml(found, basis);
+        // What is written has to be a robot file.
+        robot::from_toml(&path.display().to_string(), &text)
+            .context("the identified numbers are no robot file; nothing was written")?;
+        output::write(path, text.as_bytes())?;
     }
     let mut out = std::io::stdout().lock();
     match args.format {

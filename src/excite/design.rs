@@ -19,6 +19,7 @@ use crate::robot::Model;
 use super::error::ExciteError;
 use super::feasible::{Checked, Shares, check};
 use super::information::{Information, Normal, information, log_det};
+use super::plateaus::pose;
 use super::search::maximise;
 use super::series::{Series, State};
 
@@ -119,6 +120,8 @@ pub fn design(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Designed, ExciteError> {
     let problem = Problem::new(model, settings)?;
+    // Where no pose has room no motion has, and the search would take long to say so.
+    pose(model, &problem.body())?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     let tried: Vec<DVector<f64>> = (0..TRIED).map(|_| problem.random(&mut random)).collect();
     let mut rated: Vec<(f64, DVector<f64>)> = tried

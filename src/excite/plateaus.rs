@@ -196,7 +196,10 @@ fn plateaus(
 }
 
 /// A pose with room: the middle of the ranges, or another one nearby.
-fn pose(model: &Model, body: &Body<'_>) -> Result<Vec<f64>, ExciteError> {
+///
+/// # Errors
+/// No pose keeps clear.
+pub(super) fn pose(model: &Model, body: &Body<'_>) -> Result<Vec<f64>, ExciteError> {
     let mut random = fastrand::Rng::with_seed(1);
     let mut best: Option<(f64, Vec<f64>)> = None;
     for _ in 0..4000 {

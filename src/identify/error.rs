@@ -11,6 +11,14 @@ pub enum IdentifyError {
         /// What is needed \[s\].
         seconds: f64,
     },
+    /// Nothing moves.
+    #[error(
+        "no joint moves by {range} rad or more: record a motion, such as that of joulepath excite"
+    )]
+    Still {
+        /// Least range of a joint that moves \[rad\].
+        range: f64,
+    },
     /// Fewer equations than unknowns.
     #[error(
         "{equations} usable equations for {unknowns} parameters: record longer, or free fewer with --free"

@@ -1,13 +1,13 @@
 //! The base parameters of a log: weighted least squares, standard errors, validation.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::equations::Equations;
 use super::error::IdentifyError;
 use super::factors::Factors;
 use super::least_squares::{Condition, Solution, solve};
 use super::noise::{Residual, autocovariance};
-use super::repetitions;
+use super::repetitions::{self, Fold};
 use super::samples::Samples;
 use super::whiteness::{Whiteness, whiteness};
 
@@ -63,6 +63,38 @@ pub struct Fit {
     pub whiteness: Vec<Option<Whiteness>>,
     /// The equations.
     pub factors: Factors,
+    /// What each part of the data is predicted from.
+    pub(super) held_out: HeldOut,
+}
+
+/// The data in parts, each of which is predicted from the others.
+#[derive(Clone, Debug)]
+pub(super) struct HeldOut {
+    /// Groups of repetitions; without any the parts of the time.
+    folds: Option<Vec<Fold>>,
+}
+
+impl HeldOut {
+    /// Root mean square of each joint's residuals \[Nm\] with the parameters that `found` gives for
+    /// the equations of the other parts; `factors` are those of all.
+    pub(super) fn rms(
+        &self,
+        factors: &Factors,
+        found: &dyn Fn(&Factors) -> DVector<f64>,
+    ) -> Vec<f64> {
+        let joints = factors.layout.columns.len();
+        if let Some(folds) = &self.folds {
+            let (squares, rows) = repetitions::cross_squares(folds, joints, found);
+            return root_mean(&squares, &rows);
+        }
+        let mut sums = vec![0.0; joints];
+        for part in 0..factors.parts.len() {
+            let beta = found(&factors.merged(Some(part)));
+            let squares = factors.residual_squares(&beta, Some(part));
+            sums.iter_mut().zip(squares).for_each(|(sum, of)| *sum += of);
+        }
+        root_mean(&sums, &factors.rows_without(None))
+    }
 }
 
 /// Fits the base parameters of `equations` to `samples`.
@@ -87,10 +119,10 @@ pub fn fit(
     let squares = factors.residual_squares(&solution.beta, None);
     let torque: Vec<f64> =
         (0..rows.len()).map(|joint| factors.squares.iter().map(|part| part[joint]).sum()).collect();
-    let repeated = repetitions::cross_squares(equations, samples, weighting);
-    let over_repetitions = repeated.is_some();
-    let (cross, counted) =
-        repeated.unwrap_or_else(|| (cross_squares(&factors, weighting, unknowns), rows.clone()));
+    let folds = repetitions::folds(equations, samples);
+    let over_repetitions = folds.is_some();
+    let held_out = HeldOut { folds };
+    let cross_rms = held_out.rms(&factors, &|part| reweighted(part, weighting, unknowns).0.beta);
     let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
     let Errors { covariance, memory, whiteness } =
         errors(equations, samples, &merged, &solution, &weights, weighting);
@@ -98,8 +130,9 @@ pub fn fit(
         condition: solution.condition(),
         rms: root_mean(&squares, &rows),
         relative_rms: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
-        cross_rms: root_mean(&cross, &counted),
+        cross_rms,
         over_repetitions,
+        held_out,
         covariance,
         memory,
         whiteness,
@@ -189,17 +222,6 @@ fn lost(factors: &Factors, solution: &Solution, weights: &[f64]) -> Vec<f64> {
             trace * weights[joint] * weights[joint]
         })
         .collect()
-}
-
-/// Sum of squared residuals of each joint in parts that were left out of the fit.
-fn cross_squares(factors: &Factors, weighting: Weighting, unknowns: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; factors.layout.columns.len()];
-    for part in 0..factors.parts.len() {
-        let (solution, _) = reweighted(&factors.merged(Some(part)), weighting, unknowns);
-        let squares = factors.residual_squares(&solution.beta, Some(part));
-        sums.iter_mut().zip(squares).for_each(|(sum, of)| *sum += of);
-    }
-    sums
 }
 
 struct Errors {

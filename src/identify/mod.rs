@@ -5,6 +5,7 @@
 
 mod clean;
 mod clipped;
+mod clocks;
 mod consistent;
 mod descent;
 mod equations;
@@ -26,6 +27,7 @@ mod work;
 mod wrist;
 
 pub use clean::cleaned;
+pub use clocks::synchronised;
 pub use descent::{Descent, by_descent};
 pub use equations::{Equations, Instant, Known, Layout};
 pub use error::IdentifyError;
@@ -37,6 +39,6 @@ pub use prepare::{Hints, prepare};
 pub use quality::{Grade, Quality};
 pub use samples::{Block, Samples, Source};
 pub use torque::{Torques, torques};
-pub use units::{check_angles, check_torques};
+pub use units::{check_angles, check_torques, weight_factor};
 pub use whiteness::Whiteness;
 pub use work::{Free, Identified, Misses, Settings, identify};

@@ -6,6 +6,11 @@ const MAX_ORDER: usize = 24;
 const MAX_LAG: usize = 300;
 /// An autocovariance below this share of the variance ends the sequence.
 const NEGLIGIBLE: f64 = 0.005;
+/// Share of the mean density of power that a noise has at each frequency at least: how empty a
+/// band is, is known no better.
+const EMPTY: f64 = 0.05;
+/// Frequencies at which the density is looked at.
+const FREQUENCIES: usize = 1024;
 
 /// A residual with its place: piece of the log, number of the instant, value.
 pub(super) type Residual = (usize, usize, f64);
@@ -23,7 +28,23 @@ pub(super) fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
     let orders = MAX_ORDER.min(residuals.len() / 20);
     let sample = autocovariances(residuals, orders, correction);
     let model = levinson(&sample, n);
-    extended(&sample, &model)
+    let mut sequence = extended(&sample, &model);
+    // Of a sequence that was cut off, the density of power may be below zero somewhere, and so
+    // would be the variance of a parameter.
+    let least = least_density(&sequence);
+    sequence[0] += (EMPTY * sequence[0] - least).max(0.0);
+    sequence
+}
+
+/// The least density of power of a noise with such autocovariances, over that of white noise
+/// with a variance of 1.
+fn least_density(sequence: &[f64]) -> f64 {
+    let density = |frequency: usize| -> f64 {
+        let step = std::f64::consts::PI * frequency as f64 / FREQUENCIES as f64;
+        let tail = sequence.iter().enumerate().skip(1);
+        sequence[0] + 2.0 * tail.map(|(lag, c)| c * (step * lag as f64).cos()).sum::<f64>()
+    };
+    (0..=FREQUENCIES).map(density).fold(f64::INFINITY, f64::min)
 }
 
 /// Σ e(t) e(t + lag) / n for lags up to `lags`, of residuals in the order of time.
@@ -110,6 +131,21 @@ mod tests {
         let found = autocovariance(&noise(200_000, 0.0), 0.0);
         assert!((found[0] - 1.0).abs() < SAMPLED);
         assert!(found[1..].iter().all(|x| x.abs() < SAMPLED), "{found:?}");
+    }
+
+    /// Differences of white noise have no power at rest: a mean of them must still have a variance.
+    #[test]
+    fn no_sum_of_noise_has_a_variance_below_zero() {
+        let white = noise(20_000, 0.0);
+        let rough: Vec<Residual> =
+            white.windows(3).map(|w| (0, w[0].1, w[2].2 - 2.0 * w[1].2 + w[0].2)).collect();
+        let found = autocovariance(&rough, 0.0);
+        let count = 200;
+        let of_sum: f64 = (0..count)
+            .flat_map(|a| (0..count).map(move |b| usize::abs_diff(a, b)))
+            .filter_map(|lag| found.get(lag))
+            .sum();
+        assert!(of_sum > 0.01 * found[0] * f64::from(count as u32), "{of_sum}");
     }
 
     #[test]

@@ -48,12 +48,15 @@ pub struct Hints {
 /// The instants of a log with the torques `tau` of each joint \[Nm\].
 ///
 /// # Errors
-/// The log is too short for a filter.
+/// No joint moves, or the log is too short for a filter.
 pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, IdentifyError> {
     let joints = log.joints();
     let q = owned(log, Channel::Position).unwrap_or_default();
     let (qd, qdd) = (owned(log, Channel::Velocity), owned(log, Channel::Acceleration));
     let resting: Vec<usize> = (0..joints).filter(|joint| range(&q[*joint]) < MOVES).collect();
+    if resting.len() == joints {
+        return Err(IdentifyError::Still { range: MOVES });
+    }
     let clipped = clipped(log.time(), &q, tau);
     let mut samples = match (qd, qdd) {
         (Some(qd), Some(qdd)) => {

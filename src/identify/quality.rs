@@ -8,6 +8,7 @@ use super::equations::Equations;
 use super::factors::Factors;
 use super::least_squares::solve;
 use super::samples::{Block, Samples};
+use super::whiteness::Whiteness;
 use super::work::Misses;
 
 /// Mean share of the torques' variance that a good model explains, and a fair one.
@@ -24,8 +25,19 @@ const STEPS: [f64; 2] = [0.05, 0.01];
 const INSTANTS: usize = 3000;
 /// Least variance of a torque, over its mean square.
 const LEAST: f64 = 1e-3;
-/// Share of the residuals' power that a shift has to take away to be told.
+/// Share of the residuals' power that a shift has to take away to be told, a long and a short
+/// one.
 const GAIN: f64 = 0.5;
+const LITTLE: f64 = 0.05;
+/// First step of the search for a short shift, the longest one found so, and the shortest that
+/// is told \[s\].
+const SHORT: f64 = 0.01;
+const LONGEST: f64 = 0.4;
+const TOLD: f64 = 0.003;
+/// Share by which the residuals' power of a joint may grow with a shift of the clocks.
+const SPOILED: f64 = 0.1;
+/// Residuals that noise has with less than this probability have more in them.
+const WHITE: f64 = 1e-3;
 
 /// How good a model is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,9 +64,24 @@ pub struct Quality {
     pub giving_power: Vec<usize>,
     /// By how much the torques fit the motion better if they are taken from later, \[s\].
     pub late: Option<f64>,
+    /// How many times the weight of the robot file's masses the torques carry, where that is
+    /// strange.
+    pub weight: Option<f64>,
 }
 
 impl Quality {
+    /// Takes note that the torques carry `factor` times the weight of the robot file's masses: far
+    /// less are those of motors or of another unit, far more may be a file without true masses.
+    pub fn doubt_weight(&mut self, factor: f64) {
+        self.weight = Some(factor);
+        self.grade = match self.grade {
+            Grade::None => Grade::None,
+            _ if factor < 1.0 => Grade::Poor,
+            Grade::Good => Grade::Fair,
+            grade => grade,
+        };
+    }
+
     /// The mean share of the moving joints.
     #[must_use]
     pub fn mean(&self) -> f64 {
@@ -86,23 +113,33 @@ impl Quality {
             let joints = named(self.giving_power.clone());
             let _ = write!(text, ", friction of joints {joints} would give power");
         }
+        if let Some(factor) = self.weight {
+            let _ = write!(
+                text,
+                ", which carry {} times the weight of the robot file's masses",
+                if factor < 1.0 { format!("{factor:.3}") } else { format!("{factor:.0}") }
+            );
+        }
         if let Some(late) = self.late {
             let when = if late > 0.0 { "later" } else { "earlier" };
-            let _ =
-                write!(text, ", torques seem to be {:.2} s {when} than the positions", late.abs());
+            let late = late.abs();
+            let by =
+                if late < 0.1 { format!("{:.0} ms", 1e3 * late) } else { format!("{late:.2} s") };
+            let _ = write!(text, ", torques seem to be {by} {when} than the positions");
         }
         text
     }
 }
 
 /// What is said of a model with the residuals `misses` on `samples`; `giving_power` are the
-/// joints whose friction surely does.
+/// joints whose friction surely does, `whiteness` is that of the free fit.
 #[must_use]
 pub(super) fn quality(
     equations: &Equations<'_>,
     samples: &Samples,
     misses: &Misses,
     giving_power: Vec<usize>,
+    whiteness: &[Option<Whiteness>],
 ) -> Quality {
     let explained: Vec<f64> = (0..misses.rms.len())
         .map(|joint| {
@@ -111,20 +148,30 @@ pub(super) fn quality(
         })
         .collect();
     let moving = misses.rms.len() - samples.resting.len();
-    let mut quality = Quality { grade: Grade::Good, explained, giving_power, late: None };
+    let mut quality =
+        Quality { grade: Grade::Good, explained, giving_power, late: None, weight: None };
     let mean = quality.mean();
+    // A joint that is not explained is not made good by the others.
+    let worst = quality.explained.iter().copied().fold(1.0, f64::min);
     let reversed = 2 * quality.giving_power.len() > moving;
     quality.grade = if mean < NONE || reversed {
         Grade::None
-    } else if mean < FAIR {
+    } else if mean < FAIR || worst < NONE {
         Grade::Poor
-    } else if mean < GOOD {
+    } else if mean < GOOD || worst < FAIR {
         Grade::Fair
     } else {
         Grade::Good
     };
     if quality.grade != Grade::Good {
         quality.late = late(equations, samples);
+    }
+    let white = whiteness.iter().flatten().all(|of| of.p_value > WHITE);
+    if quality.late.is_none() && !white {
+        quality.late = slightly_late(equations, samples, &misses.rms);
+    }
+    if quality.late.is_some() && quality.grade == Grade::Good {
+        quality.grade = Grade::Fair;
     }
     quality
 }
@@ -167,38 +214,97 @@ fn late(equations: &Equations<'_>, samples: &Samples) -> Option<f64> {
     (best.1 < GAIN * none).then_some(best.0)
 }
 
+/// A short shift: downhill from none, by whole samples, as noise between two is smaller than
+/// theirs; then between them by a parabola. Joints count by their residuals `rms` \[Nm\].
+fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> Option<f64> {
+    let block = samples.blocks.iter().max_by_key(|block| block.len())?;
+    let weights: Vec<f64> =
+        rms.iter().map(|rms| if *rms > 0.0 { 1.0 / rms } else { 0.0 }).collect();
+    let width = (SHORT / samples.step).round().max(1.0) as isize;
+    let most = (LONGEST / samples.step) as isize;
+    let by_joint = |k: isize| {
+        let part = shifted(samples, block, k)?;
+        Some(missed_by(equations, &part, |_| weights.clone()))
+    };
+    let miss = |k: isize| Some(by_joint(k)?.iter().sum::<f64>());
+    let none = miss(0)?;
+    let (mut middle, mut here) = (0, none);
+    let [mut before, mut after] = [miss(-width)?, miss(width)?];
+    while before < here || after < here {
+        let sense = if before < after { -1 } else { 1 };
+        let next = middle + sense * width;
+        if next.abs() > most {
+            return None;
+        }
+        let beyond = miss(next + sense * width)?;
+        (before, here, after) =
+            if sense < 0 { (beyond, before, here) } else { (here, after, beyond) };
+        middle = next;
+    }
+    let bend = before + after - 2.0 * here;
+    let place = if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
+    let late = (middle as f64 + place * width as f64) * samples.step;
+    let least = here - 0.25 * (before - after) * place;
+    // Rows far apart tell no less than half of their distance.
+    let told = if samples.step > SHORT { 0.5 * samples.step } else { TOLD };
+    if late.abs() < told || least > (1.0 - LITTLE) * none {
+        return None;
+    }
+    // Clocks are those of all joints: what spoils one of them is something else.
+    let [none, before, here, after] =
+        [by_joint(0)?, by_joint(middle - width)?, by_joint(middle)?, by_joint(middle + width)?];
+    let spoiled = (0..none.len()).any(|j| {
+        let (slope, bend) = (after[j] - before[j], before[j] + after[j] - 2.0 * here[j]);
+        let there = here[j] + 0.5 * place * (slope + bend * place);
+        there > (1.0 + SPOILED) * none[j]
+    });
+    (!spoiled).then_some(late)
+}
+
 /// Sum over the joints of the share of the torque's power that a free fit misses, with the
 /// torques taken from `shift` later \[s\].
 fn missed(equations: &Equations<'_>, samples: &Samples, block: &Block, shift: f64) -> Option<f64> {
+    let part = shifted(samples, block, (shift / samples.step).round() as isize)?;
+    let of_torque = |factors: &Factors| -> Vec<f64> {
+        let torque = factors.squares.iter().flatten();
+        torque.map(|sum| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 }).collect()
+    };
+    Some(missed_by(equations, &part, of_torque).iter().sum())
+}
+
+/// The weighted power that a free fit misses, by joint.
+fn missed_by(
+    equations: &Equations<'_>,
+    samples: &Samples,
+    weights: impl Fn(&Factors) -> Vec<f64>,
+) -> Vec<f64> {
+    let factors = Factors::of(equations, samples, 1);
+    let weights = weights(&factors);
+    let beta: DVector<f64> = solve(&factors.stacked(&weights, equations.base.rank())).beta;
+    let squares = factors.residual_squares(&beta, None);
+    squares.iter().zip(&weights).map(|(e, w)| e * w * w).collect()
+}
+
+/// Instants from the middle of a block with the torques of so many samples later; `None` where
+/// it is too short.
+fn shifted(samples: &Samples, block: &Block, moved: isize) -> Option<Samples> {
     let step = samples.step;
     let margin = (SHIFT / step).ceil() as usize + (STEPS[0] / step).ceil() as usize;
     let last = block.len().checked_sub(margin).filter(|last| *last > 2 * margin)?;
     let kept = margin..last.min(margin + INSTANTS.max(2 * margin));
-    let moved = (shift / step).round() as isize;
     let of = |series: &Vec<Vec<f64>>| -> Vec<Vec<f64>> {
         series.iter().map(|x| x[kept.clone()].to_vec()).collect()
     };
-    let tau = block
-        .tau
-        .iter()
-        .map(|x| {
-            kept.clone().filter_map(|i| x.get(i.checked_add_signed(moved)?).copied()).collect()
-        })
-        .collect();
+    let later = |x: &Vec<f64>| -> Vec<f64> {
+        kept.clone().filter_map(|i| x.get(i.checked_add_signed(moved)?).copied()).collect()
+    };
     let part = Block {
         t: block.t[kept.clone()].to_vec(),
         q: of(&block.q),
         qd: of(&block.qd),
         qdd: of(&block.qdd),
-        tau,
+        tau: block.tau.iter().map(later).collect(),
         clipped: block.clipped.clone(),
     };
-    let samples = Samples { blocks: vec![part], noise: None, repetitions: None, ..samples.clone() };
-    let factors = Factors::of(equations, &samples, 1);
-    let torque: Vec<f64> = factors.squares.iter().flatten().copied().collect();
-    let weights: Vec<f64> =
-        torque.iter().map(|sum| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 }).collect();
-    let beta: DVector<f64> = solve(&factors.stacked(&weights, equations.base.rank())).beta;
-    let squares = factors.residual_squares(&beta, None);
-    Some(squares.iter().zip(&weights).map(|(e, w)| e * w * w).sum())
+    Some(Samples { blocks: vec![part], noise: None, repetitions: None, ..samples.clone() })
 }

@@ -1,22 +1,27 @@
 //! Cross-validation over the repetitions of a motion: each is predicted by what the others
 //! say.
 
+use nalgebra::DVector;
+
 use super::equations::Equations;
 use super::factors::Factors;
-use super::fit::{Weighting, reweighted};
 use super::samples::{Block, Samples};
 
 /// Groups of repetitions at most.
 const GROUPS: usize = 5;
 
-/// Sums of each joint's squared residuals \[N²m²\] for one instant of a repetition each, and
-/// their number; `None` where fewer than two repetitions are known.
+/// Some repetitions that are predicted from the others.
+#[derive(Clone, Debug)]
+pub(super) struct Fold {
+    /// The equations with the mean of the others.
+    pub(super) trained: Factors,
+    /// Of each repetition that is predicted.
+    pub(super) tested: Vec<Factors>,
+}
+
+/// The repetitions in groups, each against the others; `None` where fewer than two are known.
 #[must_use]
-pub(super) fn cross_squares(
-    equations: &Equations<'_>,
-    samples: &Samples,
-    weighting: Weighting,
-) -> Option<(Vec<f64>, Vec<usize>)> {
+pub(super) fn folds(equations: &Equations<'_>, samples: &Samples) -> Option<Vec<Fold>> {
     let spread = samples.repetitions.as_ref()?;
     let [block] = samples.blocks.as_slice() else { return None };
     let count = spread.first()?.len();
@@ -24,19 +29,33 @@ pub(super) fn cross_squares(
         return None;
     }
     let groups = count.min(GROUPS);
-    let joints = spread.len();
-    let (mut sums, mut rows) = (vec![0.0; joints], vec![0; joints]);
-    for group in 0..groups {
+    let factors = |moved: Block| Factors::of(equations, &with(samples, moved), 1);
+    let fold = |group: usize| {
         let members: Vec<usize> = (group..count).step_by(groups).collect();
         // The mean of the others, as it differs from that of all.
         let others = |r: usize| !members.contains(&r);
-        let trained = moved(block, spread, &others);
-        let factors = Factors::of(equations, &with(samples, trained), 1);
-        let (solution, _) = reweighted(&factors, weighting, equations.base.rank());
-        for member in &members {
-            let tested = moved(block, spread, &|r: usize| r == *member);
-            let factors = Factors::of(equations, &with(samples, tested), 1);
-            let squares = factors.residual_squares(&solution.beta, None);
+        let tested = |member: &usize| factors(moved(block, spread, &|r: usize| r == *member));
+        Fold {
+            trained: factors(moved(block, spread, &others)),
+            tested: members.iter().map(tested).collect(),
+        }
+    };
+    Some((0..groups).map(fold).collect())
+}
+
+/// Sums of each joint's squared residuals \[N²m²\] for one instant of a repetition each, and
+/// their number.
+#[must_use]
+pub(super) fn cross_squares(
+    folds: &[Fold],
+    joints: usize,
+    found: &dyn Fn(&Factors) -> DVector<f64>,
+) -> (Vec<f64>, Vec<usize>) {
+    let (mut sums, mut rows) = (vec![0.0; joints], vec![0; joints]);
+    for fold in folds {
+        let beta = found(&fold.trained);
+        for factors in &fold.tested {
+            let squares = factors.residual_squares(&beta, None);
             let counted = factors.rows_without(None);
             for joint in 0..joints {
                 sums[joint] += squares[joint];
@@ -44,7 +63,7 @@ pub(super) fn cross_squares(
             }
         }
     }
-    Some((sums, rows))
+    (sums, rows)
 }
 
 fn with(samples: &Samples, block: Block) -> Samples {

@@ -150,7 +150,8 @@ fn of_phases(
 }
 
 /// Angle of a joint's motor \[rad\].
-fn motor_angle(model: &Model, log: &Log, joint: usize, ratio: f64) -> Vec<f64> {
+#[must_use]
+pub(super) fn motor_angle(model: &Model, log: &Log, joint: usize, ratio: f64) -> Vec<f64> {
     let column = |joint: usize| log.column(Channel::Position(joint)).unwrap_or_default();
     let coupling = if joint == 5 { model.wrist.coupling } else { 0.0 };
     if coupling == 0.0 {

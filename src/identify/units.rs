@@ -16,6 +16,8 @@ const FAR: f64 = 2.0;
 const NEAR: f64 = 1.3;
 /// The same of a torque on the motor's side, as the model is only roughly known.
 const ROUGHLY: f64 = 3.0;
+/// Torques that carry so many times the weight of the model's masses are not its own.
+const STRANGE: f64 = 10.0;
 /// Share of the squared correlation from which on two columns have to do with each other.
 const RELATED: f64 = 0.25;
 /// Rows further apart than this tell no rates \[s\].
@@ -117,6 +119,34 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
     let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) else {
         return Ok(());
     };
+    let carried = carried(model, log, tau);
+    let on_motor_side = |(joint, factor): &(usize, f64)| {
+        let factor = factor * motors.ratio[*joint];
+        motors.ratio[*joint] > ROUGHLY * ROUGHLY && factor > 1.0 / ROUGHLY && factor < ROUGHLY
+    };
+    if !carried.is_empty() && carried.iter().all(on_motor_side) {
+        let joint = carried[0].0;
+        return Err(IdentifyError::MotorSide { joint: joint + 1, ratio: motors.ratio[joint] });
+    }
+    Ok(())
+}
+
+/// How many times the weight of the model's masses the torques carry, where that is far from
+/// once at all joints that carry any: the geometric mean, and a joint, from 0.
+#[must_use]
+pub fn weight_factor(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<(f64, usize)> {
+    let carried = if model.has_dynamics() { carried(model, log, tau) } else { Vec::new() };
+    let (first, _) = carried.first()?;
+    let far = |factor: f64| !(1.0 / STRANGE..STRANGE).contains(&factor.abs());
+    if !carried.iter().all(|(_, factor)| *factor != 0.0 && far(*factor)) {
+        return None;
+    }
+    let mean = carried.iter().map(|(_, f)| f.abs().ln()).sum::<f64>() / carried.len() as f64;
+    far(mean.exp()).then_some((mean.exp(), *first))
+}
+
+/// The joints that carry weight, from 0, each with its torque over that of the model's masses.
+fn carried(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<(usize, f64)> {
     let q: Vec<&[f64]> = log.of_joints(Channel::Position).unwrap_or_default();
     let every = log.time().len().div_ceil(ROWS).max(1);
     let mut data = Data::new();
@@ -132,14 +162,5 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
         }
     }
     let largest = own.iter().fold(0.0, |m: f64, x| m.max(*x));
-    let carrying: Vec<usize> = (0..n).filter(|j| own[*j] > 0.01 * largest).collect();
-    let on_motor_side = |joint: &usize| {
-        let factor = both[*joint] / own[*joint] * motors.ratio[*joint];
-        motors.ratio[*joint] > ROUGHLY * ROUGHLY && factor > 1.0 / ROUGHLY && factor < ROUGHLY
-    };
-    if !carrying.is_empty() && carrying.iter().all(on_motor_side) {
-        let ratio = motors.ratio[carrying[0]];
-        return Err(IdentifyError::MotorSide { joint: carrying[0] + 1, ratio });
-    }
-    Ok(())
+    (0..n).filter(|j| own[*j] > 0.01 * largest).map(|j| (j, both[j] / own[j])).collect()
 }

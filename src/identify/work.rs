@@ -12,8 +12,8 @@ use super::consistent::{Piece, Target, consistent, link, margin, pseudo_inertia}
 use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
-use super::fit::{Fit, Weighting, fit, root_mean};
-use super::least_squares::solve;
+use super::fit::{Fit, Weighting, fit, reweighted, root_mean};
+use super::least_squares::{Solution, solve};
 use super::quality::{Quality, quality, surely_negative};
 use super::samples::{Samples, Source};
 use super::wrist::wrist_coupling;
@@ -70,6 +70,9 @@ pub struct Identified {
     pub validation: Option<Misses>,
     /// Errors of the fit without constraints on these.
     pub unconstrained_validation: Option<Misses>,
+    /// Root mean square of each joint's residuals \[Nm\] with consistent models of the other parts
+    /// of the data, which are those of the fit's `cross_rms`.
+    pub cross_rms: Vec<f64>,
     /// Whether every link is a body that can be.
     pub physically_consistent: bool,
     /// Base parameters that the data do not determine.
@@ -121,29 +124,18 @@ pub fn identify(
         fit.solution.dependent.iter().map(|(column, _)| *column).collect();
 
     let pieces = pieces(&nominal, settings.free, &fit, &base, &among);
-    let combination = combination(&base, &fit, &among);
-    let beta = DVector::from_iterator(
-        fit.solution.determined.len(),
-        fit.solution.determined.iter().map(|k| fit.solution.beta[*k]),
-    );
-    // In units of each joint's residuals, also where joints were not weighted; data without
-    // noise would ask for more digits than there are.
-    let weights: Vec<f64> = fit
-        .rms
-        .iter()
-        .zip(&fit.relative_rms)
-        .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
-        .collect();
-    let weighted = solve(&fit.factors.stacked(&weights, base.rank()));
-    let factor = if weighted.determined == fit.solution.determined {
-        &weighted.factor
-    } else {
-        &fit.solution.factor
+    let written = Written { pieces: &pieces, base: &base, fit: &fit, among: &among };
+    let found = written.of(&fit.factors).ok_or(IdentifyError::Inconsistent)?;
+    let of_parts = |part: &Factors| -> DVector<f64> {
+        match written.of(part) {
+            Some(found) => {
+                let all = spread(found.as_slice(), &among, rigid + JOINT * n);
+                DVector::from_vec(base.of_parameters(&all))
+            }
+            None => reweighted(part, settings.weighting, base.rank()).0.beta,
+        }
     };
-    let least = fit.rows.iter().sum::<usize>() as f64;
-    let target = Target { combination: &combination, factor, beta: &beta, least };
-    let found = consistent(&pieces, &target).ok_or(IdentifyError::Inconsistent)?;
-    let found = with_apparent(&pieces, &target, found, (&fit, &base), &among);
+    let cross_rms = fit.held_out.rms(&fit.factors, &of_parts);
     let values: Vec<f64> = found.iter().copied().collect();
 
     let all = spread(&values, &among, rigid + JOINT * n);
@@ -163,8 +155,14 @@ pub fn identify(
             .any(|(k, row)| surely_negative(fit.solution.beta[*row], fit.covariance[(k, k)].sqrt()))
     };
     let giving_power = (0..n).filter(giving).collect();
-    let quality = quality(&equations, training, &training_misses, giving_power);
-    let (mut identified, payload) = assembled(&nominal, settings, &values, training, coupling);
+    let quality = quality(&equations, training, &training_misses, giving_power, &fit.whiteness);
+    let (mut identified, payload) = assembled(
+        &nominal,
+        settings,
+        &values,
+        training,
+        (coupling, &told_links(&base, &fit.solution)),
+    );
     // They are in the numbers now.
     identified.effects.clear();
     let physically_consistent =
@@ -177,6 +175,7 @@ pub fn identify(
         training: training_misses,
         validation,
         unconstrained_validation,
+        cross_rms,
         physically_consistent,
         undetermined,
         payload,
@@ -186,6 +185,43 @@ pub fn identify(
         base,
         fit,
     })
+}
+
+/// How the free parameters of a model that can be are found; sizes are those of the fit of all
+/// data.
+struct Written<'a> {
+    pieces: &'a [Piece],
+    base: &'a BaseParameters,
+    fit: &'a Fit,
+    among: &'a [usize],
+}
+
+impl Written<'_> {
+    /// The parameters nearest to the free solution of some equations.
+    fn of(&self, factors: &Factors) -> Option<DVector<f64>> {
+        // In units of each joint's residuals, also where joints were not weighted; data without
+        // noise would ask for more digits than there are.
+        let fit = self.fit;
+        let weights: Vec<f64> = fit
+            .rms
+            .iter()
+            .zip(&fit.relative_rms)
+            .map(|(rms, relative)| 1.0 / rms.max(DIGITS * rms / relative).max(f64::MIN_POSITIVE))
+            .collect();
+        let weighted = solve(&factors.stacked(&weights, self.base.rank()));
+        let beta = DVector::from_iterator(
+            weighted.determined.len(),
+            weighted.determined.iter().map(|k| weighted.beta[*k]),
+        );
+        let target = Target {
+            combination: &combination(self.base, &weighted, self.among),
+            factor: &weighted.factor,
+            beta: &beta,
+            least: factors.rows_without(None).iter().sum::<usize>() as f64,
+        };
+        let found = consistent(self.pieces, &target)?;
+        Some(with_apparent(self.pieces, &target, found, (fit, self.base), self.among))
+    }
 }
 
 fn misses(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
@@ -256,7 +292,7 @@ fn spread(values: &[f64], among: &[usize], count: usize) -> Vec<f64> {
 
 /// The determined base parameters as combinations of the free ones. What the data do not
 /// tell apart goes together.
-fn combination(base: &BaseParameters, fit: &Fit, among: &[usize]) -> DMatrix<f64> {
+fn combination(base: &BaseParameters, solution: &Solution, among: &[usize]) -> DMatrix<f64> {
     let place = |index: usize| among.iter().position(|known| *known == index);
     let row_of = |row: usize| {
         let mut values = vec![0.0; among.len()];
@@ -270,9 +306,9 @@ fn combination(base: &BaseParameters, fit: &Fit, among: &[usize]) -> DMatrix<f64
         }
         values
     };
-    let determined = &fit.solution.determined;
+    let determined = &solution.determined;
     let mut rows: Vec<Vec<f64>> = determined.iter().map(|row| row_of(*row)).collect();
-    for (column, parts) in &fit.solution.dependent {
+    for (column, parts) in &solution.dependent {
         let values = row_of(*column);
         for (to, factor) in parts {
             if let Some(row) = determined.iter().position(|known| known == to) {
@@ -430,7 +466,7 @@ fn assembled(
     settings: &Settings,
     values: &[f64],
     samples: &Samples,
-    coupling: Option<f64>,
+    (coupling, told): (Option<f64>, &[bool]),
 ) -> (Model, Option<Load>) {
     let n = nominal.dof;
     let mut model = nominal.clone();
@@ -448,8 +484,15 @@ fn assembled(
     }
     let joints = match settings.free {
         Free::All => {
-            model.links = values[..RIGID * n].chunks(RIGID).map(link).collect();
-            tables.extend((1..=n).map(|joint| format!("link {joint}")));
+            // A link of which the motion says nothing stays as it was.
+            let found = values[..RIGID * n].chunks(RIGID).map(link).enumerate();
+            model.links = found
+                .map(|(k, new)| match nominal.links.get(k) {
+                    Some(old) if !told[k] => old.clone(),
+                    _ => new,
+                })
+                .collect();
+            tables.extend((0..n).filter(|k| told[*k]).map(|k| format!("link {}", k + 1)));
             &values[RIGID * n..]
         }
         Free::Friction => values,
@@ -493,6 +536,24 @@ fn assembled(
             model.motors = Some(with_rotors(nominal, &inertia));
         }
     }
+    // Of a list with joints that rest not all is identified.
+    let of_joints = |table: &str, key: &str| -> Origin {
+        let mut new = origin(table, key, &settings.source);
+        if samples.resting.is_empty() {
+            return new;
+        }
+        let before = nominal.origins.iter().find(|o| o.table == table && o.key == key);
+        new.provenance = before.map_or(Some(Provenance::Assumed), |before| before.provenance);
+        let resting: Vec<String> = samples.resting.iter().map(|j| (j + 1).to_string()).collect();
+        let was = before.and_then(|before| before.source.as_deref());
+        let was = was.map_or_else(String::new, |was| format!(": {was}"));
+        new.source = Some(format!(
+            "{}; not identified, as it was, of joints {}, which rest{was}",
+            settings.source,
+            resting.join(", ")
+        ));
+        new
+    };
     model.origins.retain(|origin| {
         let part = |table: &String| {
             origin.table == *table || origin.table.starts_with(&format!("{table}."))
@@ -506,11 +567,17 @@ fn assembled(
             "effects.apparent_torque" => &["inertia", "viscous"],
             _ => &["mass", "com", "inertia"],
         };
-        model.origins.extend(keys.iter().map(|key| origin(table, key, &settings.source)));
+        model.origins.extend(keys.iter().map(|key| {
+            if table.starts_with("link") {
+                origin(table, key, &settings.source)
+            } else {
+                of_joints(table, key)
+            }
+        }));
     }
     if settings.free == Free::All {
         model.origins.retain(|o| !(o.table == "motors" && o.key == "rotor_inertia"));
-        model.origins.push(origin("motors", "rotor_inertia", &settings.source));
+        model.origins.push(of_joints("motors", "rotor_inertia"));
         if nominal.motors.is_none() {
             model.origins.push(Origin {
                 table: "motors".into(),
@@ -527,6 +594,25 @@ fn assembled(
         model.origins.push(origin("wrist", "coupling", &settings.source));
     }
     (model, payload)
+}
+
+/// Links of which a determined base parameter says something.
+fn told_links(base: &BaseParameters, solution: &Solution) -> Vec<bool> {
+    let mut told = vec![false; base.dof];
+    let mut tell = |index: usize| {
+        if let Some(told) = told.get_mut(index / RIGID) {
+            *told = true;
+        }
+    };
+    for row in &solution.determined {
+        tell(base.independent[*row]);
+        for (k, index) in base.dependent.iter().enumerate() {
+            if base.grouping[(*row, k)] != 0.0 {
+                tell(*index);
+            }
+        }
+    }
+    told
 }
 
 /// What a robot can have of numbers, and what only its log can: those below 0.

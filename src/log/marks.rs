@@ -27,11 +27,24 @@ pub fn are_halves(positions: &Log, other: &Log) -> bool {
         && !driven.iter().any(|family| has(positions, *family))
 }
 
+/// Two halves as one.
+#[derive(Clone, Debug)]
+pub struct Aligned {
+    /// Both.
+    pub log: Log,
+    /// Marks that both have.
+    pub marks: usize,
+    /// Largest distance between two of them \[s\].
+    pub worst: f64,
+    /// Interval of the slower recorder \[s\]: its marks can be late by that, all together.
+    pub step: f64,
+}
+
 /// `other` with the positions of `positions` at its own times, as their marks tell.
 ///
 /// # Errors
 /// Marks that are missing or do not fit together.
-pub fn aligned(positions: &Log, other: &Log) -> Result<Log, LogError> {
+pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
     let here = changes(positions);
     let there = changes(other);
     let step = median_step(positions.time()).max(median_step(other.time()));
@@ -42,7 +55,7 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Log, LogError> {
         .iter()
         .filter(|clock| clock.worst <= OFF * step)
         .max_by(|a, b| a.pairs.cmp(&b.pairs).then(b.worst.total_cmp(&a.worst)));
-    let Some(&Clock { pace, to, from, .. }) = most else {
+    let Some(&Clock { pace, to, from, pairs, worst }) = most else {
         let nearest = fits.iter().map(|clock| clock.worst).fold(f64::INFINITY, f64::min);
         return Err(if nearest.is_finite() {
             LogError::Unaligned { worst: nearest, step }
@@ -73,7 +86,7 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Log, LogError> {
             log.values.push(kept.iter().map(at).collect());
         }
     }
-    Ok(log)
+    Ok(Aligned { log, marks: pairs, worst, step })
 }
 
 fn interpolated_at(t: &[f64], x: &[f64], at: f64) -> f64 {
@@ -162,7 +175,7 @@ mod tests {
             format!("{t},1,2,3,{}\n", 5.0 * on(3.0 + 1.001 * t))
         });
         assert!(are_halves(&here, &there) && !are_halves(&there, &here));
-        let both = aligned(&here, &there).unwrap();
+        let both = aligned(&here, &there).unwrap().log;
         let found = both.column(Channel::Position(0)).unwrap();
         assert!(found.len() > 14_000);
         for (t, found) in there.time().iter().zip(found).step_by(100) {

@@ -26,10 +26,10 @@ pub use csv::read_csv;
 pub use differentiate::derivatives;
 pub use error::LogError;
 pub use low_pass::LowPass;
-pub use marks::{aligned, are_halves};
+pub use marks::{Aligned, aligned, are_halves};
 pub use motion::Motion;
 pub use periods::{Averaged, Periods, averaged, find_periods};
-pub use three_phase::{Signed, Vectors, signed, vectors};
+pub use three_phase::{Signed, Vectors, coherence, signed, vectors};
 pub use uniform::{Section, interpolated, median_step, sections};
 
 use channel::Family;

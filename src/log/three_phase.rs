@@ -1,9 +1,10 @@
 //! Three phase currents as one vector.
 //!
 //! `i = i_a + i_b e^{j2π/3} + i_c e^{j4π/3}` turns with the rotor; its length is one and a half
-//! times the amplitude. With the torque angle kept at ±90°, the vector seen from the rotor
-//! stands still and its sign is the torque's. The electrical angle is the joint's times gear
-//! ratio and pole pairs, in a sense that depends on the order of the phases.
+//! times the amplitude. Seen from the rotor it moves on a line: along the axis that makes the
+//! torque (q), past a constant on the other one (d), which does no work. The electrical angle is
+//! the joint's times gear ratio and pole pairs, in a sense that depends on the order of the
+//! phases.
 
 use std::f64::consts::TAU;
 
@@ -50,39 +51,73 @@ pub fn vectors(a: &[f64], b: &[f64], c: &[f64]) -> Vectors {
 pub fn signed(vectors: &Vectors, angle: &[f64]) -> Option<Signed> {
     let n = vectors.re.len().min(angle.len());
     let every = n.div_ceil(TOLD_FROM).max(1);
-    let best = (1..=POLE_PAIRS)
-        .flat_map(|pairs| [pairs, -pairs])
-        .map(|pairs| {
-            let (x, y, length) = doubled(vectors, angle, pairs, every);
-            (pairs, x.hypot(y) / length.max(f64::MIN_POSITIVE), y.atan2(x))
-        })
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (pole_pairs, coherence, twice) = best;
-    if coherence < STANDS {
+    let best = all_pairs()
+        .map(|pairs| (pairs, seen(vectors, angle, pairs, every)))
+        .max_by(|a, b| a.1.stands.total_cmp(&b.1.stands))?;
+    let (pole_pairs, Seen { stands, direction }) = best;
+    if stands < STANDS {
         return None;
     }
-    let direction = 0.5 * twice;
     let current = (0..n)
         .map(|i| {
             let (sin, cos) = (f64::from(pole_pairs) * angle[i] % TAU + direction).sin_cos();
             vectors.re[i] * cos + vectors.im[i] * sin
         })
         .collect();
-    Some(Signed { current, pole_pairs, coherence })
+    Some(Signed { current, pole_pairs, coherence: stands })
 }
 
-/// The sum of the squared vectors, turned back: squares have no sign to lose.
-fn doubled(vectors: &Vectors, angle: &[f64], pairs: i32, every: usize) -> (f64, f64, f64) {
-    let (mut x, mut y, mut length) = (0.0, 0.0, 0.0);
-    for i in (0..vectors.re.len().min(angle.len())).step_by(every) {
-        let (re, im) = (vectors.re[i], vectors.im[i]);
-        let (sin, cos) = (2.0 * f64::from(pairs) * angle[i] % TAU).sin_cos();
-        let (square, cross) = (re * re - im * im, 2.0 * re * im);
-        x += square * cos + cross * sin;
-        y += cross * cos - square * sin;
-        length += re * re + im * im;
+/// The share of the vectors that stands still from a rotor that turns with `angle`, with the
+/// pole pairs that are best for it, or those given; every so many of them are looked at.
+#[must_use]
+pub fn coherence(
+    vectors: &Vectors,
+    angle: &[f64],
+    pole_pairs: Option<i32>,
+    every: usize,
+) -> (f64, i32) {
+    let of = |pairs: i32| (seen(vectors, angle, pairs, every).stands, pairs);
+    match pole_pairs {
+        Some(pairs) => of(pairs),
+        None => all_pairs().map(of).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default(),
     }
-    (x, y, length)
+}
+
+fn all_pairs() -> impl Iterator<Item = i32> {
+    (1..=POLE_PAIRS).flat_map(|pairs| [pairs, -pairs])
+}
+
+/// Vectors as the rotor sees them.
+struct Seen {
+    /// Share of their power that is a constant or on one line.
+    stands: f64,
+    /// Of the line \[rad\].
+    direction: f64,
+}
+
+/// The vectors turned back. The line is that of their changes about their mean, squared as
+/// squares have no sign to lose: the mean may lie beside it.
+fn seen(vectors: &Vectors, angle: &[f64], pairs: i32, every: usize) -> Seen {
+    let (mut x, mut y, mut squares, mut crosses) = (0.0, 0.0, 0.0, 0.0);
+    let (mut length, mut count) = (0.0, 0.0);
+    for i in (0..vectors.re.len().min(angle.len())).step_by(every.max(1)) {
+        let (re, im) = (vectors.re[i], vectors.im[i]);
+        let (sin, cos) = (f64::from(pairs) * angle[i] % TAU).sin_cos();
+        let (d, q) = (re * cos + im * sin, im * cos - re * sin);
+        x += d;
+        y += q;
+        squares += d * d - q * q;
+        crosses += 2.0 * d * q;
+        length += d * d + q * q;
+        count += 1.0_f64;
+    }
+    let count = count.max(1.0);
+    let (along, across) = (squares - (x * x - y * y) / count, crosses - 2.0 * x * y / count);
+    let constant = (x * x + y * y) / count;
+    Seen {
+        stands: (constant + along.hypot(across)) / length.max(f64::MIN_POSITIVE),
+        direction: 0.5 * across.atan2(along),
+    }
 }
 
 #[cfg(test)]
@@ -113,6 +148,26 @@ mod tests {
                     assert!((sign * x - y).abs() < EXACT);
                 }
             }
+        }
+    }
+
+    /// A constant current on the axis that does no work, larger than the one that does.
+    #[test]
+    fn a_constant_on_the_other_axis_changes_nothing() {
+        let angle: Vec<f64> = (0..4000).map(|i| 130.0 * (0.002 * f64::from(i)).sin()).collect();
+        let current: Vec<f64> =
+            (0..4000).map(|i| 0.4 + 0.3 * (0.005 * f64::from(i) + 1.0).cos()).collect();
+        let phase = |k: f64| -> Vec<f64> {
+            let of = |(i, angle): (&f64, &f64)| {
+                let electrical = 4.0 * angle + 0.7 - k * TAU / 3.0;
+                i * electrical.cos() + 0.9 * electrical.sin()
+            };
+            current.iter().zip(&angle).map(of).collect()
+        };
+        let found = signed(&vectors(&phase(0.0), &phase(1.0), &phase(2.0)), &angle).unwrap();
+        let sign = found.current[0].signum();
+        for (x, y) in found.current.iter().zip(&current) {
+            assert!((sign * x - y).abs() < 0.02, "{x} {y}");
         }
     }
 

@@ -60,7 +60,7 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
         "not_determined": undetermined(found),
         "rms": {
             "train": found.training.rms,
-            "validation": held_out.map_or(&fit.cross_rms, |misses| &misses.rms),
+            "validation": held_out.map_or(&found.cross_rms, |misses| &misses.rms),
         },
         "relative_rms": {
             "train": found.training.relative,
@@ -288,8 +288,8 @@ pub fn text(found: &Identified, basis: &Basis) -> String {
     let _ = writeln!(text, "quality: {}", found.quality.sentence());
     let held_out = match &found.validation {
         Some(misses) => ("held-out logs", &misses.rms),
-        None if fit.over_repetitions => ("held-out cycles", &fit.cross_rms),
-        None => ("cross-validated", &fit.cross_rms),
+        None if fit.over_repetitions => ("held-out cycles", &found.cross_rms),
+        None => ("cross-validated", &found.cross_rms),
     };
     let _ = writeln!(
         text,

@@ -14,11 +14,10 @@ const TORQUE_CONSTANT: Accepts = Accepts::Between(
     "more than 0 and at most 50, in Nm per A rms at the motor (not mNm)",
 );
 /// Inertias of rotors \[kg m²\].
-const ROTOR_INERTIA: Accepts = Accepts::Between(
-    0.0,
-    0.5,
-    "0 or more and at most 0.5, in kg m2 at the motor (not at the joint, not in kg cm2)",
-);
+const LARGEST_ROTOR: f64 = 0.5;
+/// The largest that one has at its joint \[kg m²\]: a motor without a gear, or one whose ratio
+/// is not known and stands as 1, may have that itself.
+const LARGEST_AT_JOINT: f64 = 1000.0;
 
 /// One motor with its gear for each joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +51,21 @@ impl Motors {
         let ratio = fields.per_joint("ratio", dof, Accepts::Positive)?;
         let ratio = fields.required("ratio", ratio)?;
         let torque_constant = fields.per_joint("torque_constant", dof, TORQUE_CONSTANT)?;
-        let rotor_inertia = fields.per_joint("rotor_inertia", dof, ROTOR_INERTIA)?;
+        let rotor_place = fields.place_of("rotor_inertia");
+        let rotor_inertia = fields.per_joint("rotor_inertia", dof, Accepts::NonNegative)?;
+        let largest = |ratio: f64| LARGEST_ROTOR.max(LARGEST_AT_JOINT / (ratio * ratio));
+        let mut rotors = rotor_inertia.iter().flatten().zip(&ratio);
+        if let Some((value, ratio)) = rotors.find(|(value, ratio)| **value > largest(**ratio)) {
+            return Err(RobotError::Value {
+                place: rotor_place,
+                key: "motors.rotor_inertia".into(),
+                value: value.to_string(),
+                must: format!(
+                    "0 or more and at most {}, in kg m2 at the motor (not at the joint, not in kg cm2)",
+                    largest(*ratio)
+                ),
+            });
+        }
         let place = fields.place_of("resistance");
         let loss = fields.per_joint("loss_constant", dof, Accepts::NonNegative)?;
         let resistance = fields.per_joint("resistance", dof, Accepts::NonNegative)?;

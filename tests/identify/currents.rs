@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 
 use joulepath::dynamics::{Load, Parameters, parameters};
-use joulepath::identify::{Free, Hints, Settings, Source, Weighting, identify, prepare, torques};
-use joulepath::log::{Channel, Log};
+use joulepath::identify::{
+    Free, Hints, Settings, Source, Weighting, identify, prepare, synchronised, torques,
+};
+use joulepath::log::{Aligned, Channel, Log};
 use joulepath::robot::Model;
 
 use crate::simulated::{With, irb1600, log, normal, series};
@@ -117,4 +119,33 @@ fn sign_and_scale_are_right_in_two_hundred_random_cases() {
         }
     }
     assert!(wrong.is_empty(), "{} of 1,200 joints: {}", wrong.len(), wrong.join("\n"));
+}
+
+/// A logger's marks are late by half an interval; the field of the motors tells it.
+#[test]
+fn clocks_are_brought_together_by_the_field() {
+    const LATE: f64 = 0.002;
+    const CLOSE: f64 = 1e-4;
+    let model = irb1600();
+    let mut random = fastrand::Rng::with_seed(15);
+    let truth = log(&model, &series(15), [20.0, 0.001], With::Positions, [0.0, 0.0], &mut random);
+    let both = phases(&model, &truth, 1.0, &mut random);
+    // The positions of this clock are those of two milliseconds before.
+    let mut late = both.clone();
+    for (channel, values) in late.channels.iter().zip(&mut late.values) {
+        if matches!(channel, Channel::Position(_)) {
+            let first = values[0];
+            values.rotate_right(2);
+            values[..2].fill(first);
+        }
+    }
+    let aligned = Aligned { log: late, marks: 4, worst: 0.0, step: 2.0 * LATE };
+    let (found, said) = synchronised(&model, aligned);
+    assert!(said.contains("2.00 ms later"), "{said}");
+    let q = |log: &Log| log.column(Channel::Position(0)).unwrap().to_vec();
+    let (found_q, both_q) = (q(&found), q(&both));
+    for (row, x) in found.rows.iter().zip(&found_q).skip(10).step_by(50) {
+        let place = both.rows.iter().position(|known| known == row).unwrap();
+        assert!((x - both_q[place]).abs() < CLOSE * 5.0, "{row}");
+    }
 }

@@ -62,7 +62,7 @@ pub fn identify_report(
     traces: &Traces,
 ) -> Result<String, ReportError> {
     let fit = &found.fit;
-    let held_out = found.validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms);
+    let held_out = found.validation.as_ref().map_or(&found.cross_rms, |misses| &misses.rms);
     let joints: Vec<JointRow> = (0..found.base.dof)
         .map(|joint| JointRow {
             joint: joint + 1,
