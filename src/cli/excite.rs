@@ -1,17 +1,20 @@
 //! `joulepath excite`: a motion from which a robot's parameters can be told.
 
+mod area;
+
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::str::FromStr;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 
+use self::area::{keep_out, numbers, plane};
 use super::common::{self, Format};
 use super::{load, output};
 use crate::dynamics::{Data, Load, torque};
@@ -20,7 +23,7 @@ use crate::excite::{
     Blend, Checked, Design, Focus, Information, Plateaus, Series, State, blends, check, design,
     friction_plateaus, wrist_plateaus,
 };
-use crate::kinematics::{Body, KeepOut, Obstacle, Plane};
+use crate::kinematics::{Body, Obstacle, Plane};
 use crate::robot::{self, Model};
 
 /// Interval of the rows of the table \[s\]: the grid on which limits are checked.
@@ -41,8 +44,6 @@ const LEAST_POINTS: f64 = 6.0;
 /// were asked for may be needed to make a period of such times.
 const TICK: f64 = 1e-4;
 const MORE_POINTS: f64 = 1.3;
-/// No length is so large, in m or mm.
-const BEYOND: f64 = 1e6;
 /// Share of joint 1's range by which its marks lie off its middle.
 const MARKS: f64 = 0.02;
 
@@ -307,34 +308,6 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         load,
         seed: args.seed,
     })
-}
-
-fn plane(text: &str) -> anyhow::Result<Plane> {
-    let help = "a normal and a distance in m, such as 1,0,0,-0.8";
-    let [x, y, z, d] = numbers("--plane", text, help)?;
-    let normal = Vector3::new(x, y, z);
-    let length = normal.norm();
-    if length < 1e-9 {
-        bail!("--plane {text}: the normal is 0; give {help}");
-    }
-    Ok(Plane { normal: normal / length, distance: d / length })
-}
-
-fn keep_out(text: &str) -> anyhow::Result<KeepOut> {
-    let help = "two corners of a box in m, such as 0.8,-0.5,0,1.4,0.5,0.9";
-    let [x, y, z, a, b, c] = numbers("--box", text, help)?;
-    let keep_out = KeepOut::between(Point3::new(x, y, z), Point3::new(a, b, c));
-    if keep_out.half.min() < 1e-9 {
-        bail!("--box {text}: it has no volume; give {help}");
-    }
-    Ok(keep_out)
-}
-
-fn numbers<const N: usize>(option: &str, text: &str, help: &str) -> anyhow::Result<[f64; N]> {
-    let wrong = || format!("{option} {text}: give {help}");
-    let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < BEYOND));
-    values.and_then(|x| <[f64; N]>::try_from(x).ok()).with_context(wrong)
 }
 
 fn of_design(

@@ -16,7 +16,8 @@ use crate::dynamics::{JOINT, Load, Parameters, RIGID, link_parameters, parameter
 use crate::robot::{Link, Model};
 
 use super::fit::root_mean;
-use super::work::{Identified, first_guess};
+use super::guess::first_guess;
+use super::work::Identified;
 
 /// Numbers of a link: mass, centre of mass, moments about it.
 const LINK: usize = 7;

@@ -7,9 +7,9 @@ use nalgebra::DVector;
 use super::equations::Equations;
 use super::factors::Factors;
 use super::least_squares::solve;
+use super::misses::Misses;
 use super::samples::{Block, Samples};
 use super::whiteness::Whiteness;
-use super::work::Misses;
 
 /// Mean share of the torques' variance that a good model explains, and a fair one.
 const GOOD: f64 = 0.9;

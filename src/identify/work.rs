@@ -1,6 +1,6 @@
 //! The whole identification: free parameters, fit, a consistent model.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
+use nalgebra::{DMatrix, DVector};
 
 use crate::dynamics::{
     BaseParameters, JOINT, Load, Parameters, RIGID, base_parameters_among, link_parameters,
@@ -12,8 +12,10 @@ use super::consistent::{Piece, Target, consistent, link, margin, pseudo_inertia}
 use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
-use super::fit::{Fit, Weighting, fit, reweighted, root_mean};
+use super::fit::{Fit, Weighting, fit, reweighted};
+use super::guess::{prior, small_body};
 use super::least_squares::{Solution, solve};
+use super::misses::Misses;
 use super::quality::{Quality, quality, surely_negative};
 use super::samples::{Samples, Source};
 use super::wrist::wrist_coupling;
@@ -38,15 +40,6 @@ pub struct Settings {
     pub weighting: Weighting,
     /// Who says so, for the identified numbers of the model.
     pub source: String,
-}
-
-/// Errors on samples, by joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Misses {
-    /// Root mean square of the residuals \[Nm\].
-    pub rms: Vec<f64>,
-    /// The same over that of the torque \[1\].
-    pub relative: Vec<f64>,
 }
 
 /// The result.
@@ -140,11 +133,11 @@ pub fn identify(
 
     let all = spread(&values, &among, rigid + JOINT * n);
     let of_model = DVector::from_vec(base.of_parameters(&all));
-    let misses = |beta: &DVector<f64>, factors: &[Factors]| misses(beta, factors);
     let held_out: Vec<Factors> =
         validation.iter().map(|samples| Factors::of(&equations, samples, 1)).collect();
-    let training_misses = misses(&of_model, std::slice::from_ref(&fit.factors));
-    let on_held_out = |beta: &DVector<f64>| (!held_out.is_empty()).then(|| misses(beta, &held_out));
+    let training_misses = Misses::of(&of_model, std::slice::from_ref(&fit.factors));
+    let on_held_out =
+        |beta: &DVector<f64>| (!held_out.is_empty()).then(|| Misses::of(beta, &held_out));
     let (validation, unconstrained_validation) =
         (on_held_out(&of_model), on_held_out(&fit.solution.beta));
 
@@ -221,25 +214,6 @@ impl Written<'_> {
         };
         let found = consistent(self.pieces, &target)?;
         Some(with_apparent(self.pieces, &target, found, (fit, self.base), self.among))
-    }
-}
-
-fn misses(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
-    let joints = factors.first().map_or(0, |of| of.layout.columns.len());
-    let (mut squares, mut torque, mut rows) =
-        (vec![0.0; joints], vec![0.0; joints], vec![0; joints]);
-    for of in factors {
-        let missed = of.residual_squares(beta, None);
-        let counted = of.rows_without(None);
-        for joint in 0..joints {
-            squares[joint] += missed[joint];
-            rows[joint] += counted[joint];
-            torque[joint] += of.squares.iter().map(|part| part[joint]).sum::<f64>();
-        }
-    }
-    Misses {
-        rms: root_mean(&squares, &rows),
-        relative: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
     }
 }
 
@@ -416,50 +390,6 @@ const WORTH: f64 = 0.005;
 const DIGITS: f64 = 1e-4;
 /// Size of a parameter of which nothing is known, in its SI unit.
 const SMALL: f64 = 1e-3;
-/// Density of an arm, with what is hollow in it \[kg/m³\].
-const DENSITY: f64 = 1500.0;
-/// Slenderness of a link: its radius over its length.
-const SLENDER: f64 = 0.25;
-/// Least length of a link \[m\].
-const SHORTEST: f64 = 0.1;
-
-/// The pseudo-inertia that a link has before anything was measured: that of the model where
-/// it is one of a body, else of a bar to the next joint.
-fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
-    if let Some(link) = model.links.get(joint) {
-        let values = link_parameters(link);
-        if margin(&values) > 1e-9 {
-            return pseudo_inertia(&values);
-        }
-    }
-    let geometry = &model.kinematics;
-    let to = geometry
-        .joints
-        .get(joint + 1)
-        .map_or(geometry.flange.translation.vector, |next| next.translation);
-    pseudo_inertia(&link_parameters(&bar(to)))
-}
-
-/// The link that a descent begins with.
-pub(super) fn first_guess(model: &Model, joint: usize) -> Link {
-    link(&super::consistent::parameters(&prior(model, joint)))
-}
-
-/// A round bar from the origin to a point.
-fn bar(to: Vector3<f64>) -> Link {
-    let length = to.norm().max(SHORTEST);
-    let radius = SLENDER * length;
-    let mass = DENSITY * std::f64::consts::PI * radius * radius * length;
-    let across = mass * (length * length / 12.0 + radius * radius / 4.0);
-    Link { mass, com: to * 0.5, inertia: Matrix3::identity() * across }
-}
-
-/// A kilogram at the flange, in the last link's frame.
-fn small_body(model: &Model) -> Link {
-    let com = model.kinematics.flange.translation.vector;
-    Link { mass: 1.0, com, inertia: Matrix3::identity() * 1e-3 }
-}
-
 /// The model with the free parameters put in.
 fn assembled(
     nominal: &Model,

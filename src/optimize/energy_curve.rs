@@ -80,13 +80,15 @@ pub struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
-    /// The curve of a run from `shortest` (s, if a stream can be as quick) to `longest`, known at
+    /// The curve of a run from `shortest` (s, 0 where that is not known) to `longest`, known at
     /// the time that the run takes now. `None` where there is no stream.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
         let work = Work::new(task).ok()?;
         let (grid, limits) = work.grid_of(&Margins::first(work.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        let shortest = shortest.max(RESERVE * fast.duration() + task.run.settling);
+        // What is known to be possible may be below what the coarse grid says.
+        let reserve = RESERVE * fast.duration() + task.run.settling;
+        let shortest = if shortest > 0.0 { shortest } else { reserve };
         let range = (shortest, longest.max(shortest));
         let mut curve = Curve { work, grid, limits, fast, known: Vec::new(), range };
         curve.learn(task.run.duration()).then_some(curve)
@@ -95,7 +97,8 @@ impl<'a> Curve<'a> {
     /// Finds out what the run takes in a time, s, where that is not known well enough. Whether
     /// there was something to learn.
     pub fn learn(&mut self, time: f64) -> bool {
-        let time = time.clamp(self.range.0, self.range.1);
+        let least = RESERVE * self.fast.duration() + self.work.task.run.settling;
+        let time = time.clamp(self.range.0, self.range.1).max(least);
         let place = self.known.partition_point(|(known, _)| known.time < time);
         let near = |(known, _): &(Known, Vec<f64>)| (known.time - time).abs() <= NEAR * time;
         let neighbours = self.known[place.saturating_sub(1)..].iter().take(2);

@@ -12,6 +12,7 @@ mod notes;
 mod outputs;
 mod rests;
 mod segments;
+mod sharing;
 mod signals;
 mod speeds;
 mod verify;

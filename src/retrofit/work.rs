@@ -5,7 +5,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::figures::{Figures, Retrofit, Verification};
-use super::goals::{Plan, goals};
+use super::goals::goals;
+use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
 use super::{guided, hazards, notes, outputs, rests, segments, signals, speeds, verify};
 use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
@@ -18,7 +19,7 @@ use crate::optimize::cost::Cost;
 use crate::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Goal, Retiming, Task, retime};
+use crate::optimize::retime::{Retiming, Task, retime};
 use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
@@ -29,8 +30,6 @@ pub(super) const TIME_TOLERANCE: f64 = 1e-6;
 
 /// Rounds of leaving out what did not hold; in the last one nothing is kept.
 const MOST_ROUNDS: usize = 12;
-/// Times that the cycle's time is shared anew, at most.
-const MOST_SHARINGS: usize = 4;
 
 /// A file of the program.
 #[derive(Clone, Debug)]
@@ -300,7 +299,7 @@ impl Way {
 }
 
 /// A stream, or why there is none.
-type Outcome = Result<Retiming, Reason>;
+pub(super) type Outcome = Result<Retiming, Reason>;
 
 /// Retrofits a program. `progress` is told how many of how many pieces are done.
 ///
@@ -505,88 +504,6 @@ fn retime_all(
         }
     }
     Ok(ways)
-}
-
-/// A stream in the run's share of the cycle; where there is none, in its time before.
-fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
-    retime(task, goal).or_else(|_| retime(task, Goal::Within(task.run.duration())))
-}
-
-/// What a run takes with its outcome: time, s, and energy of the motion, J.
-fn taken(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
-    match outcome {
-        Ok(retiming) => (retiming.duration_s, retiming.energy.motion_energy_j()),
-        Err(_) => (task.run.duration(), task.energy_before.motion_energy_j()),
-    }
-}
-
-/// Where a run did not get quicker as it should have, so that the others were given too much time,
-/// the time is shared anew; where that does not help, every run goes back to its time before.
-fn keep_to_the_cycle(
-    plan: &mut Plan,
-    tasks: &[(usize, Task<'_>)],
-    outcomes: &mut [(usize, Outcome)],
-) {
-    let time =
-        |((_, task), (_, outcome)): (&(usize, Task<'_>), &(usize, Outcome))| taken(task, outcome).0;
-    for _ in 0..MOST_SHARINGS {
-        let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
-        if plan.holds(&times) {
-            return;
-        }
-        let changed = plan.share_anew(&times);
-        if changed.is_empty() {
-            break;
-        }
-        let found: Vec<Outcome> =
-            changed.par_iter().map(|i| useful(&tasks[*i].1, plan.goals[*i])).collect();
-        for (i, outcome) in changed.into_iter().zip(found) {
-            outcomes[i].1 = outcome;
-        }
-    }
-    let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
-    if plan.holds(&times) {
-        return;
-    }
-    outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
-        |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
-    );
-}
-
-/// A run that takes more energy than before has to give its time to others that save more, or to
-/// spare the arm a wait. Where the cycle is no worse without it, it goes back to its time before,
-/// and so do all where nothing is saved in all.
-fn leave_what_does_not_pay(
-    plan: &Plan,
-    tasks: &[(usize, Task<'_>)],
-    outcomes: &mut [(usize, Outcome)],
-) {
-    let before = |task: &Task<'_>| (task.run.duration(), task.energy_before.motion_energy_j());
-    let mut now: Vec<(f64, f64)> = tasks
-        .iter()
-        .zip(&*outcomes)
-        .map(|((_, task), (_, outcome))| taken(task, outcome))
-        .collect();
-    let excess = |i: usize| now[i].1 - before(&tasks[i].1).1;
-    let mut costly: Vec<usize> = (0..tasks.len()).filter(|i| excess(*i) > 0.0).collect();
-    costly.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
-    for i in costly {
-        let task = &tasks[i].1;
-        let cost = plan.cost(&now);
-        let patient = std::mem::replace(&mut now[i], before(task));
-        if plan.cost(&now) < cost {
-            outcomes[i].1 = retime(task, Goal::Within(task.run.duration()));
-            now[i] = taken(task, &outcomes[i].1);
-        } else {
-            now[i] = patient;
-        }
-    }
-    let all_before: Vec<(f64, f64)> = tasks.iter().map(|(_, task)| before(task)).collect();
-    if plan.cost(&now) >= plan.cost(&all_before) {
-        outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
-            |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
-        );
-    }
 }
 
 /// Up to the next figure with three decimals: what a message tells to give has to do.

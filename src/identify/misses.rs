@@ -1,0 +1,37 @@
+//! How far a model is from measured torques.
+
+use nalgebra::DVector;
+
+use super::factors::Factors;
+use super::fit::root_mean;
+
+/// Errors on samples, by joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misses {
+    /// Root mean square of the residuals \[Nm\].
+    pub rms: Vec<f64>,
+    /// The same over that of the torque \[1\].
+    pub relative: Vec<f64>,
+}
+
+impl Misses {
+    /// Those of base parameters β on the samples of some factors.
+    pub(super) fn of(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
+        let joints = factors.first().map_or(0, |of| of.layout.columns.len());
+        let (mut squares, mut torque, mut rows) =
+            (vec![0.0; joints], vec![0.0; joints], vec![0; joints]);
+        for of in factors {
+            let missed = of.residual_squares(beta, None);
+            let counted = of.rows_without(None);
+            for joint in 0..joints {
+                squares[joint] += missed[joint];
+                rows[joint] += counted[joint];
+                torque[joint] += of.squares.iter().map(|part| part[joint]).sum::<f64>();
+            }
+        }
+        Misses {
+            rms: root_mean(&squares, &rows),
+            relative: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
+        }
+    }
+}
