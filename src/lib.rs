@@ -6,6 +6,7 @@ pub mod cli;
 pub mod config;
 pub mod diagnostics;
 pub mod dynamics;
+pub mod effects;
 pub mod emit;
 pub mod energy;
 pub mod excite;

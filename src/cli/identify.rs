@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 
 use super::{common, output};
 use crate::cli::common::Format;
+use crate::effects;
 use crate::identify::{
     Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
     check_torques, cleaned, identify, prepare, torques,
@@ -18,7 +19,7 @@ use crate::identify::{
 use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
 use crate::report::html::{Traces, identify_report};
 use crate::report::identify as report;
-use crate::robot::{self, Model};
+use crate::robot::Model;
 
 /// A dynamic model with standard errors from measured logs.
 #[derive(Debug, Args)]
@@ -120,7 +121,7 @@ struct Ready {
 /// # Errors
 /// A log or a robot that can't be used, or output that can't be written.
 pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
-    let model = robot::load(&args.robot)?;
+    let model = effects::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
         bail!("--period {period}: give the duration of a repetition in seconds, more than 0");
