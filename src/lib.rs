@@ -10,6 +10,7 @@ pub mod effects;
 pub mod emit;
 pub mod energy;
 pub mod excite;
+pub mod gap;
 pub mod generate;
 pub mod identify;
 pub mod ir;

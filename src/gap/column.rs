@@ -1,0 +1,181 @@
+//! What may explain a difference: columns of torques, in pieces that belong together.
+
+use crate::effects::{Effect, Motion, Role};
+
+/// Half of the distance between tried values of a shape is one deviation of the tangent.
+const TANGENT: f64 = 0.5;
+/// Relative step of differences over a shape.
+const STEP: f64 = 1e-3;
+
+/// Whose a piece is.
+#[derive(Clone, Copy)]
+pub enum Owner {
+    /// A law.
+    Effect(&'static Effect),
+    /// Any smooth function of something: id.
+    Generic(&'static str),
+}
+
+impl Owner {
+    /// Its id.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        match self {
+            Owner::Effect(effect) => effect.id,
+            Owner::Generic(id) => id,
+        }
+    }
+}
+
+/// A column: torques, and what is known of its factor before the measurement.
+pub struct Column {
+    /// By record, the joints that it reaches with their series \[Nm\].
+    pub series: Vec<Vec<(usize, Vec<f64>)>>,
+    /// Expected factor.
+    pub mean: f64,
+    /// Its standard deviation; 0 where it is what it is.
+    pub sd: f64,
+}
+
+/// Columns of one effect at one joint, for one choice of its shape.
+pub struct Piece {
+    /// Whose they are.
+    pub owner: Owner,
+    /// Joint, from 0; `None` of the robot.
+    pub joint: Option<usize>,
+    /// Values of all coordinates: 1 for a linear one stands for its usual size.
+    pub shape: Vec<f64>,
+    /// Number of shapes that are tried at the joint.
+    pub choices: usize,
+    /// Its columns.
+    pub columns: Vec<Column>,
+}
+
+/// All pieces of an effect at a joint, in motions of one robot.
+#[must_use]
+pub(super) fn pieces(effect: &'static Effect, motions: &[&Motion<'_>], joint: usize) -> Vec<Piece> {
+    let Some(first) = motions.first() else { return Vec::new() };
+    let scale = first.scale(joint);
+    let tried: Vec<Vec<f64>> = effect
+        .coordinates
+        .iter()
+        .map(|coordinate| match coordinate.role {
+            Role::Linear => vec![(coordinate.usual)(&scale)],
+            Role::Shape(values) | Role::Choice(values) => values(&scale),
+        })
+        .collect();
+    let mut shapes = vec![Vec::new()];
+    for values in &tried {
+        shapes = shapes
+            .iter()
+            .flat_map(|shape| {
+                values.iter().map(move |value| {
+                    let mut longer: Vec<f64> = shape.clone();
+                    longer.push(*value);
+                    longer
+                })
+            })
+            .collect();
+    }
+    let choices = shapes.len();
+    let of = match effect.of {
+        crate::effects::Of::Joint => Some(joint),
+        crate::effects::Of::Robot => None,
+    };
+    shapes
+        .into_iter()
+        .map(|shape| Piece {
+            owner: Owner::Effect(effect),
+            joint: of,
+            columns: columns(effect, motions, joint, &shape, &tried),
+            choices,
+            shape,
+        })
+        .collect()
+}
+
+/// Columns of an effect at a shape of its own.
+pub(super) fn columns_at(
+    effect: &'static Effect,
+    motions: &[&Motion<'_>],
+    joint: usize,
+    shape: &[f64],
+) -> Vec<Column> {
+    let scale = motions.first().map(|motion| motion.scale(joint));
+    let tried: Vec<Vec<f64>> = effect
+        .coordinates
+        .iter()
+        .map(|coordinate| match (coordinate.role, &scale) {
+            (Role::Shape(values) | Role::Choice(values), Some(scale)) => values(scale),
+            _ => Vec::new(),
+        })
+        .collect();
+    columns(effect, motions, joint, shape, &tried)
+}
+
+/// Columns at one shape: of each linear coordinate its torque and how that changes with the
+/// shape; of an effect without one the torque itself.
+fn columns(
+    effect: &'static Effect,
+    motions: &[&Motion<'_>],
+    joint: usize,
+    shape: &[f64],
+    tried: &[Vec<f64>],
+) -> Vec<Column> {
+    let added = |values: &[f64]| -> Vec<Vec<(usize, Vec<f64>)>> {
+        motions.iter().map(|motion| effect.added(motion, joint, values)).collect()
+    };
+    let is_linear = |k: &usize| matches!(effect.coordinates[*k].role, Role::Linear);
+    let linear: Vec<usize> = (0..shape.len()).filter(is_linear).collect();
+    let only = |kept: Option<usize>, shape: &[f64]| -> Vec<f64> {
+        let value = |k: usize| if is_linear(&k) && Some(k) != kept { 0.0 } else { shape[k] };
+        (0..shape.len()).map(value).collect()
+    };
+    let mut columns = Vec::new();
+    let amplitudes: Vec<Option<usize>> =
+        if linear.is_empty() { vec![None] } else { linear.iter().map(|k| Some(*k)).collect() };
+    for amplitude in amplitudes {
+        let base = only(amplitude, shape);
+        let here = added(&base);
+        for (k, coordinate) in effect.coordinates.iter().enumerate() {
+            let Role::Shape(_) = coordinate.role else { continue };
+            let mut next = base.clone();
+            let step = STEP * next[k].abs().max(1e-12);
+            next[k] += step;
+            let spacing = nearest_spacing(&tried[k], shape[k]);
+            let tangent = difference(&added(&next), &here, 1.0 / step);
+            columns.push(Column { series: tangent, mean: 0.0, sd: TANGENT * spacing });
+        }
+        let (mean, sd) = if amplitude.is_some() { (0.0, 1.0) } else { (1.0, 0.0) };
+        columns.insert(0, Column { series: here, mean, sd });
+    }
+    columns
+}
+
+/// Half the distance to the neighbours of a tried value.
+fn nearest_spacing(tried: &[f64], value: f64) -> f64 {
+    let apart = tried.iter().map(|x| (x - value).abs());
+    // A shape between the tried ones has no nearer neighbour than half of their distance.
+    let apart = apart.filter(|x| *x > 1e-3 * value.abs());
+    let nearest = apart.fold(f64::INFINITY, f64::min);
+    if nearest.is_finite() { nearest } else { 0.5 * value.abs() }
+}
+
+/// (a − b) · factor.
+fn difference(
+    a: &[Vec<(usize, Vec<f64>)>],
+    b: &[Vec<(usize, Vec<f64>)>],
+    factor: f64,
+) -> Vec<Vec<(usize, Vec<f64>)>> {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| {
+            a.iter()
+                .zip(b)
+                .map(|((joint, a), (_, b))| {
+                    (*joint, a.iter().zip(b).map(|(a, b)| factor * (a - b)).collect())
+                })
+                .collect()
+        })
+        .collect()
+}

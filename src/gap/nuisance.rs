@@ -1,0 +1,174 @@
+//! Parameters of the model that are not exactly known: they may explain what they can, within
+//! what they are trusted.
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+use crate::dynamics::{JOINT, Parameters, RIGID, Regressor, link_parameters, write_rows};
+use crate::effects::Motion;
+use crate::robot::Link;
+
+/// How much the parameters of the model are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trust {
+    /// Identified on this robot.
+    Commissioned,
+    /// From drawings.
+    Cad,
+    /// Not at all.
+    Unknown,
+}
+
+/// Standard deviations of the parameters.
+struct Spread {
+    /// Of a mass, relative.
+    mass: f64,
+    /// Of a centre of mass \[m\].
+    com: f64,
+    /// Of inertias of links and rotors, relative.
+    inertia: f64,
+    /// Of friction, relative.
+    friction: f64,
+    /// Of an offset, of the largest torque.
+    offset: f64,
+}
+
+impl Trust {
+    fn spread(self) -> Spread {
+        match self {
+            Trust::Commissioned => {
+                Spread { mass: 0.01, com: 0.003, inertia: 0.03, friction: 0.05, offset: 0.002 }
+            }
+            Trust::Cad => {
+                Spread { mass: 0.1, com: 0.015, inertia: 0.2, friction: 0.25, offset: 0.005 }
+            }
+            Trust::Unknown => {
+                Spread { mass: 10.0, com: 1.0, inertia: 20.0, friction: 20.0, offset: 2.0 }
+            }
+        }
+    }
+}
+
+/// Displacement of a centre of mass over which differences are taken \[m\].
+const SMALL: f64 = 1e-6;
+/// Names of the parameters of a link and of a joint.
+const LINK: [&str; RIGID] = [
+    "mass",
+    "com_x",
+    "com_y",
+    "com_z",
+    "inertia_xx",
+    "inertia_yy",
+    "inertia_zz",
+    "inertia_xy",
+    "inertia_xz",
+    "inertia_yz",
+];
+const OF_JOINT: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"];
+
+/// What a change of each parameter by one standard deviation adds to the torques: of each
+/// parameter, of each joint, the series.
+pub(super) struct Nuisance {
+    /// Names, such as `link 3 mass`.
+    pub(super) names: Vec<String>,
+    /// The size of one deviation in the parameter's unit.
+    pub(super) deviations: Vec<f64>,
+    /// By parameter, by joint, by row \[Nm\].
+    pub(super) series: Vec<Vec<Vec<f64>>>,
+}
+
+/// The parameters of a motion's model.
+pub(super) fn nuisance(motion: &Motion<'_>, trust: Trust) -> Nuisance {
+    let model = motion.model;
+    let (n, rows) = (model.dof, motion.len());
+    let spread = trust.spread();
+    let count = Parameters::WithJoints.count(n);
+    let mut names = Vec::new();
+    let mut deviations = Vec::new();
+    // Parameters of the regressor for a change of one deviation.
+    let mut mixing = DMatrix::zeros(count, count);
+    for (number, link) in model.links.iter().enumerate() {
+        for (k, (change, size)) in of_link(link, &spread).into_iter().enumerate() {
+            let column = RIGID * number + k;
+            for (row, value) in change.into_iter().enumerate() {
+                mixing[(RIGID * number + row, column)] = value;
+            }
+            names.push(format!("link {} {}", number + 1, LINK[k]));
+            deviations.push(size);
+        }
+    }
+    for joint in 0..n {
+        let scale = motion.scale(joint);
+        let inertia = spread.inertia * scale.rotor;
+        let sizes = [
+            inertia,
+            spread.friction * scale.viscous,
+            spread.friction * scale.coulomb,
+            spread.offset * scale.torque[1],
+        ];
+        for (k, size) in sizes.into_iter().enumerate() {
+            let column = RIGID * n + JOINT * joint + k;
+            mixing[(column, column)] = size;
+            names.push(format!("joint {} {}", joint + 1, OF_JOINT[k]));
+            deviations.push(size);
+        }
+    }
+    let mut scratch = Regressor::new();
+    let mut regressor = DMatrix::zeros(n, count);
+    let mut series = vec![vec![vec![0.0; rows]; n]; count];
+    for row in 0..rows {
+        let [mut q, qd, qdd] = motion.state(row);
+        for (q, offset) in q.iter_mut().zip(&model.sensors.position_offset) {
+            *q += offset;
+        }
+        let state = [&q[..n], &qd[..n], &qdd[..n]];
+        write_rows(model, &mut scratch, state, Parameters::WithJoints, &mut regressor, 0);
+        for joint in 0..n {
+            // A joint that counts as at rest has no sense.
+            regressor[(joint, RIGID * n + JOINT * joint + 2)] = motion.senses[joint][row];
+        }
+        let changed = &regressor * &mixing;
+        for (parameter, of) in series.iter_mut().enumerate() {
+            for (joint, of) in of.iter_mut().enumerate() {
+                of[row] = changed[(joint, parameter)];
+            }
+        }
+    }
+    Nuisance { names, deviations, series }
+}
+
+/// Changes of the ten parameters of a link for one deviation of mass, centre and inertia.
+fn of_link(link: &Link, spread: &Spread) -> Vec<([f64; RIGID], f64)> {
+    let before = link_parameters(link);
+    let moment = (link.inertia.trace() / 3.0).abs();
+    let mut all = Vec::with_capacity(RIGID);
+    let push = |all: &mut Vec<([f64; RIGID], f64)>, changed: Link, size: f64| {
+        let after = link_parameters(&changed);
+        let mut change = [0.0; RIGID];
+        for (to, (after, before)) in change.iter_mut().zip(after.iter().zip(&before)) {
+            *to = after - before;
+        }
+        all.push((change, size));
+    };
+    let mass = spread.mass * link.mass;
+    push(&mut all, Link { mass: link.mass + mass, ..link.clone() }, mass);
+    for axis in 0..3 {
+        let changed = Link { com: link.com + Vector3::ith(axis, SMALL), ..link.clone() };
+        push(&mut all, changed, SMALL);
+    }
+    // To first order: a large deviation is no displaced body.
+    for (change, size) in &mut all[1..] {
+        change.iter_mut().for_each(|x| *x *= spread.com / SMALL);
+        *size = spread.com;
+    }
+    for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+        let own = link.inertia[(row, column)].abs();
+        let size = spread.inertia * if row == column { own } else { moment };
+        let mut inertia: Matrix3<f64> = link.inertia;
+        inertia[(row, column)] += size;
+        if row != column {
+            inertia[(column, row)] += size;
+        }
+        push(&mut all, Link { inertia, ..link.clone() }, size);
+    }
+    all
+}
