@@ -20,5 +20,5 @@ pub use hypothesis::{Family, families};
 pub use nuisance::Trust;
 pub use polish::{Fitted, Polished, polish};
 pub use record::Record;
-pub use search::{Found, Search, search};
+pub use search::{Chosen, Found, Search};
 pub use table::{Placed, Table};

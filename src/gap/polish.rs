@@ -5,8 +5,6 @@ use nalgebra::{DMatrix, DVector};
 use crate::effects::{Effect, Motion, Role};
 
 use super::column::{Owner, Piece, columns_at};
-use super::nuisance::Trust;
-use super::record::Record;
 use super::search::Search;
 use super::table::{Placed, Table};
 
@@ -39,6 +37,8 @@ pub struct Fitted {
 pub struct Polished {
     /// Effects joint by joint.
     pub effects: Vec<Fitted>,
+    /// The pieces at their best shapes, in the order in which they were given.
+    pub pieces: Vec<Piece>,
     /// Functions of one thing that were found: id and joint.
     pub generic: Vec<(&'static str, Option<usize>)>,
     /// Changes of the model's parameters, in deviations.
@@ -49,13 +49,8 @@ pub struct Polished {
 
 /// Improves shapes by new tangents until they stay.
 #[must_use]
-pub fn polish(
-    search: &Search<'_>,
-    pieces: &[usize],
-    records: &[Record<'_>],
-    trust: Trust,
-    error: f64,
-) -> Option<Polished> {
+pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
+    let Search { records, trust, error, .. } = *search;
     let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
     let first: Vec<&Placed> = pieces.iter().map(|number| &search.table.pieces[*number]).collect();
     let mut shapes: Vec<Vec<f64>> = first.iter().map(|placed| placed.shape.clone()).collect();
@@ -95,6 +90,11 @@ pub fn polish(
             let gained = evidence.gain(&all);
             result = Some(Polished {
                 effects: fitted,
+                pieces: first
+                    .iter()
+                    .zip(&shapes)
+                    .map(|(placed, shape)| remade(placed, &motions, shape))
+                    .collect(),
                 generic: generic.collect(),
                 parameters: evidence.parameters(&all, &estimate.mean),
                 misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
@@ -107,9 +107,12 @@ pub fn polish(
 /// The piece at another shape.
 fn remade(placed: &Placed, motions: &[&Motion<'_>], shape: &[f64]) -> Piece {
     let columns = match placed.owner {
-        Owner::Effect(effect) => {
-            columns_at(effect, motions, placed.joint.unwrap_or_else(|| of_robot(effect, motions)), shape)
-        }
+        Owner::Effect(effect) => columns_at(
+            effect,
+            motions,
+            placed.joint.unwrap_or_else(|| of_robot(effect, motions)),
+            shape,
+        ),
         Owner::Generic(id) => super::generic::named(id, motions, placed.joint.unwrap_or(0)),
     };
     Piece {
@@ -136,9 +139,8 @@ fn coordinates_of(
     let count = effect.coordinates.len();
     let of = |factors: &DVector<f64>| -> Vec<f64> {
         let mut coordinates = shape.to_vec();
-        let shapes: Vec<usize> = (0..count)
-            .filter(|k| matches!(effect.coordinates[*k].role, Role::Shape(_)))
-            .collect();
+        let shapes: Vec<usize> =
+            (0..count).filter(|k| matches!(effect.coordinates[*k].role, Role::Shape(_))).collect();
         let linear: Vec<usize> =
             (0..count).filter(|k| matches!(effect.coordinates[*k].role, Role::Linear)).collect();
         let width = 1 + shapes.len();

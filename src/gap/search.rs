@@ -3,6 +3,9 @@
 use super::column::Owner;
 use super::evidence::Evidence;
 use super::hypothesis::{Family, families};
+use super::nuisance::Trust;
+use super::polish::polish;
+use super::record::Record;
 use super::table::Table;
 
 /// What naming an effect costs, and each joint of it.
@@ -32,35 +35,64 @@ pub struct Found {
 }
 
 /// A search.
-pub struct Search<'a> {
+pub struct Search<'a, 'm> {
+    /// The logs.
+    pub records: &'a [Record<'m>],
+    /// How much the model's parameters are believed.
+    pub trust: Trust,
+    /// Share of its torques to which the model is right.
+    pub error: f64,
     /// What may explain the difference.
-    pub table: &'a Table,
+    pub table: Table,
     /// Its families.
     pub families: Vec<Family>,
     /// How well it does.
-    pub evidence: &'a Evidence,
+    pub evidence: Evidence,
 }
 
-/// The best set of effects.
-#[must_use]
-pub fn search<'a>(table: &'a Table, evidence: &'a Evidence) -> (Search<'a>, Found) {
-    let search = Search { table, families: families(table), evidence };
-    let mut found = Found { chosen: Vec::new(), score: 0.0 };
-    while found.chosen.len() < MOST {
-        let next = (0..search.families.len())
-            .filter(|family| found.chosen.iter().all(|chosen| chosen.family != *family))
-            .filter_map(|family| search.with(&found.chosen, family))
-            .max_by(|a, b| a.score.total_cmp(&b.score));
-        match next {
-            Some(next) if next.score > found.score + WORTH => found = next,
-            _ => break,
-        }
-        found = search.without_needless(found);
+impl<'a, 'm> Search<'a, 'm> {
+    /// A search in a table of these records.
+    #[must_use]
+    pub fn new(
+        records: &'a [Record<'m>],
+        table: Table,
+        trust: Trust,
+        error: f64,
+    ) -> Search<'a, 'm> {
+        let evidence = table.evidence(error);
+        Search { records, trust, error, families: families(&table), table, evidence }
     }
-    (search, found)
-}
 
-impl Search<'_> {
+    /// The best set of effects, found one after another. Each is brought to its best shape
+    /// before the next one is looked for: what a coarse shape leaves is no other effect.
+    pub fn run(&mut self) -> Found {
+        let mut found = Found { chosen: Vec::new(), score: 0.0 };
+        while found.chosen.len() < MOST {
+            let next = (0..self.families.len())
+                .filter(|family| found.chosen.iter().all(|chosen| chosen.family != *family))
+                .filter_map(|family| self.with(&found.chosen, family))
+                .max_by(|a, b| a.score.total_cmp(&b.score));
+            match next {
+                Some(next) if next.score > found.score + WORTH => found = next,
+                _ => break,
+            }
+            found = self.without_needless(found);
+            self.refine(&mut found);
+        }
+        found
+    }
+
+    /// Shapes of what was found become the best ones.
+    fn refine(&mut self, found: &mut Found) {
+        let pieces: Vec<usize> = found.chosen.iter().flat_map(|of| of.pieces.clone()).collect();
+        let Some(polished) = polish(self, &pieces) else { return };
+        for (number, piece) in pieces.iter().zip(polished.pieces) {
+            self.table.replace(*number, piece, self.records);
+        }
+        self.evidence = self.table.evidence(self.error);
+        found.score = self.score(&found.chosen);
+    }
+
     /// The set with another family, whose joints and shapes are chosen one after another.
     #[must_use]
     pub fn with(&self, chosen: &[Chosen], family: usize) -> Option<Found> {

@@ -118,6 +118,30 @@ impl Table {
         }
     }
 
+    /// Puts a piece in the place of another one of the same effect and joint.
+    pub(super) fn replace(&mut self, number: usize, piece: Piece, records: &[Record<'_>]) {
+        let placed = &mut self.pieces[number];
+        placed.shape.clone_from(&piece.shape);
+        let parameters = self.parameters.len();
+        for (k, column) in placed.columns.clone().zip(&piece.columns) {
+            self.means[k] = column.mean;
+            self.sds[k] = column.sd;
+            for (joint, rows) in self.joints.iter_mut().enumerate() {
+                let Ok(place) = rows.reached.binary_search(&k) else { continue };
+                let mut first = 0;
+                for (record, series) in records.iter().zip(&column.series) {
+                    let count = record.spectrum.rows();
+                    if let Some((_, series)) = series.iter().find(|(of, _)| *of == joint) {
+                        let spectrum = record.rows_of(joint, series);
+                        let to = 1 + parameters + place;
+                        rows.values.view_mut((first, to), (count, 1)).copy_from_slice(&spectrum);
+                    }
+                    first += count;
+                }
+            }
+        }
+    }
+
     /// How well everything explains the difference if the model's torques are known to the
     /// share `error` of their own.
     #[must_use]
