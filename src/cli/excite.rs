@@ -318,7 +318,6 @@ fn of_design(
     };
     let found = design(model, settings, &progress)?;
     bar.finish_and_clear();
-    let series = &found.series;
     let fits = |states: &[State]| {
         let checked = check(model, body, &settings.load, states);
         let r = &checked.ratios;
@@ -327,11 +326,10 @@ fn of_design(
             && checked.to_obstacles >= 0.0
             && checked.to_itself >= 0.0
     };
-    let blends = blends(model, series, &fits);
-    if blends.is_none() {
+    let Some((series, blends)) = blends(model, &found.series, &fits) else {
         bail!("no way from rest into the motion keeps the limits: give another --seed");
-    }
-    let states = sampled(series);
+    };
+    let states = sampled(&series);
     // A period is a whole number of points; a slow motion needs no more of them.
     let spacing = match args.spacing {
         Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
@@ -345,7 +343,7 @@ fn of_design(
         cycles,
         states,
         points: series.sampled(points),
-        blends,
+        blends: Some(blends),
         information: Some(found.information),
         checked: found.checked,
     })

@@ -1,6 +1,7 @@
 //! The command line.
 
 pub mod backup;
+pub mod blind;
 pub mod choice;
 pub mod common;
 pub mod excite;
@@ -41,6 +42,7 @@ enum Command {
     Excite(Box<excite::ExciteArgs>),
     Identify(Box<identify::IdentifyArgs>),
     Predict(predict::PredictArgs),
+    Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
 }
 
@@ -56,6 +58,7 @@ pub fn main() -> ExitCode {
         Command::Excite(args) => excite::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Predict(args) => predict::run(&args),
+        Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),
     };
     result.unwrap_or_else(|error| {

@@ -5,9 +5,13 @@ use crate::robot::{MAX_DOF, Model};
 use super::series::{Series, State};
 
 /// Shortest and longest blend \[s\].
-const DURATIONS: [f64; 2] = [0.5, 30.0];
+const DURATIONS: [f64; 2] = [0.5, 15.0];
 /// How much longer the next one is.
 const LONGER: f64 = 1.15;
+/// Places of the period that are looked at …
+const PLACES: usize = 100;
+/// … of which the slowest are tried.
+const TRIED: usize = 15;
 
 /// A motion between rest and the beginning of a period.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,9 +50,37 @@ impl Blend {
     }
 }
 
-/// The shortest blends at start and end that `fits` accepts.
+/// The shortest blends at start and end that `fits` accepts, and the motion from where they
+/// meet it on: a slow place of the period that has them.
 #[must_use]
 pub fn blends(
+    model: &Model,
+    series: &Series,
+    fits: &dyn Fn(&[State]) -> bool,
+) -> Option<(Series, [Blend; 2])> {
+    let speed = |state: &State| {
+        let share = |joint: usize| {
+            let limit = model.limits.velocity.as_ref().map_or(1.0, |of| of[joint]);
+            state[1][joint].abs() / limit
+        };
+        (0..model.dof).map(share).fold(0.0, f64::max)
+    };
+    let mut places: Vec<(f64, f64)> = series
+        .sampled(PLACES)
+        .iter()
+        .enumerate()
+        .map(|(i, state)| (speed(state), series.period() * i as f64 / PLACES as f64))
+        .collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    places.truncate(TRIED);
+    places.iter().find_map(|(_, shift)| {
+        let series = series.later(*shift);
+        let blends = at_the_edge(model, &series, fits)?;
+        Some((series, blends))
+    })
+}
+
+fn at_the_edge(
     model: &Model,
     series: &Series,
     fits: &dyn Fn(&[State]) -> bool,

@@ -71,6 +71,19 @@ impl Series {
         (0..count).map(|i| self.at(step * i as f64)).collect()
     }
 
+    /// The same motion, `shift` \[s\] further on.
+    #[must_use]
+    pub fn later(&self, shift: f64) -> Series {
+        let mut later = self.clone();
+        for pairs in &mut later.amplitude {
+            for ([a, b], k) in pairs.iter_mut().zip(&self.harmonics) {
+                let (sin, cos) = (TAU * self.base_frequency * *k as f64 * shift).sin_cos();
+                (*a, *b) = (*a * cos - *b * sin, *a * sin + *b * cos);
+            }
+        }
+        later
+    }
+
     /// The same with all amplitudes times `share`.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Series {
@@ -79,5 +92,26 @@ impl Series {
             *pair *= share;
         }
         scaled
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_later_series_is_the_same_motion() {
+        let series = Series {
+            base_frequency: 0.1,
+            harmonics: vec![1, 4],
+            offset: vec![0.3],
+            amplitude: vec![vec![[0.2, -0.4], [0.1, 0.05]]],
+        };
+        let later = series.later(2.3);
+        for t in [0.0, 1.7, 8.8] {
+            for (a, b) in series.at(t + 2.3).iter().zip(later.at(t)) {
+                assert!((a[0] - b[0]).abs() < 1e-12);
+            }
+        }
     }
 }

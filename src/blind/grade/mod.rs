@@ -1,0 +1,269 @@
+//! Grades of diagnoses, when the seals are open.
+
+mod diagnosis;
+mod score;
+mod wilson;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::label::{Kind, Label};
+use diagnosis::Diagnosis;
+use score::{Outcome, Score, score};
+
+pub use diagnosis::DiagnosisError;
+
+/// Edges of the bins of probability.
+const BINS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0];
+
+/// The result of an examination.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Grades {
+    /// Cases that were graded.
+    pub cases: usize,
+    /// What was left out of the library, where something was.
+    pub left_out: Option<String>,
+    /// For each truth, how often a diagnosis came to what; detectable ones only.
+    pub confusion: BTreeMap<String, BTreeMap<&'static str, usize>>,
+    /// Shares of the cases that are asked for.
+    pub rates: Vec<Rate>,
+    /// Stated probabilities against what was there.
+    pub reliability: Vec<Bin>,
+    /// Median of the claimed shrink over an oracle's, of single detectable effects.
+    pub shrink_of_oracle: Option<f64>,
+    /// Cases with a wrong name.
+    pub wrong: Vec<Wrong>,
+}
+
+/// How often something holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// What.
+    pub name: &'static str,
+    /// Cases in which it holds.
+    pub hits: usize,
+    /// Cases in which it was asked for.
+    pub of: usize,
+    /// `hits` over `of`; none of none.
+    pub rate: Option<f64>,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// What is demanded.
+    pub asked: Asked,
+}
+
+/// What is demanded of a rate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Asked {
+    /// No more than this.
+    AtMost(f64),
+    /// No less than this.
+    AtLeast(f64),
+}
+
+/// Effects whose stated probability lies in an interval.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Bin {
+    /// Lower end of the interval.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+    /// Mean of what was stated.
+    pub stated: f64,
+    /// Effects that were there.
+    pub hits: usize,
+    /// All that were stated.
+    pub of: usize,
+}
+
+/// A case with a wrong name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Wrong {
+    /// The case.
+    pub case: String,
+    /// What it is.
+    pub truth: String,
+    /// What was said.
+    pub said: String,
+}
+
+/// Grades diagnoses, each in the JSON of `diagnose` and in the order of `labels`. With
+/// `left_out`, an effect that the library has been without, only cases of it are graded: it has
+/// to come out as unknown, or in a class with what can't be told from it.
+///
+/// # Errors
+/// A diagnosis that has another shape.
+pub fn grade(
+    labels: &[Label],
+    diagnoses: &[Value],
+    left_out: Option<&str>,
+) -> Result<Grades, DiagnosisError> {
+    let mut confusion: BTreeMap<String, BTreeMap<&'static str, usize>> = BTreeMap::new();
+    let mut scores = Vec::new();
+    let mut wrong = Vec::new();
+    for (label, diagnosis) in labels.iter().zip(diagnoses) {
+        if left_out.is_some_and(|id| !is_of(label, id)) {
+            continue;
+        }
+        let score = score(label, &Diagnosis::read(&label.case, diagnosis)?);
+        let truth = truth(label);
+        if score.detectable || label.effects.is_empty() {
+            *confusion
+                .entry(truth.clone())
+                .or_default()
+                .entry(score.outcome.name())
+                .or_default() += 1;
+        }
+        if score.outcome == Outcome::WrongName {
+            wrong.push(Wrong { case: label.case.clone(), truth, said: score.said.clone() });
+        }
+        scores.push(score);
+    }
+    let rates = match left_out {
+        Some(_) => left_out_rates(&scores),
+        None => rates(&scores),
+    };
+    Ok(Grades {
+        cases: scores.len(),
+        left_out: left_out.map(str::to_owned),
+        confusion,
+        rates,
+        reliability: reliability(&scores),
+        shrink_of_oracle: median(
+            single(&scores).filter_map(|score| score.of_oracle).collect::<Vec<f64>>(),
+        ),
+        wrong,
+    })
+}
+
+/// Whether a case is one of an effect, under any of its names.
+fn is_of(label: &Label, id: &str) -> bool {
+    matches!(label.kind, Kind::One | Kind::Power | Kind::Motion)
+        && label.effects.iter().any(|truth| truth.id == id)
+}
+
+/// The row of the confusion table.
+fn truth(label: &Label) -> String {
+    match label.kind {
+        Kind::One | Kind::Power | Kind::Motion => {
+            label.effects.first().map_or_else(String::new, |truth| truth.id.clone())
+        }
+        kind => format!("({})", kind.name()),
+    }
+}
+
+/// Cases with one detectable effect.
+fn single(scores: &[Score]) -> impl Iterator<Item = &Score> {
+    scores.iter().filter(|score| {
+        score.detectable && matches!(score.kind, Kind::One | Kind::Power | Kind::Motion)
+    })
+}
+
+fn rates(scores: &[Score]) -> Vec<Rate> {
+    use Asked::{AtLeast, AtMost};
+    let of_kind = |kind: Kind| scores.iter().filter(move |score| score.kind == kind);
+    let detectable = |kind: Kind| of_kind(kind).filter(|score| score.detectable);
+    let two = || detectable(Kind::Two);
+    let outside = || detectable(Kind::Outside);
+    vec![
+        rate(
+            "healthy_named",
+            AtMost(0.02),
+            of_kind(Kind::Healthy).map(|score| score.outcome.names()),
+        ),
+        rate(
+            "parameters_only_named",
+            AtMost(0.02),
+            of_kind(Kind::ParametersOnly).map(|score| score.outcome.names()),
+        ),
+        rate(
+            "one_right_or_class",
+            AtLeast(0.92),
+            single(scores).map(|score| score.outcome.is_right()),
+        ),
+        rate(
+            "one_wrong_name",
+            AtMost(0.02),
+            single(scores).map(|score| score.outcome == Outcome::WrongName),
+        ),
+        rate("one_joints", AtLeast(0.90), single(scores).filter_map(|score| score.joints)),
+        rate("one_place", AtLeast(0.90), single(scores).filter_map(|score| score.place)),
+        rate("line", AtLeast(0.90), single(scores).filter_map(|score| score.line)),
+        rate(
+            "parameters_within_3_sd",
+            AtLeast(0.93),
+            scores.iter().flat_map(|score| score.parameters.iter().copied()),
+        ),
+        rate("two_both", AtLeast(0.70), two().map(|score| score.outcome.is_right())),
+        rate(
+            "two_wrong_name",
+            AtMost(0.03),
+            two().map(|score| score.outcome == Outcome::WrongName),
+        ),
+        rate("outside_abstains", AtLeast(0.95), outside().map(|score| score.outcome.abstains())),
+    ]
+}
+
+fn left_out_rates(scores: &[Score]) -> Vec<Rate> {
+    vec![
+        rate(
+            "left_out_unknown_or_class",
+            Asked::AtLeast(0.92),
+            single(scores).map(|score| score.outcome.abstains() || score.outcome.is_right()),
+        ),
+        rate(
+            "left_out_wrong_name",
+            Asked::AtMost(0.08),
+            single(scores).map(|score| score.outcome == Outcome::WrongName),
+        ),
+    ]
+}
+
+fn rate(name: &'static str, asked: Asked, answers: impl Iterator<Item = bool>) -> Rate {
+    let answers: Vec<bool> = answers.collect();
+    let (hits, of) = (answers.iter().filter(|hit| **hit).count(), answers.len());
+    let [low, high] = wilson::interval(hits, of);
+    let rate = (of > 0).then(|| hits as f64 / of as f64);
+    Rate { name, hits, of, rate, low, high, asked }
+}
+
+impl Rate {
+    /// Whether what is demanded is met; nothing is said of no cases.
+    #[must_use]
+    pub fn met(&self) -> Option<bool> {
+        self.rate.map(|rate| match self.asked {
+            Asked::AtMost(most) => rate <= most,
+            Asked::AtLeast(least) => rate >= least,
+        })
+    }
+}
+
+fn reliability(scores: &[Score]) -> Vec<Bin> {
+    let all: Vec<(f64, bool)> =
+        scores.iter().flat_map(|score| score.probabilities.iter().copied()).collect();
+    let last = BINS.len() - 2;
+    (0..=last)
+        .map(|i| {
+            let (from, to) = (BINS[i], BINS[i + 1]);
+            let within: Vec<&(f64, bool)> = all
+                .iter()
+                .filter(|(p, _)| *p >= from && (*p < to || i == last && *p <= to))
+                .collect();
+            let of = within.len();
+            let stated = within.iter().map(|(p, _)| p).sum::<f64>() / of.max(1) as f64;
+            Bin { from, to, stated, hits: within.iter().filter(|(_, hit)| *hit).count(), of }
+        })
+        .collect()
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = *values.get(middle)?;
+    Some(if values.len() % 2 == 1 { upper } else { f64::midpoint(values[middle - 1], upper) })
+}

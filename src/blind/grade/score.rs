@@ -1,0 +1,194 @@
+//! One case: what was right.
+
+use std::collections::BTreeSet;
+
+use super::super::label::{Kind, Label, Truth};
+use super::diagnosis::{Diagnosis, Said, Verdict};
+
+/// An effect that the logs show less than this is not asked for \[nats\].
+pub(super) const DETECTABLE_NATS: f64 = 10.0;
+/// A class of more ids says nothing.
+const LARGEST_CLASS: usize = 5;
+/// A place is asked for where one joint has this share of the gap at least.
+const CLEAR_SHARE: f64 = 0.5;
+/// Standard deviations that a parameter may be off.
+const PARAMETER_SD: f64 = 3.0;
+
+/// What a diagnosis did with a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Outcome {
+    RightName,
+    RightClass,
+    /// Some of several effects, and none that is wrong.
+    SomeRight,
+    WrongName,
+    /// Nothing was named.
+    Verdict(Verdict),
+}
+
+impl Outcome {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Outcome::RightName => "right_name",
+            Outcome::RightClass => "right_class",
+            Outcome::SomeRight => "some_right",
+            Outcome::WrongName => "wrong_name",
+            Outcome::Verdict(verdict) => verdict.name(),
+        }
+    }
+
+    /// All that is wrong was named, in a class at least, and nothing else.
+    pub(super) fn is_right(self) -> bool {
+        matches!(self, Outcome::RightName | Outcome::RightClass)
+    }
+
+    /// Whether some effect was named.
+    pub(super) fn names(self) -> bool {
+        !matches!(self, Outcome::Verdict(_))
+    }
+
+    /// Whether it owns up to not knowing.
+    pub(super) fn abstains(self) -> bool {
+        matches!(self, Outcome::Verdict(verdict) if verdict.abstains())
+    }
+}
+
+/// Right or not, where a question was asked at all.
+#[derive(Clone, Debug)]
+pub(super) struct Score {
+    pub(super) kind: Kind,
+    pub(super) detectable: bool,
+    pub(super) outcome: Outcome,
+    pub(super) joints: Option<bool>,
+    pub(super) place: Option<bool>,
+    pub(super) line: Option<bool>,
+    pub(super) parameters: Vec<bool>,
+    /// Probability of each effect that was considered, and whether it is there.
+    pub(super) probabilities: Vec<(f64, bool)>,
+    /// Claimed shrink over that of somebody who knows all but the model error.
+    pub(super) of_oracle: Option<f64>,
+    pub(super) said: String,
+}
+
+/// Scores a case.
+pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
+    let truths: Vec<&Truth> = match label.kind {
+        Kind::One | Kind::Two | Kind::Power | Kind::Motion => label.effects.iter().collect(),
+        Kind::Healthy | Kind::ParametersOnly | Kind::Outside => Vec::new(),
+    };
+    let named: Vec<&Said> = diagnosis.named().collect();
+    let found = |truth: &Truth| named.iter().copied().find(|said| accepts(truth, said));
+    let wrong = named.iter().any(|said| !truths.iter().any(|truth| accepts(truth, said)));
+    let right: Vec<(&Truth, &Said)> =
+        truths.iter().filter_map(|truth| Some((*truth, found(truth)?))).collect();
+    let all_right = !truths.is_empty() && right.len() == truths.len();
+    let by_name = right.iter().all(|(truth, said)| {
+        said.ids().len() == 1 && (said.id == truth.id || truth.equivalents.contains(&said.id))
+    });
+    let outcome = if wrong {
+        Outcome::WrongName
+    } else if named.is_empty() {
+        Outcome::Verdict(diagnosis.verdict)
+    } else if !all_right {
+        Outcome::SomeRight
+    } else if by_name {
+        Outcome::RightName
+    } else {
+        Outcome::RightClass
+    };
+    let detectable = !label.effects.is_empty()
+        && label.effects.iter().all(|truth| truth.nats >= DETECTABLE_NATS);
+    let joints = (right.len() == truths.len())
+        .then(|| {
+            let of_joints: Vec<bool> = right
+                .iter()
+                .filter(|(truth, _)| !truth.joints.is_empty())
+                .map(|(truth, said)| same_joints(truth, said))
+                .collect();
+            (!of_joints.is_empty()).then(|| of_joints.into_iter().all(|same| same))
+        })
+        .flatten();
+    let clear = label.place.filter(|_| label.share.is_some_and(|share| share >= CLEAR_SHARE));
+    let place = (!truths.is_empty() && !named.is_empty())
+        .then(|| clear.map(|joint| diagnosis.place() == Some(joint)))
+        .flatten();
+    let line = (!label.lines.is_empty())
+        .then(|| diagnosis.lines().any(|line| label.lines.contains(&line)));
+    let parameters = right
+        .iter()
+        .filter(|(truth, said)| truth.nats >= DETECTABLE_NATS && said.id == truth.id)
+        .flat_map(|(truth, said)| within(truth, said))
+        .collect();
+    let considered = diagnosis.effects.iter().chain(&diagnosis.candidates);
+    let probabilities = considered
+        .filter(|said| said.id != "link_parameters")
+        .filter_map(|said| {
+            let there = truths.iter().any(|truth| accepts(truth, said));
+            Some((said.probability?, there))
+        })
+        .collect();
+    Score {
+        kind: label.kind,
+        detectable,
+        outcome,
+        joints,
+        place,
+        line,
+        parameters,
+        probabilities,
+        of_oracle: of_oracle(label, diagnosis),
+        said: said(&named, diagnosis),
+    }
+}
+
+/// Whether what was said covers the truth: by its name, or by a class with it.
+fn accepts(truth: &Truth, said: &Said) -> bool {
+    let ids = said.ids();
+    ids.len() <= LARGEST_CLASS
+        && ids.iter().any(|id| *id == truth.id || truth.equivalents.iter().any(|other| other == id))
+}
+
+/// A coupling of the wrist may be told of one of its joints; else all joints and no other.
+fn same_joints(truth: &Truth, said: &Said) -> bool {
+    let set = |joints: &[usize]| joints.iter().copied().collect::<BTreeSet<usize>>();
+    let (there, told) = (set(&truth.joints), set(&said.joints));
+    if truth.id == "wrist_coupling" {
+        return !told.is_empty() && told.is_subset(&there);
+    }
+    there == told
+}
+
+/// Whether the parameters that mean the same in every form are where they should be.
+fn within(truth: &Truth, said: &Said) -> Vec<bool> {
+    let graded = truth.parameters.iter().filter(|parameter| parameter.graded);
+    graded
+        .filter_map(|parameter| match said.parameter(&parameter.name, parameter.joint) {
+            Some([value, sd]) => {
+                Some(sd > 0.0 && (value - parameter.value).abs() <= PARAMETER_SD * sd)
+            }
+            // What is not there need not be told.
+            None if parameter.value == 0.0 => None,
+            None => Some(false),
+        })
+        .collect()
+}
+
+/// Claimed shrink of the torque's gap, over that of an oracle who is left with the model error.
+fn of_oracle(label: &Label, diagnosis: &Diagnosis) -> Option<f64> {
+    let (mut model, mut left) = (0.0, 0.0);
+    for joint in label.heldout.iter().filter(|joint| joint.torque > 0.0) {
+        model += (joint.model / joint.torque).powi(2);
+        left += (joint.left / joint.torque).powi(2);
+    }
+    let oracle = 1.0 - (left / model).sqrt();
+    (oracle.is_finite() && oracle > 0.0)
+        .then_some(oracle)
+        .and_then(|oracle| Some(diagnosis.shrink()? / oracle))
+}
+
+fn said(named: &[&Said], diagnosis: &Diagnosis) -> String {
+    if named.is_empty() {
+        return diagnosis.verdict.name().into();
+    }
+    named.iter().map(|said| said.ids().join("|")).collect::<Vec<_>>().join(" + ")
+}

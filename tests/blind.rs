@@ -1,0 +1,417 @@
+//! The examination's simulator against the library's dynamics, its seals and its grades.
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use joulepath::blind::{self, Case, Grades, Kind, Label, Settings, TrueParameter, Truth};
+use joulepath::dynamics::{self, Data, Load};
+use joulepath::log::{ColumnMap, read_csv};
+use joulepath::robot::{self, MAX_DOF, Model};
+use serde_json::{Value, json};
+
+/// What two formulations of the same dynamics may differ by, over the largest torque.
+const SAME: f64 = 1e-9;
+/// What a residual of averaged and differentiated logs may differ from the label's, relatively.
+const RESIDUAL: f64 = 0.15;
+/// A log's resolution of a duration \[s\].
+const TWO_ROWS: f64 = 0.02;
+/// Slower joints rest \[rad/s\].
+const RESTS: f64 = 0.02;
+
+/// Some state of a robot: angles, rates, accelerations.
+fn state(k: usize) -> [[f64; MAX_DOF]; 3] {
+    let of = |offset: f64, size: f64| {
+        std::array::from_fn(|joint| size * (offset + 1.7 * k as f64 + 2.3 * joint as f64).sin())
+    };
+    [of(0.0, 1.5), of(1.0, 2.0), of(2.0, 9.0)]
+}
+
+fn same_torques(model: &Model) {
+    let mut data = Data::new();
+    for k in 0..40 {
+        let [q, qd, qdd] = state(k);
+        let n = model.dof;
+        let theirs =
+            dynamics::torque(model, &mut data, &Load::none(), &q[..n], &qd[..n], &qdd[..n]);
+        let own = blind::torque(model, &q, &qd, &qdd);
+        for joint in 0..n {
+            let theirs = theirs.rigid[joint] + theirs.friction[joint];
+            let missed = (own[joint] - theirs).abs();
+            assert!(missed <= SAME * (1.0 + theirs.abs()), "{}: {own:?} {theirs}", model.name);
+        }
+    }
+}
+
+#[test]
+fn virtual_work_is_newton_euler() {
+    same_torques(&robot::find("IRB1600-10/1.45").unwrap());
+    for file in ["fixtures/dynamics/skew.toml", "fixtures/dynamics/seven.toml"] {
+        same_torques(&robot::load(file).unwrap());
+    }
+    let coupled = "name = \"coupled\"\nextends = \"IRB1600-10/1.45\"\n[wrist]\ncoupling = -0.7\n\
+        [kinematics.base]\norigin = [0.0, 0.0, 0.0]\nrpy = [0.3, 1.2, 0.0]\n";
+    same_torques(&robot::from_toml("coupled.toml", coupled).unwrap());
+}
+
+fn short(seed: u64) -> Settings {
+    Settings { cycles: 3, period_s: 4.0, ..Settings::new(seed) }
+}
+
+fn file<'a>(case: &'a Case, name: &str) -> &'a str {
+    &case.files.iter().find(|(other, _)| other == name).unwrap().1
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes() {
+    let (once, again) = (blind::case(&short(5), 3).unwrap(), blind::case(&short(5), 3).unwrap());
+    assert_eq!(once, again);
+    assert_ne!(once.files, blind::case(&short(6), 3).unwrap().files);
+    assert_ne!(once.files, blind::case(&short(5), 4).unwrap().files);
+}
+
+/// Names, order and header of the files say nothing about the kind of a case.
+#[test]
+fn files_are_alike() {
+    for number in 1..=12 {
+        let case = blind::case(&short(8), number).unwrap();
+        let names: Vec<&str> = case.files.iter().map(|(name, _)| name.as_str()).collect();
+        if is_of_a_program(&case) {
+            continue;
+        }
+        let mut expected = vec!["nominal.toml", "log-1.csv", "log-2.csv", "heldout.csv"];
+        if names.contains(&"baseline-1.csv") {
+            expected.push("baseline-1.csv");
+        }
+        expected.push("case.json");
+        assert_eq!(names, expected);
+        for name in &expected[1..expected.len() - 1] {
+            let text = file(&case, name);
+            let header = text.lines().next().unwrap();
+            assert_eq!(header, "t,q1,q2,q3,q4,q5,q6,tau1,tau2,tau3,tau4,tau5,tau6,power");
+            assert_eq!(text.lines().count(), 1201, "{name} of case {number}");
+        }
+        let options: Value = serde_json::from_str(file(&case, "case.json")).unwrap();
+        assert_eq!(options.as_object().unwrap().len(), 2);
+        assert!(robot::from_toml("nominal.toml", file(&case, "nominal.toml")).is_ok());
+    }
+}
+
+fn is_of_a_program(case: &Case) -> bool {
+    case.files.iter().any(|(name, _)| name.starts_with("program/"))
+}
+
+/// The first case of a kind.
+fn first(kind: Kind, settings: &Settings) -> Case {
+    let mut cases = (1..200).map(|number| blind::case(settings, number).unwrap());
+    cases.find(|case| case.label.kind == kind && !case.label.heldout.is_empty()).unwrap()
+}
+
+/// A program's moves are as long as it says, an extra wait is after the move that is named.
+#[test]
+fn programs_run_as_they_say() {
+    let settings = short(4);
+    let cases = (1..80).map(|number| blind::case(&settings, number).unwrap());
+    let (mut healthy, mut late) = (0, 0);
+    for case in cases.filter(is_of_a_program) {
+        let program = file(&case, "program/MainModule.mod");
+        let log = read_csv(file(&case, "log-1.csv").as_bytes(), &ColumnMap::default()).unwrap();
+        let column = |channel| log.column(channel).unwrap();
+        let moving = column(joulepath::log::Channel::Command);
+        let cycle = column(joulepath::log::Channel::Cycle);
+        let mut missed = Vec::new();
+        let moves = program.lines().filter(|line| line.contains("MoveAbsJ"));
+        for (number, text) in moves.enumerate().skip(1) {
+            let stated = text.split("T:=").nth(1).unwrap().split(',').next().unwrap();
+            let stated: f64 = stated.parse().unwrap();
+            let rows =
+                moving.iter().zip(cycle).filter(|(m, c)| **m == number as f64 + 1.0 && **c == 2.0);
+            missed.push(rows.count() as f64 * 0.01 - stated);
+        }
+        let late_by: f64 = missed.iter().sum();
+        match case.label.effects.first().map(|truth| truth.id.as_str()) {
+            None => {
+                healthy += 1;
+                assert!(missed.iter().all(|late| late.abs() < TWO_ROWS), "{missed:?}");
+            }
+            Some("acceleration_limit" | "speed_limit") if case.label.effects[0].nats > 1e3 => {
+                late += 1;
+                assert!(late_by > TWO_ROWS, "{missed:?}");
+            }
+            Some("program_wait") => {
+                let line = program.lines().nth(case.label.lines[0] - 1).unwrap();
+                assert!(line.contains("MoveAbsJ"), "{line}");
+            }
+            Some(_) => {}
+        }
+    }
+    assert!(healthy > 0 && late > 0, "{healthy} healthy, {late} late");
+}
+
+/// A column's mean over the periods.
+fn averaged(column: &[f64], count: usize) -> Vec<f64> {
+    let cycles = column.len() / count;
+    (0..count)
+        .map(|i| (0..cycles).map(|m| column[m * count + i]).sum::<f64>() / cycles as f64)
+        .collect()
+}
+
+/// What the library's model misses of a healthy log is what the label says.
+#[test]
+fn healthy_residuals_are_as_stated() {
+    let settings = Settings { cycles: 6, period_s: 8.0, ..Settings::new(21) };
+    let case = first(Kind::Healthy, &settings);
+    let model = robot::from_toml("nominal.toml", file(&case, "nominal.toml")).unwrap();
+    let log = read_csv(file(&case, "heldout.csv").as_bytes(), &ColumnMap::default()).unwrap();
+    let motion = log.motion();
+    let count = (settings.period_s * 100.0).round() as usize;
+    let tau: Vec<Vec<f64>> = (0..model.dof)
+        .map(|joint| averaged(log.column(joulepath::log::Channel::Torque(joint)).unwrap(), count))
+        .collect();
+    let mut data = Data::new();
+    let mut sums = vec![(0.0, 0.0); model.dof];
+    // The middle period: derivatives have rows to both sides.
+    for (row, t) in motion.time.iter().enumerate() {
+        let k = ((t - log.time()[0]) * 100.0).round() as usize;
+        if !(2 * count..3 * count).contains(&k) {
+            continue;
+        }
+        let at = |columns: &[Vec<f64>]| -> Vec<f64> { columns.iter().map(|c| c[row]).collect() };
+        let [q, qd, qdd] = [at(&motion.q), at(&motion.qd), at(&motion.qdd)];
+        let expected = dynamics::torque(&model, &mut data, &Load::none(), &q, &qd, &qdd);
+        for joint in 0..model.dof {
+            if qd[joint].abs() > RESTS {
+                let missed =
+                    tau[joint][k % count] - expected.rigid[joint] - expected.friction[joint];
+                sums[joint].0 += missed * missed;
+                sums[joint].1 += 1.0;
+            }
+        }
+    }
+    let mut near = 0;
+    for (held, (squares, rows)) in case.label.heldout.iter().zip(sums) {
+        let rms = f64::sqrt(squares / rows);
+        near += usize::from((rms / held.model - 1.0).abs() < RESIDUAL);
+    }
+    // Of a wrist's small torques the noise is a larger part.
+    assert!(near >= 4, "{near} of 6 joints");
+}
+
+/// A label with one truth.
+fn label(case: &str, kind: Kind, ids: &[&str]) -> Label {
+    let truth = |id: &&str| Truth {
+        id: (*id).to_owned(),
+        form: "linear".into(),
+        joints: vec![2],
+        parameters: vec![TrueParameter {
+            name: "offset".into(),
+            joint: Some(2),
+            value: 1.0,
+            graded: true,
+        }],
+        window: None,
+        equivalents: Vec::new(),
+        nats: 50.0,
+    };
+    Label {
+        case: case.into(),
+        kind,
+        trust: "cad".into(),
+        effects: ids.iter().map(truth).collect(),
+        place: (!ids.is_empty()).then_some(2),
+        share: Some(0.9),
+        lines: Vec::new(),
+        heldout: Vec::new(),
+    }
+}
+
+fn said(id: &str, joints: &[usize], class: &[&str], offset: f64) -> Value {
+    json!({"id": id, "joints": joints, "class": class, "probability": 0.97,
+        "parameters": {"offset": {"value": offset, "sd": 0.1, "unit": "Nm"}}})
+}
+
+fn diagnosis(verdict: &str, effects: &[Value]) -> Value {
+    json!({"verdict": verdict, "effects": effects, "candidates": [], "generic": [],
+        "where": [{"joint": 2, "share_percent": 40.0}, {"joint": 1, "share_percent": 35.0},
+                  {"joint": 2, "share_percent": 25.0}], "gap": [], "model": null})
+}
+
+/// Labels with diagnoses whose grades are counted by hand.
+fn graded_by_hand() -> (Vec<Label>, Vec<Value>) {
+    let offset =
+        |joints: &[usize], class: &[&str], value| said("torque_offset", joints, class, value);
+    vec![
+        (label("a", Kind::Healthy, &[]), diagnosis("no_gap", &[])),
+        (label("b", Kind::Healthy, &[]), diagnosis("effect", &[offset(&[1], &[], 1.0)])),
+        (label("c", Kind::Healthy, &[]), diagnosis("parameters_only", &[])),
+        (label("d", Kind::One, &["torque_offset"]), diagnosis("effect", &[offset(&[2], &[], 1.2)])),
+        (
+            label("e", Kind::One, &["torque_offset"]),
+            diagnosis("effect", &[said("cable", &[3], &["cable", "torque_offset"], 1.0)]),
+        ),
+        (
+            label("f", Kind::One, &["torque_offset"]),
+            diagnosis("effect", &[said("cable", &[2], &["cable"], 1.0)]),
+        ),
+        (label("g", Kind::One, &["torque_offset"]), diagnosis("unknown", &[])),
+        (label("h", Kind::One, &["torque_offset"]), diagnosis("effect", &[offset(&[2], &[], 1.4)])),
+        (
+            label("i", Kind::Two, &["torque_offset", "cable"]),
+            diagnosis("effect", &[offset(&[2], &[], 1.0), said("cable", &[2], &[], 1.0)]),
+        ),
+        (
+            label("j", Kind::Two, &["torque_offset", "cable"]),
+            diagnosis("partial", &[offset(&[2], &[], 1.0)]),
+        ),
+        (label("k", Kind::Outside, &["outside"]), diagnosis("unknown", &[])),
+        (label("l", Kind::Outside, &["outside"]), diagnosis("no_gap", &[])),
+    ]
+    .into_iter()
+    .unzip()
+}
+
+fn hits(grades: &Grades, name: &str) -> (usize, usize) {
+    let rate = grades.rates.iter().find(|rate| rate.name == name).unwrap();
+    (rate.hits, rate.of)
+}
+
+#[test]
+fn rates_are_those_counted_by_hand() {
+    let (labels, diagnoses) = graded_by_hand();
+    let grades = blind::grade(&labels, &diagnoses, None).unwrap();
+    for (name, counted) in [
+        ("healthy_named", (1, 3)),
+        ("parameters_only_named", (0, 0)),
+        ("one_right_or_class", (3, 5)),
+        ("one_wrong_name", (1, 5)),
+        ("one_joints", (2, 3)),
+        ("one_place", (4, 4)),
+        // 1.2 lies within three times 0.1 of 1, and 1.4 does not.
+        ("parameters_within_3_sd", (4, 5)),
+        ("two_both", (1, 2)),
+        ("two_wrong_name", (0, 2)),
+        ("outside_abstains", (1, 2)),
+    ] {
+        assert_eq!(hits(&grades, name), counted, "{name}");
+    }
+    let wrong: Vec<&str> = grades.wrong.iter().map(|wrong| wrong.case.as_str()).collect();
+    assert_eq!(wrong, ["b", "f"]);
+    assert_eq!(grades.confusion["torque_offset"]["right_name"], 2);
+    assert_eq!(grades.confusion["torque_offset"]["right_class"], 1);
+    // Eight effects were stated with 0.97, all but those of b and f are there.
+    let bin = grades.reliability.iter().find(|bin| bin.of > 0).unwrap();
+    assert_eq!((bin.hits, bin.of), (6, 8));
+}
+
+#[test]
+fn without_its_effect_a_library_may_not_know() {
+    let (labels, diagnoses) = graded_by_hand();
+    let grades = blind::grade(&labels, &diagnoses, Some("torque_offset")).unwrap();
+    assert_eq!(grades.cases, 5);
+    assert_eq!(hits(&grades, "left_out_unknown_or_class"), (4, 5));
+    assert_eq!(hits(&grades, "left_out_wrong_name"), (1, 5));
+}
+
+#[test]
+fn what_is_hardly_there_is_not_asked_for() {
+    let (mut labels, diagnoses) = graded_by_hand();
+    for label in &mut labels {
+        for truth in &mut label.effects {
+            truth.nats = 0.5;
+        }
+    }
+    let grades = blind::grade(&labels, &diagnoses, None).unwrap();
+    assert_eq!(hits(&grades, "one_right_or_class"), (0, 0));
+    assert_eq!(hits(&grades, "healthy_named"), (1, 3));
+}
+
+#[test]
+fn seals_open_and_tell_a_change() {
+    let labels = vec![
+        (label("case-0001", Kind::Healthy, &[]), "salt".to_owned()),
+        (label("case-0002", Kind::One, &["cable"]), "pepper".to_owned()),
+    ];
+    let sealed = blind::seal(&labels).unwrap();
+    let opened = blind::open(&sealed).unwrap();
+    assert_eq!(opened, [labels[0].0.clone(), labels[1].0.clone()]);
+    for (from, to) in [("cable", "ripple"), ("pepper", "sugar"), ("case-0002", "case-0003")] {
+        let mut changed = sealed.clone();
+        changed.key = changed.key.replace(from, to);
+        assert_ne!(changed.key, sealed.key);
+        assert!(blind::open(&changed).is_err(), "{from} became {to}");
+    }
+    let mut swapped = labels.clone();
+    swapped.swap(0, 1);
+    (swapped[0].0.case, swapped[1].0.case) = ("case-0001".into(), "case-0002".into());
+    let other = blind::seal(&swapped).unwrap();
+    let mixed = blind::Sealed { seals: sealed.seals.clone(), key: other.key };
+    assert!(blind::open(&mixed).unwrap_err().to_string().contains("is broken"));
+    assert!(!sealed.seals.contains("cable") && !sealed.seals.contains("salt"));
+}
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
+}
+
+fn refused(args: &[&str], way_out: &str) {
+    let output = joulepath(args);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains(way_out), "{message}\nlacks {way_out}");
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn generated_cases_are_graded() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("cases");
+    let shown = out.to_str().unwrap();
+    let generate =
+        ["blind", "generate", "--out", shown, "--seed", "3", "--count", "4", "--cycles", "2"];
+    let generate = [&generate[..], &["--period", "4", "--quiet"]].concat();
+    let output = joulepath(&generate);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    refused(&generate, "name a new folder");
+    refused(&["blind", "grade", shown], "run diagnose first");
+
+    let diagnosis = diagnosis("unknown", &[]).to_string();
+    for number in 1..=4 {
+        let case = out.join(format!("case-{number:04}"));
+        fs::write(case.join("diagnosis.json"), &diagnosis).unwrap();
+    }
+    let output = joulepath(&["blind", "grade", shown, "--format", "json"]);
+    let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(grades["cases"], 4);
+    let output = joulepath(&["blind", "grade", shown]);
+    assert!(String::from_utf8(output.stdout).unwrap().contains("healthy_named"));
+    refused(&["blind", "grade", shown, "--leave-out", "nonsense"], "name one that");
+
+    hostile(&out, shown);
+}
+
+/// Files that are broken, missing or changed.
+fn hostile(out: &Path, shown: &str) {
+    let diagnosis = out.join("case-0002/diagnosis.json");
+    let good = fs::read(&diagnosis).unwrap();
+    for (text, way_out) in [
+        ("{", "write it again with diagnose"),
+        ("[]", "write it again with diagnose"),
+        ("{\"verdict\":\"maybe\",\"effects\":[]}", "write it again with diagnose"),
+        ("{\"verdict\":\"unknown\",\"effects\":3}", "write it again with diagnose"),
+    ] {
+        fs::write(&diagnosis, text).unwrap();
+        refused(&["blind", "grade", shown], way_out);
+    }
+    fs::write(&diagnosis, good).unwrap();
+    let key = out.join(blind::KEY);
+    let sealed = fs::read_to_string(&key).unwrap();
+    fs::write(&key, sealed.replace("case-0001", "../../etc")).unwrap();
+    refused(&["blind", "grade", shown], "both have to be of one examination");
+    fs::write(&key, sealed.replacen("salt\": \"", "salt\": \"0", 1)).unwrap();
+    refused(&["blind", "grade", shown], "is broken");
+    fs::write(&key, "{}").unwrap();
+    refused(&["blind", "grade", shown], "take the one that was written");
+    fs::remove_file(&key).unwrap();
+    refused(&["blind", "grade", shown], "name the folder that");
+}
