@@ -2,7 +2,7 @@
 
 use crate::robot::Model;
 
-use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, free, linear, shaped};
+use super::effect::{Channel, Effect, Form, Of, free, linear, shape};
 
 /// Coupling of the wrist.
 pub(super) const WRIST_COUPLING: Effect = Effect {
@@ -19,7 +19,7 @@ pub(super) const WRIST_COUPLING: Effect = Effect {
         free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint"),
     ],
     coordinates: &[
-        Coordinate { role: Role::Choice(|_| vec![-1.0, -0.5, 0.5, 0.9, 1.0]), usual: shaped },
+        shape(|_| vec![-1.0, -0.5, 0.5, 0.75, 1.0]),
         linear(|of| 0.3 * of.coulomb),
         linear(|of| 0.3 * of.viscous),
         linear(|of| 0.2 * of.rotor),

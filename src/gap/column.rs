@@ -94,6 +94,30 @@ pub(super) fn pieces(effect: &'static Effect, motions: &[&Motion<'_>], joint: us
         .collect()
 }
 
+/// Columns of an effect of the measurement that the table's own channel has already: what more
+/// of it adds.
+pub(super) fn more_of(effect: &'static Effect, motions: &[&Motion<'_>]) -> Vec<Column> {
+    let n = motions.first().map_or(0, |motion| motion.model.dof);
+    let of = |series: fn(&Motion<'_>, usize) -> Vec<f64>| -> Vec<Vec<(usize, Vec<f64>)>> {
+        motions.iter().map(|m| (0..n).map(|joint| (joint, series(m, joint))).collect()).collect()
+    };
+    let scale = motions.first().map(|motion| motion.scale(0));
+    let tried = match (effect.coordinates.first().map(|c| c.role), &scale) {
+        (Some(Role::Shape(values)), Some(scale)) => values(scale),
+        _ => Vec::new(),
+    };
+    let apart = tried.iter().map(|x| x.abs()).fold(f64::INFINITY, f64::min);
+    vec![
+        Column { series: of(|m, _| vec![0.0; m.len()]), mean: 1.0, sd: 0.0 },
+        Column {
+            // A delay and a lag begin alike.
+            series: of(|m, joint| m.changes(&m.torque[joint]).iter().map(|x| -x).collect()),
+            mean: 0.0,
+            sd: TANGENT * apart,
+        },
+    ]
+}
+
 /// Columns of an effect at a shape of its own.
 pub(super) fn columns_at(
     effect: &'static Effect,
@@ -113,8 +137,8 @@ pub(super) fn columns_at(
     columns(effect, motions, joint, shape, &tried)
 }
 
-/// Columns at one shape: of each linear coordinate its torque and how that changes with the
-/// shape; of an effect without one the torque itself.
+/// Columns at one shape: what it does by itself, where it does, then what each linear coordinate
+/// adds; behind each of these how it changes with the shape.
 fn columns(
     effect: &'static Effect,
     motions: &[&Motion<'_>],
@@ -126,28 +150,41 @@ fn columns(
         motions.iter().map(|motion| effect.added(motion, joint, values)).collect()
     };
     let is_linear = |k: &usize| matches!(effect.coordinates[*k].role, Role::Linear);
-    let linear: Vec<usize> = (0..shape.len()).filter(is_linear).collect();
     let only = |kept: Option<usize>, shape: &[f64]| -> Vec<f64> {
         let value = |k: usize| if is_linear(&k) && Some(k) != kept { 0.0 } else { shape[k] };
         (0..shape.len()).map(value).collect()
     };
-    let mut columns = Vec::new();
-    let amplitudes: Vec<Option<usize>> =
-        if linear.is_empty() { vec![None] } else { linear.iter().map(|k| Some(*k)).collect() };
-    for amplitude in amplitudes {
-        let base = only(amplitude, shape);
-        let here = added(&base);
-        for (k, coordinate) in effect.coordinates.iter().enumerate() {
-            let Role::Shape(_) = coordinate.role else { continue };
+    // What the shape does by itself, and how each torque changes with it.
+    let block = |kept: Option<usize>, less: Option<&[Vec<(usize, Vec<f64>)>]>| -> Vec<Column> {
+        let relative = |values: &[f64]| match less {
+            Some(less) => difference(&added(values), less, 1.0),
+            None => added(values),
+        };
+        let base = only(kept, shape);
+        let here = relative(&base);
+        let tangents = effect.coordinates.iter().enumerate().filter_map(|(k, coordinate)| {
+            let Role::Shape(_) = coordinate.role else { return None };
             let mut next = base.clone();
             let step = STEP * next[k].abs().max(1e-12);
             next[k] += step;
             let spacing = nearest_spacing(&tried[k], shape[k]);
-            let tangent = difference(&added(&next), &here, 1.0 / step);
-            columns.push(Column { series: tangent, mean: 0.0, sd: TANGENT * spacing });
-        }
-        let (mean, sd) = if amplitude.is_some() { (0.0, 1.0) } else { (1.0, 0.0) };
-        columns.insert(0, Column { series: here, mean, sd });
+            // Of all, not of what is more than the shape's own: that has its own tangent.
+            let from = if kept.is_some() { added(&base) } else { here.clone() };
+            let series = difference(&added(&next), &from, 1.0 / step);
+            Some(Column { series, mean: 0.0, sd: TANGENT * spacing })
+        });
+        let tangents: Vec<Column> = tangents.collect();
+        let (mean, sd) = if kept.is_some() { (0.0, 1.0) } else { (1.0, 0.0) };
+        std::iter::once(Column { series: here, mean, sd }).chain(tangents).collect()
+    };
+    let mut columns = Vec::new();
+    let alone = added(&only(None, shape));
+    let acts = alone.iter().flatten().any(|(_, series)| series.iter().any(|x| *x != 0.0));
+    if acts {
+        columns.extend(block(None, None));
+    }
+    for k in (0..shape.len()).filter(is_linear) {
+        columns.extend(block(Some(k), acts.then_some(&alone[..])));
     }
     columns
 }

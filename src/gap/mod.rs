@@ -3,6 +3,7 @@
 //! [`Record`] is a log ready to be compared, [`Table`] all that may explain the difference,
 //! [`Evidence`] how well some of it does.
 
+mod channel;
 mod column;
 mod evidence;
 mod generic;
@@ -14,6 +15,7 @@ mod search;
 mod spectrum;
 mod table;
 
+pub use channel::Channel;
 pub use column::{Column, Owner, Piece};
 pub use evidence::Evidence;
 pub use hypothesis::{Family, families};

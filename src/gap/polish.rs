@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::effects::{Effect, Motion, Role};
 
-use super::column::{Owner, Piece, columns_at};
+use super::channel::Channel;
+use super::column::{Owner, Piece, columns_at, more_of};
 use super::search::Search;
 use super::table::{Placed, Table};
 
@@ -41,6 +42,8 @@ pub struct Polished {
     pub pieces: Vec<Piece>,
     /// Functions of one thing that were found: id and joint.
     pub generic: Vec<(&'static str, Option<usize>)>,
+    /// What all torques go through.
+    pub channel: Channel,
     /// Changes of the model's parameters, in deviations.
     pub parameters: DVector<f64>,
     /// What is left, 1 where it is noise.
@@ -50,10 +53,20 @@ pub struct Polished {
 /// Improves shapes by new tangents until they stay.
 #[must_use]
 pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
-    let Search { records, trust, error, .. } = *search;
+    let Search { records, trust, error, ref channel, .. } = *search;
     let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
     let first: Vec<&Placed> = pieces.iter().map(|number| &search.table.pieces[*number]).collect();
     let mut shapes: Vec<Vec<f64>> = first.iter().map(|placed| placed.shape.clone()).collect();
+    // Delay and lag act on all that is computed.
+    let mut channel = *channel;
+    for (placed, shape) in first.iter().zip(&shapes) {
+        if let Owner::Effect(effect) = placed.owner
+            && let Some(value) = channel.of(effect)
+            && *value == 0.0
+        {
+            *value = shape[0];
+        }
+    }
     let mut result = None;
     for round in 0..ROUNDS {
         let made: Vec<Piece> = first
@@ -61,7 +74,8 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
             .zip(&shapes)
             .map(|(placed, shape)| remade(placed, &motions, shape))
             .collect();
-        let table = Table::of(records, made, trust);
+        let mut table = Table::of(records, made, trust);
+        table.through(&channel);
         let evidence = table.evidence(error);
         let all: Vec<usize> = table.pieces.iter().flat_map(|piece| piece.columns.clone()).collect();
         let estimate = evidence.estimate(&all)?;
@@ -72,6 +86,17 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
             let mean = estimate.mean.rows(at.start, at.len()).into_owned();
             let covariance =
                 estimate.covariance.view((at.start, at.start), (at.len(), at.len())).into_owned();
+            if let Some(value) = channel.of(effect) {
+                let spread = DMatrix::from_element(1, 1, covariance[(1, 1)]);
+                let next = *value + mean[1];
+                fitted.push(of(effect, placed.joint, &[next], &spread));
+                // The last round only reads.
+                if round + 1 < ROUNDS {
+                    *value = next;
+                }
+                shape[0] = *value;
+                continue;
+            }
             let (coordinates, jacobian) = coordinates_of(effect, shape, &mean);
             let spread = &jacobian * &covariance * jacobian.transpose();
             fitted.push(of(effect, placed.joint, &coordinates, &spread));
@@ -90,6 +115,7 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
             let gained = evidence.gain(&all);
             result = Some(Polished {
                 effects: fitted,
+                channel,
                 pieces: first
                     .iter()
                     .zip(&shapes)
@@ -107,6 +133,9 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
 /// The piece at another shape.
 fn remade(placed: &Placed, motions: &[&Motion<'_>], shape: &[f64]) -> Piece {
     let columns = match placed.owner {
+        Owner::Effect(effect) if Channel::default().of(effect).is_some() => {
+            more_of(effect, motions)
+        }
         Owner::Effect(effect) => columns_at(
             effect,
             motions,
@@ -144,12 +173,19 @@ fn coordinates_of(
         let linear: Vec<usize> =
             (0..count).filter(|k| matches!(effect.coordinates[*k].role, Role::Linear)).collect();
         let width = 1 + shapes.len();
-        // Of several linear coordinates the largest tells the shape.
-        let strongest = (0..linear.len().max(1))
-            .max_by(|a, b| factors[a * width].abs().total_cmp(&factors[b * width].abs()))
-            .unwrap_or(0);
+        // What the shape does by itself comes first, where it does.
+        let blocks = factors.len() / width;
+        let alone = blocks - linear.len();
+        // It tells the shape, else the largest of the linear coordinates.
+        let strongest = if alone > 0 {
+            0
+        } else {
+            (0..blocks)
+                .max_by(|a, b| factors[a * width].abs().total_cmp(&factors[b * width].abs()))
+                .unwrap_or(0)
+        };
         for (place, k) in linear.iter().enumerate() {
-            coordinates[*k] = shape[*k] * factors[place * width];
+            coordinates[*k] = shape[*k] * factors[(alone + place) * width];
         }
         for (place, k) in shapes.iter().enumerate() {
             let amplitude = factors[strongest * width];

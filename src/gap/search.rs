@@ -1,5 +1,6 @@
 //! Which effects explain a difference.
 
+use super::channel::Channel;
 use super::column::Owner;
 use super::evidence::Evidence;
 use super::hypothesis::{Family, families};
@@ -42,6 +43,8 @@ pub struct Search<'a, 'm> {
     pub trust: Trust,
     /// Share of its torques to which the model is right.
     pub error: f64,
+    /// What all torques go through, as far as it was found.
+    pub channel: Channel,
     /// What may explain the difference.
     pub table: Table,
     /// Its families.
@@ -60,7 +63,8 @@ impl<'a, 'm> Search<'a, 'm> {
         error: f64,
     ) -> Search<'a, 'm> {
         let evidence = table.evidence(error);
-        Search { records, trust, error, families: families(&table), table, evidence }
+        let channel = Channel::default();
+        Search { records, trust, error, channel, families: families(&table), table, evidence }
     }
 
     /// The best set of effects, found one after another. Each is brought to its best shape
@@ -89,6 +93,8 @@ impl<'a, 'm> Search<'a, 'm> {
         for (number, piece) in pieces.iter().zip(polished.pieces) {
             self.table.replace(*number, piece, self.records);
         }
+        self.channel = polished.channel;
+        self.table.through(&self.channel);
         self.evidence = self.table.evidence(self.error);
         found.score = self.score(&found.chosen);
     }

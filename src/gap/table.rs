@@ -4,13 +4,15 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::effects::{Channel, Effect, Form, Motion};
+use crate::effects::{self, Effect, Form, Motion, Of};
 
-use super::column::{Owner, Piece, pieces};
+use super::channel::Channel;
+use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::Evidence;
 use super::generic::generic;
 use super::nuisance::{Nuisance, Trust, nuisance};
 use super::record::Record;
+use super::spectrum::Spectrum;
 
 /// A piece with its place among the columns.
 pub struct Placed {
@@ -41,8 +43,14 @@ pub struct Table {
 
 /// Rows of one joint.
 struct Rows {
-    /// Difference, parameters, then columns that reach the joint.
+    /// Difference, parameters, then columns that reach the joint, as they are logged.
     values: DMatrix<f64>,
+    /// The same before the channel, and the model's torque and the measured one.
+    plain: DMatrix<f64>,
+    model: Vec<f64>,
+    measured: Vec<f64>,
+    /// Of each row \[Hz\]; 0 of a mean. Rows of one frequency are real and imaginary part.
+    frequency: Vec<f64>,
     /// Numbers of these columns.
     reached: Vec<usize>,
     noise: Vec<f64>,
@@ -57,10 +65,10 @@ impl Table {
         let n = motions.first().map_or(0, |motion| motion.model.dof);
         let wanted: Vec<(Option<&'static Effect>, usize)> = effects
             .iter()
-            .filter(|e| e.channel == Channel::Torque && !matches!(e.form, Form::Elsewhere))
+            .filter(|e| e.channel == effects::Channel::Torque && !matches!(e.form, Form::Elsewhere))
             .flat_map(|effect| {
                 let joints = (effect.joints)(n);
-                let joints = if effect.of == crate::effects::Of::Robot {
+                let joints = if effect.of == Of::Robot {
                     joints.into_iter().take(1).collect()
                 } else {
                     joints
@@ -134,12 +142,17 @@ impl Table {
                     if let Some((_, series)) = series.iter().find(|(of, _)| *of == joint) {
                         let spectrum = record.rows_of(joint, series);
                         let to = 1 + parameters + place;
-                        rows.values.view_mut((first, to), (count, 1)).copy_from_slice(&spectrum);
+                        rows.plain.view_mut((first, to), (count, 1)).copy_from_slice(&spectrum);
                     }
                     first += count;
                 }
             }
         }
+    }
+
+    /// All that is computed goes through a channel before it is compared.
+    pub(super) fn through(&mut self, channel: &Channel) {
+        self.joints.par_iter_mut().for_each(|rows| rows.through(channel));
     }
 
     /// How well everything explains the difference if the model's torques are known to the
@@ -174,14 +187,13 @@ impl Rows {
     fn new(records: &[Record<'_>], nuisances: &[Nuisance], all: &[Piece], joint: usize) -> Rows {
         let parameters = nuisances.first().map_or(0, |of| of.names.len());
         let columns = || all.iter().flat_map(|piece| &piece.columns);
-        let reaches = |column: &&super::column::Column| {
-            column.series.iter().flatten().any(|(of, _)| *of == joint)
-        };
+        let reaches = |column: &&Column| column.series.iter().flatten().any(|(of, _)| *of == joint);
         let reached: Vec<usize> =
             columns().enumerate().filter_map(|(k, column)| reaches(&column).then_some(k)).collect();
         let height = records.iter().map(|record| record.spectrum.rows()).sum();
         let mut values = DMatrix::zeros(height, 1 + parameters + reached.len());
-        let (mut noise, mut power) = (Vec::new(), Vec::new());
+        let (mut noise, mut power, mut frequency) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut model, mut measured) = (Vec::new(), Vec::new());
         let mut first = 0;
         for (number, (record, nuisance)) in records.iter().zip(nuisances).enumerate() {
             let rows = record.spectrum.rows();
@@ -189,10 +201,8 @@ impl Rows {
                 let spectrum = record.rows_of(joint, series);
                 values.view_mut((first, to), (rows, 1)).copy_from_slice(&spectrum);
             };
-            let model = &record.motion.torque[joint];
-            let difference: Vec<f64> =
-                record.measured[joint].iter().zip(model).map(|(a, b)| a - b).collect();
-            write(0, &difference);
+            model.extend(record.rows_of(joint, &record.motion.torque[joint]));
+            measured.extend(record.rows_of(joint, &record.measured[joint]));
             for (k, of) in nuisance.series.iter().enumerate() {
                 write(1 + k, &of[joint]);
             }
@@ -205,13 +215,44 @@ impl Rows {
                 to += 1;
             }
             for row in 0..rows {
-                let bin = super::spectrum::Spectrum::bin(row);
+                let bin = Spectrum::bin(row);
+                frequency.push(bin as f64 / (record.motion.step() * record.motion.len() as f64));
                 noise.push(record.noise[joint][bin]);
                 power.push(record.power[joint][bin]);
             }
             first += rows;
         }
-        Rows { values, reached, noise, power }
+        let plain = values.clone();
+        let mut rows = Rows { values, plain, model, measured, frequency, reached, noise, power };
+        rows.through(&Channel::default());
+        rows
+    }
+
+    fn through(&mut self, channel: &Channel) {
+        let mut row = 0;
+        while row < self.frequency.len() {
+            let frequency = self.frequency[row];
+            if frequency == 0.0 {
+                self.values[(row, 0)] = self.measured[row] - self.model[row];
+                for k in 1..self.values.ncols() {
+                    self.values[(row, k)] = self.plain[(row, k)];
+                }
+                row += 1;
+                continue;
+            }
+            let [re, im] = channel.response(frequency);
+            let turned = |[a, b]: [f64; 2]| [re * a - im * b, re * b + im * a];
+            let model = turned([self.model[row], self.model[row + 1]]);
+            for part in 0..2 {
+                self.values[(row + part, 0)] = self.measured[row + part] - model[part];
+            }
+            for k in 1..self.values.ncols() {
+                let both = turned([self.plain[(row, k)], self.plain[(row + 1, k)]]);
+                self.values[(row, k)] = both[0];
+                self.values[(row + 1, k)] = both[1];
+            }
+            row += 2;
+        }
     }
 
     /// Products of all columns, weighted, and the sum of the logarithms of the weights' roots.
