@@ -38,7 +38,14 @@ fn energy(c: &mut Criterion) {
     let limits = arm::limits();
     for n in [50, 100] {
         for (name, sharing) in [("bus", Sharing::Bus), ("per joint", Sharing::PerJoint)] {
-            let model = EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing, regeneration: 0.0 };
+            let model = EnergyModel {
+                work: 1.0,
+                speed: 0.0,
+                loss: arm::LOSS,
+                base_w: 0.0,
+                sharing,
+                regeneration: 0.0,
+            };
             let grid = arm::grid(&arm::Path::random(SEED), n, 1.0);
             let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
             let time = 1.1 * fastest.duration();
@@ -73,7 +80,8 @@ fn stream(c: &mut Criterion) {
     c.bench_function("stream fit", |b| b.iter(fit));
     let StreamFit::Fitted(fitted) = fit() else { return };
     let (sharing, regeneration) = (Sharing::Bus, 0.0);
-    let model = EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing, regeneration };
+    let model =
+        EnergyModel { work: 1.0, speed: 0.0, loss: arm::LOSS, base_w: 0.0, sharing, regeneration };
     let corridor = Corridor { tolerance: 1e-3, lever: [1.0; DOF] };
     c.bench_function("stream polish", |b| {
         let stream = black_box(&fitted.stream);

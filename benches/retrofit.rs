@@ -4,9 +4,11 @@
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use joulepath::emit::Layout;
 use joulepath::motion::Options;
 use joulepath::optimize::corridor::Freedom;
-use joulepath::retrofit::{Budget, Objective, Settings, Source, retrofit};
+use joulepath::optimize::cost::Cost;
+use joulepath::retrofit::{Budget, Form, Objective, Settings, Source, retrofit};
 use joulepath::robot;
 use joulepath::text::{FileId, SourceFile};
 
@@ -33,6 +35,10 @@ fn pick_place(c: &mut Criterion) {
         budget: Budget::AsBefore,
         spacing_s: 0.05,
         freedom: Freedom::none(),
+        form: Form::Streams,
+        layout: Layout::Auto,
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let mut group = c.benchmark_group("retrofit");
     group.sample_size(10);

@@ -6,15 +6,17 @@ use std::fs;
 use std::path::Path;
 
 /// Pages that people are sent to.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 11] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
+    "docs/blind.md",
     "docs/controller.md",
     "docs/energy.md",
     "docs/identification.md",
     "docs/reasons.md",
     "docs/robots.md",
+    "docs/trajectories.md",
     "fixtures/README.md",
 ];
 

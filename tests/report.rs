@@ -5,16 +5,18 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
+use joulepath::emit::Layout;
 use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::optimize::check::Check;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{
-    Budget, Figures, Objective, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings,
-    Source, Verification, read_program, retrofit,
+    Budget, Figures, Form, Objective, OutputFile, OutputKind, Retrofit, Segment, SegmentKind,
+    Settings, SignalKind, SignalShift, Source, Verification, read_program, retrofit,
 };
 use joulepath::robot::{self, Model};
 use joulepath::text::{FileId, SourceFile, Span};
@@ -57,6 +59,10 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         budget: Budget::AsBefore,
         spacing_s: 0.05,
         freedom: Freedom::none(),
+        form: Form::Streams,
+        layout: Layout::Auto,
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();
@@ -166,6 +172,7 @@ fn small(path: &str) -> Small {
             points: 9,
             potential_j: if kind == SegmentKind::Idle { 12.5 } else { 0.0 },
             events: events.to_vec(),
+            pareto: Vec::new(),
         }
     };
     let home = "MoveAbsJ jHome,v1000,fine,tool0;";
@@ -187,8 +194,16 @@ fn small(path: &str) -> Small {
         verification: Verification {
             passed: true,
             worst: Check { velocity: 0.5, torque: 0.25, deviation_m: 0.001, ..Check::none() },
+            intended_error_rad: 2e-9,
             checks: vec![("the emitted text parses".into(), true)],
         },
+        signals: vec![SignalShift {
+            name: "doGrip".into(),
+            kind: SignalKind::Output,
+            times: 2,
+            order_kept: true,
+            largest_shift_s: -0.12,
+        }],
         outputs: vec![OutputFile {
             path: path.to_owned(),
             kind: OutputKind::Changed,

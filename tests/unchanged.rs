@@ -9,10 +9,12 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use joulepath::emit::Layout;
 use joulepath::motion::Options;
 use joulepath::optimize::corridor::Freedom;
+use joulepath::optimize::cost::Cost;
 use joulepath::retrofit::{
-    Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
+    Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
 };
 use joulepath::robot::find;
 use joulepath::text::{FileId, SourceFile, Span};
@@ -48,6 +50,10 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
         budget: Budget::AsBefore,
         spacing_s: 0.05,
         freedom: Freedom::none(),
+        form: Form::Streams,
+        layout: Layout::Auto,
+        cost: Cost::Electrical,
+        pareto: 0,
     };
     let model = find("IRB1600-10/1.45").unwrap();
     let result = retrofit(&files, &model, &settings, &|_, _| ());

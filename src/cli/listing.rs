@@ -1,4 +1,4 @@
-//! The `.pgf` of a program: a new module has to be listed in it.
+//! The `.pgf` of a program: new modules have to be listed in it.
 
 use std::path::Path;
 
@@ -8,10 +8,14 @@ use crate::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 const BEGIN: &[u8] = b"<Module>";
 const END: &[u8] = b"</Module>";
 
-/// Adds the program files to the outputs, with the new module in those that list its neighbours.
+/// Adds the program files to the outputs, with the new modules in those that list their neighbours.
 pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
-    let new = result.outputs.iter().find(|file| file.kind == OutputKind::New && is_module(file));
-    let new = new.map(|file| file.path.clone());
+    let new: Vec<String> = result
+        .outputs
+        .iter()
+        .filter(|file| file.kind == OutputKind::New && is_module(file))
+        .map(|file| file.path.clone())
+        .collect();
     for listing in &input.listings {
         let is_ours = |path: &String| files.iter().any(|source| source.file.path == *path);
         if !listing.modules.iter().any(is_ours) {
@@ -23,9 +27,10 @@ pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
             bytes: listing.bytes.clone(),
             input: None,
         };
-        let neighbour = new.as_deref().and_then(|new| Some((new, neighbour(listing, input, new)?)));
-        if let Some((new, neighbour)) = neighbour {
-            if let Some(bytes) = extended(&listing.bytes, neighbour, new) {
+        // Each is listed behind the same neighbour, the last one first.
+        for new in new.iter().rev() {
+            let Some(neighbour) = neighbour(listing, input, new) else { continue };
+            if let Some(bytes) = extended(&output.bytes, neighbour, new) {
                 output.kind = OutputKind::Changed;
                 output.bytes = bytes;
             } else {

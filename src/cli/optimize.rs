@@ -8,16 +8,21 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::{listing, output};
+use crate::config::KeepOut;
+use crate::emit::Layout;
+use crate::kinematics::{self, Obstacle, Plane};
 use crate::optimize::corridor::{Ceilings, Freedom};
+use crate::optimize::cost::Cost;
 use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{
-    Budget, Objective, OutputFile, OutputKind, Retrofit, Settings, freed, retrofit,
+    Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, freed, retrofit,
 };
 use crate::text::charset;
 
@@ -51,6 +56,15 @@ pub struct OptimizeArgs {
     #[arg(long, value_enum, default_value_t = ObjectiveArg::Energy)]
     objective: ObjectiveArg,
 
+    /// What stands for energy on each path. Joules, bounds and the sharing of time stay electrical.
+    #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
+    energy: EnergyArg,
+
+    /// Add the curve of least energy over time of each segment to the JSON and the report, with
+    /// so many points.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=200), hide_default_value = true)]
+    pareto: u16,
+
     /// Time for the cycle, s; otherwise no run takes longer than before.
     #[arg(
         long,
@@ -67,6 +81,14 @@ pub struct OptimizeArgs {
     /// Least time between two points of a stream, s.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     spacing: Option<f64>,
+
+    /// What is written.
+    #[arg(long, value_enum, default_value_t = EmitArg::Absj)]
+    emit: EmitArg,
+
+    /// How the points of streams are written.
+    #[arg(long, value_enum, default_value_t = LayoutArg::Auto)]
+    layout: LayoutArg,
 
     /// Let lines and arcs be faster than programmed.
     #[arg(long)]
@@ -93,6 +115,43 @@ enum ObjectiveArg {
     Energy,
     /// Time.
     Time,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EmitArg {
+    /// Streams of joint targets in place of movements.
+    Absj,
+    /// The movements with other speeds; lines and arcs not faster than programmed.
+    Retime,
+    /// The program as it is, and positions for externally guided motion in the folder egm.
+    Egm,
+}
+
+/// How the points of streams are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LayoutArg {
+    /// An instruction for each point.
+    Plain,
+    /// Constant arrays and a loop.
+    Array,
+    /// Arrays for long streams.
+    Auto,
+}
+
+/// What stands for energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EnergyArg {
+    /// What the robot takes from the grid.
+    Electrical,
+    /// The same with all braking energy lost.
+    ElectricalNoRegeneration,
+    /// Mechanical work, as if braking gave everything back.
+    Mechanical,
+    /// Squares of the joint speeds.
+    Velocity,
+    /// Squares of the joint torques.
+    Torque,
 }
 
 /// Least spacing that a controller may be asked for, s.
@@ -200,8 +259,50 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
             deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
+            keep_out: job.config.keep_out.iter().map(obstacle).collect::<Result<_, _>>()?,
         },
+        form: match args.emit {
+            EmitArg::Absj => Form::Streams,
+            EmitArg::Retime => Form::Speeds,
+            EmitArg::Egm => Form::Guided,
+        },
+        layout: match args.layout {
+            LayoutArg::Plain => Layout::Plain,
+            LayoutArg::Array => Layout::Array,
+            LayoutArg::Auto => Layout::Auto,
+        },
+        cost: match args.energy {
+            EnergyArg::Electrical => Cost::Electrical,
+            EnergyArg::ElectricalNoRegeneration => Cost::ElectricalWithoutRegeneration,
+            EnergyArg::Mechanical => Cost::Mechanical,
+            EnergyArg::Velocity => Cost::Velocity,
+            EnergyArg::Torque => Cost::Torque,
+        },
+        pareto: usize::from(args.pareto),
     })
+}
+
+/// A part of the cell.
+fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
+    match part {
+        KeepOut::Box([one, other]) => {
+            if one.iter().chain(other).any(|x| !x.is_finite()) {
+                bail!("keep_out: box {one:?}, {other:?}: give two corners in m");
+            }
+            let corners = [one, other].map(|corner| Point3::from(*corner));
+            Ok(Obstacle::KeepOut(kinematics::KeepOut::between(corners[0], corners[1])))
+        }
+        KeepOut::Plane([x, y, z, distance]) => {
+            let normal = Vector3::new(*x, *y, *z);
+            let size = normal.norm();
+            if !(size > 0.0 && size.is_finite() && distance.is_finite()) {
+                bail!(
+                    "keep_out: plane [{x}, {y}, {z}, {distance}]: give a normal and a distance, m"
+                );
+            }
+            Ok(Obstacle::Plane(Plane { normal: normal / size, distance: distance / size }))
+        }
+    }
 }
 
 /// How far free movements may leave their path, m.

@@ -26,6 +26,19 @@ pub struct Config {
     /// Levels of inputs that the program asks for.
     #[serde(default)]
     pub assume: BTreeMap<String, f64>,
+    /// What arm and tool keep out of where a movement may leave its path.
+    #[serde(default)]
+    pub keep_out: Vec<KeepOut>,
+}
+
+/// A part of the cell, in the robot's base frame, m.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, rename_all = "lowercase")]
+pub enum KeepOut {
+    /// A box along the axes of the base frame between two corners.
+    Box([[f64; 3]; 2]),
+    /// What lies beyond a plane: n · x < d, as n and d.
+    Plane([f64; 4]),
 }
 
 /// A configuration that can't be used.
@@ -43,7 +56,8 @@ pub enum ConfigError {
     },
     /// It is wrong.
     #[error(
-        "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs] and [assume]"
+        "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs], [assume] and \
+         [[keep_out]] with box or plane"
     )]
     Wrong {
         /// Its path.
@@ -79,5 +93,9 @@ mod tests {
         assert!(error.to_string().contains("robto"), "{error}");
         let config = parse("joulepath.toml", "robot = \"a\"\n[inputs]\ndiA = 2.5").expect("valid");
         assert_eq!(config.inputs["diA"], 2.5);
+        let text = "[[keep_out]]\nbox = [[0, 0, 0], [1, 1, 1]]\n\
+                    [[keep_out]]\nplane = [1, 0, 0, -0.8]\n";
+        let config = parse("joulepath.toml", text).expect("valid");
+        assert_eq!(config.keep_out[1], KeepOut::Plane([1.0, 0.0, 0.0, -0.8]));
     }
 }

@@ -101,6 +101,18 @@ pub fn egm_module(
     Ok(Tera::one_off(include_str!("../../templates/egm.mod.tera"), &context, false)?)
 }
 
+/// Clock of externally guided motion, s.
+pub const EGM_STEP_S: f64 = 0.004;
+
+/// The positions to send, rad, one a clock tick, as a file.
+pub fn egm_rows(positions: &[[f64; 6]]) -> String {
+    let header = "t,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n".to_owned();
+    let row = |(i, q): (usize, &[f64; 6])| {
+        format!("{},{}\n", number(EGM_STEP_S * i as f64, 3), joints(q))
+    };
+    std::iter::once(header).chain(positions.iter().enumerate().map(row)).collect()
+}
+
 fn context(names: &GeneratedNames, about: &str) -> Context {
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use crate::ir::hir::{Block, Expr, ExprKind, Routine, StmtKind};
 use crate::ir::program::Program;
-use crate::text::Span;
+use crate::syntax::{TokenKind, tokenize};
+use crate::text::{SourceFile, Span};
 
 /// The names of a streams module.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -17,6 +18,10 @@ pub struct Names {
     pub module: String,
     /// Function: the robot stands at a joint target.
     pub at: String,
+    /// Function: the external axes that there are stand at a place.
+    pub external_at: String,
+    /// Function: the same for one of them.
+    pub axis_at: String,
     /// Function: two joint targets are the same.
     pub same_joints: String,
     /// Function: two robtargets are the same.
@@ -24,24 +29,36 @@ pub struct Names {
 }
 
 impl Names {
-    /// Names whose prefix begins no name in the program.
-    pub fn free(program: &Program) -> Names {
-        let taken = taken(program);
+    /// Names whose prefix begins no word of the files, whatever the word stands for: data,
+    /// routines, labels, loop variables, and signals and modules that are declared elsewhere. No
+    /// module is named as one of the files.
+    pub fn free(files: &[SourceFile]) -> Names {
+        let taken = taken(files);
+        let is_free = |beginning: &str| {
+            let beginning = beginning.to_lowercase();
+            let next = taken.range(beginning.clone()..).next();
+            next.is_none_or(|word| !word.starts_with(&beginning))
+        };
         let mut prefix = "jp".to_owned();
         let mut round = 1;
-        while taken.iter().any(|name| name.starts_with(&prefix))
-            || taken.contains(&module_name(round).to_lowercase())
-        {
+        while !is_free(&prefix) || !is_free(&module_name(round)) {
             round += 1;
             prefix = format!("jp{round}_");
         }
         Names {
             module: module_name(round),
             at: format!("{prefix}At"),
+            external_at: format!("{prefix}ExternalAt"),
+            axis_at: format!("{prefix}AxisAt"),
             same_joints: format!("{prefix}SameJoints"),
             same_target: format!("{prefix}SameTarget"),
             prefix,
         }
+    }
+
+    /// The module with a part of the streams, from 0.
+    pub fn part(&self, index: usize) -> String {
+        if index == 0 { self.module.clone() } else { format!("{}_{}", self.module, index + 1) }
     }
 }
 
@@ -101,17 +118,54 @@ fn module_name(round: usize) -> String {
     if round == 1 { "Joulepath".to_owned() } else { format!("Joulepath{round}") }
 }
 
-fn taken(program: &Program) -> BTreeSet<String> {
+/// All words of the files and the names of the files, in lower case.
+fn taken(files: &[SourceFile]) -> BTreeSet<String> {
     let mut taken = BTreeSet::new();
-    for module in &program.modules {
-        taken.insert(module.name.key.clone());
-        taken.extend(module.types.iter().map(|t| t.name.key.clone()));
-        taken.extend(module.data.iter().map(|d| d.name.key.clone()));
-        for routine in &module.routines {
-            taken.insert(routine.name.key.clone());
-            taken.extend(routine.params.iter().map(|p| p.name.key.clone()));
-            taken.extend(routine.data.iter().map(|d| d.name.key.clone()));
+    for file in files {
+        let name = file.path.rsplit(['/', '\\']).next().unwrap_or(&file.path);
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        taken.insert(stem.to_lowercase());
+        let tokens = tokenize(&file.bytes);
+        for index in (0..tokens.len()).filter(|i| tokens.kind(*i) == TokenKind::Identifier) {
+            let range = tokens.range(index);
+            let word = &file.bytes[range.start as usize..range.end as usize];
+            taken.insert(String::from_utf8_lossy(word).to_lowercase());
         }
     }
     taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::FileId;
+
+    fn names(path: &str, text: &str) -> Names {
+        Names::free(&[SourceFile::new(FileId(0), path.into(), text.into())])
+    }
+
+    #[test]
+    fn a_word_that_begins_as_ours_is_taken_whatever_it_stands_for() {
+        let free = names("a/m.mod", "MODULE m\nPROC main()\nSetDO doA,1;\nENDPROC\nENDMODULE\n");
+        assert_eq!((free.prefix.as_str(), free.part(0).as_str()), ("jp", "Joulepath"));
+        assert_eq!(free.part(1), "Joulepath_2");
+        let uses = [
+            "VAR num JPx;",
+            "PROC a()\nJPagain:\nGOTO JPagain;\nENDPROC",
+            "PROC a()\nFOR jpI FROM 1 TO 2 DO\nENDFOR\nENDPROC",
+            "PROC a()\nSetDO jpSignal,1;\nENDPROC",
+            "PROC a(num jp)\nENDPROC",
+            "PROC a()\n%\"x\"%;\njpElsewhere;\nENDPROC",
+            "PROC a()\nLoad \"HOME:\" \\File:=\"x\"; Joulepath_3:rGo;\nENDPROC",
+        ];
+        for text in uses {
+            let taken = names("m.mod", &format!("MODULE m\n{text}\nENDMODULE\n"));
+            assert_eq!(taken.prefix, "jp2_", "{text}");
+            assert_eq!(taken.part(1), "Joulepath2_2", "{text}");
+        }
+        // A name in a text or a comment is none.
+        let said = names("m.mod", "MODULE m\nCONST string s:=\"jpAt\"; ! jpAt\nENDMODULE\n");
+        assert_eq!(said.prefix, "jp");
+        assert_eq!(names("x/JOULEPATH.MOD", "MODULE m\nENDMODULE\n").module, "Joulepath2");
+    }
 }

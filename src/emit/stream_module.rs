@@ -3,14 +3,17 @@
 use serde::Serialize;
 use tera::{Context, Tera};
 
+use super::layout::{Layout, parts};
 use super::names::Names;
 use crate::ir::movement::LocalValue;
 use crate::ir::number::{TIME_DECIMALS, joints, number};
 use crate::ir::value::Datum;
-use crate::text::{Edit, SourceFile, Span};
+use crate::text::{Charset, Edit, SourceFile, Span, charset};
 
 /// How near the robot must stand to the start of a stream, degrees.
 const JOINT_TOLERANCE_DEG: f64 = 0.1;
+/// The same for an external axis, degrees or mm.
+const EXTERNAL_TOLERANCE: f64 = 0.1;
 /// How near a parameter must be to the target of a stream, mm.
 const POSITION_TOLERANCE_MM: f64 = 0.01;
 /// The same for the components of its quaternion.
@@ -27,6 +30,8 @@ pub struct EmittedStream {
     pub points: Vec<[f64; 6]>,
     /// `\T` of each, s.
     pub intervals: Vec<f64>,
+    /// Where the external axes stand meanwhile, as the program writes it.
+    pub external: [f64; 6],
     /// Values that loop variables and parameters must have.
     pub locals: Vec<LocalValue>,
     /// The tool as the program names it at that place.
@@ -51,12 +56,10 @@ pub struct Site {
 /// What was emitted.
 #[derive(Clone, Debug)]
 pub struct Emitted {
-    /// Text of the streams module.
-    pub module: String,
+    /// Names and texts of the modules with streams; the first one has the functions of guards.
+    pub modules: Vec<(String, String)>,
     /// Insertions into the original files.
     pub edits: Vec<Edit>,
-    /// Names used.
-    pub names: Names,
 }
 
 /// Why nothing was emitted.
@@ -80,6 +83,18 @@ struct StreamText {
     start: String,
     targets: Vec<TargetText>,
     points: Vec<PointText>,
+    array: Option<ArrayText>,
+}
+
+/// What a stream from arrays needs besides its points.
+#[derive(Serialize)]
+struct ArrayText {
+    points: String,
+    times: String,
+    /// The number of points in the braces of an index.
+    last: String,
+    /// The number of the last point but one.
+    fly_by: String,
 }
 
 #[derive(Serialize)]
@@ -91,7 +106,7 @@ struct TargetText {
 
 #[derive(Serialize)]
 struct PointText {
-    joints: String,
+    target: String,
     time: String,
     zone: &'static str,
 }
@@ -111,47 +126,70 @@ pub fn can_guard(local: &LocalValue) -> bool {
 ///
 /// # Errors
 /// A local value that no condition can be written for.
-pub fn emit(files: &[SourceFile], names: &Names, sites: &[Site]) -> Result<Emitted, EmitError> {
+pub fn emit(
+    files: &[SourceFile],
+    names: &Names,
+    layout: Layout,
+    sites: &[Site],
+) -> Result<Emitted, EmitError> {
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
         ("streams.mod", include_str!("../../templates/streams.mod.tera")),
         ("guard", include_str!("../../templates/guard.tera")),
     ])?;
+    let charsets: Vec<Charset> = files.iter().map(|file| charset(&file.bytes)).collect();
     let mut texts = Vec::new();
     let mut edits = Vec::new();
     for site in sites {
         let mut branches = Vec::new();
         for stream in &site.streams {
             let number = texts.len() + 1;
-            let (text, conditions) = stream_text(stream, names, number)?;
+            let (text, conditions) = stream_text(stream, names, layout, number)?;
             branches.push(BranchText {
                 condition: conditions.join(" AND "),
                 call: format!("{} {}", text.proc_name, stream.tool),
             });
             texts.push(text);
         }
-        let file = &files[site.span.file.0 as usize];
-        edits.extend(guard(&tera, file, site.span, &branches)?);
+        let file = site.span.file.0 as usize;
+        edits.extend(guard(&tera, &files[file], charsets[file], site.span, &branches)?);
     }
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("names", names);
-    context.insert("streams", &texts);
     context.insert("joint_tolerance", &number(JOINT_TOLERANCE_DEG, 6));
     context.insert("position_tolerance", &number(POSITION_TOLERANCE_MM, 6));
     context.insert("orientation_tolerance", &number(ORIENTATION_TOLERANCE, 6));
-    let module = tera.render("streams.mod", &context)?;
-    Ok(Emitted { module, edits, names: names.clone() })
+    let external = sites.iter().flat_map(|site| &site.streams).any(has_external);
+    context.insert("external", &external);
+    context.insert("external_tolerance", &number(EXTERNAL_TOLERANCE, 6));
+    let counts: Vec<usize> = texts.iter().map(|text| text.points.len()).collect();
+    let modules: Result<Vec<(String, String)>, tera::Error> = parts(&counts)
+        .into_iter()
+        .enumerate()
+        .map(|(index, part)| {
+            let name = names.part(index);
+            context.insert("module", &name);
+            context.insert("functions", &(index == 0));
+            context.insert("streams", &texts[part]);
+            Ok((name, tera.render("streams.mod", &context)?))
+        })
+        .collect();
+    Ok(Emitted { modules: modules?, edits })
 }
 
 fn stream_text(
     stream: &EmittedStream,
     names: &Names,
+    layout: Layout,
     index: usize,
 ) -> Result<(StreamText, Vec<String>), EmitError> {
     let prefix = &names.prefix;
     let start_name = format!("{prefix}From{index}");
     let mut conditions = vec![format!("{}({start_name})", names.at)];
+    if has_external(stream) {
+        conditions.push(format!("{}({start_name}.extax)", names.external_at));
+    }
     let mut targets = Vec::new();
     for local in &stream.locals {
         let name = format!("{prefix}For{index}_{}", targets.len() + 1);
@@ -160,14 +198,22 @@ fn stream_text(
         let text = text.replace("@joints", &names.same_joints);
         conditions.push(text);
     }
-    let last = stream.points.len().saturating_sub(1);
+    let count = stream.points.len();
+    let last = count.saturating_sub(1);
+    let external = stream.external.map(external_axis).join(",");
+    let array = layout.is_array(count).then(|| ArrayText {
+        points: format!("{prefix}Points{index}"),
+        times: format!("{prefix}Times{index}"),
+        last: format!("{{{count}}}"),
+        fly_by: last.to_string(),
+    });
     let points = stream
         .points
         .iter()
         .zip(&stream.intervals)
         .enumerate()
         .map(|(i, (q, t))| PointText {
-            joints: joints(q),
+            target: format!("[[{}],[{external}]]", joints(q)),
             time: number(*t, TIME_DECIMALS),
             zone: if i == last { "fine" } else { "z200" },
         })
@@ -176,11 +222,12 @@ fn stream_text(
         origin: stream.origin.clone(),
         before: stream.before.clone(),
         after: stream.after.clone(),
-        start: joints(&stream.start),
+        start: format!("[[{}],[{external}]]", joints(&stream.start)),
         proc_name: format!("{prefix}Run{index}"),
         start_name,
         targets,
         points,
+        array,
     };
     Ok((text, conditions))
 }
@@ -202,7 +249,7 @@ fn condition(
         ("jointtarget", datum) => {
             let value = aggregate(datum).ok_or_else(|| name.to_string())?;
             targets.push(TargetText { r#type: "jointtarget", name: constant.to_owned(), value });
-            Ok(format!("@joints({name},{constant})"))
+            Ok(format!("@joints({name},{constant}) AND {name}.extax={constant}.extax"))
         }
         (_, Datum::Num(x)) if x.is_finite() => {
             Ok(format!("Abs({name}-({}))<{}", number(*x, 6), number(NUMBER_TOLERANCE, 6)))
@@ -215,11 +262,22 @@ fn condition(
     }
 }
 
+/// A value from here on is RAPID's 9E9, no axis.
+const NO_AXIS: f64 = 9e8;
+
+/// Whether the targets of a stream name external axes.
+fn has_external(stream: &EmittedStream) -> bool {
+    stream.external.iter().any(|x| *x < NO_AXIS)
+}
+
+fn external_axis(x: f64) -> String {
+    if x >= NO_AXIS { "9E9".to_owned() } else { number(x, 9) }
+}
+
 /// A value as a RAPID aggregate.
 fn aggregate(datum: &Datum) -> Option<String> {
     match datum {
-        Datum::Num(x) if *x >= 9e8 => Some("9E9".to_owned()),
-        Datum::Num(x) if x.is_finite() => Some(number(*x, 9)),
+        Datum::Num(x) if x.is_finite() => Some(external_axis(*x)),
         Datum::Bool(b) => Some(if *b { "TRUE" } else { "FALSE" }.to_owned()),
         Datum::List(items) => {
             let parts: Option<Vec<String>> = items.iter().map(aggregate).collect();
@@ -233,6 +291,7 @@ fn aggregate(datum: &Datum) -> Option<String> {
 fn guard(
     tera: &Tera,
     file: &SourceFile,
+    charset: Charset,
     span: Span,
     branches: &[BranchText],
 ) -> Result<[Edit; 2], EmitError> {
@@ -252,9 +311,10 @@ fn guard(
     let after = file.bytes.get(span.end as usize);
     let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
     let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
+    // Names of tools and data may be in it: it is written as the file is.
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },
-        text: text.into_bytes(),
+        text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
     };
     Ok([insertion(span.start, head), insertion(span.end, tail)])
 }

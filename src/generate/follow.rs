@@ -2,6 +2,7 @@
 
 use super::measure::Measure;
 use crate::dynamics::Data;
+use crate::emit::EGM_STEP_S;
 use crate::kinematics::{LimitViolation, jacobian, limits_ok};
 use crate::motion::stream::Stream;
 use crate::motion::timed::JointState;
@@ -20,8 +21,6 @@ pub(super) const TOLERANCE: f64 = 1e-3;
 const PLACING: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
-/// Clock of externally guided motion, s.
-const EGM_STEP: f64 = 0.004;
 /// A trajectory starts and ends at rest if its first and last step are no faster than this,
 /// rad/s.
 const REST: f64 = 0.02;
@@ -85,12 +84,7 @@ pub(super) struct Sampled {
 
 impl Sampled {
     pub(super) fn duration(&self) -> f64 {
-        EGM_STEP * (self.positions.len() - 1) as f64
-    }
-
-    /// Time of a position, s.
-    pub(super) fn time(index: usize) -> f64 {
-        EGM_STEP * index as f64
+        EGM_STEP_S * (self.positions.len() - 1) as f64
     }
 }
 
@@ -161,14 +155,15 @@ pub(super) fn measure(model: &Model, stream: &Stream, reference: &Reference) -> 
 /// The trajectory at the clock of externally guided motion.
 pub(super) fn sampled(model: &Model, t: &[f64], q: &[Joints]) -> Result<Sampled, FollowError> {
     let reference = reference(model, t, q)?;
-    let steps = (reference.duration() / EGM_STEP).ceil() as usize;
-    let positions: Vec<Joints> = (0..=steps).map(|i| reference.at(Sampled::time(i)).0).collect();
+    let steps = (reference.duration() / EGM_STEP_S).ceil() as usize;
+    let positions: Vec<Joints> =
+        (0..=steps).map(|i| reference.at(EGM_STEP_S * i as f64).0).collect();
     let mut measure = Measure::default();
     let mut data = Data::new();
     for three in positions.windows(3) {
-        let qd = std::array::from_fn(|j| (three[2][j] - three[0][j]) / (2.0 * EGM_STEP));
+        let qd = std::array::from_fn(|j| (three[2][j] - three[0][j]) / (2.0 * EGM_STEP_S));
         let bend = |j: usize| three[2][j] - 2.0 * three[1][j] + three[0][j];
-        let qdd = std::array::from_fn(|j| bend(j) / (EGM_STEP * EGM_STEP));
+        let qdd = std::array::from_fn(|j| bend(j) / (EGM_STEP_S * EGM_STEP_S));
         measure.add(model, &mut data, &JointState { q: three[1], qd, qdd });
     }
     match measure.fault() {

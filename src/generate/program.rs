@@ -5,7 +5,7 @@ use super::measure::Measure;
 use super::moves::{Moves, Target};
 use super::{Form, GenerateError};
 use crate::emit::{self, EmitError, GeneratedMove, GeneratedNames, jointtarget, stream_time};
-use crate::ir::number::{joints, number};
+use crate::ir::number::number;
 use crate::kinematics::limits_ok;
 use crate::motion::stream::Stream;
 use crate::motion::timed::TimedMotion;
@@ -101,10 +101,7 @@ pub(super) fn egm(
     names: &GeneratedNames,
     sampled: &Sampled,
 ) -> Result<Vec<OutputFile>, GenerateError> {
-    let rows = sampled.positions.iter().enumerate();
-    let rows = rows.map(|(i, q)| format!("{},{}\n", number(Sampled::time(i), 3), joints(q)));
-    let header = "t,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n".to_owned();
-    let text = std::iter::once(header).chain(rows).collect();
+    let text = emit::egm_rows(&sampled.positions);
     let module = emit::egm_module(names, &sampled.positions[0], sampled.duration())?;
     let mut outputs = complete(names, module)?;
     outputs.push(new_file(format!("{}.csv", names.module), text));

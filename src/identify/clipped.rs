@@ -85,7 +85,7 @@ mod tests {
     fn a_limit_is_seen_and_a_coarse_recorder_is_not() {
         let (t, q, tau) = waves();
         let q = vec![q];
-        assert!(clipped(&t, &q, &[tau.clone()])[0].is_empty());
+        assert!(clipped(&t, &q, std::slice::from_ref(&tau))[0].is_empty());
         let coarse: Vec<f64> = tau.iter().map(|x| (2.0 * x).round() / 2.0).collect();
         assert!(clipped(&t, &q, &[coarse])[0].is_empty());
         let limited: Vec<f64> = tau.iter().map(|x| x.clamp(-8.0, 8.0)).collect();

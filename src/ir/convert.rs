@@ -91,7 +91,12 @@ pub(super) fn pose_datum(pose: &Isometry3<f64>) -> Datum {
     ])
 }
 
-/// A `robtarget`; external axes are not looked at.
+/// The external axes of a `robtarget` or `jointtarget`, as written.
+pub(super) fn external(target: &Datum) -> Option<[f64; 6]> {
+    nums(list(target, "the target").ok()?.last()?, "the external axes").ok()
+}
+
+/// A `robtarget` without its external axes.
 pub(super) fn robtarget(datum: &Datum) -> Converted<RobTarget> {
     let [trans, rot, conf, _] = parts::<4>(datum, "the robtarget")?;
     let conf = nums::<4>(conf, "the configuration")?;

@@ -197,6 +197,9 @@ pub struct Movement {
     pub via: Option<RobTarget>,
     /// Where it goes.
     pub target: Target,
+    /// The external axes of the target as written: mm or degrees, which of them the program does
+    /// not tell, 9E9 for an axis that is not there. `None` where they are not known.
+    pub external: Option<[f64; 6]>,
     /// Speed, `\V` applied.
     pub speed: Speed,
     /// `\T`, s.
@@ -207,6 +210,8 @@ pub struct Movement {
     pub stop: Stop,
     /// Tool.
     pub tool: Tool,
+    /// The argument that names it.
+    pub tool_span: Span,
     /// Work object.
     pub wobj: WorkObject,
     /// `\TLoad`: replaces the tool's load and `GripLoad`, in the flange's frame.
@@ -253,6 +258,9 @@ pub struct Wait {
     pub other: Option<String>,
     /// `GripLoad` in force, in the tool's frame.
     pub grip_load: Option<LoadData>,
+    /// Where external axes stand after a movement of theirs, as written; `None` where it is none,
+    /// or they are not known.
+    pub external: Option<[f64; 6]>,
 }
 
 /// A change of an output.

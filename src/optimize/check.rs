@@ -1,10 +1,12 @@
 //! What a stream really does, against every limit.
 
 use super::corridor::Corridor;
+use super::keep_out::least_room;
+use super::plant::STILL;
 use crate::dynamics::{Data, Load};
 use crate::energy::power::power;
-use crate::kinematics::{Tcp, fk, limits_ok};
-use crate::motion::stream::Stream;
+use crate::kinematics::{Body, Tcp, fk, limits_ok};
+use crate::motion::stream::{Piece, Stream};
 use crate::motion::timed::JointState;
 use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
@@ -33,6 +35,9 @@ pub struct Check {
     pub endpoint_error_rad: f64,
     /// True if every joint stays in its range.
     pub in_range: bool,
+    /// By how much arm and tool come into what the cell keeps free, m; only of what may leave its
+    /// path.
+    pub intrusion_m: f64,
 }
 
 impl Check {
@@ -45,7 +50,7 @@ impl Check {
 
     /// True if nothing is exceeded.
     pub fn holds(&self) -> bool {
-        self.worst() <= 1.0 && self.in_range
+        self.worst() <= 1.0 && self.in_range && self.intrusion_m <= 0.0
     }
 
     /// What is exceeded most, in words; for a check that does not hold.
@@ -59,6 +64,9 @@ impl Check {
             ("distance from the path", self.deviation),
         ];
         let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        if self.worst() <= 1.0 && self.in_range {
+            return format!("the arm would come {:.0} mm too near", 1e3 * self.intrusion_m);
+        }
         if self.worst() <= 1.0 {
             return "a joint would leave its range".to_owned();
         }
@@ -78,6 +86,7 @@ impl Check {
             deviation: self.deviation.max(other.deviation),
             endpoint_error_rad: self.endpoint_error_rad.max(other.endpoint_error_rad),
             in_range: self.in_range && other.in_range,
+            intrusion_m: self.intrusion_m.max(other.intrusion_m),
         }
     }
 
@@ -87,7 +96,8 @@ impl Check {
     }
 }
 
-/// Checks the realised motion of a stream, in the corridor and towards the end of a run.
+/// Checks the realised motion of a stream, in the corridor, towards the end of a run, and with
+/// the arm among what the cell keeps free.
 pub fn check(
     model: &Model,
     load: &Load,
@@ -95,6 +105,7 @@ pub fn check(
     stream: &Stream,
     corridor: &Corridor,
     end: &Joints,
+    body: Option<&Body<'_>>,
 ) -> Check {
     let limits = &model.limits;
     let share = |values: &[f64], limit: &Option<Vec<f64>>| {
@@ -107,14 +118,15 @@ pub fn check(
         acceleration: share(&stream.max_acceleration(), &limits.acceleration),
         jerk: share(&stream.max_jerk(), &limits.jerk),
         endpoint_error_rad: (0..DOF).map(|j| (stream.end()[j] - end[j]).abs()).fold(0.0, f64::max),
+        intrusion_m: body.map_or(0.0, |body| (-least_room(model, body, stream)).max(0.0)),
         ..Check::none()
     };
     let mut data = Data::new();
     let mut at = 0;
     for piece in stream.pieces() {
-        let steps = (piece.length / STEP).ceil().max(1.0) as usize;
-        for i in 0..=steps {
-            let (q, qd, qdd) = piece.at(piece.length * i as f64 / steps as f64);
+        for tau in samples(&piece) {
+            let (q, qd, qdd) = piece.at(tau);
+            let qd = qd.map(|v| if v.abs() < STILL { 0.0 } else { v });
             result.in_range &= limits_ok(model, &q).is_ok();
             let state = JointState { q, qd, qdd };
             let torque = if model.has_dynamics() {
@@ -132,4 +144,20 @@ pub fn check(
         }
     }
     result
+}
+
+/// Distance from the time at which a joint turns, s: dry friction jumps there.
+const BESIDE: f64 = 1e-6;
+
+/// Times in a piece, s, rising: not far apart, and on both sides of where a joint turns.
+fn samples(piece: &Piece) -> Vec<f64> {
+    let steps = (piece.length / STEP).ceil().max(1.0) as usize;
+    let turns = (0..DOF).map(|j| -piece.qd[j] / piece.qdd[j]);
+    let inside = turns.filter(|turn| *turn > BESIDE && *turn < piece.length - BESIDE);
+    let mut samples: Vec<f64> = (0..=steps)
+        .map(|i| piece.length * i as f64 / steps as f64)
+        .chain(inside.flat_map(|turn| [turn - BESIDE, turn + BESIDE]))
+        .collect();
+    samples.sort_by(f64::total_cmp);
+    samples
 }

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Vector4};
 
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Movement;
-use crate::kinematics::fk;
+use crate::kinematics::{Obstacle, fk};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::path::PieceKind;
@@ -227,17 +227,31 @@ pub struct Freedom {
     pub deviation: f64,
     /// Statements of lines and arcs that the user made free; joint movements are.
     pub freed: BTreeSet<Span>,
+    /// What arm and tool keep out of where they leave their path.
+    pub keep_out: Vec<Obstacle>,
 }
 
 impl Freedom {
     /// None.
     pub fn none() -> Freedom {
-        Freedom { ceilings: Ceilings::Programmed, deviation: 0.0, freed: BTreeSet::new() }
+        Freedom {
+            ceilings: Ceilings::Programmed,
+            deviation: 0.0,
+            freed: BTreeSet::new(),
+            keep_out: Vec::new(),
+        }
+    }
+
+    /// The same without leaving any path.
+    #[must_use]
+    pub fn strict(&self) -> Freedom {
+        Freedom { deviation: 0.0, ..self.clone() }
     }
 
     /// How far a movement may leave its path, m, more than the least that is always allowed.
     pub fn of(&self, movement: &Movement) -> f64 {
-        let free = movement.form == MoveForm::Joint || self.freed.contains(&movement.span);
+        let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
+        let free = joint || self.freed.contains(&movement.span);
         if free { self.deviation } else { 0.0 }
     }
 }

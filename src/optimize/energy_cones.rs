@@ -14,12 +14,15 @@
 //! - √b ≤ its tangent at the profile before: the program is an inner approximation that is exact
 //!   there.
 //! - w √b ≥ w g with g d ≥ 1: as a function of the time per length the viscous work is convex.
-//!   This relaxation is exact wherever time is worth more than the friction that it saves.
+//!   This relaxation is exact wherever time is worth more than the friction that it saves. Where
+//!   it is not, √b ≥ its secant over the speeds that the time leaves.
 //!
 //! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
 //! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
 //! those that come near their bound are in a program, and it is solved again when others turn up.
 //! The rest at both ends is eliminated: there the cones would have no interior.
+
+use nalgebra::SMatrix;
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::path_energy::{EnergyModel, Sharing, evaluate};
@@ -55,9 +58,9 @@ pub(super) struct Step {
 /// leaves open does not break them.
 const MARGIN: f64 = 1e-5;
 /// Share of its limit from which a row is part of the first program.
-const NEAR_AT_FIRST: f64 = 0.8;
+const NEAR_AT_FIRST: f64 = 0.6;
 /// Share of its limit from which a row is added when another one is broken.
-const NEAR: f64 = 0.95;
+const NEAR: f64 = 0.85;
 /// Rounds in which rows are added.
 const MAX_ROUNDS: usize = 8;
 /// Smallest scaled speed at which a tangent is taken.
@@ -104,6 +107,8 @@ pub(super) struct Programs<'a> {
     /// Largest scaled b at each node, and whether the row is in the program.
     b_max: Vec<(f64, bool)>,
     convex: bool,
+    /// Scaled bounds on √b at the nodes, for the relaxation.
+    roots: Vec<[f64; 2]>,
 }
 
 impl<'a> Programs<'a> {
@@ -118,7 +123,7 @@ impl<'a> Programs<'a> {
     ) -> Programs<'a> {
         let n = grid.intervals();
         let parts = evaluate(grid, start, model);
-        let unit = parts.friction.abs() + parts.copper + parts.drive + parts.base;
+        let unit = parts.friction.abs() + parts.copper + parts.drive + parts.base + parts.speed;
         let unit = if unit > 0.0 { unit } else { 1.0 };
         let speed = grid.length() / start.duration();
         let scale = Scale { speed, unit, duration };
@@ -128,10 +133,37 @@ impl<'a> Programs<'a> {
         let concave = costs.iter().any(|cost| cost.viscous > 0.0)
             || all[0].iter().any(|limit| limit.row.root != 0.0);
         let b_max = (0..=n).map(|k| (grid.b_max(k) / (speed * speed), false)).collect();
-        let mut programs =
-            Programs { grid, duration, speed, unit, costs, limits: all, b_max, convex: !concave };
+        let mut programs = Programs {
+            grid,
+            duration,
+            speed,
+            unit,
+            costs,
+            limits: all,
+            b_max,
+            convex: !concave,
+            roots: Vec::new(),
+        };
         programs.activate(start.b(), NEAR_AT_FIRST);
         programs
+    }
+
+    /// With bounds on ṡ² at the nodes that every profile in the time keeps.
+    pub(super) fn within(mut self, range: &[(f64, f64)]) -> Programs<'a> {
+        let scaled = |b: f64| b.max(0.0).sqrt() / self.speed;
+        self.roots = range.iter().map(|(lo, hi)| [scaled(*lo), scaled(*hi)]).collect();
+        self
+    }
+
+    /// The secant of √b at a node between its bounds: below √b.
+    fn secant(&self, layout: &Layout, node: usize) -> Affine {
+        match self.roots.get(node) {
+            Some([lo, hi]) if lo + hi > 0.0 => {
+                let slope = 1.0 / (lo + hi);
+                Affine::constant(lo * hi * slope).plus(layout.b(node), slope)
+            }
+            _ => Affine::constant(0.0),
+        }
     }
 
     /// Whether nothing is concave, so that one program with tangents is the problem.
@@ -255,6 +287,10 @@ impl<'a> Programs<'a> {
             if let Some(g) = layout.root(k) {
                 let g = Affine::default().plus(Some(g), 1.0);
                 program.rotated_cone(&g, &d, vec![Affine::constant(1.0)]);
+                if !self.roots.is_empty() {
+                    let ends = self.secant(layout, k).sum(&self.secant(layout, k + 1));
+                    program.at_most_zero(ends.sum(&g.times(-1.0)));
+                }
             }
             for (i, (work, factor)) in cost.brakes.iter().enumerate() {
                 let lost = Some(layout.brake(k, i));
@@ -366,24 +402,32 @@ impl IntervalCost {
         let square = scale.speed * scale.speed;
         let before = (k > 0).then(|| Layout::b_of(k));
         let after = (k + 1 < grid.intervals()).then(|| Layout::b_of(k + 1));
-        // ℓ, Nm: linear in b at both nodes.
-        let linear = |j: usize| {
+        // ℓ, Nm: linear in b at both nodes; the factors of these and the rest.
+        let factors = |j: usize| {
             let (u, b) = (middle.m[j] * 0.5 / delta, 0.5 * middle.c[j]);
-            Affine::constant(middle.g[j] + middle.coulomb[j])
-                .plus(before, (b - u) * square)
-                .plus(after, (b + u) * square)
+            [(b - u) * square, (b + u) * square, middle.g[j] + middle.coulomb[j]]
         };
-        let (mut copper, mut cross, mut viscous) = (Vec::new(), Affine::default(), 0.0);
+        let affine = |[x, y, rest]: [f64; 3]| Affine::constant(rest).plus(before, x).plus(after, y);
+        let linear = |j: usize| affine(factors(j));
+        let (mut cross, mut viscous) = (Affine::default(), 0.0);
+        let mut losses = SMatrix::<f64, DOF, 3>::zeros();
         for j in 0..DOF {
             let friction = middle.viscous[j];
-            viscous += friction * (middle.q1[j] + model.loss[j] * friction);
+            viscous += friction * (model.work * middle.q1[j] + model.loss[j] * friction)
+                + model.speed * middle.q1[j] * middle.q1[j];
             if model.loss[j] > 0.0 {
                 let per_unit = 2.0 * delta * model.loss[j] / (scale.unit * scale.speed);
-                copper.push(linear(j).times(per_unit.sqrt()));
+                losses.row_mut(j).copy_from_slice(&factors(j).map(|x| x * per_unit.sqrt()));
                 let factor = 2.0 * delta * model.loss[j] * friction / scale.unit;
                 cross = cross.sum(&linear(j).times(factor));
             }
         }
+        // All joints together depend on two variables: the same square in three terms.
+        let copper = if losses.iter().any(|x| *x != 0.0) {
+            losses.qr().r().row_iter().map(|row| affine([row[0], row[1], row[2]])).collect()
+        } else {
+            Vec::new()
+        };
         let lost = (1.0 - model.regeneration) * delta / scale.unit;
         let joint_work = |j: usize| {
             let factor = middle.viscous[j] * middle.q1[j] * scale.speed;

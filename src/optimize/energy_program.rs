@@ -10,7 +10,7 @@ use crate::motion::stream::DOF;
 use crate::motion::timing::grid::{PathGrid, PathPoint};
 use crate::motion::timing::limits::{PathLimits, worst_ratio};
 use crate::motion::timing::profile::Profile;
-use crate::motion::timing::reachability::time_optimal;
+use crate::motion::timing::reachability::{speed_range, time_optimal};
 
 /// A profile and what is known of its quality.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,8 @@ const MAX_TANGENTS: usize = 8;
 const SLOWEST: f64 = 1e3;
 /// Steps of the search for the best time of the start.
 const PACE_STEPS: usize = 16;
+/// Time over that of the fastest profile beyond which it says little about speeds.
+const SLOW: f64 = 4.0;
 /// Bisection steps for a slow profile by a speed cap.
 const CAP_STEPS: usize = 40;
 
@@ -105,8 +107,12 @@ pub fn energy_bound(
         return None;
     }
     let start = slowed(grid, limits, fastest, best_pace(grid, model, fastest, duration))?;
-    let relaxed = Programs::new(grid, limits, model, &start, duration).solve(Root::Relaxed)?;
-    let lower_bound = path_constant(grid) + relaxed.bound.max(0.0);
+    let mut programs = Programs::new(grid, limits, model, &start, duration);
+    if duration <= SLOW * fastest.duration() {
+        programs = programs.within(&speed_range(grid, limits, duration));
+    }
+    let relaxed = programs.solve(Root::Relaxed)?;
+    let lower_bound = path_constant(grid, model) + relaxed.bound.max(0.0);
     Some(EnergyBound { lower_bound, b: relaxed.b })
 }
 
@@ -128,7 +134,7 @@ pub fn minimize_energy_from(
     let Some(start) = slowed(grid, limits, fastest, pace) else {
         return too_short;
     };
-    let constant = path_constant(grid);
+    let constant = path_constant(grid, model);
     let mut search = Search {
         grid,
         limits,
@@ -250,14 +256,14 @@ fn slowed(
     best.or_else(|| Some(fastest.clone()).filter(kept))
 }
 
-/// Potential energy and Coulomb work of the path, J: Simpson's rule, exact for coefficients that
-/// are linear in s.
-fn path_constant(grid: &PathGrid) -> f64 {
+/// Potential energy and Coulomb work of the path, J, as far as the model counts work: Simpson's
+/// rule, exact for coefficients that are linear in s.
+fn path_constant(grid: &PathGrid, model: &EnergyModel) -> f64 {
     let force =
         |p: &PathPoint| -> f64 { (0..DOF).map(|j| (p.g[j] + p.coulomb[j]) * p.q1[j]).sum() };
     let work = |(k, [begin, end]): (usize, &[PathPoint; 2])| {
         let middle = begin.toward(end, 0.5);
         grid.delta(k) / 6.0 * (force(begin) + 4.0 * force(&middle) + force(end))
     };
-    grid.ends().iter().enumerate().map(work).sum()
+    model.work * grid.ends().iter().enumerate().map(work).sum::<f64>()
 }

@@ -13,6 +13,11 @@ const FIRST_SPACING: f64 = 0.1;
 /// Share of the allowed distance from the path that the polishing may use at first.
 const FIRST_DISTANCE: f64 = 0.95;
 
+/// Room to what the cell keeps free at first, m: a motion is looked at in steps.
+const FIRST_ROOM: f64 = 0.005;
+/// What is asked for beyond what is missing.
+const FURTHER: f64 = 1.002;
+
 /// Margins and tolerances of one attempt.
 #[derive(Clone)]
 pub(super) struct Margins {
@@ -27,6 +32,8 @@ pub(super) struct Margins {
     pub(super) spacing: f64,
     /// Share of the allowed distance from the path that the polishing may use.
     pub(super) distance: f64,
+    /// Room that the polishing keeps to what the cell keeps free, m.
+    pub(super) room: f64,
 }
 
 impl Margins {
@@ -38,6 +45,7 @@ impl Margins {
             reach: FIRST_REACH,
             spacing: FIRST_SPACING * tolerance,
             distance: FIRST_DISTANCE,
+            room: FIRST_ROOM,
         }
     }
 
@@ -48,7 +56,7 @@ impl Margins {
 
     /// The limits themselves.
     pub(super) fn none() -> Margins {
-        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0 }
+        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0, room: 0.0 }
     }
 
     /// Tighter for another attempt from the begin.
@@ -63,6 +71,7 @@ impl Margins {
         if check.tcp_speed > 1.0 {
             self.reach *= 2.0;
         }
+        self.room += check.intrusion_m.max(0.0);
         if check.deviation > 1.0 {
             self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
             self.spacing *= 0.7;
@@ -71,7 +80,9 @@ impl Margins {
 
     /// Tighter for more polishing of a stream that nearly holds.
     pub(super) fn tighten_a_little(&mut self, check: &Check) {
-        let over = |share: f64| share.max(1.0);
+        // A share a hair above 1 would leave the margin where it is.
+        let over = |share: f64| if share > 1.0 { share * FURTHER } else { 1.0 };
+        self.room += check.intrusion_m.max(0.0);
         self.load /= over(check.torque);
         self.speed /= over(check.tcp_speed);
         self.distance /= over(check.deviation);

@@ -2,7 +2,8 @@
 //!
 //! Power at a joint is p = τ q̇ with friction. Braking power that no other joint uses (per joint,
 //! or as a sum on a common bus) is lost but for the share that is given back; a motor adds
-//! copper losses k τ².
+//! copper losses k τ². Other costs of the literature leave out the work, and count torques or
+//! speeds instead.
 
 use crate::motion::stream::{DOF, Joints};
 use crate::motion::timing::grid::{PathGrid, PathPoint};
@@ -17,9 +18,14 @@ pub enum Sharing {
     Bus,
 }
 
-/// What a motion costs besides its mechanical work.
+/// What a motion costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyModel {
+    /// Weight of the mechanical work, friction included: 1, or 0 where something else stands for
+    /// the energy.
+    pub work: f64,
+    /// Cost of the speed of a joint, W/(rad/s)²: 0 for energies.
+    pub speed: f64,
     /// Copper loss of each joint, W/(Nm)².
     pub loss: Joints,
     /// Power while the robot is on, W. Zero where the time is spent anyway.
@@ -45,12 +51,14 @@ pub struct EnergyParts {
     pub drive: f64,
     /// Base power over the duration.
     pub base: f64,
+    /// What stands for energy where squares of speeds count.
+    pub speed: f64,
 }
 
 impl EnergyParts {
     /// The sum, J.
     pub fn total(&self) -> f64 {
-        self.mechanical + self.friction + self.copper + self.drive + self.base
+        self.mechanical + self.friction + self.copper + self.drive + self.base + self.speed
     }
 }
 
@@ -64,6 +72,12 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 impl EnergyModel {
+    /// Work, copper losses `loss` (W/(Nm)²), and braking power that is lost where it can't be
+    /// shared; nothing else.
+    pub fn electrical(loss: Joints, sharing: Sharing) -> EnergyModel {
+        EnergyModel { work: 1.0, speed: 0.0, loss, base_w: 0.0, sharing, regeneration: 0.0 }
+    }
+
     /// Braking power that is lost, W, at the joint powers `p` (W).
     pub(super) fn braked(&self, p: &Joints) -> f64 {
         let negative = match self.sharing {
@@ -82,8 +96,9 @@ impl EnergyModel {
         for j in 0..DOF {
             let qd = point.q1[j] * v;
             let torque = rigid[j] + friction[j];
-            parts.mechanical += rigid[j] * qd;
-            parts.friction += friction[j] * qd;
+            parts.mechanical += self.work * rigid[j] * qd;
+            parts.friction += self.work * friction[j] * qd;
+            parts.speed += self.speed * qd * qd;
             parts.copper += self.loss[j] * torque * torque;
             p[j] = torque * qd;
         }
@@ -109,6 +124,7 @@ pub fn evaluate(grid: &PathGrid, profile: &Profile, model: &EnergyModel) -> Ener
             sum.copper += seconds * power.copper;
             sum.drive += seconds * power.drive;
             sum.base += seconds * power.base;
+            sum.speed += seconds * power.speed;
         }
     }
     sum

@@ -3,10 +3,28 @@
 use super::path_energy::{EnergyModel, EnergyParts};
 use crate::motion::stream::{DOF, Joints, Stream};
 
+/// Shares of the limits of a path.
+pub type PathShares = [f64; 3];
+
 /// The robot that runs a stream.
 pub trait Plant {
     /// Torques without dry friction, Nm, at positions (rad), velocities and accelerations.
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints;
+
+    /// The change of [`torque`](Plant::torque) per change of q (Nm/rad), q̇ and q̈ of each joint:
+    /// `[kind][joint that changes][torque]`. By differences, where nothing better is known.
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        let here = self.torque(q, qd, qdd);
+        std::array::from_fn(|kind| {
+            std::array::from_fn(|joint| {
+                let mut state = [*q, *qd, *qdd];
+                state[kind][joint] += DIFFERENCES[kind];
+                let [q, qd, qdd] = state;
+                let next = self.torque(&q, &qd, &qdd);
+                std::array::from_fn(|j| (next[j] - here[j]) / DIFFERENCES[kind])
+            })
+        })
+    }
 
     /// Dry friction of each joint, Nm, which acts against its motion.
     fn dry_friction(&self) -> Joints;
@@ -14,11 +32,11 @@ pub trait Plant {
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// What else has a limit, over that limit: the speed of the tool and its distance from the
-    /// path. `place` says where on its path the robot was a moment ago, and then where it is: a
+    /// What else has a limit, over that limit: the speed of the tool, its distance from the path,
+    /// and how near arm and tool come to what the cell keeps free. `place` says where on its path the robot was a moment ago, and then where it is: a
     /// path may cross itself.
-    fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> [f64; 2] {
-        [0.0; 2]
+    fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> PathShares {
+        PathShares::default()
     }
 
     /// Torques with dry friction, Nm; none at rest.
@@ -28,11 +46,17 @@ pub trait Plant {
     }
 }
 
+/// A speed that is the rounding of none, rad/s: where a motion ends it has no direction, and no
+/// dry friction helps to brake.
+pub(super) const STILL: f64 = 1e-9;
+
 /// The sign of a velocity, 0 at rest.
-fn direction(velocity: f64) -> f64 {
-    if velocity == 0.0 { 0.0 } else { velocity.signum() }
+pub(super) fn direction(velocity: f64) -> f64 {
+    if velocity.abs() < STILL { 0.0 } else { velocity.signum() }
 }
 
+/// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
+pub(super) const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Room that is kept to the limits.
 pub(super) const ROOM: f64 = 1e-3;
 /// Steps on a piece at which it is judged; even, for Simpson's rule.
@@ -76,8 +100,9 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
                 out.excess += (share - (1.0 - ROOM)).max(0.0);
             }
             for j in 0..DOF {
-                sum.mechanical += seconds * smooth[j] * qd[j];
-                sum.friction += seconds * dry[j] * qd[j].abs();
+                sum.mechanical += seconds * model.work * smooth[j] * qd[j];
+                sum.friction += seconds * model.work * dry[j] * qd[j].abs();
+                sum.speed += seconds * model.speed * qd[j] * qd[j];
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
             }
         }

@@ -25,6 +25,12 @@ pub enum Reason {
     Argument(String),
     /// A motion setting in force that would change a stream.
     Setting(String),
+    /// A handler of its routine that may begin it again, or that it stands in.
+    Handler(String),
+    /// An interrupt routine that may do something to it while it runs.
+    Interrupt(String),
+    /// External axes that move with it, or may.
+    ExternalAxes,
     /// Other statements between fly-by movements.
     LogicBetween,
     /// Fly-by movements that go on in another routine or branch.
@@ -33,6 +39,9 @@ pub enum Reason {
     Overlapping,
     /// A point passed without a stop and without room for a zone.
     SharpCorner,
+    /// It has an equivalent for externally guided motion beside the program, which takes so much
+    /// less, J.
+    Guided(f64),
     /// It goes nowhere.
     NoMotion,
     /// Nothing is saved in the time that there is.
@@ -41,6 +50,8 @@ pub enum Reason {
     TooShort(f64),
     /// No stream within the limits was found.
     NoStream(String),
+    /// It might leave its path, which comes into what the cell keeps free already.
+    KeepOut,
     /// More variants than a program should carry.
     TooManyVariants(usize),
     /// The emitted text did not hold what was promised.
@@ -68,14 +79,19 @@ impl Reason {
             Reason::Timed => "timed",
             Reason::Argument(_) => "argument",
             Reason::Setting(_) => "setting",
+            Reason::Handler(_) => "handler",
+            Reason::Interrupt(_) => "interrupt",
+            Reason::ExternalAxes => "external-axes",
             Reason::LogicBetween => "logic-between",
             Reason::Scattered => "scattered",
             Reason::Overlapping => "overlapping",
             Reason::SharpCorner => "sharp-corner",
+            Reason::Guided(_) => "guided",
             Reason::NoMotion => "no-motion",
             Reason::NoSaving => "no-saving",
             Reason::TooShort(_) => "too-short",
             Reason::NoStream(_) => "no-stream",
+            Reason::KeepOut => "keep-out",
             Reason::TooManyVariants(_) => "too-many-variants",
             Reason::Verification(_) => "verification",
             Reason::ShortDwell(_) => "short-dwell",
@@ -92,10 +108,12 @@ impl Reason {
         !matches!(
             self,
             Reason::FirstMovement
+                | Reason::Guided(_)
                 | Reason::NoMotion
                 | Reason::NoSaving
                 | Reason::Timed
                 | Reason::NotReached
+                | Reason::KeepOut
                 | Reason::ShortDwell(_)
                 | Reason::UnknownDwell
                 | Reason::NeedsSetting(_)
@@ -114,6 +132,8 @@ impl std::fmt::Display for Reason {
             Reason::NotConstant(what) => f.write_str(what),
             Reason::Unresolved(why)
             | Reason::Path(why)
+            | Reason::Handler(why)
+            | Reason::Interrupt(why)
             | Reason::NoStream(why)
             | Reason::Verification(why) => f.write_str(why),
             Reason::NotReached => f.write_str("it does not run in the simulated cycle"),
@@ -122,6 +142,9 @@ impl std::fmt::Display for Reason {
             Reason::Timed => f.write_str("it has its time already (\\T)"),
             Reason::Argument(name) => write!(f, "the argument \\{name} is not modelled"),
             Reason::Setting(name) => write!(f, "{name} is in force"),
+            Reason::ExternalAxes => {
+                f.write_str("its targets move external axes, or where they stood is not known")
+            }
             Reason::LogicBetween => f.write_str("other statements stand between fly-by movements"),
             Reason::Scattered => {
                 f.write_str("its fly-by movements go on in another routine or branch")
@@ -132,9 +155,16 @@ impl std::fmt::Display for Reason {
             Reason::SharpCorner => {
                 f.write_str("it passes a point without a stop and without room for a zone")
             }
+            Reason::Guided(saved) => write!(
+                f,
+                "positions for externally guided motion beside the program would save {saved:.1} J"
+            ),
             Reason::NoMotion => f.write_str("the robot is there already"),
             Reason::NoSaving => f.write_str("no energy is saved in the time that there is"),
             Reason::TooShort(least) => write!(f, "it takes at least {least:.3} s"),
+            Reason::KeepOut => f.write_str(
+                "it keeps to its path, which comes into what the cell keeps free already",
+            ),
             Reason::TooManyVariants(n) => write!(f, "it runs in {n} different ways"),
             Reason::ShortDwell(break_even) if break_even.is_infinite() => {
                 f.write_str("nothing is to be held, or no brake is known")

@@ -6,24 +6,26 @@
 
 use super::check::{Check, check};
 use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
-use super::cycle::{Known, TradeOff};
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy, minimize_energy_from};
+use super::cost::Cost;
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
+use super::keep_out;
 use super::margins::Margins;
-use super::path_energy::{EnergyModel, Sharing};
-use super::plant::Plant;
+use super::path_energy::EnergyModel;
+use super::path_grid;
 use super::reason::Reason;
+use super::run_plant::RunPlant;
 use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
 use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
-use crate::dynamics::{Data, potential_energy, rnea};
+use crate::dynamics::potential_energy;
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::kinematics::fk;
+use crate::kinematics::{Body, fk};
 use crate::motion::controller::motion_limits;
-use crate::motion::sampling::{self, Loaded, SpeedCap};
+use crate::motion::sampling::{Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
@@ -32,7 +34,7 @@ use crate::motion::timing::limits::PathLimits;
 use crate::motion::timing::profile::Profile;
 use crate::motion::timing::reachability::time_optimal;
 use crate::path::joint_path::{DOF, JointPath, Joints};
-use crate::robot::{self, Model};
+use crate::robot::Model;
 
 /// A run to be timed anew.
 #[derive(Clone, Copy)]
@@ -47,6 +49,8 @@ pub struct Task<'a> {
     pub spacing_s: f64,
     /// What the stream may do that the run did not.
     pub freedom: &'a Freedom,
+    /// What is minimised.
+    pub cost: Cost,
 }
 
 /// The time of a run, settling included.
@@ -75,12 +79,25 @@ pub struct Retiming {
     pub duration_s: f64,
     /// No timing of the path takes less in this time, J, all six parts.
     pub lower_bound_j: f64,
+    /// Whether it keeps to the path.
+    pub path: PathUse,
+}
+
+/// What a stream makes of the path of its run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PathUse {
+    /// It keeps to it, within the tolerance.
+    Kept,
+    /// It keeps to it for this reason, although it was free.
+    KeptFor(Reason),
+    /// It leaves it, as far as it is free.
+    Left,
 }
 
 /// Intervals of the grid besides those of zones.
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 8;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
 /// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
@@ -98,6 +115,8 @@ const CORRIDOR: f64 = 0.3;
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
+/// Where a motion is slow, the ramp time is a short step: at least this share of its time.
+const SLOW_STEP: f64 = 0.02;
 /// Steps in which the time of the fastest stream is searched, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 
@@ -125,9 +144,15 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         return on_path(task, goal);
     }
     // What is free is never worse than what keeps to the path.
-    let strict = Freedom { deviation: 0.0, ..task.freedom.clone() };
+    let strict = task.freedom.strict();
     let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
-    match (kept, on_path(task, goal)) {
+    let body = keep_out::body(task.model, task.run, task.freedom);
+    if body.is_some_and(|body| keep_out::enters(&body, task.run)) {
+        let path = PathUse::KeptFor(Reason::KeepOut);
+        return kept.map(|kept| Retiming { path, ..kept });
+    }
+    let free = on_path(task, goal).map(|free| Retiming { path: PathUse::Left, ..free });
+    match (kept, free) {
         (Ok(kept), Ok(free)) => {
             let bound = free_bound(task, free.duration_s - task.run.settling);
             let idle = free.energy.energy_j() - free.energy.motion_energy_j();
@@ -165,18 +190,16 @@ fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     match goal {
         Goal::Within(time) => {
             let before = task.energy_before.motion_energy_j();
-            let retiming = work.least_energy(time, before - WORTHWHILE * before.abs())?;
+            let worth = before - WORTHWHILE * before.abs();
+            let retiming =
+                work.least_energy(time, worth).or_else(|reason| work.instead(reason, time))?;
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
         Goal::Exactly(time) => {
             work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
                 Reason::NoSaving => work.within(time),
-                // Near the least time there may be no other stream.
-                Reason::NoStream(_) if time < task.run.duration() => {
-                    work.within(time).or(Err(reason))
-                }
-                other => Err(other),
+                reason => work.instead(reason, time),
             })
         }
         Goal::Fastest => work.least_time(),
@@ -191,53 +214,21 @@ pub fn fastest(task: &Task<'_>) -> Option<f64> {
 /// A run is made slower by this factor at most.
 pub const SLOWEST: f64 = 10.0;
 
-/// The time, s, beyond which a run takes more motion energy again since the motors hold the arm up
-/// for longer; at most [`SLOWEST`] times as long as before. `None` where there is no stream. Base
-/// power does not count: the rest of a takt has to be waited for anyway.
-pub fn thriftiest(task: &Task<'_>) -> Option<f64> {
-    let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
-    let fast = fastest_profile(&grid, &limits).ok()?;
-    let longest = SLOWEST * task.run.duration();
-    let optimum = minimize_energy(&grid, &limits, &work.model, &fast, longest).into_optimum()?;
-    Some(optimum.profile.duration() + task.run.settling)
-}
-
-/// What a run takes over the time that it gets, settling included: the energies are of the
-/// motion alone. `shortest` and `longest` bound the time, s. `None` where there is no stream.
-pub fn trade_off(task: &Task<'_>, shortest: f64, longest: f64) -> Option<TradeOff> {
-    let work = Work::new(task).ok()?;
-    let (grid, limits) = work.grid(&Margins::first(work.tolerance())).ok()?;
-    let fast = fastest_profile(&grid, &limits).ok()?;
-    let settling = task.run.settling;
-    let shortest = shortest.max(RESERVE * fast.duration() + settling);
-    let known = |time: f64| {
-        let outcome =
-            minimize_energy_from(&grid, &limits, &work.model, &fast, time - settling, None);
-        let optimum = outcome.into_optimum()?;
-        Some(Known { time, energy: optimum.energy.total(), slope: -optimum.marginal })
-    };
-    let before = task.run.duration().max(shortest);
-    let far = if longest > FAR * before { Some(known(longest)?) } else { None };
-    TradeOff::about(known(before)?, shortest, longest.max(before), far)
-}
-
-/// A stream needs this much more time than the fastest profile, at least.
-const RESERVE: f64 = 1.05;
-/// Times this much longer than before are worth a look of their own.
-const FAR: f64 = 1.5;
-
-struct Work<'a> {
-    task: &'a Task<'a>,
+pub(super) struct Work<'a> {
+    pub(super) task: &'a Task<'a>,
     path: &'a JointPath,
-    corridor: Corridor,
+    pub(super) corridor: Corridor,
+    pub(super) body: Option<Body<'a>>,
     limits: StreamLimits,
+    /// What the robot takes.
+    pub(super) electrical: EnergyModel,
+    /// What is minimised.
     model: EnergyModel,
     lever: Joints,
 }
 
 impl<'a> Work<'a> {
-    fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
+    pub(super) fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
         let [(_, TimedMotion::Path(path, _))] = task.run.motions.as_slice() else {
             return Err(Reason::SharpCorner);
         };
@@ -249,22 +240,15 @@ impl<'a> Work<'a> {
                 values.as_ref().and_then(|v| v.get(j)).copied().unwrap_or(f64::INFINITY)
             })
         };
-        let motors = robot.motors.as_ref();
-        let model = EnergyModel {
-            loss: std::array::from_fn(|j| motors.map_or(0.0, |m| m.loss_constant[j])),
-            base_w: 0.0,
-            sharing: match robot.drive.sharing {
-                robot::Sharing::None => Sharing::PerJoint,
-                robot::Sharing::Bus => Sharing::Bus,
-            },
-            regeneration: robot.drive.regeneration,
-        };
+        let (electrical, model) = (Cost::Electrical.model(robot), task.cost.model(robot));
         let limits = StreamLimits {
             velocity: list(&robot.limits.velocity),
             acceleration: list(&robot.limits.acceleration),
             jerk: list(&robot.limits.jerk),
         };
-        Ok(Work { task, path, corridor, limits, model, lever: levers(robot, task.run) })
+        let lever = levers(robot, task.run);
+        let body = keep_out::body(robot, task.run, task.freedom);
+        Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
     }
 
     /// Least energy in a time, settling included, if that takes less than `worth` (J, motion).
@@ -322,6 +306,8 @@ impl<'a> Work<'a> {
     ) -> Result<Intended, Reason> {
         let (grid, limits) = self.grid(margins)?;
         let fast = fastest_profile(&grid, &limits)?;
+        // The relaxation of another cost says nothing of this one.
+        let bound = bound.filter(|_| self.model == self.electrical);
         let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;
@@ -332,7 +318,7 @@ impl<'a> Work<'a> {
     fn bound(&self, budget: f64) -> Option<EnergyBound> {
         let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        energy_bound(&grid, &limits, &self.model, &fast, budget)
+        energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
@@ -344,8 +330,9 @@ impl<'a> Work<'a> {
             let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
             let mut best: Option<Attempt> = None;
+            let step = ramp.max(SLOW_STEP * fast.duration());
             for share in RAMP_SHARES {
-                let budget = round_up(fast.duration() + share * ramp);
+                let budget = round_up(fast.duration() + share * step);
                 let intended = self.intend(&fast, budget, &margins);
                 match intended.and_then(|intended| self.realise(intended, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
@@ -366,14 +353,42 @@ impl<'a> Work<'a> {
         Err(problem)
     }
 
-    /// Least time, where the time is too short for more.
+    /// The fastest stream made as slow, where the time is too short for more.
     fn within(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
-        if retiming.duration_s <= time + quantum() {
-            Ok(retiming)
-        } else {
-            Err(Reason::TooShort(retiming.duration_s))
+        if retiming.duration_s > time + quantum() {
+            return Err(Reason::TooShort(retiming.duration_s));
         }
+        let slowed = self.slowed(&retiming.stream, round_down(time - self.task.run.settling));
+        let better = slowed.filter(|slow| slow.energy.energy_j() < retiming.energy.energy_j());
+        Ok(better.unwrap_or(retiming))
+    }
+
+    /// The same where no attempt at a stream of its own held; else the reason for that.
+    fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
+        match reason {
+            Reason::NoStream(_) => self.within(time).or(Err(reason)),
+            other => Err(other),
+        }
+    }
+
+    /// A stream with all its intervals longer, if it still holds: friction and weight don't fall
+    /// with the speed.
+    fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
+        let longer = duration / stream.duration();
+        let intervals: Vec<f64> = stream.intervals().iter().map(|x| x * longer).collect();
+        let intervals = rounded_intervals(&intervals, duration);
+        let slow = Stream::new(*stream.start(), stream.points().to_vec(), intervals).ok()?;
+        let check = self.check(&slow);
+        let bound = self.bound(duration).map(|bound| bound.lower_bound);
+        check.holds().then(|| self.retiming(slow, check, bound))
+    }
+
+    /// What a stream does as the controller will realise it.
+    fn check(&self, stream: &Stream) -> Check {
+        let Task { model, run, .. } = self.task;
+        let tool = &run.legs[0].tool;
+        check(model, &run.load, tool, stream, &self.corridor, &run.end, self.body.as_ref())
     }
 
     /// How far the motion may leave the path somewhere, m, before the polishing minds.
@@ -384,19 +399,19 @@ impl<'a> Work<'a> {
     }
 
     /// The smallest tolerance on the path, m.
-    fn tolerance(&self) -> f64 {
+    pub(super) fn tolerance(&self) -> f64 {
         let line =
             self.task.run.legs.iter().any(|leg| !matches!(leg.kind, crate::path::LegKind::Joint));
         if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
     }
 
     /// The problem on the path, shaped so that a stream can follow its solution.
-    fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+    pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         let (grid, limits) = self.bare_grid(margins)?;
         Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
     }
 
-    fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+    pub(super) fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         let caps: Vec<SpeedCap> = self
             .task
             .run
@@ -409,9 +424,9 @@ impl<'a> Work<'a> {
             })
             .collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-        let nodes = sampling::nodes(self.task.model, self.path, &caps, INTERVALS);
+        let nodes = path_grid::nodes(self.task.model, self.path, &caps, INTERVALS);
         let no_grid = |why: String| Reason::NoStream(why);
-        let grid = sampling::grid(loaded, self.path, &nodes, &caps)
+        let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
         let full = motion_limits(self.task.model, margins.load);
         let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
@@ -455,26 +470,15 @@ impl<'a> Work<'a> {
     /// The stream polished, rounded as it will be emitted and checked.
     fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
         let Intended { reference, stream } = intended;
-        let plant = RobotPlant {
-            work: self,
-            margins,
-            ceilings: self.corridor.eased(margins.reach, EASING),
-        };
+        let plant =
+            RunPlant { work: self, margins, ceilings: self.corridor.eased(margins.reach, EASING) };
         let corridor = PolishCorridor { tolerance: self.looseness(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let tool = self.task.run.legs[0].tool;
-        let check = check(
-            self.task.model,
-            &self.task.run.load,
-            &tool,
-            &rounded,
-            &self.corridor,
-            &self.task.run.end,
-        );
+        let check = self.check(&rounded);
         let intended = Intended { reference, stream: polished.stream };
         Ok(Attempt { stream: rounded, check, intended })
     }
@@ -532,49 +536,15 @@ impl<'a> Work<'a> {
             energy_before_j: task.energy_before.energy_j(),
             duration_s: duration + task.run.settling,
             lower_bound_j: bound + idle,
+            path: PathUse::Kept,
         }
-    }
-}
-
-/// The robot with its load, as the polishing of a stream sees it.
-struct RobotPlant<'a> {
-    work: &'a Work<'a>,
-    margins: &'a Margins,
-    /// TCP speed at the places of the corridor, m/s.
-    ceilings: Vec<f64>,
-}
-
-impl Plant for RobotPlant<'_> {
-    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
-        let task = self.work.task;
-        let mut data = Data::new();
-        let tau = rnea(task.model, &mut data, &task.run.load, q, qd, qdd);
-        std::array::from_fn(|j| tau[j] + task.model.friction.viscous[j] * qd[j])
-    }
-
-    fn dry_friction(&self) -> Joints {
-        std::array::from_fn(|j| self.work.task.model.friction.coulomb[j])
-    }
-
-    fn torque_limit(&self) -> Joints {
-        motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
-    }
-
-    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> [f64; 2] {
-        let task = self.work.task;
-        let tool = &task.run.legs[0].tool;
-        let pose = tool.pose(&fk(task.model, q));
-        let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
-        let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
-        let speed = rate.fixed_rows::<3>(0).norm();
-        [speed / (self.margins.speed * ceiling), distance / self.margins.distance]
     }
 }
 
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
-fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
+pub(super) fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)
         .into_profile()
         .ok_or_else(|| Reason::NoStream("the torque limits leave no timing on the path".into()))

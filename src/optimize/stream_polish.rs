@@ -9,7 +9,7 @@
 use super::banded::Banded;
 use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{Plant, ROOM, Realised, realise};
+use super::plant::{DIFFERENCES, PathShares, Plant, ROOM, Realised, direction, realise};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -52,9 +52,9 @@ const DEVIATION_PRICE: f64 = 0.02;
 /// Energies that the full violation of a limit at one place costs.
 const VIOLATION_PRICE: f64 = 5.0;
 /// Steps.
-const MAX_STEPS: usize = 25;
+const MAX_STEPS: usize = 80;
 /// Relative fall of the merit at which the steps end.
-const CONVERGED: f64 = 3e-4;
+const CONVERGED: f64 = 3e-5;
 /// Share of its limit from which a row is part of a program.
 const NEAR: f64 = 0.75;
 /// Gap of the programs: a step is judged by what it does, not by what it promises.
@@ -66,8 +66,6 @@ const DAMPING: f64 = 1e-3;
 const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 /// Factor on the damping after a good or a bad step.
 const DAMPING_STEP: f64 = 5.0;
-/// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
-const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Smallest tolerance that is taken literally.
 const TIGHTEST: f64 = 1e-7;
 /// Steps to the nearest point of the path.
@@ -76,6 +74,8 @@ const NEAREST_STEPS: usize = 6;
 const SLOWEST: f64 = 1e-6;
 /// Share of the peak power about which the loss of braking is rounded.
 const ROUND_POWER: f64 = 0.02;
+/// Share of the peak speed about which dry friction is rounded.
+const ROUND_SPEED: f64 = 0.02;
 /// Peak power below which a stream is taken to need no rounding finer, W.
 const LEAST_POWER: f64 = 1.0;
 /// Simpson's rule on a piece: share of its length and weight.
@@ -111,8 +111,21 @@ pub fn polish_stream(
     let rows = points.limit_rows(limits);
     let unit = realise(stream, plant, model).energy.total().abs().max(f64::MIN_POSITIVE);
     let round_power = ROUND_POWER * peak_power(stream, plant).max(LEAST_POWER);
-    let polish =
-        Polish { reference, plant, model, corridor, points, limits, rows, unit, round_power };
+    let round_speed = (ROUND_SPEED * peak_speed(stream)).max(f64::MIN_POSITIVE);
+    let dry = plant.dry_friction();
+    let polish = Polish {
+        reference,
+        plant,
+        model,
+        corridor,
+        points,
+        limits,
+        rows,
+        unit,
+        round_power,
+        round_speed,
+        dry,
+    };
     let mut best = polish.judge(stream.clone());
     let mut damping = DAMPING;
     let mut status = PolishStatus::Stopped;
@@ -173,16 +186,20 @@ struct Polish<'a, P> {
     unit: f64,
     /// Power about which the loss of braking is rounded, W.
     round_power: f64,
+    /// Speed about which dry friction is rounded, rad/s.
+    round_speed: f64,
+    /// Dry friction, Nm.
+    dry: Joints,
 }
 
 /// Torque, shares of the limits of the path and their derivatives at one place: `by[kind][i]` holds the change of
 /// them per change of q, q̇ or q̈ of joint i.
 struct Linearised {
     torque: Joints,
-    path: [f64; 2],
+    path: PathShares,
     torque_by: [[Joints; DOF]; 3],
-    /// Of each share of the path, by q and q̇; zero where both are far from their limits.
-    path_by: [[[f64; DOF]; 2]; 2],
+    /// Of each share of the path, by q and q̇; zero where all are far from their limits.
+    path_by: [[[f64; DOF]; 2]; 3],
 }
 
 impl<P: Plant> Polish<'_, P> {
@@ -265,20 +282,19 @@ impl<P: Plant> Polish<'_, P> {
 
     /// Adds the derivatives.
     fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
-        let here = self.plant.torque(&place.q, &place.qd, &place.qdd);
-        let capped = lin.path.iter().any(|share| *share > NEAR);
-        for (kind, step) in DIFFERENCES.into_iter().enumerate() {
+        lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
+        if lin.path.iter().all(|share| *share <= NEAR) {
+            return;
+        }
+        // Positions and speeds move the tool; accelerations do not.
+        for (kind, step) in DIFFERENCES.into_iter().enumerate().take(2) {
             for joint in self.points.joints.iter().copied() {
-                let mut state = [place.q, place.qd, place.qdd];
+                let mut state = [place.q, place.qd];
                 state[kind][joint] += step;
-                let [q, qd, qdd] = state;
-                let next = self.plant.torque(&q, &qd, &qdd);
-                lin.torque_by[kind][joint] = std::array::from_fn(|j| (next[j] - here[j]) / step);
-                if capped && kind < 2 {
-                    let next = self.plant.path_shares(&q, &qd, &mut near.clone());
-                    for (limit, next) in next.iter().enumerate() {
-                        lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
-                    }
+                let [q, qd] = state;
+                let next = self.plant.path_shares(&q, &qd, &mut near.clone());
+                for (limit, next) in next.iter().enumerate() {
+                    lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
                 }
             }
         }
@@ -358,10 +374,13 @@ impl<P: Plant> Polish<'_, P> {
         for (n, a) in columns.iter().enumerate() {
             let mut slope = 2.0 * price * a.w * lever[a.joint] * offset[a.joint];
             for j in 0..DOF {
-                slope +=
-                    per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + place.qd[j]);
+                let work = self.model.work * place.qd[j];
+                slope += per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + work);
             }
-            slope += per * a.w1 * lin.torque[a.joint];
+            let speed = 2.0 * self.model.speed * place.qd[a.joint];
+            let (dry, _) = self.rounded_friction(a.joint, place.qd[a.joint]);
+            let torque = lin.torque[a.joint] + dry;
+            slope += per * a.w1 * (self.model.work * torque + speed);
             model.gradient[a.index] += slope;
             for b in &columns[..=n] {
                 let mut curve: f64 = (0..DOF)
@@ -370,7 +389,10 @@ impl<P: Plant> Polish<'_, P> {
                 let mut normal = -along[a.joint] * along[b.joint];
                 if a.joint == b.joint {
                     normal += 1.0;
-                    curve += 2.0 * per * lin.torque_by[1][a.joint][a.joint].max(0.0) * a.w1 * b.w1;
+                    let viscous = lin.torque_by[1][a.joint][a.joint].max(0.0);
+                    let (_, dry) = self.rounded_friction(a.joint, place.qd[a.joint]);
+                    let friction = self.model.work * (viscous + 0.5 * dry);
+                    curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
                 }
                 curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
                 let (i, j) = (a.index.max(b.index), a.index.min(b.index));
@@ -390,6 +412,17 @@ impl<P: Plant> Polish<'_, P> {
         for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
             model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
         }
+    }
+
+    /// What rounding changes of the dry friction of a joint at a velocity, Nm, and the slope of the
+    /// rounded friction, Nms: without them no step would take a joint over the kink in its work.
+    fn rounded_friction(&self, joint: usize, velocity: f64) -> (f64, f64) {
+        let root = velocity.hypot(self.round_speed);
+        let dry = self.dry[joint];
+        (
+            dry * (velocity / root - direction(velocity)),
+            dry * (self.round_speed / root).powi(2) / root,
+        )
     }
 
     /// Adds the loss of the powers at a place that are braked away: (√(p² + ε²) − p) / 2 for
@@ -470,7 +503,7 @@ struct Column {
     w: f64,
     w1: f64,
     torque: Joints,
-    path: [f64; 2],
+    path: PathShares,
 }
 
 /// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is broken.
@@ -498,6 +531,11 @@ fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
         (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
     };
     places(stream, &SIMPSON).iter().map(power).fold(0.0, f64::max)
+}
+
+/// The largest speed of a joint, rad/s.
+fn peak_speed(stream: &Stream) -> f64 {
+    stream.max_velocity().into_iter().fold(0.0, f64::max)
 }
 
 fn norm(vector: &Joints) -> f64 {

@@ -9,7 +9,10 @@ use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::optimize::check::Check;
-use crate::retrofit::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind};
+use crate::optimize::energy_curve::TimeEnergy;
+use crate::retrofit::{
+    Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind, SignalShift,
+};
 use crate::robot::Model;
 
 /// The six parts, or nulls where the robot has no dynamics.
@@ -164,13 +167,28 @@ pub fn retrofit(
             "max_ratio": ratios(worst),
             "max_path_deviation_m": worst.deviation_m,
             "endpoint_error_rad": worst.endpoint_error_rad,
+            "intended_error_rad": retrofit.verification.intended_error_rad,
             "checks": checks,
         },
+        "signals": retrofit.signals.iter().map(signal).collect::<Vec<Value>>(),
         "files": retrofit.outputs.iter().map(file).collect::<Vec<Value>>(),
         "outputs": outputs,
         "notes": retrofit.notes,
         "unresolved": unresolved(places, &retrofit.before.0),
         "assumed": assumed(model, &retrofit.before.0),
+    })
+}
+
+fn signal(signal: &SignalShift) -> Value {
+    json!({
+        "name": signal.name,
+        "kind": match signal.kind {
+            SignalKind::Input => "input",
+            SignalKind::Output => "output",
+        },
+        "times": signal.times,
+        "order_kept": signal.order_kept,
+        "largest_shift_s": signal.largest_shift_s,
     })
 }
 
@@ -186,12 +204,13 @@ fn ratios(check: &Check) -> Value {
 
 fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
     let place = places.of(segment.span);
-    json!({
+    let mut value = json!({
         "file": place.file,
         "line_first": place.first,
         "line_last": place.last,
         "kind": match segment.kind {
             SegmentKind::Timing => "timing",
+            SegmentKind::Path => "path",
             SegmentKind::Idle => "idle",
         },
         "rewritten": segment.rewritten,
@@ -205,7 +224,18 @@ fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
         "lower_bound_j": segment.lower_bound_j,
         "points": segment.points,
         "potential_j": segment.potential_j,
-    })
+    });
+    if !segment.pareto.is_empty() {
+        let point = |point: &TimeEnergy| {
+            json!({
+                "time_s": point.time_s,
+                "energy_j": point.energy_j,
+                "lower_bound_j": point.lower_bound_j,
+            })
+        };
+        value["pareto"] = segment.pareto.iter().map(point).collect();
+    }
+    value
 }
 
 fn file(output: &OutputFile) -> Value {

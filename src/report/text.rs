@@ -127,8 +127,10 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         let saved = segment.energy_before_j - segment.energy_after_j;
         let what = match (segment.kind, segment.rewritten) {
             (SegmentKind::Idle, _) => "dwell",
+            (SegmentKind::Timing, true) if segment.points == 0 => "new speeds",
+            (SegmentKind::Path, true) => "free stream",
             (SegmentKind::Timing, true) => "stream",
-            (SegmentKind::Timing, false) => "as it was",
+            (SegmentKind::Timing | SegmentKind::Path, false) => "as it was",
         };
         let runs = if segment.rewritten {
             format!("{}/{}", segment.rewritten_executions, segment.executions)

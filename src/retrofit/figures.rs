@@ -1,8 +1,10 @@
 //! The result of a retrofit as plain data.
 
+use super::signals::SignalShift;
 use crate::energy::Account;
 use crate::motion::Simulation;
 use crate::optimize::check::Check;
+use crate::optimize::energy_curve::TimeEnergy;
 use crate::optimize::reason::Reason;
 use crate::text::Span;
 
@@ -22,6 +24,8 @@ pub struct Figures {
 pub enum SegmentKind {
     /// Movements, to be timed anew on their path.
     Timing,
+    /// Movements that leave their path.
+    Path,
     /// A dwell.
     Idle,
 }
@@ -58,6 +62,8 @@ pub struct Segment {
     pub potential_j: f64,
     /// Events of the simulations in which it runs, for plots.
     pub events: Vec<usize>,
+    /// Least energy over time of one execution, in its first way; empty where not asked for.
+    pub pareto: Vec<TimeEnergy>,
 }
 
 impl Segment {
@@ -78,6 +84,7 @@ impl Segment {
             points: 0,
             potential_j: 0.0,
             events: Vec::new(),
+            pareto: Vec::new(),
         }
     }
 }
@@ -89,6 +96,8 @@ pub struct Verification {
     pub passed: bool,
     /// Worst figures of all streams.
     pub worst: Check,
+    /// Largest distance of a joint of a simulated stream from the intended one at any time, rad.
+    pub intended_error_rad: f64,
     /// What was compared, in words, and whether it held.
     pub checks: Vec<(String, bool)>,
 }
@@ -130,6 +139,8 @@ pub struct Retrofit {
     pub segments: Vec<Segment>,
     /// What the verifier saw.
     pub verification: Verification,
+    /// The signals of the program before and after.
+    pub signals: Vec<SignalShift>,
     /// The complete program.
     pub outputs: Vec<OutputFile>,
     /// What else is to be known.

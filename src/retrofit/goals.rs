@@ -7,7 +7,8 @@ use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{Event, WaitBasis, What};
 use crate::optimize::cycle::{Part, TradeOff, cycle_time, share};
-use crate::optimize::retime::{Goal, Task, fastest, thriftiest, trade_off};
+use crate::optimize::energy_curve::{thriftiest, trade_off};
+use crate::optimize::retime::{Goal, Task, fastest};
 use crate::optimize::site::Site;
 use crate::robot::Model;
 
@@ -114,7 +115,7 @@ fn possible(
 }
 
 /// The cycle as the tasks see it.
-fn parts(
+pub(super) fn parts(
     model: &Model,
     settings: &Settings,
     simulation: &Simulation,

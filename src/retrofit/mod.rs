@@ -6,13 +6,18 @@
 pub mod figures;
 mod freed;
 mod goals;
+mod guided;
+mod hazards;
 mod notes;
 mod outputs;
 mod segments;
+mod signals;
+mod speeds;
 mod verify;
 mod work;
 
 pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
 pub use freed::freed;
 pub use outputs::read_again;
-pub use work::{Budget, Objective, RetrofitError, Settings, Source, read_program, retrofit};
+pub use signals::{SignalKind, SignalShift};
+pub use work::{Budget, Form, Objective, RetrofitError, Settings, Source, read_program, retrofit};

@@ -39,7 +39,7 @@ pub(super) fn notes(
     }
     let dearer: Vec<String> = segments
         .iter()
-        .filter(|segment| segment.kind == SegmentKind::Timing && segment.rewritten)
+        .filter(|segment| segment.kind != SegmentKind::Idle && segment.rewritten)
         .filter(|segment| segment.energy_after_j > segment.energy_before_j + ROUNDING_J)
         .map(|segment| {
             let file = &files[segment.span.file.0 as usize].file;

@@ -4,26 +4,36 @@ use std::collections::BTreeMap;
 
 use super::figures::{OutputFile, OutputKind};
 use super::work::{RetrofitError, Source, Way, run_of};
-use crate::emit::{self, EmittedStream, Names};
+use crate::emit::{self, EmittedStream, Layout, Names};
 use crate::ir::number::number;
-use crate::ir::program::{Program, RoutineId};
 use crate::motion::Simulation;
 use crate::optimize::idle::Dwell;
 use crate::optimize::site::Site;
 use crate::robot::Model;
 use crate::text::{self, FileId, SourceFile, Span};
 
+/// What stays the same from one emission to the next.
+pub(super) struct Writing<'a> {
+    /// The files of the program.
+    pub(super) files: &'a [Source],
+    /// The same as they are read.
+    pub(super) originals: Vec<SourceFile>,
+    /// The file beside which new modules lie.
+    pub(super) beside: usize,
+    /// Names that are free.
+    pub(super) names: Names,
+    /// How points are written.
+    pub(super) layout: Layout,
+}
+
 /// Emits the ways that have streams; every other file stays as it was.
 pub(super) fn emit(
-    files: &[Source],
-    program: &Program,
-    entry: RoutineId,
+    writing: &Writing<'_>,
     simulation: &Simulation,
     sites: &[Site],
     ways: &[Way],
-    names: &Names,
 ) -> Result<Vec<OutputFile>, RetrofitError> {
-    let originals: Vec<text::SourceFile> = files.iter().map(|s| s.file.clone()).collect();
+    let files = writing.files;
     let mut emitted_sites = Vec::new();
     for (index, site) in sites.iter().enumerate() {
         let streams: Vec<EmittedStream> = ways
@@ -36,14 +46,13 @@ pub(super) fn emit(
         }
     }
     let mut outputs = Vec::new();
-    let module_file = program.modules[entry.module].span.file.0 as usize;
     if emitted_sites.is_empty() {
         for (i, source) in files.iter().enumerate() {
             outputs.push(unchanged(i, source));
         }
         return Ok(outputs);
     }
-    let emitted = emit::emit(&originals, names, &emitted_sites)?;
+    let emitted = emit::emit(&writing.originals, &writing.names, writing.layout, &emitted_sites)?;
     for (i, source) in files.iter().enumerate() {
         let edits: Vec<text::Edit> =
             emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
@@ -61,18 +70,20 @@ pub(super) fn emit(
             input: Some(i),
         });
     }
-    let entry_file = &files[module_file];
+    let entry_file = &files[writing.beside];
     let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
-    let name = format!("{}.mod", names.module);
-    let path = if folder.is_empty() { name } else { format!("{folder}/{name}") };
     let end_of_line = emit::end_of_line(&entry_file.file.bytes);
-    let module = emitted.module.replace('\n', end_of_line);
-    outputs.push(OutputFile {
-        path,
-        kind: OutputKind::New,
-        bytes: module.into_bytes(),
-        input: None,
-    });
+    for (name, text) in emitted.modules {
+        let path =
+            if folder.is_empty() { format!("{name}.mod") } else { format!("{folder}/{name}.mod") };
+        let text = text.replace('\n', end_of_line);
+        outputs.push(OutputFile {
+            path,
+            kind: OutputKind::New,
+            bytes: text.into_bytes(),
+            input: None,
+        });
+    }
     Ok(outputs)
 }
 
@@ -85,7 +96,8 @@ pub fn read_again(outputs: &[OutputFile]) -> Vec<Source> {
     outputs.iter().enumerate().map(file).collect()
 }
 
-fn unchanged(index: usize, source: &Source) -> OutputFile {
+/// A file of the program as it was.
+pub(super) fn unchanged(index: usize, source: &Source) -> OutputFile {
     OutputFile {
         path: source.relative.clone(),
         kind: OutputKind::Unchanged,
@@ -118,8 +130,9 @@ fn stream(
         start: run.start,
         points: retiming.stream.points().to_vec(),
         intervals: retiming.stream.intervals().to_vec(),
+        external: run.moves.first()?.movement.external?,
         locals: site.variants[way.variant].locals.clone(),
-        tool: run.moves.first()?.movement.tool.name.to_string(),
+        tool: argument(files, run.moves.first()?.movement.tool_span),
         origin: format!("{} {lines}{way_text}", ascii(&file.relative)),
         before: format!("{} s {} J", number(run.duration(), 3), number(before, 1)),
         after: format!(
@@ -128,6 +141,12 @@ fn stream(
             number(retiming.energy.energy_j(), 1)
         ),
     })
+}
+
+/// An argument as the program writes it, to be written again at the same place.
+fn argument(files: &[Source], span: Span) -> String {
+    let file = &files[span.file.0 as usize].file;
+    file.text(span).into_owned()
 }
 
 /// Comments are plain ASCII, whatever the file's encoding.

@@ -9,6 +9,7 @@ use crate::motion::Simulation;
 use crate::motion::timeline::What;
 use crate::optimize::idle::Dwell;
 use crate::optimize::reason::Reason;
+use crate::optimize::retime::PathUse;
 use crate::optimize::site::Site;
 use crate::text::Span;
 
@@ -39,6 +40,9 @@ pub(super) fn segments(
         for way in ways.iter().filter(|way| way.site == index) {
             let events = &site.variants[way.variant].events;
             segment.executions += events.len();
+            if segment.pareto.is_empty() {
+                segment.pareto.clone_from(&way.pareto);
+            }
             let (time, energy) = cost(before, before_account, events);
             segment.time_before_s += time;
             segment.energy_before_j += energy;
@@ -48,6 +52,13 @@ pub(super) fn segments(
             match &way.outcome {
                 Ok(retiming) => {
                     segment.rewritten = true;
+                    match &retiming.path {
+                        PathUse::Kept => {}
+                        PathUse::KeptFor(reason) => {
+                            segment.reason.get_or_insert(reason.clone());
+                        }
+                        PathUse::Left => segment.kind = SegmentKind::Path,
+                    }
                     segment.rewritten_executions += events.len();
                     segment.points += retiming.stream.points().len();
                     bound += retiming.lower_bound_j * events.len() as f64;

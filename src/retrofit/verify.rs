@@ -5,12 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::figures::{OutputFile, OutputKind, Verification};
 use super::outputs::read_again;
 use super::work::{Settings, Source, Way, nothing_to_verify, read_program};
+use crate::motion::stream::Stream;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::{Check, check};
-use crate::optimize::corridor::Corridor;
+use crate::optimize::corridor::{Corridor, Freedom};
+use crate::optimize::keep_out::body;
 use crate::optimize::reason::Reason;
+use crate::optimize::retime::PathUse;
 use crate::optimize::site::Site;
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
@@ -20,6 +23,11 @@ use crate::syntax;
 const ENDPOINT_TOLERANCE: f64 = 1e-4;
 /// Rounding of a sum of times, s.
 const TIME_TOLERANCE: f64 = 1e-6;
+/// Largest distance of a simulated stream from the intended one at any time, rad: the rounding of
+/// the text is in the intended one already.
+const INTENDED_TOLERANCE: f64 = 1e-6;
+/// Step between two comparisons of them, s.
+const STEP: f64 = 0.002;
 
 /// One attempt.
 pub(super) struct Attempt {
@@ -86,7 +94,11 @@ pub(super) fn verify(
     let same_events = same_order(original, &simulation);
     note("movements, waits and outputs come in the same order", same_events);
     if !same_events && failed.is_empty() {
-        failed = everything("the emitted program runs in another order");
+        let why = "the emitted program runs in another order";
+        failed = match reordering(original, &simulation, sites, ways) {
+            Some(way) => vec![(way, Reason::Verification(why.into()))],
+            None => everything(why),
+        };
     }
     let cycle_kept = match settings.budget {
         super::Budget::AsBefore => simulation.cycle_s <= original.cycle_s + TIME_TOLERANCE,
@@ -101,12 +113,22 @@ pub(super) fn verify(
     }
     if failed.is_empty() && same_events {
         let mut worst = Check::none();
+        let mut strayed: f64 = 0.0;
+        let strict = settings.freedom.strict();
         for i in rewritten {
             let way = &ways[i];
             for event in &sites[way.site].variants[way.variant].events {
                 let (before, after) = (&original.events[*event], &simulation.events[*event]);
-                match compare(model, settings, before, after) {
-                    Ok(check) => worst = worst.max(&check),
+                let Ok(retiming) = &way.outcome else { continue };
+                let freedom = match retiming.path {
+                    PathUse::Left => &settings.freedom,
+                    _ => &strict,
+                };
+                match compare(model, freedom, before, after, &retiming.stream) {
+                    Ok((check, distance)) => {
+                        worst = worst.max(&check);
+                        strayed = strayed.max(distance);
+                    }
                     Err(why) => {
                         failed.push((i, Reason::Verification(why)));
                         break;
@@ -115,12 +137,35 @@ pub(super) fn verify(
             }
         }
         verification.worst = worst;
-        verification
-            .checks
-            .push(("every stream keeps limits, path and ends".into(), failed.is_empty()));
+        verification.intended_error_rad = strayed;
+        let held = failed.is_empty();
+        verification.checks.push(("every stream keeps limits, path and ends".into(), held));
+        verification.checks.push(("every stream runs as intended at each moment".into(), held));
     }
     verification.passed = failed.is_empty() && verification.checks.iter().all(|(_, held)| *held);
     Attempt { simulation, verification, failed }
+}
+
+/// The stream at the first event that is another one than before, or the last one before it.
+fn reordering(
+    original: &Simulation,
+    simulation: &Simulation,
+    sites: &[Site],
+    ways: &[Way],
+) -> Option<usize> {
+    let pairs = original.events.iter().zip(&simulation.events);
+    let first = pairs.take_while(|(a, b)| same_event(a, b)).count();
+    streams(sites, ways).range(..=first).next_back().map(|(_, way)| *way)
+}
+
+/// The ways with streams, by the events in which they run.
+fn streams(sites: &[Site], ways: &[Way]) -> BTreeMap<usize, usize> {
+    let mut streams = BTreeMap::new();
+    for (i, way) in ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok()) {
+        let events = &sites[way.site].variants[way.variant].events;
+        streams.extend(events.iter().map(|event| (*event, i)));
+    }
+    streams
 }
 
 /// The streams behind which a movement that stays takes longer than before.
@@ -130,11 +175,7 @@ fn slowed(
     sites: &[Site],
     ways: &[Way],
 ) -> Vec<(usize, Reason)> {
-    let mut streams: BTreeMap<usize, usize> = BTreeMap::new();
-    for (i, way) in ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok()) {
-        let events = &sites[way.site].variants[way.variant].events;
-        streams.extend(events.iter().map(|event| (*event, i)));
-    }
+    let streams = streams(sites, ways);
     let pairs = original.events.iter().zip(&simulation.events).enumerate();
     let slower = pairs.filter(|(event, (before, after))| {
         !streams.contains_key(event) && after.duration > before.duration + TIME_TOLERANCE
@@ -163,17 +204,21 @@ fn is_subsequence(part: &[u8], whole: &[u8]) -> bool {
 }
 
 /// The same kinds of events with the same outputs, waits and ends.
-fn same_order(a: &Simulation, b: &Simulation) -> bool {
+pub(super) fn same_order(a: &Simulation, b: &Simulation) -> bool {
     a.events.len() == b.events.len()
-        && a.events.iter().zip(&b.events).all(|(a, b)| match (&a.what, &b.what) {
-            (What::Run(a), What::Run(b)) => same_ends(a, b),
-            (What::Wait(a), What::Wait(b)) => {
-                a.wait.instruction == b.wait.instruction && a.wait.signal == b.wait.signal
-            }
-            (What::Output(a, _), What::Output(b, _)) => a.signal == b.signal && a.value == b.value,
-            (What::Left(a), What::Left(b)) => a.reason == b.reason,
-            _ => false,
-        })
+        && a.events.iter().zip(&b.events).all(|(a, b)| same_event(a, b))
+}
+
+fn same_event(a: &Event, b: &Event) -> bool {
+    match (&a.what, &b.what) {
+        (What::Run(a), What::Run(b)) => same_ends(a, b),
+        (What::Wait(a), What::Wait(b)) => {
+            a.wait.instruction == b.wait.instruction && a.wait.signal == b.wait.signal
+        }
+        (What::Output(a, _), What::Output(b, _)) => a.signal == b.signal && a.value == b.value,
+        (What::Left(a), What::Left(b)) => a.reason == b.reason,
+        _ => false,
+    }
 }
 
 fn same_ends(a: &Run, b: &Run) -> bool {
@@ -183,13 +228,15 @@ fn same_ends(a: &Run, b: &Run) -> bool {
     })
 }
 
-/// The stream that runs now against the run that was.
+/// The stream that runs now against the run that was, and its distance (rad) from the intended
+/// one.
 fn compare(
     model: &Model,
-    settings: &Settings,
+    freedom: &Freedom,
     before: &Event,
     after: &Event,
-) -> Result<Check, String> {
+    intended: &Stream,
+) -> Result<(Check, f64), String> {
     let (What::Run(run), What::Run(new)) = (&before.what, &after.what) else {
         return Err("another event stands in its place".into());
     };
@@ -197,16 +244,58 @@ fn compare(
         return Err("the emitted points do not run as a stream".into());
     };
     let corridor =
-        Corridor::new(model, run, &settings.freedom).ok_or("the original path is not one piece")?;
+        Corridor::new(model, run, freedom).ok_or("the original path is not one piece")?;
     if new.load != run.load {
         return Err("it runs with another tool or load".into());
     }
-    let check = check(model, &run.load, &run.legs[0].tool, stream, &corridor, &run.end);
+    let body = body(model, run, freedom);
+    let tool = &run.legs[0].tool;
+    let check = check(model, &run.load, tool, stream, &corridor, &run.end, body.as_ref());
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points".into());
     }
     if check.endpoint_error_rad > ENDPOINT_TOLERANCE {
         return Err("it ends elsewhere".into());
     }
-    Ok(check)
+    let strayed = distance(intended, stream);
+    if strayed > INTENDED_TOLERANCE {
+        return Err("the emitted points do not move as intended".into());
+    }
+    Ok((check, strayed))
+}
+
+/// Largest distance of a joint between two streams at the same time, rad; infinite where they do
+/// not take the same time.
+fn distance(intended: &Stream, stream: &Stream) -> f64 {
+    let duration = intended.duration();
+    if (stream.duration() - duration).abs() > TIME_TOLERANCE {
+        return f64::INFINITY;
+    }
+    let count = (duration / STEP).ceil().max(1.0) as usize;
+    let apart = |i: usize| {
+        let t = duration * i as f64 / count as f64;
+        let (a, b) = (intended.eval(t).0, stream.eval(t).0);
+        (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
+    };
+    (0..=count).map(apart).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::*;
+
+    #[test]
+    fn another_motion_in_the_same_time_is_seen() {
+        let stream = |middle: f64, times: [f64; 3]| {
+            let points = vec![[0.1; DOF], [middle; DOF], [1.0; DOF]];
+            Stream::new([0.0; DOF], points, times.to_vec()).unwrap()
+        };
+        let intended = stream(0.8, [0.1, 0.1, 0.1]);
+        assert_eq!(distance(&intended, &intended), 0.0);
+        assert!(distance(&intended, &stream(0.79, [0.1, 0.1, 0.1])) > 1e-3);
+        assert!(distance(&intended, &stream(0.8, [0.09, 0.12, 0.09])) > 1e-3);
+        assert!(distance(&intended, &stream(0.8, [0.1, 0.1, 0.2])).is_infinite());
+    }
 }

@@ -6,14 +6,16 @@ use rayon::prelude::*;
 
 use super::figures::{Figures, Retrofit, Verification};
 use super::goals::{Plan, goals};
-use super::{notes, outputs, segments, verify};
-use crate::emit::{self, Names};
+use super::{guided, hazards, notes, outputs, segments, signals, speeds, verify};
+use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
 use crate::optimize::corridor::Freedom;
+use crate::optimize::cost::Cost;
+use crate::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::{Goal, Retiming, Task, retime};
@@ -23,7 +25,10 @@ use crate::syntax::{self, SyntaxError};
 use crate::text::SourceFile;
 
 /// Rounding of a time, s.
-const TIME_TOLERANCE: f64 = 1e-6;
+pub(super) const TIME_TOLERANCE: f64 = 1e-6;
+
+/// Rounds of leaving out what did not hold; in the last one nothing is kept.
+const MOST_ROUNDS: usize = 12;
 
 /// A file of the program.
 #[derive(Clone, Debug)]
@@ -55,6 +60,18 @@ pub enum Budget {
     Factor(f64),
 }
 
+/// What a retrofit writes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// Streams of joint targets in place of movements.
+    #[default]
+    Streams,
+    /// The movements with other speeds.
+    Speeds,
+    /// Positions for externally guided motion beside the program.
+    Guided,
+}
+
 /// How a program is retrofitted.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -70,6 +87,14 @@ pub struct Settings {
     pub spacing_s: f64,
     /// What streams may do that the movements did not.
     pub freedom: Freedom,
+    /// What is written.
+    pub form: Form,
+    /// How the points of streams are written.
+    pub layout: Layout,
+    /// What stands for energy.
+    pub cost: Cost,
+    /// Points of the curve of energy over time of each segment; 0 for none.
+    pub pareto: usize,
 }
 
 /// Why a program can't be retrofitted at all.
@@ -258,6 +283,15 @@ pub(super) struct Way {
     pub(super) variant: usize,
     /// Its stream, or why there is none.
     pub(super) outcome: Outcome,
+    /// Its curve of energy over time, if that is asked for.
+    pub(super) pareto: Vec<TimeEnergy>,
+}
+
+impl Way {
+    /// A way without more than its outcome.
+    pub(super) fn new(site: usize, variant: usize, outcome: Outcome) -> Way {
+        Way { site, variant, outcome, pareto: Vec::new() }
+    }
 }
 
 /// A stream, or why there is none.
@@ -277,19 +311,34 @@ pub fn retrofit(
     let (program, entry) = read_program(files, &settings.entry)?;
     let simulation = simulate(&program, entry, model, &settings.options);
     let before = account(model, &simulation);
-    let sites = sites(&program, &simulation);
+    let mut sites = sites(&program, &simulation);
+    hazards::mark(&program, &simulation, &mut sites);
+    if settings.form == Form::Speeds {
+        let before =
+            speeds::Before { files, program: &program, simulation, account: before, sites: &sites };
+        return speeds::retrofit(before, model, settings, progress);
+    }
     let mut ways = retime_all(model, settings, &simulation, &before, &sites, progress)?;
-    let names = Names::free(&program);
+    let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
+    let writing = outputs::Writing {
+        files,
+        names: Names::free(&originals),
+        originals,
+        beside: program.modules[entry.module].span.file.0 as usize,
+        layout: settings.layout,
+    };
     let dwells_before = dwells(model, &simulation);
 
     // Each round leaves out what did not hold in the emitted text.
+    let mut rounds = 0;
     let mut checked = loop {
-        let emitted = outputs::emit(files, &program, entry, &simulation, &sites, &ways, &names)?;
+        let emitted = outputs::emit(&writing, &simulation, &sites, &ways)?;
         let attempt = verify::verify(files, &emitted, model, settings, &simulation, &sites, &ways);
         if attempt.verification.passed || ways.iter().all(|way| way.outcome.is_err()) {
             break (emitted, attempt);
         }
-        if attempt.failed.is_empty() {
+        rounds += 1;
+        if attempt.failed.is_empty() || rounds == MOST_ROUNDS {
             // No single stream is at fault: none is kept.
             let broken = attempt.verification.checks.iter().find(|(_, held)| !held);
             let why = broken.map_or("the verification failed", |(what, _)| what.as_str());
@@ -301,7 +350,12 @@ pub fn retrofit(
             ways[way].outcome = Err(reason);
         }
     };
-    let verify::Attempt { simulation: after_simulation, verification, .. } = checked.1;
+    let verify::Attempt { simulation: mut after_simulation, verification, .. } = checked.1;
+    if settings.form == Form::Guided {
+        checked.0 = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
+        // The program that runs is the one before.
+        after_simulation = simulate(&program, entry, model, &settings.options);
+    }
     let after = account(model, &after_simulation);
     let segments = segments::segments(
         (&simulation, &before),
@@ -312,7 +366,7 @@ pub fn retrofit(
         &not_reached(&program, &simulation),
     );
     outputs::add_brake_note(&mut checked.0, model, &dwells(model, &after_simulation));
-    let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).sum();
+    let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
     let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
     let notes =
         notes::notes(files, model, settings, &simulation, &segments, (&original, &optimized));
@@ -323,13 +377,14 @@ pub fn retrofit(
         segments,
         notes,
         verification,
+        signals: signals::signals(&simulation, &after_simulation),
         outputs: checked.0,
         before: (simulation, before),
         after: (after_simulation, after),
     })
 }
 
-fn figures(simulation: &Simulation, account: &Account) -> Figures {
+pub(super) fn figures(simulation: &Simulation, account: &Account) -> Figures {
     Figures {
         cycle_s: simulation.cycle_s,
         energy_j: account.total.energy_j(),
@@ -367,11 +422,7 @@ fn retime_all(
                     ))
                 })
             });
-            ways.push(Way {
-                site: s,
-                variant: v,
-                outcome: Err(reason.unwrap_or(Reason::NoSaving)),
-            });
+            ways.push(Way::new(s, v, Err(reason.unwrap_or(Reason::NoSaving))));
         }
     }
     let open: Vec<usize> =
@@ -389,6 +440,7 @@ fn retime_all(
                 energy_before: energy,
                 spacing_s: settings.spacing_s,
                 freedom: &settings.freedom,
+                cost: settings.cost,
             };
             Some((*i, task))
         })
@@ -411,6 +463,11 @@ fn retime_all(
         .collect();
     if settings.budget == Budget::AsBefore {
         keep_to_the_cycle(&plan, &tasks, &mut outcomes);
+        if settings.objective == Objective::Energy {
+            let executions =
+                |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
+            leave_what_does_not_pay(&plan, &tasks, &executions, &mut outcomes);
+        }
     }
     if let Budget::Factor(factor) = settings.budget {
         let share = |(outcome, task): (&Outcome, &Task<'_>)| match outcome {
@@ -427,6 +484,13 @@ fn retime_all(
     }
     for (i, outcome) in outcomes {
         ways[i].outcome = outcome;
+    }
+    if settings.pareto > 0 {
+        let curves: Vec<(usize, Vec<TimeEnergy>)> =
+            tasks.par_iter().map(|(i, task)| (*i, pareto(task, settings.pareto))).collect();
+        for (i, curve) in curves {
+            ways[i].pareto = curve;
+        }
     }
     Ok(ways)
 }
@@ -459,6 +523,43 @@ fn keep_to_the_cycle(plan: &Plan, tasks: &[(usize, Task<'_>)], outcomes: &mut [(
     );
 }
 
+/// A run that is quicker at the cost of energy has to give its time to others that save more.
+/// Where the cycle is kept without it, or nothing is saved in all, it goes back to its time before.
+fn leave_what_does_not_pay(
+    plan: &Plan,
+    tasks: &[(usize, Task<'_>)],
+    executions: &dyn Fn(usize) -> f64,
+    outcomes: &mut [(usize, Outcome)],
+) {
+    let excess = |outcome: &Outcome| {
+        outcome.as_ref().map_or(0.0, |r| r.energy.energy_j() - r.energy_before_j)
+    };
+    let time = |task: &Task<'_>, outcome: &Outcome| {
+        outcome.as_ref().map_or(task.run.duration(), |retiming| retiming.duration_s)
+    };
+    let mut times: Vec<f64> =
+        tasks.iter().zip(&*outcomes).map(|((_, task), (_, outcome))| time(task, outcome)).collect();
+    let mut costly: Vec<usize> =
+        (0..tasks.len()).filter(|i| excess(&outcomes[*i].1) > 0.0).collect();
+    costly.sort_by(|a, b| excess(&outcomes[*b].1).total_cmp(&excess(&outcomes[*a].1)));
+    for i in costly {
+        let task = &tasks[i].1;
+        let patient = std::mem::replace(&mut times[i], task.run.duration());
+        if plan.holds(&times) {
+            outcomes[i].1 = retime(task, Goal::Within(task.run.duration()));
+            times[i] = time(task, &outcomes[i].1);
+        } else {
+            times[i] = patient;
+        }
+    }
+    let in_all: f64 = outcomes.iter().map(|(i, o)| executions(*i) * excess(o)).sum();
+    if in_all >= 0.0 {
+        outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
+            |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
+        );
+    }
+}
+
 /// Up to the next figure with three decimals: what a message tells to give has to do.
 pub(super) fn rounded_up(x: f64) -> f64 {
     (x * 1e3).ceil() / 1e3
@@ -466,5 +567,10 @@ pub(super) fn rounded_up(x: f64) -> f64 {
 
 /// No verification was made: nothing was changed.
 pub(super) fn nothing_to_verify() -> Verification {
-    Verification { passed: true, worst: crate::optimize::check::Check::none(), checks: Vec::new() }
+    Verification {
+        passed: true,
+        worst: crate::optimize::check::Check::none(),
+        intended_error_rad: 0.0,
+        checks: Vec::new(),
+    }
 }

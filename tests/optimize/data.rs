@@ -12,8 +12,14 @@ use joulepath::optimize::stream_reference::{Reference, ReferenceError};
 use crate::analytic::single_joint;
 use crate::arm;
 
-const MODEL: EnergyModel =
-    EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing: Sharing::PerJoint, regeneration: 0.0 };
+const MODEL: EnergyModel = EnergyModel {
+    work: 1.0,
+    speed: 0.0,
+    loss: arm::LOSS,
+    base_w: 0.0,
+    sharing: Sharing::PerJoint,
+    regeneration: 0.0,
+};
 
 #[test]
 fn wrong_grids_are_refused() {
@@ -84,6 +90,8 @@ fn energies_of_a_known_motion() {
     let b = grid.s().iter().map(|s| 2.0 * a * s.min(length - s)).collect();
     let profile = Profile::new(grid.s().to_vec(), b).unwrap();
     let mut model = EnergyModel {
+        work: 1.0,
+        speed: 0.0,
         loss: [0.0; DOF],
         base_w: 7.0,
         sharing: Sharing::PerJoint,

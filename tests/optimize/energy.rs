@@ -4,7 +4,7 @@ use joulepath::motion::stream::{DOF, Joints};
 use joulepath::motion::timing::grid::PathGrid;
 use joulepath::motion::timing::limits::{PathLimits, worst_ratio};
 use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::time_optimal;
+use joulepath::motion::timing::reachability::{speed_range, time_optimal};
 use joulepath::optimize::energy_program::{EnergyOptimum, EnergyOutcome, minimize_energy};
 use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 
@@ -16,8 +16,14 @@ const FREE: Joints = [f64::INFINITY; DOF];
 const DISCRETISATION: f64 = 2e-3;
 
 fn first_joint(loss: f64) -> EnergyModel {
-    let mut model =
-        EnergyModel { loss: [0.0; DOF], base_w: 0.0, sharing: Sharing::Bus, regeneration: 1.0 };
+    let mut model = EnergyModel {
+        work: 1.0,
+        speed: 0.0,
+        loss: [0.0; DOF],
+        base_w: 0.0,
+        sharing: Sharing::Bus,
+        regeneration: 1.0,
+    };
     model.loss[0] = loss;
     model
 }
@@ -104,9 +110,30 @@ fn base_power_alone_gives_the_fastest_profile() {
 fn models() -> [EnergyModel; 3] {
     let loss = arm::LOSS;
     [
-        EnergyModel { loss, base_w: 0.0, sharing: Sharing::PerJoint, regeneration: 0.0 },
-        EnergyModel { loss, base_w: 0.0, sharing: Sharing::Bus, regeneration: 0.0 },
-        EnergyModel { loss, base_w: 150.0, sharing: Sharing::Bus, regeneration: 0.6 },
+        EnergyModel {
+            work: 1.0,
+            speed: 0.0,
+            loss,
+            base_w: 0.0,
+            sharing: Sharing::PerJoint,
+            regeneration: 0.0,
+        },
+        EnergyModel {
+            work: 1.0,
+            speed: 0.0,
+            loss,
+            base_w: 0.0,
+            sharing: Sharing::Bus,
+            regeneration: 0.0,
+        },
+        EnergyModel {
+            work: 1.0,
+            speed: 0.0,
+            loss,
+            base_w: 150.0,
+            sharing: Sharing::Bus,
+            regeneration: 0.6,
+        },
     ]
 }
 
@@ -232,4 +259,34 @@ fn a_time_just_above_the_fastest_gives_a_verified_profile() {
             assert!(best.profile.duration() <= time * (1.0 + 1e-9));
         }
     }
+}
+
+#[test]
+fn every_profile_in_the_time_lies_in_the_range_of_speeds() {
+    const ROUNDING: f64 = 1e-9;
+    let limits = arm::limits();
+    let mut narrow = Vec::new();
+    for seed in 0..8 {
+        let grid = arm::grid(&arm::Path::random(seed), 60, 1.0);
+        let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+        for factor in [1.05, 1.1, 1.5] {
+            let time = factor * fastest.duration();
+            let range = speed_range(&grid, &limits, time);
+            let uniform = fastest.scaled_to(time).unwrap();
+            let others = models().map(|model| converged(&grid, &limits, &model, |_| time).profile);
+            for profile in others.iter().chain([&fastest, &uniform]) {
+                for (b, (lo, hi)) in profile.b().iter().zip(&range) {
+                    assert!((lo - ROUNDING..=hi + ROUNDING).contains(b), "{seed}: {lo} {b} {hi}");
+                }
+            }
+            // A profile that is slow at one place and else as fast as can be.
+            let middle = grid.intervals() / 2;
+            let slow = range[middle].0.sqrt();
+            let dip = grid.capped(|k| if k == middle { 0.98 * slow.max(1e-6) } else { f64::MAX });
+            let dipped = time_optimal(&dip, &limits).into_profile().unwrap();
+            assert!(dipped.duration() > time, "{seed}: {} {time}", dipped.duration());
+            narrow.push(range[middle].0 / range[middle].1);
+        }
+    }
+    assert!(narrow.iter().any(|share| *share > 0.2), "{narrow:?}");
 }

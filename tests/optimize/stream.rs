@@ -5,7 +5,7 @@ use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
 use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
-use joulepath::optimize::plant::{Plant, realise};
+use joulepath::optimize::plant::{PathShares, Plant, realise};
 use joulepath::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
 use joulepath::optimize::stream_polish::{Corridor, polish_stream};
@@ -208,8 +208,14 @@ fn pipeline(seed: u64, factor: f64, model: &EnergyModel) -> (f64, f64, Reference
     (spent, best.energy.total(), reference, fitted(fit).stream)
 }
 
-const BUS: EnergyModel =
-    EnergyModel { loss: arm::LOSS, base_w: 0.0, sharing: Sharing::Bus, regeneration: 0.0 };
+const BUS: EnergyModel = EnergyModel {
+    work: 1.0,
+    speed: 0.0,
+    loss: arm::LOSS,
+    base_w: 0.0,
+    sharing: Sharing::Bus,
+    regeneration: 0.0,
+};
 
 #[test]
 fn polished_streams_realise_most_of_the_promised_saving() {
@@ -280,8 +286,8 @@ impl Plant for Flywheel {
         [1e3; DOF]
     }
 
-    fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> [f64; 2] {
-        [qd[0].abs() / self.ceiling, 0.0]
+    fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> PathShares {
+        [qd[0].abs() / self.ceiling, 0.0, 0.0]
     }
 }
 
@@ -309,8 +315,14 @@ fn copper_alone_gives_the_parabola_of_speed_in_the_points() {
     })
     .unwrap();
     let fit = fitted(fit_stream(&reference, vec![time / 20.0; 20], &FREE, &LEVER).unwrap()).stream;
-    let model =
-        EnergyModel { loss: [k; DOF], base_w: 0.0, sharing: Sharing::Bus, regeneration: 1.0 };
+    let model = EnergyModel {
+        work: 1.0,
+        speed: 0.0,
+        loss: [k; DOF],
+        base_w: 0.0,
+        sharing: Sharing::Bus,
+        regeneration: 1.0,
+    };
     let corridor = Corridor { tolerance: 1e-3, lever: LEVER };
     let polish = |ceiling: f64| {
         let plant = Flywheel { inertia: m, ceiling };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
-use super::super::instructions;
+use super::super::instructions::{self, MoveForm};
 use super::super::movement::{Output, Settings, Wait};
 use super::super::value::{Datum, Dependence, Value};
 use super::flow::{Flow, Raised, number_text};
@@ -101,9 +101,11 @@ impl Executor<'_> {
             "pathacclim" => self.path_acceleration(stmt, text, &arguments),
             "worldacclim" => self.world_acceleration(stmt, text, &arguments),
             "singarea" => self.sing_area(text, &arguments),
-            "waitrob" | "pathresol" | "motionsup" | "motionprocessmodeset" => {}
+            "waitrob" | "pathresol" | "motionsup" => {}
             "eoffsset" | "eoffson" | "softact" | "pdispon" | "corrcon" | "speedlimaxis"
-            | "tuneservo" => self.unmodelled(stmt, text),
+            | "tuneservo" | "pathrecstart" => self.unmodelled(stmt, text),
+            "pathrecstop" => self.clear_unmodelled(&["pathrecstart"]),
+            "motionprocessmodeset" => self.process_mode(stmt, text, &arguments),
             "eoffsoff" => self.clear_unmodelled(&["eoffsset", "eoffson"]),
             "softdeact" => self.clear_unmodelled(&["softact"]),
             "corrdiscon" | "corrclear" => self.clear_unmodelled(&["corrcon"]),
@@ -284,6 +286,10 @@ impl Executor<'_> {
             Length::Until(signal) => (None, signal, None),
             Length::Unknown(what) => (None, None, Some(what)),
         };
+        let moves = instructions::movement(&text.to_lowercase())
+            .is_some_and(|signature| signature.form == MoveForm::ExternalJoint);
+        let external = self.external_axes.as_deref().filter(|_| moves);
+        let external = external.and_then(|axes| axes.try_into().ok());
         self.machine.waits(Wait {
             instruction: text.into(),
             span: stmt.span,
@@ -293,6 +299,7 @@ impl Executor<'_> {
             signal,
             other,
             grip_load: self.settings.grip_load,
+            external,
         })
     }
 
@@ -544,6 +551,19 @@ impl Executor<'_> {
         let plain = |key: &str| matches!(key, "pathframe" | "objectframe");
         if arguments.optional.iter().all(|(key, _, _)| plain(key)) {
             self.clear_unmodelled(&["cirpathmode"]);
+        } else {
+            self.unmodelled(stmt, text);
+        }
+    }
+
+    /// `MotionProcessModeSet`: another tuning of the servo than the one that everything starts with.
+    fn process_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let usual = |expr: &&Expr| match &expr.kind {
+            ExprKind::Ref(name) => name.key == "optimal_cycle_time_mode",
+            _ => false,
+        };
+        if arguments.positional.first().is_some_and(usual) {
+            self.clear_unmodelled(&["motionprocessmodeset"]);
         } else {
             self.unmodelled(stmt, text);
         }

@@ -1,7 +1,7 @@
 //! Movement instructions: from arguments to a [`Movement`].
 
 use super::super::convert;
-use super::super::hir::{Arg, ArgKind, Expr, Stmt};
+use super::super::hir::{Arg, ArgKind, Expr, ExprKind, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{LocalValue, Movement, Stop, Target, Unresolved, Zone};
 use super::super::program::Symbol;
@@ -62,7 +62,7 @@ impl Executor<'_> {
     fn forget_targets(&mut self, args: &[Arg]) {
         for arg in args {
             if let ArgKind::Positional(expr) = &arg.kind
-                && let super::super::hir::ExprKind::Ref(name) = &expr.kind
+                && let ExprKind::Ref(name) = &expr.kind
                 && let Some(cell) = self.cell_of(name)
                 && !self.cells[cell].read_only
                 && &*self.cells[cell].value.type_key == "robtarget"
@@ -108,6 +108,7 @@ impl Executor<'_> {
             None => None,
         };
         let target_value = self.argument(target, &mut origin);
+        let external = convert::external(&target_value.datum);
         let target = match signature.form {
             MoveForm::AbsJ => Target::Joints(convert::jointtarget(&target_value.datum)?),
             _ => Target::Pose(convert::robtarget(&target_value.datum)?),
@@ -131,7 +132,7 @@ impl Executor<'_> {
         };
         let tool_value = self.argument(tool, &mut origin);
         let tool_name = match &tool.kind {
-            super::super::hir::ExprKind::Ref(name) => name.text.as_str(),
+            ExprKind::Ref(name) => name.text.as_str(),
             _ => "tool",
         };
         let named = tool;
@@ -176,7 +177,11 @@ impl Executor<'_> {
                 }
             }
         }
-        let locals = self.locals(&origin);
+        let mut locals = self.locals(&origin);
+        let options = arguments.optional.iter().filter_map(|(_, _, expr)| *expr);
+        for expr in arguments.positional.iter().copied().chain(options) {
+            self.references(expr, &mut locals);
+        }
         let other_arguments = arguments
             .optional
             .iter()
@@ -191,11 +196,13 @@ impl Executor<'_> {
             routine: self.frame().routine.clone(),
             via,
             target,
+            external,
             speed,
             time,
             zone,
             stop,
             tool,
+            tool_span: named.span,
             wobj,
             total_load,
             settings: self.settings.clone(),
@@ -227,10 +234,65 @@ impl Executor<'_> {
         origin.iter().filter_map(local).collect()
     }
 
+    /// Adds the parameters in an expression that stand for module data themselves: at another call
+    /// they may stand for others.
+    fn references(&self, expr: &Expr, locals: &mut Vec<LocalValue>) {
+        match &expr.kind {
+            ExprKind::Ref(name) => {
+                let names = &self.frame().names;
+                let Some((_, cell)) = names.iter().rev().find(|(key, _)| *key == name.key) else {
+                    return;
+                };
+                let data = self.globals.iter().find(|(_, known)| *known == cell);
+                let Some((id, _)) = data else { return };
+                if locals.iter().any(|local| local.name.eq_ignore_ascii_case(&name.text)) {
+                    return;
+                }
+                let declared = &self.program.data(*id).name;
+                let global = self.program.resolve_global(&declared.key) == Some(Symbol::Data(*id));
+                let value = &self.cells[*cell].value;
+                locals.push(LocalValue {
+                    name: name.text.as_str().into(),
+                    type_key: value.type_key.clone(),
+                    datum: value.datum.clone(),
+                    alias: global.then(|| declared.text.as_str().into()),
+                });
+            }
+            ExprKind::Field(base, _) => self.references(base, locals),
+            ExprKind::Index(base, indices) => {
+                self.references(base, locals);
+                for index in indices {
+                    self.references(index, locals);
+                }
+            }
+            ExprKind::Aggregate(items) => {
+                for item in items {
+                    self.references(item, locals);
+                }
+            }
+            ExprKind::Unary(_, operand) => self.references(operand, locals),
+            ExprKind::Binary(_, left, right) => {
+                self.references(left, locals);
+                self.references(right, locals);
+            }
+            ExprKind::Call(_, args) => {
+                for arg in args {
+                    if let ArgKind::Positional(expr)
+                    | ArgKind::Named(_, expr)
+                    | ArgKind::Optional(_, Some(expr)) = &arg.kind
+                    {
+                        self.references(expr, locals);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// Why an argument can't be used, with the name of the data; where their value is known but
     /// wrong, the declaration gets a note.
     pub(super) fn blame(&mut self, argument: &Expr, datum: &Datum, why: &str) -> String {
-        let super::super::hir::ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
+        let ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
         if datum.first_unknown().is_some() {
             return why.to_owned();
         }

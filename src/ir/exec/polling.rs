@@ -156,6 +156,7 @@ impl Executor<'_> {
             signal,
             other: None,
             grip_load: self.settings.grip_load,
+            external: None,
         })
     }
 

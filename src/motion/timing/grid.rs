@@ -242,8 +242,22 @@ impl PathGrid {
         held
     }
 
+    /// The same path with other dry friction: `change` is handed the index of each interval and its
+    /// ends, and returns that of both, finite.
+    pub(crate) fn with_dry_friction(
+        mut self,
+        mut change: impl FnMut(usize, &[PathPoint; 2]) -> [Joints; 2],
+    ) -> PathGrid {
+        for (k, pair) in self.ends.iter_mut().enumerate() {
+            let [begin, end] = change(k, pair);
+            (pair[0].coulomb, pair[1].coulomb) = (begin, end);
+        }
+        self
+    }
+
     /// The same path with the path speed on each interval capped at a positive number.
-    pub(crate) fn capped(&self, v_max: impl Fn(usize) -> f64) -> PathGrid {
+    #[must_use]
+    pub fn capped(&self, v_max: impl Fn(usize) -> f64) -> PathGrid {
         let mut capped = self.clone();
         for (k, pair) in capped.ends.iter_mut().enumerate() {
             for point in pair {

@@ -39,6 +39,14 @@ impl PathLimits {
         Ok(PathLimits { acceleration, torque })
     }
 
+    /// All limits times a positive factor.
+    pub(super) fn scaled(&self, factor: f64) -> PathLimits {
+        PathLimits {
+            acceleration: self.acceleration.map(|x| x * factor),
+            torque: self.torque.map(|x| x * factor),
+        }
+    }
+
     /// Largest |q̈| of each joint, rad/s².
     pub fn acceleration(&self) -> &Joints {
         &self.acceleration
@@ -116,10 +124,8 @@ fn torque_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
 
 /// The rows of one place; limits that are infinite and rows that are zero are left out.
 pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item = Row> {
-    let point = *point;
-    let limits = *limits;
     let joints = (0..DOF)
-        .flat_map(move |j| [acceleration_row(&point, &limits, j), torque_row(&point, &limits, j)]);
+        .flat_map(move |j| [acceleration_row(point, limits, j), torque_row(point, limits, j)]);
     joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
 }
 

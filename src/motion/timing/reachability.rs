@@ -111,6 +111,48 @@ pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
     finish(grid, limits, pessimistic)
 }
 
+/// Room in the bounds of [`speed_range`]: that of the stages, over all of them.
+const RANGE_ROOM: f64 = 1e-6;
+/// Passes that narrow the upper bounds: the help of friction falls with the speed.
+const RANGE_PASSES: usize = 3;
+/// Bisections of each lower bound.
+const DIP_STEPS: usize = 14;
+/// Share of the upper bound at which a dip counts as left.
+const LEFT: f64 = 1e-9;
+
+/// Bounds on ṡ² at the nodes of every profile that takes at most `duration` (s): what can be
+/// reached from rest, and where a profile is slow it loses time beside that place too, since it
+/// can't change its speed at once. The bounds are safe, not sharp: friction counts as it helps
+/// most.
+pub fn speed_range(grid: &PathGrid, limits: &PathLimits, duration: f64) -> Vec<(f64, f64)> {
+    let stages = Stages::new(grid, limits);
+    let last = grid.intervals();
+    let mut most = stages.b_max.clone();
+    (most[0], most[last]) = (0.0, 0.0);
+    for _ in 0..RANGE_PASSES {
+        for k in 0..last {
+            most[k + 1] = most[k + 1].min(stages.largest(k, 0, most[k], &most));
+        }
+        for k in (0..last).rev() {
+            most[k] = most[k].min(stages.largest(k, 1, most[k + 1], &most));
+        }
+    }
+    for b in &mut most {
+        *b *= 1.0 + RANGE_ROOM;
+    }
+    let slack = duration - duration_of(grid, &most);
+    let least = |node: usize| {
+        let (mut lo, mut hi) = (0.0, most[node]);
+        for _ in 0..DIP_STEPS {
+            let middle = 0.5 * (lo + hi);
+            let lost = stages.lost(grid, &most, node, middle);
+            *(if lost > slack { &mut lo } else { &mut hi }) = middle;
+        }
+        lo
+    };
+    (0..=last).map(|node| (least(node), most[node])).collect()
+}
+
 /// Moves the tangent points toward rest, where a tangent adds the least load.
 fn retreat(b: &mut [f64]) {
     for b in b {
@@ -212,6 +254,50 @@ impl Stages {
                 take(Strip { lo: f64::NEG_INFINITY, ..plain });
             }
         }
+    }
+
+    /// The time, s, that a profile loses against `most` at least by being at b or less at a node.
+    fn lost(&self, grid: &PathGrid, most: &[f64], node: usize, b: f64) -> f64 {
+        let time = |k: usize, x: f64, y: f64| 2.0 * grid.delta(k) / (x.sqrt() + y.sqrt());
+        let mut lost = 0.0;
+        let mut here = b;
+        for k in node..grid.intervals() {
+            let next = self.largest(k, 0, here, most).min(most[k + 1]);
+            lost += time(k, here, next) - time(k, most[k], most[k + 1]);
+            here = next;
+            if here >= (1.0 - LEFT) * most[k + 1] {
+                break;
+            }
+        }
+        here = b;
+        for k in (0..node).rev() {
+            let before = self.largest(k, 1, here, most).min(most[k]);
+            lost += time(k, before, here) - time(k, most[k], most[k + 1]);
+            here = before;
+            if here >= (1.0 - LEFT) * most[k] {
+                break;
+            }
+        }
+        lost
+    }
+
+    /// No b at the other end of interval k is larger where it is at most `b` at `end`, with friction
+    /// as it helps most below `most`.
+    fn largest(&self, k: usize, end: usize, b: f64, most: &[f64]) -> f64 {
+        let mut largest = f64::INFINITY;
+        for row in &self.rows[self.first[k]..self.first[k + 1]] {
+            let root = row.root * most[k + row.end].sqrt();
+            let (lo, hi) =
+                (-1.0 - row.constant - root.max(0.0), 1.0 - row.constant - root.min(0.0));
+            let (here, there) = if end == 0 { (row.x, row.y) } else { (row.y, row.x) };
+            // Whichever b up to the given one leaves most.
+            if there > 0.0 {
+                largest = largest.min((hi - (here * b).min(0.0)) / there);
+            } else if there < 0.0 {
+                largest = largest.min((lo - (here * b).max(0.0)) / there);
+            }
+        }
+        largest.max(0.0)
     }
 
     /// The fastest b at the nodes under the given stand-in for √b, or the interval at which the

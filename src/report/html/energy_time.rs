@@ -28,12 +28,14 @@ struct Point {
     after: [f64; 2],
     /// J.
     bound: Option<f64>,
+    /// Least energy of the path over time, s and J.
+    curve: Vec<[f64; 2]>,
 }
 
 /// The figure; none where nothing moves.
 pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<String> {
     let points: Vec<Point> = numbered(retrofit)
-        .filter(|(_, segment)| segment.kind == SegmentKind::Timing && segment.time_before_s > 0.0)
+        .filter(|(_, segment)| segment.kind != SegmentKind::Idle && segment.time_before_s > 0.0)
         .map(|(number, segment)| {
             let n = segment.executions as f64;
             Point {
@@ -43,13 +45,15 @@ pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<Str
                 before: [segment.time_before_s / n, segment.energy_before_j / n],
                 after: [segment.time_after_s / n, segment.energy_after_j / n],
                 bound: segment.lower_bound_j.map(|bound| bound / n),
+                curve: segment.pareto.iter().map(|p| [p.time_s, p.energy_j]).collect(),
             }
         })
         .collect();
     if points.is_empty() {
         return None;
     }
-    let ends = || points.iter().flat_map(|p| [p.before, p.after]);
+    let curves = || points.iter().flat_map(|p| p.curve.iter().copied());
+    let ends = || points.iter().flat_map(|p| [p.before, p.after]).chain(curves());
     let bounds = points.iter().filter_map(|p| p.bound);
     let frame = Frame::new(
         SIZE,
@@ -94,6 +98,14 @@ fn mark(out: &mut String, frame: &Frame, point: &Point) {
         seconds(point.after[0]),
         joules(point.after[1]),
     );
+    if !point.curve.is_empty() {
+        out.push_str("<polyline class=\"curve\" points=\"");
+        for [t, e] in &point.curve {
+            let [x, y] = frame.at(*t, *e);
+            let _ = write!(out, "{x:.1},{y:.1} ");
+        }
+        out.push_str("\"/>");
+    }
     if let Some(bound) = point.bound {
         let [x, y] = frame.at(point.after[0], bound);
         let _ = write!(

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::format::fixed;
 use crate::report::place::Places;
-use crate::retrofit::{OutputKind, Retrofit};
+use crate::retrofit::{OutputKind, Retrofit, SignalKind};
 use crate::robot::Model;
 
 /// The verification.
@@ -15,6 +15,8 @@ pub(super) struct Verification {
     shares: Vec<Share>,
     deviation_mm: String,
     endpoint_error_rad: String,
+    intended_error_rad: String,
+    signals: Vec<Signal>,
     outputs: Vec<Output>,
 }
 
@@ -31,6 +33,17 @@ struct Share {
     percent: String,
     /// Length of its bar, %.
     length: String,
+}
+
+/// What a signal of the program does before and after.
+#[derive(Serialize)]
+struct Signal {
+    name: String,
+    kind: &'static str,
+    times: usize,
+    order_kept: bool,
+    /// ms, with its sign.
+    shift: String,
 }
 
 #[derive(Serialize)]
@@ -64,11 +77,22 @@ pub(super) fn verification(retrofit: &Retrofit) -> Verification {
             share("allowed path deviation", worst.deviation),
         ],
         deviation_mm: fixed(1e3 * worst.deviation_m, 3),
-        endpoint_error_rad: if worst.endpoint_error_rad == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{:.1e}", worst.endpoint_error_rad)
-        },
+        endpoint_error_rad: tiny(worst.endpoint_error_rad),
+        intended_error_rad: tiny(seen.intended_error_rad),
+        signals: retrofit
+            .signals
+            .iter()
+            .map(|signal| Signal {
+                name: signal.name.clone(),
+                kind: match signal.kind {
+                    SignalKind::Input => "input",
+                    SignalKind::Output => "output",
+                },
+                times: signal.times,
+                order_kept: signal.order_kept,
+                shift: format!("{:+.0}", 1e3 * signal.largest_shift_s),
+            })
+            .collect(),
         outputs: retrofit
             .outputs
             .iter()
@@ -82,6 +106,10 @@ pub(super) fn verification(retrofit: &Retrofit) -> Verification {
             })
             .collect(),
     }
+}
+
+fn tiny(x: f64) -> String {
+    if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
 }
 
 /// What the figures rest on.

@@ -122,6 +122,7 @@ fn row(number: usize, segment: &Segment, places: Places<'_>) -> Row {
         place: places.of(segment.span).to_string(),
         kind: match segment.kind {
             SegmentKind::Timing => "movement",
+            SegmentKind::Path => "free movement",
             SegmentKind::Idle => "dwell",
         },
         rewritten: segment.rewritten,

@@ -67,7 +67,7 @@ pub(super) fn summary(retrofit: &Retrofit) -> Summary {
     };
     let parts = [&retrofit.before.1.total, &retrofit.after.1.total];
     let eligible =
-        retrofit.segments.iter().filter(|s| s.kind == SegmentKind::Timing && s.executions > 0);
+        retrofit.segments.iter().filter(|s| s.kind != SegmentKind::Idle && s.executions > 0);
     Summary {
         cards: vec![
             Card {

@@ -1,0 +1,201 @@
+//! Paths with their coefficients and the times that this crate takes for them, as JSON for
+//! `benches/peers/trajectories`: `cargo run --release --example peer_paths`.
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
+#[expect(dead_code, reason = "the tests use more of it")]
+#[path = "../tests/hard_paths/cases.rs"]
+mod cases;
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use cases::{Case, EASY};
+use joulepath::motion::controller::motion_limits;
+use joulepath::motion::sampling::{Loaded, SpeedCap};
+use joulepath::motion::stream::{Joints, Stream};
+use joulepath::motion::timing::grid::PathGrid;
+use joulepath::motion::timing::limits::PathLimits;
+use joulepath::motion::timing::reachability::time_optimal;
+use joulepath::optimize::cost::Cost;
+use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::path_grid;
+use joulepath::optimize::plant::{Plant, realise};
+use joulepath::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
+use joulepath::optimize::stream_fit::{StreamFit, fit_stream};
+use joulepath::optimize::stream_limits::StreamLimits;
+use joulepath::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::optimize::stream_reference::Reference;
+use joulepath::path::joint_path::DOF;
+use serde_json::{Value, json};
+
+/// Paths.
+const COUNT: usize = 12;
+/// Intervals of the grids.
+const SIZES: [usize; 2] = [100, 1000];
+/// Points of the free streams, and their time over that of the fastest profile.
+const FREE_POINTS: usize = 50;
+const FREE_FACTOR: f64 = 1.3;
+/// Repetitions; the least time counts.
+const REPEATS: usize = 15;
+/// Repetitions of what takes long.
+const FEW: usize = 3;
+
+/// The least time of some repetitions, s.
+fn least_s<T>(repeats: usize, mut work: impl FnMut() -> T) -> f64 {
+    let once = |_| {
+        let start = Instant::now();
+        black_box(work());
+        start.elapsed().as_secs_f64()
+    };
+    (0..repeats).map(once).fold(f64::INFINITY, f64::min)
+}
+
+struct Arm<'a>(&'a Case);
+
+impl Plant for Arm<'_> {
+    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        smooth_torque(&self.0.model, &self.0.run().load, q, qd, qdd)
+    }
+
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        smooth_torque_derivatives(&self.0.model, &self.0.run().load, q, qd, qdd)
+    }
+
+    fn dry_friction(&self) -> Joints {
+        std::array::from_fn(|j| self.0.model.friction.coulomb[j])
+    }
+
+    fn torque_limit(&self) -> Joints {
+        motion_limits(&self.0.model, 1.0).torque
+    }
+}
+
+fn main() {
+    // The kinds in turn, the first robot first.
+    let cases = cases::cases(&EASY, 2 * COUNT);
+    let first = cases[0].model.name.clone();
+    let cases: Vec<&Case> =
+        cases.iter().filter(|case| case.model.name == first).take(COUNT).collect();
+    let paths: Vec<Value> = cases.iter().map(|case| path(case)).collect();
+    let value = json!({ "robot": robot(cases[0]), "paths": paths });
+    println!("{value}");
+}
+
+fn robot(case: &Case) -> Value {
+    let model = &case.model;
+    let matrix =
+        |m: &nalgebra::Matrix3<f64>| -> Vec<f64> { m.transpose().iter().copied().collect() };
+    let joints = model.kinematics.joints.iter().zip(&model.links).map(|(joint, link)| {
+        json!({
+            "origin": joint.translation.as_slice(),
+            "rotation": matrix(joint.rotation.matrix()),
+            "axis": joint.axis.as_slice(),
+            "mass": link.mass,
+            "com": link.com.as_slice(),
+            "inertia": matrix(&link.inertia),
+        })
+    });
+    let motors = model.motors.as_ref().unwrap();
+    let rotor: Vec<f64> =
+        (0..DOF).map(|j| motors.ratio[j].powi(2) * motors.rotor_inertia[j]).collect();
+    json!({
+        "joints": joints.collect::<Vec<_>>(),
+        "rotor": rotor,
+        "coulomb": model.friction.coulomb[..DOF],
+        "viscous": model.friction.viscous[..DOF],
+        "loss": motors.loss_constant[..DOF],
+        "velocity": model.limits.velocity,
+        "acceleration": model.limits.acceleration,
+        "jerk": model.limits.jerk,
+        "torque": model.limits.torque,
+    })
+}
+
+fn path(case: &Case) -> Value {
+    let limits = motion_limits(&case.model, 1.0);
+    let limits = PathLimits::new(limits.acceleration, limits.torque).unwrap();
+    let caps = vec![SpeedCap::NONE; case.run().moves.len()];
+    let (path, loaded) =
+        (case.path().unwrap(), Loaded { model: &case.model, load: &case.run().load });
+    let model = Cost::Electrical.model(&case.model);
+    let mut sizes = Vec::new();
+    for n in SIZES {
+        let nodes = |n| path_grid::nodes(&case.model, path, &caps, n);
+        let set_up = || path_grid::grid(loaded, path, &nodes(n), &caps).unwrap();
+        let grid = set_up();
+        let seconds = least_s(REPEATS, || time_optimal(&set_up(), &limits));
+        let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+        let time = 1.1 * fastest.duration();
+        let energy_s = (n == SIZES[0]).then(|| {
+            least_s(FEW, || {
+                let grid = set_up();
+                let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+                minimize_energy(&grid, &limits, &model, &fastest, time)
+            })
+        });
+        sizes.push(json!({
+            "grid": coefficients(&grid),
+            "time_optimal_s": seconds,
+            "duration_s": fastest.duration(),
+            "energy_s": energy_s,
+        }));
+    }
+    json!({ "name": case.name, "sizes": sizes, "free": free(case, &limits, &caps) })
+}
+
+/// What a peer needs: the nodes and the path there.
+fn coefficients(grid: &PathGrid) -> Value {
+    let ends = grid.ends();
+    let points = ends.iter().map(|pair| pair[0].q).chain(ends.last().map(|pair| pair[1].q));
+    json!({ "s": grid.s(), "q": points.collect::<Vec<_>>() })
+}
+
+/// A stream that may leave its path, from the fastest profile made slower.
+fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
+    let path = case.path().unwrap();
+    let loaded = Loaded { model: &case.model, load: &case.run().load };
+    let nodes = path_grid::nodes(&case.model, path, caps, SIZES[0]);
+    let grid = path_grid::grid(loaded, path, &nodes, caps).unwrap();
+    let fastest = time_optimal(&grid, limits).into_profile().unwrap();
+    let list = |values: &Option<Vec<f64>>| -> Joints {
+        std::array::from_fn(|j| values.as_ref().map_or(f64::INFINITY, |list| list[j]))
+    };
+    let robot = &case.model.limits;
+    let joint_limits = StreamLimits {
+        velocity: list(&robot.velocity),
+        acceleration: list(&robot.acceleration),
+        jerk: list(&robot.jerk),
+    };
+    let model = Cost::Electrical.model(&case.model);
+    let duration = FREE_FACTOR * fastest.duration() + 0.1;
+    let slow = fastest.scaled_to(duration).unwrap();
+    let reference = Reference::sample(duration, 1000, |t| {
+        let (s, v, _) = slow.at(t);
+        let point = path.eval(s.min(path.length()));
+        (point.q, point.q1.map(|x| x * v))
+    })
+    .unwrap();
+    let arm = Arm(case);
+    let corridor = Corridor { tolerance: f64::INFINITY, lever: [1.0; DOF] };
+    let intervals = vec![duration / FREE_POINTS as f64; FREE_POINTS];
+    let work = || -> Option<[Stream; 2]> {
+        let fit = fit_stream(&reference, intervals.clone(), &joint_limits, &[1.0; DOF]).ok()?;
+        let StreamFit::Fitted(fit) = fit else { return None };
+        let polished =
+            polish_stream(&fit.stream, &reference, &arm, &joint_limits, &model, &corridor).ok()?;
+        Some([fit.stream, polished.stream])
+    };
+    let Some([first, best]) = work() else { return Value::Null };
+    json!({
+        "duration_s": duration,
+        "start": first.start(),
+        "first": first.points(),
+        "points": best.points(),
+        "energy_j": realise(&best, &arm, &model).energy.total(),
+        "first_energy_j": realise(&first, &arm, &model).energy.total(),
+        "seconds": least_s(FEW, work),
+    })
+}

@@ -1,0 +1,174 @@
+//! What timing saves on reference paths, and what streams realise of it:
+//! `cargo run --release --example savings`. `docs/trajectories.md` has the table.
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
+#[expect(dead_code, reason = "the tests use more of it")]
+#[path = "../tests/hard_paths/cases.rs"]
+mod cases;
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use cases::{Case, EASY, Kind};
+use joulepath::energy::EnergyParts;
+use joulepath::energy::power::motion_energy;
+use joulepath::motion::controller::motion_limits;
+use joulepath::motion::sampling::{Loaded, SpeedCap};
+use joulepath::motion::timed::TimedMotion;
+use joulepath::motion::timing::limits::PathLimits;
+use joulepath::motion::timing::refined::{Refined, time_optimal_between};
+use joulepath::optimize::corridor::{Ceilings, Freedom};
+use joulepath::optimize::cost::Cost;
+use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::path_energy::evaluate;
+use joulepath::optimize::path_grid;
+use joulepath::optimize::retime::{Goal, Task, retime};
+use joulepath::path::joint_path::DOF;
+use rayon::prelude::*;
+
+/// Paths, on both robots in turn.
+const COUNT: usize = 96;
+/// Intervals of the grids.
+const INTERVALS: usize = 100;
+/// Times over the least one.
+const FACTORS: [f64; 3] = [1.1, 1.2, 1.3];
+/// Moves that are shorter are not compared, s.
+const SHORTEST: f64 = 0.2;
+
+/// Shares of the energy of the fastest profile.
+struct Saving {
+    uniform: f64,
+    optimal: f64,
+    gap: f64,
+    /// None where there is no stream in this time.
+    realised: Option<f64>,
+}
+
+fn main() {
+    let cases = cases::cases(&EASY, COUNT);
+    for factor in FACTORS {
+        let all: Vec<Saving> = cases.par_iter().filter_map(|case| saving(case, factor)).collect();
+        let of = |f: &dyn Fn(&Saving) -> f64| quartiles(all.iter().map(f).collect());
+        println!("{factor} × the least time, {} paths:", all.len());
+        println!("  uniform slowing   {}", of(&|s| 100.0 * s.uniform));
+        println!("  optimal profile   {}", of(&|s| 100.0 * s.optimal));
+        println!("  gap of the bound  {}", of(&|s| 100.0 * s.gap));
+        let streams: Vec<(f64, f64)> =
+            all.iter().filter_map(|s| Some((s.realised?, s.optimal))).collect();
+        println!("  streams           {} of {}", streams.len(), all.len());
+        let realised = streams.iter().map(|s| 100.0 * s.0).collect();
+        println!("  saving of streams {}", quartiles(realised));
+        let share = streams.iter().map(|s| 100.0 * s.0 / s.1).collect();
+        println!("  share realised    {}", quartiles(share));
+    }
+    let joint: Vec<&Case> = cases.iter().filter(|case| case.kind == Kind::EasyJoint).collect();
+    let ratios: Vec<f64> = joint.par_iter().filter_map(|case| lateness(case)).collect();
+    println!("time of the fastest stream over the least with its jerk, {} moves:", ratios.len());
+    println!("                    {}", quartiles(ratios));
+    let others = cases.par_iter().filter(|case| case.kind != Kind::EasyJoint);
+    let ratios: Vec<f64> = others.filter_map(slowness).collect();
+    println!("and over the least without a limit on jerk, {} lines and blends:", ratios.len());
+    println!("                    {}", quartiles(ratios));
+}
+
+/// Lowest, quarter, median, three quarters, highest.
+fn quartiles(mut values: Vec<f64>) -> String {
+    values.sort_by(f64::total_cmp);
+    if values.is_empty() {
+        return "none".to_owned();
+    }
+    let at = |share: f64| values[(share * (values.len() - 1) as f64).round() as usize];
+    let row: Vec<String> =
+        [0.0, 0.25, 0.5, 0.75, 1.0].iter().map(|share| format!("{:8.3}", at(*share))).collect();
+    row.join(" ")
+}
+
+fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
+    Task {
+        model: &case.model,
+        run: case.run(),
+        energy_before: EnergyParts::default(),
+        spacing_s: 0.05,
+        freedom,
+        cost: Cost::Electrical,
+    }
+}
+
+/// The fastest profile on the path of a case, without a limit on jerk.
+fn fastest(case: &Case) -> Option<(PathLimits, Refined)> {
+    let (path, run) = (case.path()?, case.run());
+    let limits = motion_limits(&case.model, 1.0);
+    let limits = PathLimits::new(limits.acceleration, limits.torque).ok()?;
+    let cap = |leg| SpeedCap { tcp: Ceilings::Programmed.of(case.movement(leg)), ..SpeedCap::NONE };
+    let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
+    let loaded = Loaded { model: &case.model, load: &run.load };
+    let nodes = path_grid::nodes_with_edges(&case.model, path, &caps, INTERVALS);
+    let refined =
+        time_optimal_between(nodes, &limits, |nodes| path_grid::grid(loaded, path, nodes, &caps));
+    Some((limits, refined.ok()?.held()?))
+}
+
+/// Time of the fastest stream over the least of its path without a limit on jerk: more than what
+/// the limit costs any controller.
+fn slowness(case: &Case) -> Option<f64> {
+    let least = fastest(case)?.1.profile.duration();
+    let freedom = Freedom::none();
+    let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
+}
+
+fn saving(case: &Case, factor: f64) -> Option<Saving> {
+    let run = case.run();
+    let (limits, refined) = fastest(case)?;
+    let (grid, fastest) = (&refined.grid, &refined.profile);
+    let model = Cost::Electrical.model(&case.model);
+    let time = factor * fastest.duration();
+    let first = evaluate(grid, fastest, &model).total();
+    let saved = |energy: f64| (first - energy) / first;
+    let uniform = evaluate(grid, &fastest.scaled_to(time)?, &model).total();
+    let best = minimize_energy(grid, &limits, &model, fastest, time).into_optimum()?;
+    let freedom = Freedom::none();
+    let stream = retime(&task(case, &freedom), Goal::Exactly(time + run.settling)).ok();
+    let realised = stream.map(|retiming| {
+        let duration = retiming.stream.duration();
+        let motion = TimedMotion::Stream(retiming.stream);
+        let parts = motion_energy(&case.model, &run.load, &motion, 0.0, duration);
+        saved(parts.motion_energy_j())
+    });
+    Some(Saving {
+        uniform: saved(uniform),
+        optimal: saved(best.energy.total()),
+        gap: 1.0 - best.lower_bound / best.energy.total(),
+        realised,
+    })
+}
+
+/// Time of the fastest stream of a joint move over the least in which any of its joints alone can
+/// go its way with its speed, acceleration and jerk: no synchronous motion is faster.
+fn lateness(case: &Case) -> Option<f64> {
+    let run = case.run();
+    let limits = &case.model.limits;
+    let (v, a, jerk) =
+        (limits.velocity.as_ref()?, limits.acceleration.as_ref()?, limits.jerk.as_ref()?);
+    let least = (0..DOF)
+        .map(|j| seven_segments((run.end[j] - run.start[j]).abs(), v[j], a[j], jerk[j]))
+        .fold(0.0, f64::max);
+    let freedom = Freedom::none();
+    let fastest = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
+}
+
+/// Least time from rest to rest over a distance with limits on speed, acceleration and jerk.
+fn seven_segments(distance: f64, v: f64, a: f64, j: f64) -> f64 {
+    let ramp = |v: f64| if v * j >= a * a { v / a + a / j } else { 2.0 * (v / j).sqrt() };
+    // v · ramp(v) is the way of speeding up and slowing down.
+    if v * ramp(v) <= distance {
+        return distance / v + ramp(v);
+    }
+    let (mut lo, mut hi) = (0.0, v);
+    for _ in 0..100 {
+        let middle = 0.5 * (lo + hi);
+        if middle * ramp(middle) < distance { lo = middle } else { hi = middle }
+    }
+    2.0 * ramp(lo)
+}

@@ -1,0 +1,50 @@
+//! A run's robot as the polishing of a stream sees it.
+
+use super::keep_out;
+use super::margins::Margins;
+use super::plant::{PathShares, Plant};
+use super::retime::Work;
+use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
+use crate::kinematics::fk;
+use crate::motion::controller::motion_limits;
+use crate::path::joint_path::{DOF, Joints};
+
+/// The robot with its load, as the polishing of a stream sees it.
+pub(super) struct RunPlant<'a> {
+    pub(super) work: &'a Work<'a>,
+    pub(super) margins: &'a Margins,
+    /// TCP speed at the places of the corridor, m/s.
+    pub(super) ceilings: Vec<f64>,
+}
+
+impl Plant for RunPlant<'_> {
+    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        let task = self.work.task;
+        smooth_torque(task.model, &task.run.load, q, qd, qdd)
+    }
+
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        let task = self.work.task;
+        smooth_torque_derivatives(task.model, &task.run.load, q, qd, qdd)
+    }
+
+    fn dry_friction(&self) -> Joints {
+        std::array::from_fn(|j| self.work.task.model.friction.coulomb[j])
+    }
+
+    fn torque_limit(&self) -> Joints {
+        motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
+    }
+
+    fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {
+        let task = self.work.task;
+        let tool = &task.run.legs[0].tool;
+        let pose = tool.pose(&fk(task.model, q));
+        let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
+        let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
+        let speed = rate.fixed_rows::<3>(0).norm();
+        let body = self.work.body.as_ref();
+        let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
+        [speed / (self.margins.speed * ceiling), distance / self.margins.distance, near]
+    }
+}

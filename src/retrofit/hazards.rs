@@ -1,0 +1,292 @@
+//! What stands around a movement in the program and would treat a stream otherwise than the
+//! movement itself: handlers, interrupt routines, external axes, stop points with a time.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::ir::hir::{BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use crate::ir::instructions::is_movement;
+use crate::ir::movement::Stop;
+use crate::ir::program::{Program, RoutineId, Symbol};
+use crate::motion::Simulation;
+use crate::motion::timeline::{Run, What};
+use crate::optimize::reason::Reason;
+use crate::optimize::site::Site;
+use crate::text::Span;
+
+/// Errors that a movement without process or `\Conc` raises while it runs.
+const MOVEMENT_ERRORS: [&str; 3] = ["err_coll_stop", "err_path_stop", "long_jmp_all_err"];
+
+/// Instructions of an interrupt routine that change how movements run, or what is left of them.
+const CHANGES_MOVEMENTS: [&str; 17] = [
+    "accset",
+    "clearpath",
+    "corrcon",
+    "corrwrite",
+    "eoffson",
+    "eoffsset",
+    "gripload",
+    "pathacclim",
+    "pdispoff",
+    "pdispon",
+    "pdispset",
+    "softact",
+    "speedrefresh",
+    "stepbwdpath",
+    "tuneservo",
+    "velset",
+    "worldacclim",
+];
+
+/// Gives the sites and variants that can't be streams their reasons, where they have none yet.
+pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site]) {
+    let handled = handlers(program);
+    let interrupt = interrupts(program);
+    let moved = external_axes(simulation);
+    for site in sites {
+        for variant in &mut site.variants {
+            let elsewhere = stands_elsewhere(simulation, &variant.events);
+            let reason = variant.events.iter().find_map(|event| {
+                let What::Run(run) = &simulation.events[*event].what else { return None };
+                let mut spans = run.moves.iter().map(|record| record.movement.span);
+                let handler = spans.find_map(|span| handled.get(&span));
+                handler
+                    .or(interrupt.as_ref())
+                    .cloned()
+                    .or_else(|| {
+                        (elsewhere || moved.contains(event)).then_some(Reason::ExternalAxes)
+                    })
+                    .or_else(|| stop_with_time(run))
+            });
+            if variant.reason.is_none() {
+                variant.reason = reason;
+            }
+        }
+    }
+}
+
+/// A stop point that waits for more than standing would lose that at the end of a stream.
+fn stop_with_time(run: &Run) -> Option<Reason> {
+    let waits = run.moves.iter().any(|record| record.movement.stop != Stop::Fine);
+    waits.then(|| Reason::Argument("Inpos".into()))
+}
+
+/// Whether the external axes stand at different places in different executions of one way.
+fn stands_elsewhere(simulation: &Simulation, events: &[usize]) -> bool {
+    let mut places = events.iter().filter_map(|event| match &simulation.events[*event].what {
+        What::Run(run) => run.moves.first().map(|record| record.movement.external),
+        _ => None,
+    });
+    let first = places.next();
+    places.any(|place| Some(place) != first)
+}
+
+/// The runs in which external axes may move.
+fn external_axes(simulation: &Simulation) -> BTreeSet<usize> {
+    let mut moved = BTreeSet::new();
+    let mut stand: Option<[f64; 6]> = None;
+    for (index, event) in simulation.events.iter().enumerate() {
+        match &event.what {
+            What::Run(run) => {
+                for record in &run.moves {
+                    let to = record.movement.external;
+                    if to.is_none() || to != stand {
+                        moved.insert(index);
+                    }
+                    stand = to;
+                }
+            }
+            What::Wait(record) if is_movement(&record.wait.instruction) => {
+                stand = record.wait.external;
+            }
+            What::Wait(_) | What::Output(..) => {}
+            What::Left(_) => stand = None,
+        }
+    }
+    moved
+}
+
+/// The movements that a handler keeps from being streams.
+fn handlers(program: &Program) -> BTreeMap<Span, Reason> {
+    let mut found = BTreeMap::new();
+    for (routine, block) in routines(program).flat_map(|r| r.blocks().map(move |b| (r, b))) {
+        let in_body = std::ptr::eq(block, &raw const routine.body);
+        let why = if in_body { handler_of(routine) } else { Some("it stands in a handler".into()) };
+        if let Some(why) = why {
+            movements(block, &mut |span| {
+                found.insert(span, Reason::Handler(why.clone()));
+            });
+        }
+    }
+    found
+}
+
+/// What the handlers of a routine do to a movement in it that a stream would not bear.
+fn handler_of(routine: &Routine) -> Option<String> {
+    if routine.backward.is_some() {
+        return Some("its routine has a BACKWARD handler, which goes back step by step".into());
+    }
+    let mut taking = routine
+        .error
+        .iter()
+        .filter(|(numbers, _)| numbers.is_empty() || numbers.iter().any(is_movement_error));
+    let again = taking.find_map(|(_, handler)| resumes(handler))?;
+    Some(format!(
+        "the error handler of its routine may go on within it ({again}) after an error of any kind"
+    ))
+}
+
+/// The first statement of a handler that goes on where a movement broke off, if an error of a
+/// movement leads there.
+fn resumes(block: &Block) -> Option<&'static str> {
+    block.iter().find_map(|stmt| match &stmt.kind {
+        StmtKind::Retry => Some("RETRY"),
+        StmtKind::TryNext => Some("TRYNEXT"),
+        StmtKind::Call(call) => match &call.callee {
+            Callee::Name(name) if name.key == "startmoveretry" => Some("StartMoveRetry"),
+            _ => None,
+        },
+        StmtKind::If { branches, otherwise } => branches
+            .iter()
+            .filter(|(condition, _)| may_hold(condition))
+            .map(|(_, block)| block)
+            .chain(otherwise)
+            .find_map(resumes),
+        StmtKind::Test { value, cases, default } if is_errno(value) => cases
+            .iter()
+            .filter(|(values, _)| values.iter().any(is_movement_error))
+            .map(|(_, block)| block)
+            .chain(default)
+            .find_map(resumes),
+        other => other.blocks().into_iter().find_map(resumes),
+    })
+}
+
+/// Whether a condition can hold after an error of a movement.
+fn may_hold(condition: &Expr) -> bool {
+    match &condition.kind {
+        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(a) => is_movement_error(b),
+        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(b) => is_movement_error(a),
+        ExprKind::Binary(BinaryOp::And, a, b) => may_hold(a) && may_hold(b),
+        ExprKind::Binary(BinaryOp::Or, a, b) => may_hold(a) || may_hold(b),
+        _ => true,
+    }
+}
+
+fn is_errno(expr: &Expr) -> bool {
+    matches!(&expr.kind, ExprKind::Ref(name) if name.key == "errno")
+}
+
+fn is_movement_error(number: &Expr) -> bool {
+    match &number.kind {
+        ExprKind::Ref(name) => MOVEMENT_ERRORS.contains(&name.key.as_str()),
+        _ => true,
+    }
+}
+
+/// What connected interrupt routines may do to a movement.
+fn interrupts(program: &Program) -> Option<Reason> {
+    for (m, module) in program.modules.iter().enumerate() {
+        for block in module.routines.iter().flat_map(Routine::blocks) {
+            let mut traps = Vec::new();
+            connected(block, &mut traps);
+            for trap in traps {
+                let mut reach = Reach::default();
+                reach.call(program, m, &trap);
+                // A list of routines to look at, not a recursion: calls may be deep.
+                while let Some(id) = reach.open.pop() {
+                    reach.block(program, id.module, &program.routine(id).body);
+                }
+                if let Some(what) = reach.hazard() {
+                    let why = format!("the interrupt routine {trap} may run {what} meanwhile");
+                    return Some(Reason::Interrupt(why));
+                }
+            }
+        }
+    }
+    None
+}
+
+fn connected(block: &Block, traps: &mut Vec<String>) {
+    for stmt in block {
+        if let StmtKind::Connect { trap, .. } = &stmt.kind {
+            traps.push(trap.text.clone());
+        }
+        for inner in stmt.kind.blocks() {
+            connected(inner, traps);
+        }
+    }
+}
+
+/// What an interrupt routine runs, directly or not.
+#[derive(Default)]
+struct Reach {
+    /// Routines that were looked at, by module and index.
+    seen: BTreeSet<(usize, usize)>,
+    /// Routines still to be looked at.
+    open: Vec<RoutineId>,
+    /// The first instruction that changes movements.
+    changes: Option<String>,
+    /// The first movement.
+    moves: Option<String>,
+    /// Whether the path that it interrupts is kept for later.
+    stores_path: bool,
+}
+
+impl Reach {
+    fn hazard(&self) -> Option<&str> {
+        let moves = self.moves.as_deref().filter(|_| !self.stores_path);
+        self.changes.as_deref().or(moves)
+    }
+
+    fn call(&mut self, program: &Program, module: usize, name: &str) {
+        let key = name.to_lowercase();
+        let Some(Symbol::Routine(id)) = program.resolve(module, &key) else {
+            if CHANGES_MOVEMENTS.contains(&key.as_str()) {
+                self.changes.get_or_insert(name.to_owned());
+            }
+            if is_movement(&key) {
+                self.moves.get_or_insert(name.to_owned());
+            }
+            self.stores_path |= key == "storepath";
+            return;
+        };
+        if self.seen.insert((id.module, id.index)) {
+            self.open.push(id);
+        }
+    }
+
+    fn block(&mut self, program: &Program, module: usize, block: &Block) {
+        for stmt in block {
+            if let StmtKind::Call(call) = &stmt.kind {
+                match &call.callee {
+                    Callee::Name(name) => self.call(program, module, &name.text),
+                    Callee::Late(_) => {
+                        self.changes.get_or_insert("a procedure with a computed name".into());
+                    }
+                }
+            }
+            for inner in stmt.kind.blocks() {
+                self.block(program, module, inner);
+            }
+        }
+    }
+}
+
+fn routines(program: &Program) -> impl Iterator<Item = &Routine> {
+    program.modules.iter().flat_map(|module| &module.routines)
+}
+
+/// Calls `found` with each movement statement of a block.
+fn movements(block: &Block, found: &mut dyn FnMut(Span)) {
+    for stmt in block {
+        if let StmtKind::Call(call) = &stmt.kind
+            && let Callee::Name(name) = &call.callee
+            && is_movement(&name.key)
+        {
+            found(stmt.span);
+        }
+        for inner in stmt.kind.blocks() {
+            movements(inner, found);
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! `joulepath optimize` with other costs, curves of energy over time, and parts of the cell that
+//! are kept free.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+const PROGRAM: &str = "MODULE M\n\
+    CONST jointtarget jA:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST jointtarget jB:=[[60,20,0,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    PROC main()\n\
+    MoveAbsJ jA,v1000,fine,tool0;\n\
+    MoveAbsJ jB,vmax,fine,tool0;\n\
+    MoveAbsJ jA,v1000,fine,tool0;\n\
+    ENDPROC\n\
+    ENDMODULE\n";
+/// What a local solution may miss of the best, share.
+const LOCAL: f64 = 5e-3;
+
+fn optimize(config: &str, options: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, PROGRAM).unwrap();
+    fs::write(folder.path().join("joulepath.toml"), config).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["optimize", path.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
+        .args(["--format", "json"])
+        .args(options)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(result["verification"]["passed"], true);
+    result
+}
+
+fn energy(result: &Value) -> f64 {
+    result["optimized"]["motion_energy_j"].as_f64().unwrap()
+}
+
+#[test]
+fn no_other_cost_saves_more_joules() {
+    let electrical = energy(&optimize("", &["--energy", "electrical"]));
+    let others = ["electrical-no-regeneration", "mechanical", "velocity", "torque"]
+        .map(|cost| energy(&optimize("", &["--energy", cost])));
+    assert!(others.iter().all(|other| *other > (1.0 - LOCAL) * electrical), "{others:?}");
+    // The costs of the literature are other timings.
+    assert!(others[2] != electrical && others[3] != electrical && others[2] != others[3]);
+    // This robot gives nothing back.
+    assert_eq!(others[0], electrical);
+}
+
+#[test]
+fn curves_fall_and_stay_above_their_bounds() {
+    let result = optimize("", &["--pareto", "6"]);
+    let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
+    let mut curves = 0;
+    for segment in result["segments"].as_array().unwrap() {
+        let Some(curve) = segment["pareto"].as_array() else { continue };
+        curves += 1;
+        assert_eq!(curve.len(), 6);
+        for point in curve {
+            assert!(number(point, "lower_bound_j") <= number(point, "energy_j"), "{point}");
+        }
+        for pair in curve.windows(2) {
+            assert!(number(&pair[0], "time_s") < number(&pair[1], "time_s"));
+        }
+        // The first steps away from the least time pay most.
+        assert!(number(&curve[1], "energy_j") < number(&curve[0], "energy_j"));
+        assert!(number(&curve[0], "time_s") < number(segment, "time_before_s"));
+    }
+    assert_eq!(curves, 2);
+}
+
+#[test]
+fn what_the_cell_keeps_free_holds_for_free_paths_only() {
+    let free = ["--free-path", "--deviation", "80"];
+    let alone = energy(&optimize("", &free));
+    let kept = energy(&optimize("", &[]));
+    assert!(alone < kept);
+    let far = "[[keep_out]]\nplane = [0, 0, 1, -9]\n";
+    assert_eq!(energy(&optimize(far, &free)), alone);
+    // Nothing is left to leave the path for.
+    let everywhere = "[[keep_out]]\nbox = [[-4, -4, -4], [4, 4, 4]]\n";
+    assert_eq!(energy(&optimize(everywhere, &free)), kept);
+}

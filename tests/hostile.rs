@@ -1,0 +1,286 @@
+//! Programs in which something besides the movements decides what a stream would do.
+//!
+//! Each movement says behind `! =>` what has to become of it: `stream`, or the code of the reason
+//! why it stays.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+const EXPECTED: &str = "! => ";
+
+const DATA: &str = "\
+CONST jointtarget jA:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST jointtarget jB:=[[60,20,0,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget pC:=[[850,300,1000],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget pD:=[[850,-300,1000],[0,0,1,0],[-1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+PERS tooldata tP:=[TRUE,[[0,0,90],[1,0,0,0]],[1,[0,0,40],[1,0,0,0],0,0,0]];
+";
+
+/// A program whose `main` has these statements, and what stands behind them in the routine.
+fn program(declarations: &str, statements: &str, handlers: &str) -> String {
+    format!(
+        "MODULE M\n{DATA}{declarations}\nPROC main()\nConfL \\Off; ConfJ \\Off;\n\
+         MoveAbsJ jA,v1000,fine,tP; ! => first-movement\n{statements}\n{handlers}\nENDPROC\n\
+         ENDMODULE\n"
+    )
+}
+
+/// Two movements that both become the same.
+fn both(what: &str) -> String {
+    format!("MoveAbsJ jB,v1000,fine,tP; ! => {what}\nMoveAbsJ jA,v1000,fine,tP; ! => {what}")
+}
+
+fn optimize(folder: &Path, text: impl AsRef<[u8]>, options: &[&str]) -> Value {
+    let path = folder.join("m.mod");
+    fs::write(&path, &text).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
+        .args(options)
+        .output()
+        .unwrap();
+    let shown = String::from_utf8_lossy(text.as_ref());
+    assert!(output.status.success(), "{shown}\n{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Holds what became of each movement against what its line says; the folder has the output.
+fn check(text: &str, options: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let result = optimize(folder.path(), text, options);
+    assert_eq!(result["verification"]["passed"], true, "{text}");
+    let segments = result["segments"].as_array().unwrap();
+    for (index, line) in text.lines().enumerate() {
+        let Some((_, expected)) = line.split_once(EXPECTED) else { continue };
+        let number = index as u64 + 1;
+        let holds = |s: &&Value| {
+            s["kind"] == "timing"
+                && s["line_first"].as_u64().unwrap() <= number
+                && number <= s["line_last"].as_u64().unwrap()
+        };
+        let segment = segments.iter().find(holds);
+        let segment = segment.unwrap_or_else(|| panic!("{text}\nline {number} is not listed"));
+        let found = if segment["rewritten"] == true {
+            "stream"
+        } else {
+            segment["reason"].as_str().unwrap().split(':').next().unwrap()
+        };
+        assert_eq!(found, expected, "{text}\nline {number}: {segment}");
+    }
+    folder
+}
+
+#[test]
+fn error_handlers_that_go_on_keep_their_movements() {
+    let stay = [
+        "ERROR\nRETRY;",
+        "ERROR\nTRYNEXT;",
+        "ERROR\nIF ERRNO=ERR_WAIT_MAXTIME THEN\nRETURN;\nELSE\nRETRY;\nENDIF",
+        "ERROR\nIF ERRNO=ERR_COLL_STOP OR ERRNO=ERR_WAIT_MAXTIME THEN\nStorePath;\nRestoPath;\n\
+         StartMoveRetry;\nENDIF",
+        "ERROR\nTEST ERRNO\nCASE ERR_WAIT_MAXTIME:\nRETRY;\nCASE ERR_PATH_STOP:\nRETRY;\nENDTEST",
+        "ERROR (ERR_PATH_STOP)\nStartMoveRetry;",
+        "ERROR (LONG_JMP_ALL_ERR)\nRETRY;",
+        "BACKWARD\nMoveAbsJ jA,v1000,fine,tP;",
+    ];
+    for handlers in stay {
+        check(&program("", &both("handler"), handlers), &[]);
+    }
+    let go = [
+        "ERROR\nRAISE;",
+        "ERROR\nTPWrite \"stopped\";\nRETURN;",
+        "ERROR\nIF ERRNO=ERR_WAIT_MAXTIME THEN\nRETRY;\nENDIF\nRAISE;",
+        "ERROR\nIF ERRNO=ERR_WAIT_MAXTIME AND bAgain RETRY;\nRAISE;",
+        "ERROR\nTEST ERRNO\nCASE ERR_WAIT_MAXTIME,ERR_SOCK_TIMEOUT:\nTRYNEXT;\nDEFAULT:\nRAISE;\nENDTEST",
+        "ERROR (ERR_SOCK_TIMEOUT, ERR_SOCK_CLOSED)\nRETRY;",
+        "UNDO\nReset doA;",
+    ];
+    for handlers in go {
+        check(&program("VAR bool bAgain:=TRUE;", &both("stream"), handlers), &[]);
+    }
+    // The handler of a caller sees the whole call, with and without streams.
+    let called = format!("PROC rGo()\n{}\nENDPROC", both("stream"));
+    check(&program(&called, "rGo;", "ERROR\nRETRY;"), &[]);
+    // A movement that runs in a handler.
+    let late = "WaitDI diX,1\\MaxTime:=1;\nMoveAbsJ jA,v1000,fine,tP; ! => not-reached";
+    let handlers = "ERROR\nMoveAbsJ jB,v1000,fine,tP; ! => handler\nRETURN;";
+    check(&program("", late, handlers), &["--input", "diX=30"]);
+}
+
+#[test]
+fn interrupt_routines_that_touch_movements_keep_them() {
+    let connected =
+        |what: &str| format!("CONNECT iA WITH tStop;\nISignalDI diStop,1,iA;\n{}", both(what));
+    let trap = |body: &str| {
+        format!(
+            "VAR intnum iA;\nPROC rSlow()\nSpeedRefresh 20;\nENDPROC\n\
+             PROC rAside()\nMoveAbsJ jB,v100,fine,tP;\nENDPROC\nTRAP tStop\n{body}\nENDTRAP"
+        )
+    };
+    let harmless = [
+        "StopMove;\nWaitDI diStop,0;\nStartMove;",
+        "StopMove;\nStorePath;\nrAside;\nMoveAbsJ jA,v100,fine,tP;\nRestoPath;\nStartMove;",
+        "SetDO doLamp,1;",
+    ];
+    for body in harmless {
+        check(&program(&trap(body), &connected("stream"), ""), &[]);
+    }
+    let touching = [
+        "StopMove;\nClearPath;\nStartMove;",
+        "VelSet 20,1000;",
+        "IF diStop=1 THEN\nrSlow;\nENDIF",
+        "rAside;",
+        "%\"rSlow\"%;",
+    ];
+    for body in touching {
+        check(&program(&trap(body), &connected("interrupt"), ""), &[]);
+        // Nothing connects it.
+        check(&program(&trap(body), &both("stream"), ""), &[]);
+    }
+}
+
+#[test]
+fn settings_in_force_keep_movements() {
+    let cases = [
+        ("VelSet 50,5000;", "VelSet 100,5000;"),
+        ("AccSet 50,100;", "AccSet 100,100;"),
+        ("AccSet 100,50;", "AccSet 100,100;"),
+        ("PDispSet [[0,0,10],[1,0,0,0]];", "PDispOff;"),
+        ("EOffsSet [10,0,0,0,0,0];", "EOffsOff;"),
+        ("SoftAct 1,50;", "SoftDeact;"),
+        ("WorldAccLim \\On:=2;", "WorldAccLim \\Off;"),
+        ("PathAccLim TRUE\\AccMax:=2,TRUE\\DecelMax:=2;", "PathAccLim FALSE,FALSE;"),
+        ("SpeedRefresh 50;", "SpeedRefresh 100;"),
+        ("TuneServo ROB_1,1,110;", "TuneReset;"),
+        ("CorrCon cId;", "CorrDiscon cId;"),
+        (
+            "MotionProcessModeSet LOW_SPEED_ACCURACY_MODE;",
+            "MotionProcessModeSet OPTIMAL_CYCLE_TIME_MODE;",
+        ),
+        ("PathRecStart pathA;", "PathRecStop;"),
+        ("SpeedLimAxis ROB_1,1,20;", ""),
+    ];
+    let data = "VAR corrdescr cId;\nVAR pathrecid pathA;";
+    for (on, off) in cases {
+        let after = if off.is_empty() { "setting" } else { "stream" };
+        let statements = format!("{on}\n{}\n{off}\n{}", both("setting"), both(after));
+        check(&program(data, &statements, ""), &[]);
+    }
+    // What streams do not mind.
+    for harmless in ["ConfJ \\Off;", "ConfL \\On;", "MotionSup \\Off;", "PathResol 50;"] {
+        check(&program("", &format!("{harmless}\n{}", both("stream")), ""), &[]);
+    }
+}
+
+#[test]
+fn what_does_more_than_move_is_never_rewritten() {
+    let data = "VAR triggdata trG;\nVAR robtarget pF;\nPERS seamdata sm:=[0,0,0,0];\n\
+                CONST jointtarget jE:=[[60,20,0,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];";
+    let cases = [
+        ("TriggIO trG,10\\DOp:=doA,1;\nTriggL pD,v500,trG,fine,tP;", "instruction"),
+        ("TriggJ pD,v500,trG,fine,tP;", "instruction"),
+        ("SearchL diA,pF,pD,v100,tP;", "instruction"),
+        ("MoveLDO pD,v500,fine,tP,doA,1;", "instruction"),
+        ("MoveLSync pD,v500,fine,tP,\"rX\";", "instruction"),
+        ("MoveL \\Conc,pD,v500,fine,tP;", "argument"),
+        ("MoveL pD,v500,fine,tP\\TLoad:=load0;", "argument"),
+        ("MoveL pD\\ID:=10,v500,fine,tP;", "argument"),
+        ("MoveL pD,v500,fine,tP\\Corr;", "argument"),
+        ("MoveL pD,v500,z10\\Inpos:=[2,TRUE,[0,0,0,0],1.5,0,\"\",0,0],tP;", "argument"),
+        ("MoveL pD,v500\\T:=3,fine,tP;", "timed"),
+    ];
+    for (statement, code) in cases {
+        let statements = format!("MoveJ pC,v1000,fine,tP; ! => stream\n{statement} ! => {code}");
+        check(&program(data, &statements, ""), &[]);
+    }
+    // A process instruction that no file declares may end anywhere.
+    let process = "MoveJ pC,v1000,fine,tP; ! => stream\nArcLStart pD,v500,sm,wd,fine,tP;\n\
+                   MoveAbsJ jE,v1000,fine,tP; ! => unknown-start\n\
+                   MoveAbsJ jA,v1000,fine,tP; ! => stream";
+    check(&program(data, process, ""), &[]);
+}
+
+#[test]
+fn external_axes_are_held_or_keep_their_movements() {
+    let data = "CONST jointtarget jE:=[[0,-12,14,0,60,0],[1500,9E9,9E9,9E9,9E9,9E9]];\n\
+                CONST jointtarget jF:=[[60,20,0,-20,65,30],[1500,9E9,9E9,9E9,9E9,9E9]];";
+    let statements = "MoveAbsJ jB,v1000,fine,tP; ! => stream\n\
+                      MoveAbsJ jE,v1000,fine,tP; ! => external-axes\n\
+                      MoveAbsJ jF,v1000,fine,tP; ! => stream\n\
+                      MoveAbsJ jE,v1000,fine,tP; ! => stream";
+    let folder = check(&program(data, statements, ""), &[]);
+    let streams = fs::read_to_string(folder.path().join("out/Joulepath.mod")).unwrap();
+    let moves = streams.lines().filter(|line| line.trim_start().starts_with("MoveAbsJ"));
+    let held: Vec<bool> =
+        moves.map(|line| line.contains("],[1500,9E9,9E9,9E9,9E9,9E9]],")).collect();
+    assert!(held.contains(&true) && held.contains(&false), "{streams}");
+    // A movement of their own brings them elsewhere.
+    let apart = "MoveAbsJ jB,v1000,fine,tP; ! => stream\nMoveExtJ jE,vlin100,fine;\n\
+                 MoveAbsJ jE,v1000,fine,tP; ! => stream\nMoveExtJ jE,vlin100,fine;\n\
+                 MoveAbsJ jB,v1000,fine,tP; ! => external-axes";
+    check(&program(data, apart, ""), &[]);
+    // The same way twice, with the track at two places.
+    let twice = "CONST jointtarget jG:=[[0,-12,14,0,60,0],[0,9E9,9E9,9E9,9E9,9E9]];\n\
+                 CONST jointtarget jH:=[[60,20,0,-20,65,30],[0,9E9,9E9,9E9,9E9,9E9]];\n\
+                 PROC rGo(jointtarget jX,jointtarget jY)\n\
+                 MoveAbsJ jX,v1000,fine,tP; ! => stream\n\
+                 MoveAbsJ jY,v1000,fine,tP; ! => stream\nENDPROC";
+    let calls = "MoveExtJ jG,vlin100,fine;\nrGo jH,jG;\nMoveExtJ jE,vlin100,fine;\nrGo jF,jE;";
+    check(&program(&format!("{data}\n{twice}"), calls, ""), &[]);
+    // The external axes of each stream are the same all the way.
+    let changes = held.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert_eq!(changes, 1, "{streams}");
+}
+
+#[test]
+fn tools_and_places_may_be_named_in_any_way() {
+    let tools = "PERS tooldata tT{2}:=[[TRUE,[[0,0,90],[1,0,0,0]],[1,[0,0,40],[1,0,0,0],0,0,0]],\
+                 [TRUE,[[0,0,190],[1,0,0,0]],[3,[0,0,40],[1,0,0,0],0,0,0]]];";
+    let statements = "MoveAbsJ jB,v1000,fine,tT{2}; ! => stream\n\
+                      MoveAbsJ jA,v1000,fine,tT{1}; ! => stream";
+    check(&program(tools, statements, ""), &[]);
+    let handed = "PROC rGo(PERS tooldata tX)\nMoveAbsJ jB,v1000,fine,tX; ! => stream\n\
+                  MoveAbsJ jA,v1000,fine,tX; ! => stream\nENDPROC";
+    check(&program(handed, "rGo tP;\nrGo tool0;", ""), &[]);
+    // Where it runs once, another call may come with other data: the guard looks at them.
+    let handed = "PERS wobjdata wA:=[FALSE,TRUE,\"\",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];\n\
+                  PROC rGo(PERS wobjdata wX,PERS tooldata tX)\n\
+                  MoveJ pC,v1000,fine,tX\\WObj:=wX; ! => stream\nENDPROC";
+    let folder = check(&program(handed, "rGo wA,tP;", ""), &[]);
+    let written = fs::read_to_string(folder.path().join("out/m.mod")).unwrap();
+    assert!(written.contains("wX=wA") && written.contains("tX=tP"), "{written}");
+    // A name in the encoding of the file.
+    let name =
+        "PERS tooldata tGr\u{f6}\u{df}e:=[TRUE,[[0,0,90],[1,0,0,0]],[1,[0,0,40],[1,0,0,0],0,0,0]];";
+    let statements = "MoveAbsJ jB,v1000,fine,tGr\u{f6}\u{df}e; ! => stream";
+    let latin: Vec<u8> = program(name, statements, "").chars().map(|c| c as u8).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let result = optimize(folder.path(), &latin, &[]);
+    assert_eq!(result["segments"][1]["rewritten"], true, "{result}");
+    let written = fs::read(folder.path().join("out/m.mod")).unwrap();
+    assert_eq!(written.split(|b| *b == 0xf6).count(), 4);
+    // A label before a run, and a jump to it.
+    let jump = "VAR num n:=0;";
+    let statements = "again:\nMoveAbsJ jB,v1000,fine,tP; ! => stream\n\
+                      MoveAbsJ jA,v1000,fine,tP; ! => stream\nIncr n;\nIF n<2 GOTO again;";
+    check(&program(jump, statements, ""), &[]);
+    // A work object that something else moves.
+    let belt =
+        "PERS wobjdata wBelt:=[FALSE,FALSE,\"CNV1\",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];";
+    let statements = "MoveJ pC,v1000,fine,tP\\WObj:=wBelt; ! => path\n\
+                      MoveAbsJ jA,v1000,fine,tP; ! => unknown-start";
+    let folder = tempfile::tempdir().unwrap();
+    let result = optimize(folder.path(), program(belt, statements, ""), &[]);
+    for segment in result["segments"].as_array().unwrap() {
+        assert_eq!(segment["rewritten"], false, "{segment}");
+    }
+    // Names that the streams would have.
+    let names = "MODULE Joulepath\nVAR num jpAt;\nPROC jpRun1()\nENDPROC\nENDMODULE\n";
+    check(&format!("{}{names}", program("", &both("stream"), "")), &[]);
+}

@@ -1,0 +1,197 @@
+//! Free paths among boxes and planes: the motion of the emitted program, looked at densely, with
+//! distances that are computed here.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use joulepath::kinematics::{Body, Capsule};
+use joulepath::robot::find;
+use nalgebra::{Point3, Vector3};
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+/// There and back with a tool, away from the limits.
+const PROGRAM: &str = "MODULE M\n\
+    PERS tooldata tLong:=[TRUE,[[0,0,180],[1,0,0,0]],[2,[0,0,60],[1,0,0,0],0,0,0]];\n\
+    CONST jointtarget jA:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST jointtarget jB:=[[60,20,0,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    PROC main()\n\
+    MoveAbsJ jA,v1000,fine,tLong;\n\
+    MoveAbsJ jB,vmax,fine,tLong;\n\
+    MoveAbsJ jA,v1000,fine,tLong;\n\
+    ENDPROC\n\
+    ENDMODULE\n";
+const TOOL: [f64; 3] = [0.0, 0.0, 0.18];
+const FREE: [&str; 3] = ["--free-path", "--deviation", "80"];
+/// Parts of the time between two rows of a trajectory, and of a capsule's line.
+const PARTS: usize = 4;
+/// Half the width of the box, m.
+const WIDTH: f64 = 0.03;
+/// What a figure of a trajectory's text leaves out, m.
+const ROUNDING: f64 = 1e-9;
+
+struct Run {
+    result: Value,
+    /// Joint angles, rad.
+    motion: Vec<Vec<f64>>,
+}
+
+impl Run {
+    fn energy(&self) -> f64 {
+        self.result["optimized"]["motion_energy_j"].as_f64().unwrap()
+    }
+
+    /// The deepest point of arm and tool against `along`, and how deep.
+    fn deepest(&self, along: &Vector3<f64>) -> (Point3<f64>, f64) {
+        let points = surface(&self.motion).map(|(point, radius)| {
+            let point = point - along * radius;
+            (point, point.coords.dot(along))
+        });
+        points.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap()
+    }
+}
+
+fn joulepath(arguments: &[&str]) -> Vec<u8> {
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath")).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
+
+fn optimized(config: &str, options: &[&str]) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (input, out, csv) = (at("m.mod"), at("out"), at("t.csv"));
+    fs::write(&input, PROGRAM).unwrap();
+    fs::write(at("joulepath.toml"), config).unwrap();
+    let common = ["optimize", &input, "--robot", ROBOT, "--format", "json", "--out", &out];
+    let result: Value =
+        serde_json::from_slice(&joulepath(&[&common[..], options].concat())).unwrap();
+    assert_eq!(result["verification"]["passed"], true);
+    joulepath(&["simulate", &out, "--robot", ROBOT, "--trajectory", &csv]);
+    Run { result, motion: motion(Path::new(&csv)) }
+}
+
+fn motion(csv: &Path) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(csv).unwrap();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').skip(1).take(6).map(|x| x.parse().unwrap()).collect())
+        .collect();
+    let between = |pair: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let at = |part: usize| part as f64 / PARTS as f64;
+        let mix =
+            |part| pair[0].iter().zip(&pair[1]).map(|(a, b)| a + at(part) * (b - a)).collect();
+        (0..PARTS).map(mix).collect()
+    };
+    rows.windows(2).flat_map(between).collect()
+}
+
+/// Points of the middle lines of arm and tool, each with the radius around it.
+fn surface(motion: &[Vec<f64>]) -> impl Iterator<Item = (Point3<f64>, f64)> {
+    let model = find(ROBOT).unwrap();
+    let capsules: Vec<Capsule> = motion
+        .iter()
+        .flat_map(|q| Body::new(&model, TOOL.into(), &[]).capsules(q).split_off(1))
+        .collect();
+    capsules.into_iter().flat_map(|capsule| {
+        (0..=PARTS).map(move |i| (capsule.at(i as f64 / PARTS as f64), capsule.radius))
+    })
+}
+
+/// The least distance of arm and tool from a box, negative inside.
+fn room(motion: &[Vec<f64>], corners: &[Point3<f64>; 2]) -> f64 {
+    let distance = |point: &Point3<f64>| {
+        let outside: Vector3<f64> = (corners[0] - point).sup(&(point - corners[1]));
+        let far = outside.map(|x| x.max(0.0)).norm();
+        if far > 0.0 { far } else { outside.max() }
+    };
+    surface(motion).map(|(point, radius)| distance(&point) - radius).fold(f64::INFINITY, f64::min)
+}
+
+/// The tip of the tool and its radius, along the motion.
+fn tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
+    let model = find(ROBOT).unwrap();
+    let body = Body::new(&model, TOOL.into(), &[]);
+    let tool = motion.iter().map(|q| body.capsules(q).pop().unwrap());
+    tool.map(|capsule| (capsule.to, capsule.radius)).collect()
+}
+
+/// Where the free motion passes the farthest from the original path along an axis: the axis, the
+/// place of the surface of the tool, and the distance.
+fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
+    let original = tips(&kept.motion);
+    let away = |tip: &Point3<f64>| {
+        let all = original.iter().map(|(other, _)| tip - other);
+        all.min_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap()
+    };
+    let all = tips(&free.motion).into_iter().map(|(tip, radius)| {
+        let away = away(&tip);
+        let mut axis = Vector3::zeros();
+        axis[away.iamax()] = away[away.iamax()].signum();
+        (axis, tip + axis * radius, away.dot(&axis))
+    });
+    all.max_by(|a, b| a.2.total_cmp(&b.2)).unwrap()
+}
+
+#[test]
+fn free_paths_go_round_a_box() {
+    let (kept, free) = (optimized("", &[]), optimized("", &FREE));
+    let (axis, point, depth) = excursion(&kept, &free);
+    assert!(depth > 0.02, "the free motion leaves the original by {depth} m only");
+
+    // Its face cuts off half of what the free motion goes farther.
+    let face = point - axis * (0.5 * depth);
+    let across = Vector3::repeat(WIDTH) - axis.abs() * WIDTH;
+    let (one, other) = (face - across, face + across + axis * (2.0 * WIDTH));
+    let corners = [one.inf(&other), one.sup(&other)];
+    assert!(room(&free.motion, &corners) < -0.01 && room(&kept.motion, &corners) > 0.0);
+    let [lo, hi] = corners.map(|corner| format!("{:?}", corner.coords.as_slice()));
+    let boxed = optimized(&format!("[[keep_out]]\nbox = [{lo}, {hi}]\n"), &FREE);
+    let left = room(&boxed.motion, &corners);
+    assert!(left > -ROUNDING, "{left} m beside the box");
+    let energies = [&free, &boxed, &kept].map(Run::energy);
+    assert!(energies.is_sorted() && energies[1] < energies[2], "{energies:?}");
+    assert_eq!(boxed.result["segments"][1]["kind"], "path");
+}
+
+#[test]
+fn free_paths_stay_on_one_side_of_a_plane() {
+    let (kept, free) = (optimized("", &[]), optimized("", &FREE));
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let sides = axes.into_iter().flat_map(|axis| [axis, -axis]).map(|side| {
+        let (lowest, original) = (free.deepest(&side).1, kept.deepest(&side).1);
+        (side, 0.5 * (lowest + original), original - lowest)
+    });
+    let (side, level, depth) = sides.max_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
+    assert!(depth > 1e-3, "the free motion goes {depth} m farther only");
+
+    // A normal of any length.
+    let [x, y, z]: [f64; 3] = (2.0 * side).into();
+    let config = format!("[[keep_out]]\nplane = [{x:?}, {y:?}, {z:?}, {:?}]\n", 2.0 * level);
+    let planar = optimized(&config, &FREE);
+    let beyond = level - planar.deepest(&side).1;
+    assert!(beyond < ROUNDING, "{beyond} m beyond the plane");
+    assert!(free.energy() < planar.energy() && planar.energy() <= kept.energy());
+}
+
+#[test]
+fn a_path_that_is_not_clear_itself_is_kept_and_says_so() {
+    let kept = optimized("", &[]);
+    let down = Vector3::z();
+    let level = kept.deepest(&down).1 + 0.01;
+    let config = format!("[[keep_out]]\nplane = [0, 0, 1, {level:?}]\n");
+    let blocked = optimized(&config, &FREE);
+    assert_eq!(blocked.energy(), kept.energy());
+    let segments = blocked.result["segments"].as_array().unwrap();
+    let is_kept = |segment: &&Value| {
+        segment["reason"].as_str().is_some_and(|reason| reason.starts_with("keep-out"))
+    };
+    let found: Vec<_> = segments.iter().filter(is_kept).collect();
+    assert!(!found.is_empty(), "{segments:?}");
+    assert!(found.iter().all(|segment| segment["rewritten"] == true));
+    assert!(found.iter().all(|segment| segment["kind"] == "timing"));
+}

@@ -1,0 +1,168 @@
+//! `optimize --emit retime` and `--emit egm`.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+const ROBOT: &str = "IRB1600-10/1.45";
+/// Rounding of a sum of times, s.
+const TIME: f64 = 1e-6;
+/// Clock of externally guided motion, s.
+const TICK: f64 = 0.004;
+/// Rounding of a position in text, degrees.
+const ROUNDING: f64 = 1e-5;
+
+const FAR: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+
+fn program() -> String {
+    format!(
+        "MODULE M\n\
+         CONST jointtarget jA:=[[0,-12,14,0,60,0],{FAR}];\n\
+         CONST jointtarget jB:=[[60,20,0,-20,65,30],{FAR}];\n\
+         CONST robtarget pC:=[[850,300,1000],[0,0,1,0],[0,0,0,0],{FAR}];\n\
+         CONST robtarget pD:=[[850,-300,1000],[0,0,1,0],[-1,0,0,0],{FAR}];\n\
+         PROC main()\n\
+         ConfL \\Off; MoveAbsJ jA,v1000,fine,tool0;\n\
+         MoveAbsJ jB,vmax,fine,tool0; ! quick\n\
+         WaitDI diPart,1;\n\
+         MoveJ pC,v300,fine,tool0;\n\
+         MoveL Offs(pC,0,-100,0),v300,z20,tool0;\n\
+         MoveL pD,v500,fine,tool0\\WObj:=wobj0;\n\
+         MoveJ pC,v1000\\V:=700,fine,tool0;\n\
+         MoveAbsJ jA,v1000,fine,tool0;\n\
+         ENDPROC\n\
+         ENDMODULE\n"
+    )
+}
+
+fn run(folder: &Path, options: &[&str]) -> Value {
+    run_text(folder, &program(), options)
+}
+
+fn run_text(folder: &Path, text: &str, options: &[&str]) -> Value {
+    let path = folder.join("m.mod");
+    fs::write(&path, text).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
+        .args(options)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn number(value: &Value, pointer: &str) -> f64 {
+    value.pointer(pointer).and_then(Value::as_f64).unwrap()
+}
+
+/// TCP speed that a statement's second argument names, mm/s.
+fn speed(statement: &str) -> f64 {
+    let inside =
+        statement.split_once(",v").map(|(_, rest)| rest.split([',', '\\']).next().unwrap());
+    match inside {
+        Some("max") => f64::INFINITY,
+        Some(name) => name.parse().unwrap(),
+        None => {
+            let literal = statement.split(",[").last().unwrap();
+            literal.split(',').next().unwrap().parse().unwrap()
+        }
+    }
+}
+
+#[test]
+fn only_speeds_change_and_no_ceiling_is_passed() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = run(folder.path(), &["--emit", "retime", "--input", "diPart=4"]);
+    assert_eq!(result["verification"]["passed"], true, "{result}");
+    let cycle = |which: &str| number(&result, &format!("/{which}/cycle_s"));
+    assert!(cycle("optimized") <= cycle("original") + TIME, "{result}");
+    assert!(number(&result, "/saving_percent") > 1.0, "{result}");
+    let written = fs::read_to_string(folder.path().join("out/m.mod")).unwrap();
+    assert!(!folder.path().join("out/Joulepath.mod").exists());
+    let original = program();
+    let mut changed = 0;
+    for (was, now) in original.lines().zip(written.lines()) {
+        if was == now {
+            continue;
+        }
+        changed += 1;
+        // All but the speed is the same.
+        let (head, tail) = (was.find(",v").unwrap(), was.find(",fine").or(was.find(",z")).unwrap());
+        assert!(now.starts_with(&was[..=head]) && now.ends_with(&was[tail..]), "{was}\n{now}");
+        if was.starts_with("MoveL") {
+            assert!(speed(now) <= speed(was), "{was}\n{now}");
+        }
+    }
+    assert_eq!(original.lines().count(), written.lines().count());
+    assert!(changed >= 2, "{written}");
+    // The quick way before the wait is slower now; a speed with \V stays.
+    assert!(
+        written.contains("MoveAbsJ jB,[") && written.contains("v1000\\V:=700,fine"),
+        "{written}"
+    );
+    // The promise is what the written program does.
+    let out = folder.path().join("out");
+    let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .args(["simulate", out.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args(["--quiet", "--input", "diPart=4"])
+        .output()
+        .unwrap();
+    let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
+    let promised = number(&result, "/optimized/energy_j");
+    assert!((number(&simulated, "/energy_j") - promised).abs() < 1e-6 * promised);
+    // There is nothing left to do.
+    let folder = tempfile::tempdir().unwrap();
+    let again = run_text(folder.path(), &written, &["--emit", "retime", "--input", "diPart=4"]);
+    assert_eq!(fs::read_to_string(folder.path().join("out/m.mod")).unwrap(), written, "{again}");
+}
+
+#[test]
+fn positions_for_a_guide_stand_beside_an_unchanged_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let streams = run(folder.path(), &[]);
+    let folder = tempfile::tempdir().unwrap();
+    let result = run(folder.path(), &["--emit", "egm"]);
+    let out = folder.path().join("out");
+    assert_eq!(fs::read_to_string(out.join("m.mod")).unwrap(), program());
+    assert_eq!(number(&result, "/saving_percent"), 0.0);
+    let segments = result["segments"].as_array().unwrap();
+    let guided = segments
+        .iter()
+        .filter(|s| s["reason"].as_str().is_some_and(|reason| reason.starts_with("guided: ")));
+    let rewritten =
+        streams["segments"].as_array().unwrap().iter().filter(|s| s["rewritten"] == true);
+    let times: Vec<f64> = rewritten.map(|s| number(s, "/time_after_s")).collect();
+    assert_eq!(guided.count(), times.len());
+    let mut files: Vec<_> =
+        fs::read_dir(out.join("egm")).unwrap().map(|f| f.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "csv"));
+    assert_eq!(files.len(), times.len());
+    files.sort();
+    for path in &files {
+        let text = fs::read_to_string(path).unwrap();
+        let rows: Vec<Vec<f64>> = text
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+            .collect();
+        // Speeds of the data sheet, and rest at both ends.
+        let limit = [180.0, 180.0, 185.0, 385.0, 400.0, 460.0];
+        for pair in rows.windows(2) {
+            assert!((pair[1][0] - pair[0][0] - TICK).abs() < TIME);
+            for j in 0..6 {
+                assert!((pair[1][j + 1] - pair[0][j + 1]).abs() <= 1.001 * limit[j] * TICK);
+            }
+        }
+        let module = fs::read_to_string(path.with_extension("mod")).unwrap();
+        let start = module.split("MoveAbsJ [[").nth(1).unwrap().split(']').next().unwrap();
+        for (a, b) in start.split(',').zip(&rows[0][1..]) {
+            assert!((a.parse::<f64>().unwrap() - b).abs() < ROUNDING, "{module}");
+        }
+        assert!(module.contains("EGMRunJoint"), "{module}");
+    }
+}
