@@ -1,22 +1,20 @@
 //! `joulepath identify`: a dynamic model from measured logs.
 
-use std::fs::File;
-use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::io::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::{Args, ValueEnum};
-use sha2::{Digest, Sha256};
 
+use super::logs::{Reader, Ready, read_all};
 use super::{common, output};
 use crate::cli::common::Format;
 use crate::effects;
 use crate::identify::{
-    Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
-    check_torques, cleaned, identify, prepare, torques,
+    Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, identify,
 };
-use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, aligned, are_halves};
+use crate::log::ColumnMap;
 use crate::report::html::{Traces, identify_report};
 use crate::report::identify as report;
 use crate::robot::Model;
@@ -102,20 +100,6 @@ enum Method {
     Ordinary,
 }
 
-/// A log that was read.
-struct Read {
-    shown: String,
-    hash: String,
-    log: Log,
-}
-
-/// A log ready to be used.
-struct Ready {
-    record: (String, String, usize, usize),
-    samples: Samples,
-    origin: String,
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -128,9 +112,10 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     }
     let hints = Hints { period: args.period, cutoff: None };
     let mut basis = report::Basis { date: args.date.clone(), ..report::Basis::default() };
+    let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
     let mut training = Vec::new();
     for read in read_all(&args.log, &map)? {
-        training.push(ready(args, &model, read, hints, &mut basis)?);
+        training.push(reader.ready(read, hints)?);
     }
     // One filter for all: what is compared has to have the same band.
     let cutoff = training.iter().find_map(|ready| match ready.samples.source {
@@ -140,10 +125,11 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let mut validation = Vec::new();
     let held_out = Hints { period: args.period, cutoff };
     for read in read_all(&args.validate, &map)? {
-        let ready = ready(args, &model, read, held_out, &mut basis)?;
+        let ready = reader.ready(read, held_out)?;
         basis.validation.push(ready.record);
         validation.push(ready.samples);
     }
+    basis.notes = reader.notes;
     basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
     basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
     let samples = joined(training)?;
@@ -291,120 +277,6 @@ fn doubts(found: &Identified) -> Vec<String> {
         ));
     }
     texts
-}
-
-/// Reads logs; halves of one run become one.
-fn read_all(paths: &[PathBuf], map: &ColumnMap) -> anyhow::Result<Vec<Read>> {
-    let mut logs: Vec<Read> = Vec::new();
-    for path in paths {
-        let read = read(path, map)?;
-        let half = logs
-            .iter_mut()
-            .find(|other| are_halves(&other.log, &read.log) || are_halves(&read.log, &other.log));
-        let Some(other) = half else {
-            logs.push(read);
-            continue;
-        };
-        let (positions, currents) = if are_halves(&other.log, &read.log) {
-            (&other.log, &read.log)
-        } else {
-            (&read.log, &other.log)
-        };
-        let both = aligned(positions, currents)
-            .with_context(|| format!("{} and {}", other.shown, read.shown))?;
-        other.log = both;
-        other.shown = format!("{} + {}", other.shown, read.shown);
-        other.hash = format!("{} + {}", other.hash, read.hash);
-    }
-    Ok(logs)
-}
-
-fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
-    let shown = path.display().to_string();
-    let file = File::open(path)
-        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
-    let mut stream = Hashed { stream: file, hash: Sha256::new() };
-    let log = log::read_from(&mut stream, map).with_context(|| shown.clone())?;
-    let hash = format!("{:x}", stream.hash.finalize());
-    Ok(Read { shown, hash, log })
-}
-
-/// A stream whose bytes are hashed as they are read.
-struct Hashed {
-    stream: File,
-    hash: Sha256,
-}
-
-impl io::Read for Hashed {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.stream.read(buffer)?;
-        self.hash.update(&buffer[..count]);
-        Ok(count)
-    }
-}
-
-/// Checks a log and makes instants of it.
-fn ready(
-    args: &IdentifyArgs,
-    model: &Model,
-    read: Read,
-    hints: Hints,
-    basis: &mut report::Basis,
-) -> anyhow::Result<Ready> {
-    let Read { shown, hash, log } = read;
-    if log.joints() != model.dof {
-        bail!(
-            "{shown}: positions of {} joints are logged, {} has {}; give a log with q1 to q{}, or \
-             another --robot",
-            log.joints(),
-            model.name,
-            model.dof,
-            model.dof
-        );
-    }
-    let (log, impossible) = cleaned(&log);
-    for rejected in log.rejected.iter().chain(&impossible) {
-        let text = format!("{shown}: row {} left out: {}", rejected.row, rejected.reason);
-        common::note(args.quiet, &text);
-    }
-    let left_out = log.rejected.len() + impossible.len();
-    let usable = log.time().len();
-    if usable < MIN_ROWS || left_out > usable {
-        let first = log.rejected.iter().chain(&impossible).next();
-        let why = first.map_or_else(String::new, |first| {
-            format!("; the first is row {}: {}", first.row, first.reason)
-        });
-        bail!("{shown}: {left_out} rows can't be used and {usable} can{why}");
-    }
-    check_angles(model, &log).with_context(|| shown.clone())?;
-    let torque = torques(model, &log).with_context(|| shown.clone())?;
-    check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
-    for text in torque.notes {
-        tell(args, basis, format!("{shown}: {text}"));
-    }
-    if let Some(text) = unused(&log) {
-        tell(args, basis, format!("{shown}: {text}"));
-    }
-    let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
-    Ok(Ready { record: (shown, hash, usable, left_out), samples, origin: torque.origin })
-}
-
-/// Rates and accelerations that are logged, but not of all joints.
-fn unused(log: &Log) -> Option<String> {
-    let part = |name: &str, channel: fn(usize) -> Channel| {
-        let has = |joint: &usize| log.column(channel(*joint)).is_some();
-        let (with, without): (Vec<usize>, Vec<usize>) = (0..log.joints()).partition(has);
-        let list = |joints: &[usize]| -> String {
-            joints.iter().map(|j| format!("{name}{}", j + 1)).collect::<Vec<_>>().join(", ")
-        };
-        let told = !with.is_empty() && !without.is_empty();
-        told.then(|| format!("no column {}: {} not used", list(&without), list(&with)))
-    };
-    let parts: Vec<String> = [part("qd", Channel::Velocity), part("qdd", Channel::Acceleration)]
-        .into_iter()
-        .flatten()
-        .collect();
-    (!parts.is_empty()).then(|| format!("{}; differentiated instead", parts.join("; ")))
 }
 
 /// The instants of several logs as one.

@@ -7,7 +7,7 @@ use crate::robot::Link;
 /// `link` with a body: mass, first moments, moments (xx, yy, zz, xy, xz, yz) about the origin of
 /// `frame`, in its axes. The body may have a moment without a mass.
 #[must_use]
-pub(super) fn added(link: &Link, frame: &Isometry3<f64>, body: &[f64]) -> Link {
+pub fn added(link: &Link, frame: &Isometry3<f64>, body: &[f64]) -> Link {
     let to = frame.to_homogeneous();
     let sum = pseudo_inertia(&about_origin_of(link)) + to * pseudo_inertia(body) * to.transpose();
     let mass = sum[(3, 3)];

@@ -82,6 +82,8 @@ pub struct Scale {
     pub step: f64,
     /// Mass that the flange may carry \[kg\].
     pub payload: f64,
+    /// Mass of the joint's link \[kg\], and its mean moment about the joint's origin \[kg m²\].
+    pub link: (f64, f64),
 }
 
 /// Torques by joint \[Nm\] in a motion, of the coordinates of a joint, from 0.

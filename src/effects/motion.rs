@@ -28,6 +28,8 @@ pub struct Motion<'a> {
     pub qdd: Vec<Vec<f64>>,
     /// Whether the last row is followed by the first one.
     pub closed: bool,
+    /// Rate of each motor, at its joint, at or below which it has no sense \[rad/s\].
+    pub rest: Vec<f64>,
     /// Rates of the motors over the gear ratios \[rad/s\].
     pub rates: Vec<Vec<f64>>,
     /// Their senses: 1, −1, or 0 at rest.
@@ -58,6 +60,7 @@ impl<'a> Motion<'a> {
             qd,
             qdd,
             closed,
+            rest: rest.to_vec(),
             rates: empty(),
             senses: empty(),
             gear: empty(),
@@ -143,6 +146,12 @@ impl<'a> Motion<'a> {
             }
             let mut senses = [0.0; MAX_DOF];
             senses.iter_mut().zip(&self.senses).for_each(|(to, of)| *to = of[row]);
+            if model.wrist.coupling != self.model.wrist.coupling {
+                // Another motor 6 turns back at other times.
+                let rate = motor_rates(model, &qd[..n])[n - 1];
+                let resting = rate.abs() <= self.rest.get(n - 1).copied().unwrap_or(0.0);
+                senses[n - 1] = if resting { 0.0 } else { sense(rate) };
+            }
             let tau = rnea(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
             let gear = rigid_bodies(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
             let friction = friction_of_senses(model, &qd[..n], &gear, &senses);
@@ -249,6 +258,10 @@ impl<'a> Motion<'a> {
             ratio: motors.map_or(1.0, |motors| motors.ratio[joint]),
             step: self.step(),
             payload: PAYLOAD * mass,
+            link: model.links.get(joint).map_or((0.0, 0.0), |link| {
+                let about = link.com.norm_squared() * link.mass * 2.0 / 3.0;
+                (link.mass, link.inertia.trace() / 3.0 + about)
+            }),
         }
     }
 }

@@ -2,6 +2,8 @@
 
 use crate::effects::{Effect, Motion, Role};
 
+use super::record::{Record, RecordKind};
+
 /// Half of the distance between tried values of a shape is one deviation of the tangent.
 const TANGENT: f64 = 0.5;
 /// Relative step of differences over a shape.
@@ -51,11 +53,46 @@ pub struct Piece {
     pub columns: Vec<Column>,
 }
 
-/// All pieces of an effect at a joint, in motions of one robot.
+/// Whether an effect changes from repetition to repetition.
+fn is_of_time(effect: &Effect) -> bool {
+    effect.id == "warm_up"
+}
+
+/// What an effect adds to a record.
+fn added(
+    effect: &Effect,
+    record: &Record<'_>,
+    joint: usize,
+    values: &[f64],
+) -> Vec<(usize, Vec<f64>)> {
+    if !is_of_time(effect) {
+        return match record.kind {
+            RecordKind::Mean => effect.added(&record.motion, joint, values),
+            RecordKind::Drift => Vec::new(),
+        };
+    }
+    let mut moved = record.motion.clone();
+    let mut sum: Vec<(usize, Vec<f64>)> = Vec::new();
+    for (later, weight) in &record.times {
+        for (to, from) in moved.t.iter_mut().zip(&record.motion.t) {
+            *to = from + later;
+        }
+        for (number, (joint, series)) in effect.added(&moved, joint, values).into_iter().enumerate()
+        {
+            if number == sum.len() {
+                sum.push((joint, vec![0.0; series.len()]));
+            }
+            sum[number].1.iter_mut().zip(&series).for_each(|(sum, x)| *sum += weight * x);
+        }
+    }
+    sum
+}
+
+/// All pieces of an effect at a joint, in records of one robot.
 #[must_use]
-pub(super) fn pieces(effect: &'static Effect, motions: &[&Motion<'_>], joint: usize) -> Vec<Piece> {
-    let Some(first) = motions.first() else { return Vec::new() };
-    let scale = first.scale(joint);
+pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usize) -> Vec<Piece> {
+    let Some(first) = records.first() else { return Vec::new() };
+    let scale = first.motion.scale(joint);
     let tried: Vec<Vec<f64>> = effect
         .coordinates
         .iter()
@@ -87,7 +124,7 @@ pub(super) fn pieces(effect: &'static Effect, motions: &[&Motion<'_>], joint: us
         .map(|shape| Piece {
             owner: Owner::Effect(effect),
             joint: of,
-            columns: columns(effect, motions, joint, &shape, &tried),
+            columns: columns(effect, records, joint, &shape, &tried),
             choices,
             shape,
         })
@@ -96,12 +133,18 @@ pub(super) fn pieces(effect: &'static Effect, motions: &[&Motion<'_>], joint: us
 
 /// Columns of an effect of the measurement that the table's own channel has already: what more
 /// of it adds.
-pub(super) fn more_of(effect: &'static Effect, motions: &[&Motion<'_>]) -> Vec<Column> {
-    let n = motions.first().map_or(0, |motion| motion.model.dof);
+pub(super) fn more_of(effect: &'static Effect, records: &[Record<'_>]) -> Vec<Column> {
+    let n = records.first().map_or(0, |record| record.motion.model.dof);
     let of = |series: fn(&Motion<'_>, usize) -> Vec<f64>| -> Vec<Vec<(usize, Vec<f64>)>> {
-        motions.iter().map(|m| (0..n).map(|joint| (joint, series(m, joint))).collect()).collect()
+        let one = |record: &Record<'_>| match record.kind {
+            RecordKind::Mean => {
+                (0..n).map(|joint| (joint, series(&record.motion, joint))).collect()
+            }
+            RecordKind::Drift => Vec::new(),
+        };
+        records.iter().map(one).collect()
     };
-    let scale = motions.first().map(|motion| motion.scale(0));
+    let scale = records.first().map(|record| record.motion.scale(0));
     let tried = match (effect.coordinates.first().map(|c| c.role), &scale) {
         (Some(Role::Shape(values)), Some(scale)) => values(scale),
         _ => Vec::new(),
@@ -121,11 +164,11 @@ pub(super) fn more_of(effect: &'static Effect, motions: &[&Motion<'_>]) -> Vec<C
 /// Columns of an effect at a shape of its own.
 pub(super) fn columns_at(
     effect: &'static Effect,
-    motions: &[&Motion<'_>],
+    records: &[Record<'_>],
     joint: usize,
     shape: &[f64],
 ) -> Vec<Column> {
-    let scale = motions.first().map(|motion| motion.scale(joint));
+    let scale = records.first().map(|record| record.motion.scale(joint));
     let tried: Vec<Vec<f64>> = effect
         .coordinates
         .iter()
@@ -134,20 +177,20 @@ pub(super) fn columns_at(
             _ => Vec::new(),
         })
         .collect();
-    columns(effect, motions, joint, shape, &tried)
+    columns(effect, records, joint, shape, &tried)
 }
 
 /// Columns at one shape: what it does by itself, where it does, then what each linear coordinate
 /// adds; behind each of these how it changes with the shape.
 fn columns(
     effect: &'static Effect,
-    motions: &[&Motion<'_>],
+    records: &[Record<'_>],
     joint: usize,
     shape: &[f64],
     tried: &[Vec<f64>],
 ) -> Vec<Column> {
-    let added = |values: &[f64]| -> Vec<Vec<(usize, Vec<f64>)>> {
-        motions.iter().map(|motion| effect.added(motion, joint, values)).collect()
+    let with = |values: &[f64]| -> Vec<Vec<(usize, Vec<f64>)>> {
+        records.iter().map(|record| added(effect, record, joint, values)).collect()
     };
     let is_linear = |k: &usize| matches!(effect.coordinates[*k].role, Role::Linear);
     let only = |kept: Option<usize>, shape: &[f64]| -> Vec<f64> {
@@ -157,8 +200,8 @@ fn columns(
     // What the shape does by itself, and how each torque changes with it.
     let block = |kept: Option<usize>, less: Option<&[Vec<(usize, Vec<f64>)>]>| -> Vec<Column> {
         let relative = |values: &[f64]| match less {
-            Some(less) => difference(&added(values), less, 1.0),
-            None => added(values),
+            Some(less) => difference(&with(values), less, 1.0),
+            None => with(values),
         };
         let base = only(kept, shape);
         let here = relative(&base);
@@ -169,8 +212,8 @@ fn columns(
             next[k] += step;
             let spacing = nearest_spacing(&tried[k], shape[k]);
             // Of all, not of what is more than the shape's own: that has its own tangent.
-            let from = if kept.is_some() { added(&base) } else { here.clone() };
-            let series = difference(&added(&next), &from, 1.0 / step);
+            let from = if kept.is_some() { with(&base) } else { here.clone() };
+            let series = difference(&with(&next), &from, 1.0 / step);
             Some(Column { series, mean: 0.0, sd: TANGENT * spacing })
         });
         let tangents: Vec<Column> = tangents.collect();
@@ -178,7 +221,7 @@ fn columns(
         std::iter::once(Column { series: here, mean, sd }).chain(tangents).collect()
     };
     let mut columns = Vec::new();
-    let alone = added(&only(None, shape));
+    let alone = with(&only(None, shape));
     let acts = alone.iter().flatten().any(|(_, series)| series.iter().any(|x| *x != 0.0));
     if acts {
         columns.extend(block(None, None));

@@ -3,6 +3,7 @@
 use crate::effects::Motion;
 
 use super::column::{Column, Owner, Piece};
+use super::record::{Record, RecordKind};
 
 /// Usual size of such a function, of the joint's torque.
 const SIZE: f64 = 0.05;
@@ -61,9 +62,9 @@ const KINDS: [Kind; 6] = [
 
 /// One piece for each thing that torques of a joint may depend on.
 #[must_use]
-pub(super) fn generic(motions: &[&Motion<'_>], joint: usize) -> Vec<Piece> {
-    let extents: Vec<Extent> = motions.iter().map(|motion| extent(motion, joint)).collect();
-    let size = motions.first().map_or(0.0, |motion| SIZE * motion.scale(joint).torque[0]);
+pub(super) fn generic(records: &[Record<'_>], joint: usize) -> Vec<Piece> {
+    let extents: Vec<Extent> = records.iter().map(|record| extent(&record.motion, joint)).collect();
+    let size = records.first().map_or(0.0, |of| SIZE * of.motion.scale(joint).torque[0]);
     // One function for all motions, so one range for all.
     let largest = |of: fn(&Extent) -> f64| extents.iter().map(of).fold(1e-9, f64::max);
     let low = extents.iter().map(|e| e.middle - e.range).fold(f64::INFINITY, f64::min);
@@ -82,21 +83,21 @@ pub(super) fn generic(motions: &[&Motion<'_>], joint: usize) -> Vec<Piece> {
             shape: Vec::new(),
             choices: 1,
             columns: (0..kind.bumps)
-                .map(|bump| column(kind, motions, joint, bump, &all, size))
+                .map(|bump| column(kind, records, joint, bump, &all, size))
                 .collect(),
         })
         .collect()
 }
 
 /// The columns of one of them.
-pub(super) fn named(id: &str, motions: &[&Motion<'_>], joint: usize) -> Vec<Column> {
-    let piece = generic(motions, joint).into_iter().find(|piece| piece.owner.id() == id);
+pub(super) fn named(id: &str, records: &[Record<'_>], joint: usize) -> Vec<Column> {
+    let piece = generic(records, joint).into_iter().find(|piece| piece.owner.id() == id);
     piece.map_or_else(Vec::new, |piece| piece.columns)
 }
 
 fn column(
     kind: &Kind,
-    motions: &[&Motion<'_>],
+    records: &[Record<'_>],
     joint: usize,
     bump: usize,
     extent: &Extent,
@@ -104,9 +105,13 @@ fn column(
 ) -> Column {
     let width = 2.0 / (kind.bumps - 1) as f64;
     let centre = -1.0 + width * bump as f64;
-    let series = motions
+    let series = records
         .iter()
-        .map(|motion| {
+        .map(|record| {
+            if record.kind == RecordKind::Drift {
+                return Vec::new();
+            }
+            let motion = &record.motion;
             let of = |row: usize| {
                 let [x, factor] = (kind.of)(motion, joint, row, extent);
                 // A root makes room where friction changes most.

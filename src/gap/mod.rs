@@ -5,22 +5,31 @@
 
 mod channel;
 mod column;
+mod diagnose;
+mod diagnosis;
 mod evidence;
 mod generic;
+mod heldout;
 mod hypothesis;
+mod improved;
 mod nuisance;
 mod polish;
 mod record;
+mod rows;
 mod search;
 mod spectrum;
 mod table;
 
 pub use channel::Channel;
 pub use column::{Column, Owner, Piece};
+pub use diagnose::{Settings, diagnose};
+pub use diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
 pub use evidence::Evidence;
+pub use heldout::{Interval, JointGap, Shrink, predicted, shrink};
 pub use hypothesis::{Family, families};
+pub use improved::Improved;
 pub use nuisance::Trust;
 pub use polish::{Fitted, Polished, polish};
-pub use record::Record;
+pub use record::{Record, RecordKind};
 pub use search::{Chosen, Found, Search};
 pub use table::{Placed, Table};

@@ -7,6 +7,8 @@ use crate::dynamics::{JOINT, Parameters, RIGID, Regressor, link_parameters, writ
 use crate::effects::Motion;
 use crate::robot::Link;
 
+use super::record::{Record, RecordKind};
+
 /// How much the parameters of the model are believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trust {
@@ -65,21 +67,39 @@ const LINK: [&str; RIGID] = [
 ];
 const OF_JOINT: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"];
 
+/// Stiction that any robot may have beyond its model, of Coulomb friction, and the speed at
+/// which 1/e of it is left \[rad/s\].
+const STICTION: f64 = 0.012;
+const SLOW: f64 = 0.08;
+/// Ripple of the motor's turn that any robot may have, of the torque.
+const RIPPLE: f64 = 0.0015;
+/// Smooth torques that no model has: powers of position and of speed.
+const POWERS: [usize; 5] = [2, 3, 4, 5, 6];
+/// Of them, where the model's error is taken as 1.
+const SMOOTH: f64 = 0.7;
+/// Change of friction from repetition to repetition, of itself.
+const VARIES: f64 = 0.004;
+
 /// What a change of each parameter by one standard deviation adds to the torques: of each
-/// parameter, of each joint, the series.
+/// parameter, of each joint, the series; behind the parameters what no model has.
 pub(super) struct Nuisance {
     /// Names, such as `link 3 mass`.
     pub(super) names: Vec<String>,
     /// The size of one deviation in the parameter's unit.
     pub(super) deviations: Vec<f64>,
-    /// By parameter, by joint, by row \[Nm\].
-    pub(super) series: Vec<Vec<Vec<f64>>>,
+    /// Changes of the standard parameters for one deviation of each of the model's.
+    pub(super) mixing: DMatrix<f64>,
+    /// Columns from here on are in shares of the model's error.
+    pub(super) errors_from: usize,
+    /// By column, joints that it reaches with their rows \[Nm\].
+    pub(super) series: Vec<Vec<(usize, Vec<f64>)>>,
 }
 
 /// The parameters of a motion's model.
-pub(super) fn nuisance(motion: &Motion<'_>, trust: Trust) -> Nuisance {
+pub(super) fn nuisance(record: &Record<'_>, trust: Trust) -> Nuisance {
+    let motion = &record.motion;
     let model = motion.model;
-    let (n, rows) = (model.dof, motion.len());
+    let n = model.dof;
     let spread = trust.spread();
     let count = Parameters::WithJoints.count(n);
     let mut names = Vec::new();
@@ -112,9 +132,24 @@ pub(super) fn nuisance(motion: &Motion<'_>, trust: Trust) -> Nuisance {
             deviations.push(size);
         }
     }
+    let series = match record.kind {
+        RecordKind::Mean => of_parameters(motion, &mixing),
+        // No parameter changes from repetition to repetition.
+        RecordKind::Drift => vec![Vec::new(); count],
+    };
+    let mut of = Nuisance { names, deviations, mixing, errors_from: 0, series };
+    without_model(record, &mut of);
+    of
+}
+
+/// What one deviation of each parameter adds.
+fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, Vec<f64>)>> {
+    let model = motion.model;
+    let (n, rows, count) = (model.dof, motion.len(), mixing.ncols());
     let mut scratch = Regressor::new();
     let mut regressor = DMatrix::zeros(n, count);
-    let mut series = vec![vec![vec![0.0; rows]; n]; count];
+    let mut series: Vec<Vec<(usize, Vec<f64>)>> =
+        (0..count).map(|_| (0..n).map(|joint| (joint, vec![0.0; rows])).collect()).collect();
     for row in 0..rows {
         let [mut q, qd, qdd] = motion.state(row);
         for (q, offset) in q.iter_mut().zip(&model.sensors.position_offset) {
@@ -126,14 +161,68 @@ pub(super) fn nuisance(motion: &Motion<'_>, trust: Trust) -> Nuisance {
             // A joint that counts as at rest has no sense.
             regressor[(joint, RIGID * n + JOINT * joint + 2)] = motion.senses[joint][row];
         }
-        let changed = &regressor * &mixing;
+        let changed = &regressor * mixing;
         for (parameter, of) in series.iter_mut().enumerate() {
-            for (joint, of) in of.iter_mut().enumerate() {
-                of[row] = changed[(joint, parameter)];
+            for (joint, of) in of.iter_mut() {
+                of[row] = changed[(*joint, parameter)];
             }
         }
     }
-    Nuisance { names, deviations, series }
+    for of in &mut series {
+        of.retain(|(_, series)| series.iter().any(|x| *x != 0.0));
+    }
+    series
+}
+
+/// What no model has: a little friction at low speed, smooth functions of position and speed;
+/// friction that changes from repetition to repetition.
+fn without_model(record: &Record<'_>, of: &mut Nuisance) {
+    let motion = &record.motion;
+    let n = motion.model.dof;
+    let is_mean = record.kind == RecordKind::Mean;
+    let push = |of: &mut Nuisance, name: &str, joint: usize, there: bool, series: Vec<f64>| {
+        of.names.push(format!("joint {} {name}", joint + 1));
+        of.deviations.push(1.0);
+        of.series.push(if there { vec![(joint, series)] } else { Vec::new() });
+    };
+    for joint in 0..n {
+        let scale = motion.scale(joint);
+        let senses = &motion.senses[joint];
+        let rates = &motion.rates[joint];
+        let slow = |(sense, rate): (&f64, &f64)| {
+            STICTION * scale.coulomb * sense * (-rate.abs() / SLOW).exp()
+        };
+        let series = senses.iter().zip(rates).map(slow).collect();
+        push(of, "at low speed", joint, is_mean, series);
+        let rms = RIPPLE * scale.torque[0];
+        for wave in [f64::sin, f64::cos] {
+            let at = |q: &f64| rms * wave(scale.ratio * q);
+            push(of, "ripple", joint, is_mean, motion.q[joint].iter().map(at).collect());
+        }
+        for (name, size, series) in
+            [("dry", scale.coulomb, senses), ("viscous", scale.viscous, rates)]
+        {
+            let series = series.iter().map(|x| VARIES * size * x).collect();
+            push(of, &format!("{name} friction changes"), joint, !is_mean, series);
+        }
+    }
+    of.errors_from = of.series.len();
+    for joint in 0..n {
+        let size = SMOOTH * motion.scale(joint).torque[0];
+        for x in [&motion.q[joint], &motion.rates[joint]] {
+            let low = x.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let (middle, half) = (f64::midpoint(low, high), (0.5 * (high - low)).max(1e-9));
+            for power in POWERS {
+                // Chebyshev polynomials: none is like another one.
+                let wave = |x: &f64| {
+                    let angle = ((x - middle) / half).clamp(-1.0, 1.0).acos();
+                    size * (power as f64 * angle).cos()
+                };
+                push(of, "smooth", joint, is_mean, x.iter().map(wave).collect());
+            }
+        }
+    }
 }
 
 /// Changes of the ten parameters of a link for one deviation of mass, centre and inertia.

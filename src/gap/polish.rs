@@ -2,10 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::effects::{Effect, Motion, Role};
+use crate::effects::{Effect, Role};
 
 use super::channel::Channel;
 use super::column::{Owner, Piece, columns_at, more_of};
+use super::record::Record;
 use super::search::Search;
 use super::table::{Placed, Table};
 
@@ -13,6 +14,8 @@ use super::table::{Placed, Table};
 const ROUNDS: usize = 6;
 /// Relative change of a shape in one round at most.
 const STEP: f64 = 0.5;
+/// A shape may be this many times beyond the tried values.
+const BEYOND: f64 = 2.0;
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
 
@@ -53,8 +56,7 @@ pub struct Polished {
 /// Improves shapes by new tangents until they stay.
 #[must_use]
 pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
-    let Search { records, trust, error, ref channel, .. } = *search;
-    let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
+    let Search { records, error, ref channel, ref nuisances, .. } = *search;
     let first: Vec<&Placed> = pieces.iter().map(|number| &search.table.pieces[*number]).collect();
     let mut shapes: Vec<Vec<f64>> = first.iter().map(|placed| placed.shape.clone()).collect();
     // Delay and lag act on all that is computed.
@@ -72,9 +74,9 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
         let made: Vec<Piece> = first
             .iter()
             .zip(&shapes)
-            .map(|(placed, shape)| remade(placed, &motions, shape))
+            .map(|(placed, shape)| remade(placed, records, shape))
             .collect();
-        let mut table = Table::of(records, made, trust);
+        let mut table = Table::of(records, made, nuisances);
         table.through(&channel);
         let evidence = table.evidence(error);
         let all: Vec<usize> = table.pieces.iter().flat_map(|piece| piece.columns.clone()).collect();
@@ -104,6 +106,9 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
                 if matches!(coordinate.role, Role::Shape(_)) {
                     let most = STEP * shape[k].abs();
                     shape[k] += (coordinates[k] - shape[k]).clamp(-most, most);
+                    if let Some([low, high]) = range(effect, records, placed.joint, k) {
+                        shape[k] = shape[k].clamp(low, high);
+                    }
                 }
             }
         }
@@ -119,7 +124,7 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
                 pieces: first
                     .iter()
                     .zip(&shapes)
-                    .map(|(placed, shape)| remade(placed, &motions, shape))
+                    .map(|(placed, shape)| remade(placed, records, shape))
                     .collect(),
                 generic: generic.collect(),
                 parameters: evidence.parameters(&all, &estimate.mean),
@@ -130,19 +135,34 @@ pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
     result
 }
 
+/// What lies within the tried values of a shape, and a little beyond.
+fn range(
+    effect: &Effect,
+    records: &[Record<'_>],
+    joint: Option<usize>,
+    k: usize,
+) -> Option<[f64; 2]> {
+    let scale = records.first()?.motion.scale(joint.unwrap_or(0));
+    let Role::Shape(tried) = effect.coordinates[k].role else { return None };
+    let tried = tried(&scale);
+    let (low, high) = (tried.first()?, tried.last()?);
+    let beyond = |x: f64, factor: f64| if x > 0.0 { x * factor } else { x / factor };
+    Some([beyond(*low, 1.0 / BEYOND), beyond(*high, BEYOND)])
+}
+
 /// The piece at another shape.
-fn remade(placed: &Placed, motions: &[&Motion<'_>], shape: &[f64]) -> Piece {
+fn remade(placed: &Placed, records: &[Record<'_>], shape: &[f64]) -> Piece {
     let columns = match placed.owner {
         Owner::Effect(effect) if Channel::default().of(effect).is_some() => {
-            more_of(effect, motions)
+            more_of(effect, records)
         }
         Owner::Effect(effect) => columns_at(
             effect,
-            motions,
-            placed.joint.unwrap_or_else(|| of_robot(effect, motions)),
+            records,
+            placed.joint.unwrap_or_else(|| of_robot(effect, records)),
             shape,
         ),
-        Owner::Generic(id) => super::generic::named(id, motions, placed.joint.unwrap_or(0)),
+        Owner::Generic(id) => super::generic::named(id, records, placed.joint.unwrap_or(0)),
     };
     Piece {
         owner: placed.owner,
@@ -154,8 +174,8 @@ fn remade(placed: &Placed, motions: &[&Motion<'_>], shape: &[f64]) -> Piece {
 }
 
 /// The joint that stands for the robot.
-fn of_robot(effect: &Effect, motions: &[&Motion<'_>]) -> usize {
-    let dof = motions.first().map_or(0, |motion| motion.model.dof);
+fn of_robot(effect: &Effect, records: &[Record<'_>]) -> usize {
+    let dof = records.first().map_or(0, |record| record.motion.model.dof);
     (effect.joints)(dof).first().copied().unwrap_or(0)
 }
 

@@ -1,13 +1,15 @@
 //! Which effects explain a difference.
 
+use rayon::prelude::*;
+
 use super::channel::Channel;
 use super::column::Owner;
 use super::evidence::Evidence;
 use super::hypothesis::{Family, families};
-use super::nuisance::Trust;
+use super::nuisance::{Nuisance, Trust};
 use super::polish::polish;
 use super::record::Record;
-use super::table::Table;
+use super::table::{Table, nuisances};
 
 /// What naming an effect costs, and each joint of it.
 const FAMILY: f64 = 3.0;
@@ -45,6 +47,8 @@ pub struct Search<'a, 'm> {
     pub error: f64,
     /// What all torques go through, as far as it was found.
     pub channel: Channel,
+    /// The parameters' columns of each record.
+    pub(super) nuisances: Vec<Nuisance>,
     /// What may explain the difference.
     pub table: Table,
     /// Its families.
@@ -63,8 +67,55 @@ impl<'a, 'm> Search<'a, 'm> {
         error: f64,
     ) -> Search<'a, 'm> {
         let evidence = table.evidence(error);
-        let channel = Channel::default();
-        Search { records, trust, error, channel, families: families(&table), table, evidence }
+        Search {
+            records,
+            trust,
+            error,
+            channel: Channel::default(),
+            nuisances: nuisances(records, trust),
+            families: families(&table),
+            table,
+            evidence,
+        }
+    }
+
+    /// Takes the error of the model with which the measurement is most probable, effects that a
+    /// quick search finds being there.
+    pub fn choose_error(&mut self, errors: &[f64]) {
+        let mut best: Option<(f64, f64)> = None;
+        for error in errors {
+            self.error = *error;
+            self.evidence = self.table.evidence(*error);
+            let total = self.evidence.null + self.quick().score;
+            if best.is_none_or(|(most, _)| total > most) {
+                best = Some((total, *error));
+            }
+        }
+        if let Some((_, error)) = best {
+            self.error = error;
+            self.evidence = self.table.evidence(error);
+        }
+    }
+
+    /// The best set of effects at the shapes that are tried.
+    fn quick(&self) -> Found {
+        let mut found = Found { chosen: Vec::new(), score: 0.0 };
+        while found.chosen.len() < MOST {
+            match self.next(&found) {
+                Some(next) if next.score > found.score + WORTH => found = next,
+                _ => break,
+            }
+        }
+        found
+    }
+
+    /// The best set with one family more.
+    fn next(&self, found: &Found) -> Option<Found> {
+        (0..self.families.len())
+            .into_par_iter()
+            .filter(|family| found.chosen.iter().all(|of| of.family != *family))
+            .filter_map(|family| self.with(&found.chosen, family))
+            .max_by(|a, b| a.score.total_cmp(&b.score))
     }
 
     /// The best set of effects, found one after another. Each is brought to its best shape
@@ -72,11 +123,7 @@ impl<'a, 'm> Search<'a, 'm> {
     pub fn run(&mut self) -> Found {
         let mut found = Found { chosen: Vec::new(), score: 0.0 };
         while found.chosen.len() < MOST {
-            let next = (0..self.families.len())
-                .filter(|family| found.chosen.iter().all(|chosen| chosen.family != *family))
-                .filter_map(|family| self.with(&found.chosen, family))
-                .max_by(|a, b| a.score.total_cmp(&b.score));
-            match next {
+            match self.next(&found) {
                 Some(next) if next.score > found.score + WORTH => found = next,
                 _ => break,
             }

@@ -1,0 +1,331 @@
+//! From records to a verdict.
+
+use crate::effects::Effect;
+use crate::robot::{MAX_DOF, Model};
+
+use super::column::Owner;
+use super::diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
+use super::heldout::{predicted, shrink};
+use super::improved::Improved;
+use super::nuisance::Trust;
+use super::polish::{Fitted, Polished, polish};
+use super::record::{Record, RecordKind};
+use super::search::{Chosen, Found, Search};
+use super::table::Table;
+
+/// Errors of the model that are tried.
+const ERRORS: [f64; 5] = [0.001, 0.0025, 0.006, 0.015, 0.04];
+/// Odds below which two explanations cannot be told apart: 1 to 100.
+const CLASS: f64 = 4.6;
+/// Most ids that say anything.
+const LARGEST_CLASS: usize = 5;
+/// Deviations that the largest coordinate of an effect has to have.
+const SIGNIFICANT: f64 = 3.0;
+/// A change of parameters within so many deviations is no effect.
+const BEYOND: f64 = 3.0;
+/// Share of the torques below which a model without a gap is right.
+const RIGHT: f64 = 0.02;
+/// What an effect has to bring.
+const LEAST_NATS: f64 = 5.0;
+/// Share of its joint's torque that an effect has to have.
+const RELEVANT: f64 = 0.005;
+
+/// How a diagnosis is made.
+pub struct Settings {
+    /// How much the nominal parameters are believed.
+    pub trust: Trust,
+    /// Effects that may be found.
+    pub effects: Vec<&'static Effect>,
+}
+
+/// Diagnoses the records `train`, graded by `held`.
+#[must_use]
+pub fn diagnose(
+    model: &Model,
+    train: &[Record<'_>],
+    held: &[Record<'_>],
+    settings: &Settings,
+) -> Diagnosis {
+    let table = Table::new(train, &settings.effects, settings.trust);
+    let mut search = Search::new(train, table, settings.trust, ERRORS[0]);
+    search.choose_error(&ERRORS);
+    let found = search.run();
+    let pieces: Vec<usize> = found.chosen.iter().flat_map(|of| of.pieces.clone()).collect();
+    let polished = polish(&search, &pieces);
+    let none = polish(&search, &[]);
+    let refit = none.as_ref().map_or_else(
+        || Improved::same(model),
+        |of| Improved::new(model, &search.table.mixing, &of.parameters, &[]),
+    );
+    let judged = judged(&search, &found, polished.as_ref());
+    let improved = match (&polished, judged.effects.is_empty()) {
+        (Some(_), true) | (None, _) => refit.clone(),
+        (Some(of), false) => {
+            let asserted: Vec<Fitted> = of
+                .effects
+                .iter()
+                .filter(|fitted| {
+                    judged.effects.iter().any(|said| said.effect.id == fitted.effect.id)
+                })
+                .cloned()
+                .collect();
+            Improved::new(model, &search.table.mixing, &of.parameters, &asserted)
+        }
+    };
+    let graded = shrink(held, [model, &refit.applied, &improved.applied]);
+    let mut verdict = judged.verdict;
+    let missed = graded.joints.iter().filter(|joint| joint.torque > 0.0);
+    let missed = missed.map(|joint| joint.model / joint.torque).fold(0.0, f64::max);
+    if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && missed < RIGHT {
+        verdict = Verdict::NoGap;
+    }
+    Diagnosis {
+        verdict,
+        places: places(train, model, &refit, &improved, judged.effects.is_empty()),
+        effects: judged.effects,
+        candidates: judged.candidates,
+        anything: judged.anything,
+        shrink: graded,
+        error: search.error,
+        refit,
+        improved,
+        reasons: judged.reasons,
+    }
+}
+
+/// What may be said of what was found.
+struct Judged {
+    verdict: Verdict,
+    effects: Vec<Said>,
+    candidates: Vec<Said>,
+    anything: Vec<Anything>,
+    reasons: Vec<String>,
+}
+
+fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -> Judged {
+    let mut judged = Judged {
+        verdict: Verdict::ParametersOnly,
+        effects: Vec::new(),
+        candidates: Vec::new(),
+        anything: Vec::new(),
+        reasons: Vec::new(),
+    };
+    let Some(polished) = polished else { return judged };
+    let drops: Vec<f64> = (0..found.chosen.len())
+        .map(|k| {
+            let mut less = found.chosen.clone();
+            less.remove(k);
+            found.score - search.score(&less)
+        })
+        .collect();
+    let all: f64 = drops.iter().map(|drop| drop.max(0.0)).sum::<f64>().max(1e-12);
+    for (k, chosen) in found.chosen.iter().enumerate() {
+        let family = &search.families[chosen.family];
+        let share = drops[k].max(0.0) / all;
+        match family.owner {
+            Owner::Generic(id) => {
+                for piece in &chosen.pieces {
+                    let joint = search.table.pieces[*piece].joint;
+                    judged.anything.push(Anything { id, joint, share });
+                }
+            }
+            Owner::Effect(effect) => {
+                let fitted: Vec<&Fitted> =
+                    polished.effects.iter().filter(|of| of.effect.id == effect.id).collect();
+                let (class, probability) = rivals(search, found, k);
+                let said = Said {
+                    effect,
+                    joints: fitted.iter().filter_map(|of| of.joint).collect(),
+                    class,
+                    probability,
+                    parameters: parameters(&fitted),
+                    share,
+                    nats: drops[k],
+                };
+                match refused(search, &said, &fitted, polished) {
+                    Some(why) => {
+                        judged.reasons.push(format!("{}: {why}", effect.id));
+                        judged.candidates.push(said);
+                    }
+                    None => judged.effects.push(said),
+                }
+            }
+        }
+    }
+    let strongest = judged.effects.iter().map(|said| said.nats).fold(0.0, f64::max);
+    let unknown: f64 = judged.anything.iter().map(|of| of.share).sum();
+    if unknown > 0.5 || (unknown > 0.0 && strongest == 0.0) {
+        judged.candidates.append(&mut judged.effects);
+    }
+    let refused = judged.candidates.iter().any(|said| said.effect.id != "link_parameters");
+    let too_many = judged.candidates.iter().any(|said| said.class.len() > LARGEST_CLASS);
+    judged.verdict = match (judged.effects.is_empty(), judged.anything.is_empty()) {
+        (false, true) => Verdict::Effect,
+        (false, false) => Verdict::Partial,
+        (true, false) => Verdict::Unknown,
+        (true, true) if too_many => Verdict::NotSeparable,
+        (true, true) if refused => Verdict::Unknown,
+        (true, true) => Verdict::ParametersOnly,
+    };
+    judged
+}
+
+/// Why an effect is not asserted, if it is not.
+fn refused(
+    search: &Search<'_, '_>,
+    said: &Said,
+    fitted: &[&Fitted],
+    polished: &Polished,
+) -> Option<String> {
+    let id = said.effect.id;
+    if ["link_parameters", "apparent_torque"].contains(&id) {
+        return Some("a matter of parameters".to_owned());
+    }
+    if said.class.len() > LARGEST_CLASS {
+        return Some(format!("cannot be told from {}", said.class.join(", ")));
+    }
+    if size(search, said.effect, fitted) < RELEVANT {
+        return Some(format!("is less than {} % of the torque", 100.0 * RELEVANT));
+    }
+    if said.nats < LEAST_NATS {
+        return Some(format!("brings {:.1} nats only", said.nats));
+    }
+    if fitted.iter().all(|of| of.significance < SIGNIFICANT) {
+        return Some("is not significant".to_owned());
+    }
+    for of in fitted {
+        for (parameter, (value, sd)) in
+            of.effect.parameters.iter().zip(of.parameters.iter().zip(&of.deviations))
+        {
+            let [low, high] = parameter.bounds;
+            if *value < low - SIGNIFICANT * sd || *value > high + SIGNIFICANT * sd {
+                return Some(format!("{} = {value:.4} cannot be", parameter.name));
+            }
+        }
+    }
+    let of_parameters: &[&str] = match id {
+        "friction_level" => &["coulomb", "viscous"],
+        "rotor_inertia" => &["rotor_inertia"],
+        "payload" => &[],
+        _ => return None,
+    };
+    if search.trust == Trust::Unknown {
+        return Some("nothing is known of the parameters".to_owned());
+    }
+    let within = |of: &&&Fitted| {
+        let Some(joint) = of.joint else { return false };
+        of_parameters.iter().enumerate().all(|(k, name)| {
+            let key = format!("joint {} {name}", joint + 1);
+            let Some(at) = search.table.parameters.iter().position(|name| *name == key) else {
+                return true;
+            };
+            let total = of.coordinates[k] / search.table.deviations[at].max(1e-12)
+                + polished.parameters[at];
+            total.abs() <= BEYOND
+        })
+    };
+    if !of_parameters.is_empty() && fitted.iter().filter(within).count() == fitted.len() {
+        return Some("within what the parameters are believed".to_owned());
+    }
+    None
+}
+
+/// The largest share that an effect has in the torques of a joint.
+fn size(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> f64 {
+    let (mut squares, mut all) = (vec![0.0; MAX_DOF], vec![1e-12; MAX_DOF]);
+    let mean = |record: &&Record<'_>| record.kind == RecordKind::Mean;
+    for record in search.records.iter().filter(mean) {
+        let motion = &record.motion;
+        for of in fitted {
+            let joint = of
+                .joint
+                .unwrap_or_else(|| (effect.joints)(motion.model.dof).first().copied().unwrap_or(0));
+            for (to, series) in effect.added(motion, joint, &of.coordinates) {
+                squares[to] += series.iter().map(|x| x * x).sum::<f64>();
+            }
+        }
+        for (joint, all) in all.iter_mut().enumerate().take(motion.model.dof) {
+            *all += record.measured[joint].iter().map(|x| x * x).sum::<f64>();
+        }
+    }
+    squares.iter().zip(&all).map(|(x, all)| (x / all).sqrt()).fold(0.0, f64::max)
+}
+
+/// What cannot be told from the effect, and how probable it is.
+fn rivals(search: &Search<'_, '_>, found: &Found, place: usize) -> (Vec<&'static str>, f64) {
+    let mut rest: Vec<Chosen> = found.chosen.clone();
+    let own = rest.remove(place);
+    let id = search.families[own.family].owner.id();
+    let mut class = vec![id];
+    let mut odds = (search.score(&rest) - found.score).exp();
+    for (number, family) in search.families.iter().enumerate() {
+        if number == own.family || rest.iter().any(|of| of.family == number) {
+            continue;
+        }
+        let Some(other) = search.with(&rest, number) else { continue };
+        let behind = found.score - other.score;
+        odds += (-behind).exp();
+        if behind < CLASS {
+            class.push(family.owner.id());
+        }
+    }
+    (class, 1.0 / (1.0 + odds))
+}
+
+fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
+    let mut all = Vec::new();
+    for of in fitted {
+        for (parameter, (value, sd)) in
+            of.effect.parameters.iter().zip(of.parameters.iter().zip(&of.deviations))
+        {
+            let name = match of.joint {
+                Some(joint) if fitted.len() > 1 => format!("{}_j{}", parameter.name, joint + 1),
+                _ => parameter.name.to_owned(),
+            };
+            all.push(Estimated { name, value: *value, sd: *sd, unit: parameter.unit });
+        }
+    }
+    all
+}
+
+/// Shares of the joints in what changes.
+fn places(
+    records: &[Record<'_>],
+    model: &Model,
+    refit: &Improved,
+    improved: &Improved,
+    is_refit: bool,
+) -> Vec<Place> {
+    let n = model.dof;
+    let mut shares = vec![0.0; n];
+    let bare = if is_refit {
+        model.clone()
+    } else {
+        // The same parameters without the effects.
+        let mut bare = improved.written.clone();
+        bare.effects.clone_from(&refit.written.effects);
+        bare.sensors.clone_from(&refit.written.sensors);
+        bare.laws.clone_from(&refit.written.laws);
+        bare
+    };
+    let (mut change, mut size) = (vec![0.0; n], vec![0.0; n]);
+    for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
+        let (with, without) = (predicted(record, &improved.applied), predicted(record, &bare));
+        for joint in 0..n {
+            let both = with[joint].iter().zip(&without[joint]);
+            change[joint] += both.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            size[joint] += record.measured[joint].iter().map(|x| x * x).sum::<f64>();
+        }
+    }
+    for joint in 0..n {
+        shares[joint] = change[joint] / size[joint].max(1e-12);
+    }
+    let sum: f64 = shares.iter().sum::<f64>().max(1e-300);
+    (0..n)
+        .map(|joint| Place {
+            joint: Some(joint),
+            regime: "all".to_owned(),
+            share: shares[joint] / sum,
+        })
+        .collect()
+}
