@@ -165,9 +165,8 @@ fn of_logs(model: &Model, train: &[Ready], held: &[Ready], settings: &Settings) 
     let records = |logs: &[Ready]| -> Vec<Record<'_>> {
         logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
     };
-    let train = records(train);
-    let held = if held.is_empty() { None } else { Some(records(held)) };
-    diagnose(model, &train, held.as_deref().unwrap_or(&train), settings)
+    let graded = if held.is_empty() { records(train) } else { records(held) };
+    diagnose(model, records(train), &graded, settings)
 }
 
 /// The effects that may be found.

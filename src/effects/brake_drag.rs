@@ -2,7 +2,10 @@
 
 use crate::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, free, linear};
+use super::contact::within;
+use super::effect::{
+    Channel, Coordinate, Effect, Form, Of, Role, Values, bounded, every, free, linear, shaped,
+};
 
 /// Drag of a brake.
 pub(super) const BRAKE_DRAG: Effect = Effect {
@@ -16,8 +19,14 @@ pub(super) const BRAKE_DRAG: Effect = Effect {
         bounded("drag", "Nm", "friction more", [0.0, f64::INFINITY]),
         free("t_start_s", "s", "from"),
         free("t_end_s", "s", "to; 0 for the end"),
+        bounded("period_s", "s", "time after which it comes again; 0: never", [0.0, f64::INFINITY]),
     ],
-    coordinates: &[linear(|of| of.coulomb)],
+    coordinates: &[
+        linear(|of| 0.5 * of.coulomb),
+        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+    ],
     published: None,
     joints: every,
     brings: &[],
@@ -26,7 +35,6 @@ pub(super) const BRAKE_DRAG: Effect = Effect {
     form: Form::Law { dissipates: true, torque },
 };
 
-fn torque(state: &LawState, [drag, start, end, ..]: &Values) -> f64 {
-    let within = *end <= *start || (*start..=*end).contains(&state.t);
-    if within { drag * state.sense } else { 0.0 }
+fn torque(state: &LawState, [drag, start, end, period]: &Values) -> f64 {
+    if *end <= *start || within(state.t, *start, *end, *period) { drag * state.sense } else { 0.0 }
 }

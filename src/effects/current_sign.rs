@@ -1,6 +1,6 @@
 //! A current whose sign is the other one.
 
-use super::effect::{Channel, Effect, Form, Of, every};
+use super::effect::{Channel, Effect, Form, Of, bounded, every};
 use super::motion::Motion;
 
 /// Sign of the current.
@@ -11,7 +11,7 @@ pub(super) const CURRENT_SIGN: Effect = Effect {
     title: "Sign of the current",
     law: "τ = −τ, logged",
     source: "docs/identification.md",
-    parameters: &[],
+    parameters: &[bounded("flipped", "1", "1 where the sign is the other one", [0.0, 1.0])],
     coordinates: &[],
     published: None,
     joints: every,

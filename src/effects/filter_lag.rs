@@ -1,6 +1,6 @@
 //! Torques behind a filter.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, shape};
+use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, bounded, every, shape, shaped};
 use super::motion::Motion;
 
 /// Lag of a filter.
@@ -11,8 +11,14 @@ pub(super) const FILTER_LAG: Effect = Effect {
     title: "Lag of a filter",
     law: "lag·dτ/dt + τ_logged = τ",
     source: "docs/identification.md",
-    parameters: &[bounded("lag", "s", "time constant", [0.0, 0.1])],
-    coordinates: &[shape(|_| vec![0.002, 0.004, 0.008, 0.016, 0.032])],
+    parameters: &[
+        bounded("lag", "s", "time constant", [0.0, 0.1]),
+        bounded("joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
+    ],
+    coordinates: &[
+        shape(|_| vec![0.002, 0.004, 0.008, 0.016, 0.032]),
+        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+    ],
     published: None,
     joints: every,
     brings: &[],
@@ -42,5 +48,9 @@ fn added(motion: &Motion<'_>, _: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)
         }
         out
     };
-    motion.torque.iter().map(of).enumerate().collect()
+    let of_joint = |joint: &usize| values[1] == 0.0 || *joint as f64 + 1.0 == values[1];
+    (0..motion.torque.len())
+        .filter(of_joint)
+        .map(|joint| (joint, of(&motion.torque[joint])))
+        .collect()
 }

@@ -20,7 +20,7 @@ pub(super) const WARM_UP: Effect = Effect {
     coordinates: &[
         linear(|of| 0.3 * of.coulomb),
         linear(|of| 0.4 * of.viscous),
-        shape(|_| vec![15.0, 60.0, 300.0, 1200.0]),
+        shape(|_| vec![60.0, 200.0, 700.0]),
     ],
     published: None,
     joints: every,

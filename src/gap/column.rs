@@ -1,6 +1,6 @@
 //! What may explain a difference: columns of torques, in pieces that belong together.
 
-use crate::effects::{Effect, Motion, Role};
+use crate::effects::{Effect, Role};
 
 use super::record::{Record, RecordKind};
 
@@ -129,36 +129,6 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
             shape,
         })
         .collect()
-}
-
-/// Columns of an effect of the measurement that the table's own channel has already: what more
-/// of it adds.
-pub(super) fn more_of(effect: &'static Effect, records: &[Record<'_>]) -> Vec<Column> {
-    let n = records.first().map_or(0, |record| record.motion.model.dof);
-    let of = |series: fn(&Motion<'_>, usize) -> Vec<f64>| -> Vec<Vec<(usize, Vec<f64>)>> {
-        let one = |record: &Record<'_>| match record.kind {
-            RecordKind::Mean => {
-                (0..n).map(|joint| (joint, series(&record.motion, joint))).collect()
-            }
-            RecordKind::Drift => Vec::new(),
-        };
-        records.iter().map(one).collect()
-    };
-    let scale = records.first().map(|record| record.motion.scale(0));
-    let tried = match (effect.coordinates.first().map(|c| c.role), &scale) {
-        (Some(Role::Shape(values)), Some(scale)) => values(scale),
-        _ => Vec::new(),
-    };
-    let apart = tried.iter().map(|x| x.abs()).fold(f64::INFINITY, f64::min);
-    vec![
-        Column { series: of(|m, _| vec![0.0; m.len()]), mean: 1.0, sd: 0.0 },
-        Column {
-            // A delay and a lag begin alike.
-            series: of(|m, joint| m.changes(&m.torque[joint]).iter().map(|x| -x).collect()),
-            mean: 0.0,
-            sd: TANGENT * apart,
-        },
-    ]
 }
 
 /// Columns of an effect at a shape of its own.

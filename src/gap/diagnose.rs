@@ -1,17 +1,21 @@
 //! From records to a verdict.
 
-use crate::effects::Effect;
+use nalgebra::DVector;
+
+use crate::effects::{Effect, find};
 use crate::robot::{MAX_DOF, Model};
 
-use super::column::Owner;
+use super::channel::Late;
+use super::column::{Owner, Piece};
 use super::diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
+use super::gated::{OF_TIME, gated};
 use super::heldout::{predicted, shrink};
 use super::improved::Improved;
 use super::nuisance::Trust;
-use super::polish::{Fitted, Polished, polish};
+use super::polish::{Fitted, Polished};
 use super::record::{Record, RecordKind};
 use super::search::{Chosen, Found, Search};
-use super::table::Table;
+use super::table::{Table, nuisances};
 
 /// Errors of the model that are tried.
 const ERRORS: [f64; 5] = [0.001, 0.0025, 0.006, 0.015, 0.04];
@@ -25,8 +29,12 @@ const SIGNIFICANT: f64 = 3.0;
 const BEYOND: f64 = 3.0;
 /// Share of the torques below which a model without a gap is right.
 const RIGHT: f64 = 0.02;
+/// What another sign has to bring.
+const FLIP: f64 = 50.0;
+/// What an effect has to bring, of what the strongest does.
+const OF_STRONGEST: f64 = 0.005;
 /// What an effect has to bring.
-const LEAST_NATS: f64 = 5.0;
+const LEAST_NATS: f64 = 8.0;
 /// Share of its joint's torque that an effect has to have.
 const RELEVANT: f64 = 0.005;
 
@@ -42,22 +50,29 @@ pub struct Settings {
 #[must_use]
 pub fn diagnose(
     model: &Model,
-    train: &[Record<'_>],
+    mut train: Vec<Record<'_>>,
     held: &[Record<'_>],
     settings: &Settings,
 ) -> Diagnosis {
-    let table = Table::new(train, &settings.effects, settings.trust);
-    let mut search = Search::new(train, table, settings.trust, ERRORS[0]);
-    search.choose_error(&ERRORS);
-    let found = search.run();
-    let pieces: Vec<usize> = found.chosen.iter().flat_map(|of| of.pieces.clone()).collect();
-    let polished = polish(&search, &pieces);
-    let none = polish(&search, &[]);
-    let refit = none.as_ref().map_or_else(
-        || Improved::same(model),
-        |of| Improved::new(model, &search.table.mixing, &of.parameters, &[]),
-    );
-    let judged = judged(&search, &found, polished.as_ref());
+    let flipped = flip(&mut train, settings);
+    let mut search = searched(&train, settings, Vec::new());
+    let none = search.evidence.parameters(&[], &DVector::zeros(0));
+    let refit = Improved::new(model, &search.table.mixing, &none, &[]);
+    let mut found = search.run();
+    let of_time = joints_of_time(&search, &found);
+    if !of_time.is_empty() {
+        let more = gated(&settings.effects, &train, &of_time);
+        search = searched(&train, settings, more);
+        found = search.run();
+    }
+    let mut polished = search.polish(&found.chosen);
+    let mut judged = judged(&search, &found, polished.as_ref());
+    if let Some(late) = search.late {
+        judged.assert_late(&late, polished.as_mut());
+    }
+    for joint in flipped {
+        judged.assert_flipped(joint, polished.as_mut());
+    }
     let improved = match (&polished, judged.effects.is_empty()) {
         (Some(_), true) | (None, _) => refit.clone(),
         (Some(of), false) => {
@@ -81,7 +96,7 @@ pub fn diagnose(
     }
     Diagnosis {
         verdict,
-        places: places(train, model, &refit, &improved, judged.effects.is_empty()),
+        places: places(&train, model, &refit, &improved, judged.effects.is_empty()),
         effects: judged.effects,
         candidates: judged.candidates,
         anything: judged.anything,
@@ -93,6 +108,63 @@ pub fn diagnose(
     }
 }
 
+/// Takes torques with the other sign where they are far more probable so: joints.
+fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
+    let may = settings.effects.iter().any(|effect| effect.id == "current_sign");
+    let dof = train.first().map_or(0, |record| record.motion.model.dof);
+    let mut flipped = Vec::new();
+    if !may {
+        return flipped;
+    }
+    let nuisances = nuisances(train, settings.trust);
+    let mut table = Table::of(train, Vec::new(), &nuisances);
+    let error = ERRORS[ERRORS.len() - 1];
+    let mut null = table.evidence(error).null;
+    for joint in 0..dof {
+        table.flip(joint);
+        let other = table.evidence(error).null;
+        if other > null + FLIP {
+            null = other;
+            flipped.push(joint);
+        } else {
+            table.flip(joint);
+        }
+    }
+    for record in train {
+        for joint in &flipped {
+            record.measured[*joint].iter_mut().for_each(|x| *x = -*x);
+        }
+    }
+    flipped
+}
+
+/// A search at the most probable error.
+fn searched<'a, 'm>(
+    train: &'a [Record<'m>],
+    settings: &Settings,
+    more: Vec<Piece>,
+) -> Search<'a, 'm> {
+    let table = Table::new(train, &settings.effects, settings.trust, more);
+    let mut search = Search::new(train, table, settings.trust, ERRORS[0]);
+    let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
+    search.choose_channel(&ERRORS, &may);
+    search
+}
+
+/// Joints of functions of time that were found.
+fn joints_of_time(search: &Search<'_, '_>, found: &Found) -> Vec<usize> {
+    let of_time = |of: &&Chosen| match search.families[of.family].owner {
+        Owner::Generic(id) => OF_TIME.contains(&id),
+        Owner::Effect(_) => false,
+    };
+    let pieces = found.chosen.iter().filter(of_time).flat_map(|of| &of.pieces);
+    let mut joints: Vec<usize> =
+        pieces.filter_map(|piece| search.table.pieces[*piece].joint).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    joints
+}
+
 /// What may be said of what was found.
 struct Judged {
     verdict: Verdict,
@@ -100,6 +172,61 @@ struct Judged {
     candidates: Vec<Said>,
     anything: Vec<Anything>,
     reasons: Vec<String>,
+}
+
+impl Judged {
+    /// A delay or a lag.
+    fn assert_late(&mut self, late: &Late, polished: Option<&mut Polished>) {
+        let Some(fitted) = late.fitted() else { return };
+        self.effects.push(Said {
+            effect: fitted.effect,
+            joints: late.joint.into_iter().collect(),
+            class: vec!["time_delay", "filter_lag"],
+            probability: 1.0 / (1.0 + (-late.nats).exp()),
+            parameters: parameters(&[&fitted])[..1].to_vec(),
+            share: 1.0,
+            nats: late.nats,
+        });
+        if let Some(polished) = polished {
+            polished.effects.push(fitted);
+        }
+        self.found_more();
+    }
+
+    fn found_more(&mut self) {
+        self.verdict = match self.verdict {
+            Verdict::Unknown | Verdict::Partial => Verdict::Partial,
+            _ => Verdict::Effect,
+        };
+    }
+
+    /// A current of the other sign, which is beyond doubt.
+    fn assert_flipped(&mut self, joint: usize, polished: Option<&mut Polished>) {
+        let Some(effect) = find("current_sign") else { return };
+        if let Some(polished) = polished {
+            polished.effects.push(Fitted {
+                effect,
+                joint: Some(joint),
+                coordinates: vec![1.0],
+                parameters: vec![1.0],
+                deviations: vec![0.0],
+                significance: f64::INFINITY,
+            });
+        }
+        match self.effects.iter_mut().find(|said| said.effect.id == effect.id) {
+            Some(said) => said.joints.push(joint),
+            None => self.effects.push(Said {
+                effect,
+                joints: vec![joint],
+                class: vec![effect.id],
+                probability: 1.0,
+                parameters: Vec::new(),
+                share: 1.0,
+                nats: FLIP,
+            }),
+        }
+        self.found_more();
+    }
 }
 
 fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -> Judged {
@@ -118,6 +245,7 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
             found.score - search.score(&less)
         })
         .collect();
+    let strongest = drops.iter().copied().fold(0.0, f64::max);
     let all: f64 = drops.iter().map(|drop| drop.max(0.0)).sum::<f64>().max(1e-12);
     for (k, chosen) in found.chosen.iter().enumerate() {
         let family = &search.families[chosen.family];
@@ -142,7 +270,8 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
                     share,
                     nats: drops[k],
                 };
-                match refused(search, &said, &fitted, polished) {
+                let least = LEAST_NATS.max(OF_STRONGEST * strongest);
+                match refused(search, &said, &fitted, polished, least) {
                     Some(why) => {
                         judged.reasons.push(format!("{}: {why}", effect.id));
                         judged.candidates.push(said);
@@ -176,6 +305,7 @@ fn refused(
     said: &Said,
     fitted: &[&Fitted],
     polished: &Polished,
+    least: f64,
 ) -> Option<String> {
     let id = said.effect.id;
     if ["link_parameters", "apparent_torque"].contains(&id) {
@@ -187,7 +317,7 @@ fn refused(
     if size(search, said.effect, fitted) < RELEVANT {
         return Some(format!("is less than {} % of the torque", 100.0 * RELEVANT));
     }
-    if said.nats < LEAST_NATS {
+    if said.nats < least {
         return Some(format!("brings {:.1} nats only", said.nats));
     }
     if fitted.iter().all(|of| of.significance < SIGNIFICANT) {
@@ -202,6 +332,12 @@ fn refused(
                 return Some(format!("{} = {value:.4} cannot be", parameter.name));
             }
         }
+    }
+    // Without stiffness a spring is an offset.
+    if ["cable", "gravity_spring"].contains(&id)
+        && fitted.iter().any(|of| of.parameters[0].abs() < SIGNIFICANT * of.deviations[0])
+    {
+        return Some("is no more than an offset".to_owned());
     }
     let of_parameters: &[&str] = match id {
         "friction_level" => &["coulomb", "viscous"],
@@ -257,12 +393,13 @@ fn rivals(search: &Search<'_, '_>, found: &Found, place: usize) -> (Vec<&'static
     let own = rest.remove(place);
     let id = search.families[own.family].owner.id();
     let mut class = vec![id];
+    let given = search.given(&rest);
     let mut odds = (search.score(&rest) - found.score).exp();
     for (number, family) in search.families.iter().enumerate() {
         if number == own.family || rest.iter().any(|of| of.family == number) {
             continue;
         }
-        let Some(other) = search.with(&rest, number) else { continue };
+        let Some(other) = search.with(&given, &rest, number) else { continue };
         let behind = found.score - other.score;
         odds += (-behind).exp();
         if behind < CLASS {

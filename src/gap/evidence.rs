@@ -28,6 +28,24 @@ struct OfParameters {
     c: DMatrix<f64>,
 }
 
+/// Evidence when some columns are there.
+pub struct Given {
+    /// What these bring.
+    base: f64,
+    columns: Vec<usize>,
+    evidence: Evidence,
+}
+
+impl Given {
+    /// Gain of the columns that are there and of more.
+    #[must_use]
+    pub fn gain(&self, more: &[usize]) -> f64 {
+        let more: Vec<usize> =
+            more.iter().copied().filter(|column| !self.columns.contains(column)).collect();
+        self.base + self.evidence.gain(&more)
+    }
+}
+
 /// Factors of some columns.
 pub struct Estimate {
     /// Their expected values.
@@ -97,6 +115,46 @@ impl Evidence {
         let log_det: f64 = lower.diagonal().iter().map(|x| x.ln()).sum();
         let solved = lower.solve_lower_triangular(&right).unwrap_or(right);
         fixed + 0.5 * solved.norm_squared() - log_det
+    }
+
+    /// What is left to explain when some columns are there: gains count on top of theirs.
+    #[must_use]
+    pub fn given(&self, columns: &[usize]) -> Given {
+        let base = self.gain(columns);
+        let mut b = self.b.clone();
+        for column in columns.iter().filter(|column| self.means[**column] != 0.0) {
+            b.axpy(-self.means[*column], &self.a.column(*column), 1.0);
+        }
+        let free: Vec<usize> =
+            columns.iter().copied().filter(|column| self.sds[*column] > 0.0).collect();
+        let mut a = self.a.clone();
+        if !free.is_empty() {
+            let n = free.len();
+            let sd = |k: usize| self.sds[free[k]];
+            let scaled = DMatrix::from_fn(n, n, |i, k| {
+                sd(i) * sd(k) * self.a[(free[i], free[k])] + if i == k { 1.0 } else { 0.0 }
+            });
+            let across = DMatrix::from_fn(n, a.ncols(), |i, k| sd(i) * self.a[(free[i], k)]);
+            let left = DVector::from_fn(n, |k, _| sd(k) * b[free[k]]);
+            if let Some(factor) = Cholesky::new(scaled) {
+                let lower = factor.l();
+                let across = lower.solve_lower_triangular(&across).unwrap_or(across);
+                let left = lower.solve_lower_triangular(&left).unwrap_or(left);
+                a.gemm_tr(-1.0, &across, &across, 1.0);
+                b.gemv_tr(-1.0, &across, &left, 1.0);
+            }
+        }
+        let evidence = Evidence {
+            a,
+            b,
+            means: self.means.clone(),
+            sds: self.sds.clone(),
+            parameters: None,
+            null: self.null,
+            misfit: self.misfit,
+            rows: self.rows,
+        };
+        Given { base, columns: columns.to_vec(), evidence }
     }
 
     /// The columns' factors.

@@ -26,7 +26,7 @@ struct Extent {
     range: f64,
 }
 
-const KINDS: [Kind; 6] = [
+const KINDS: [Kind; 7] = [
     Kind {
         id: "speed",
         bumps: 13,
@@ -52,6 +52,12 @@ const KINDS: [Kind; 6] = [
         dense: false,
     },
     Kind { id: "load", bumps: 8, of: |m, j, i, e| [m.gear[j][i] / e.gear, 1.0], dense: false },
+    Kind {
+        id: "time_and_sense",
+        bumps: 20,
+        of: |m, j, i, _| [2.0 * i as f64 / m.len().max(1) as f64 - 1.0, m.senses[j][i]],
+        dense: false,
+    },
     Kind {
         id: "time",
         bumps: 20,

@@ -75,8 +75,14 @@ const SLOW: f64 = 0.08;
 const RIPPLE: f64 = 0.0015;
 /// Smooth torques that no model has: powers of position and of speed.
 const POWERS: [usize; 5] = [2, 3, 4, 5, 6];
-/// Of them, where the model's error is taken as 1.
-const SMOOTH: f64 = 0.7;
+/// Of them, of the torque, where the model's error is no larger, and of this where it is.
+const SMOOTH: f64 = 0.004;
+const OF_ERROR: f64 = 0.7;
+/// Least error that smooth torques have.
+pub(super) fn smooth_error(error: f64) -> f64 {
+    error.max(SMOOTH / OF_ERROR)
+}
+
 /// Change of friction from repetition to repetition, of itself.
 const VARIES: f64 = 0.004;
 
@@ -208,7 +214,7 @@ fn without_model(record: &Record<'_>, of: &mut Nuisance) {
     }
     of.errors_from = of.series.len();
     for joint in 0..n {
-        let size = SMOOTH * motion.scale(joint).torque[0];
+        let size = OF_ERROR * motion.scale(joint).torque[0];
         for x in [&motion.q[joint], &motion.rates[joint]] {
             let low = x.iter().copied().fold(f64::INFINITY, f64::min);
             let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);

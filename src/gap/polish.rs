@@ -4,14 +4,15 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::effects::{Effect, Role};
 
-use super::channel::Channel;
-use super::column::{Owner, Piece, columns_at, more_of};
+use super::column::{Owner, Piece, columns_at};
 use super::record::Record;
-use super::search::Search;
-use super::table::{Placed, Table};
+use super::search::{Chosen, Search};
+use super::table::Placed;
 
 /// Rounds of new tangents.
 const ROUNDS: usize = 6;
+/// Deviations that a shape may still move.
+const STAYS: f64 = 0.1;
 /// Relative change of a shape in one round at most.
 const STEP: f64 = 0.5;
 /// A shape may be this many times beyond the tried values.
@@ -41,98 +42,71 @@ pub struct Fitted {
 pub struct Polished {
     /// Effects joint by joint.
     pub effects: Vec<Fitted>,
-    /// The pieces at their best shapes, in the order in which they were given.
-    pub pieces: Vec<Piece>,
-    /// Functions of one thing that were found: id and joint.
-    pub generic: Vec<(&'static str, Option<usize>)>,
-    /// What all torques go through.
-    pub channel: Channel,
     /// Changes of the model's parameters, in deviations.
     pub parameters: DVector<f64>,
     /// What is left, 1 where it is noise.
     pub misfit: f64,
 }
 
-/// Improves shapes by new tangents until they stay.
-#[must_use]
-pub fn polish(search: &Search<'_, '_>, pieces: &[usize]) -> Option<Polished> {
-    let Search { records, error, ref channel, ref nuisances, .. } = *search;
-    let first: Vec<&Placed> = pieces.iter().map(|number| &search.table.pieces[*number]).collect();
-    let mut shapes: Vec<Vec<f64>> = first.iter().map(|placed| placed.shape.clone()).collect();
-    // Delay and lag act on all that is computed.
-    let mut channel = *channel;
-    for (placed, shape) in first.iter().zip(&shapes) {
-        if let Owner::Effect(effect) = placed.owner
-            && let Some(value) = channel.of(effect)
-            && *value == 0.0
-        {
-            *value = shape[0];
-        }
-    }
-    let mut result = None;
-    for round in 0..ROUNDS {
-        let made: Vec<Piece> = first
-            .iter()
-            .zip(&shapes)
-            .map(|(placed, shape)| remade(placed, records, shape))
-            .collect();
-        let mut table = Table::of(records, made, nuisances);
-        table.through(&channel);
-        let evidence = table.evidence(error);
-        let all: Vec<usize> = table.pieces.iter().flat_map(|piece| piece.columns.clone()).collect();
-        let estimate = evidence.estimate(&all)?;
-        let mut fitted = Vec::new();
-        for (placed, shape) in table.pieces.iter().zip(&mut shapes) {
-            let Owner::Effect(effect) = placed.owner else { continue };
-            let at = placed.columns.clone();
-            let mean = estimate.mean.rows(at.start, at.len()).into_owned();
-            let covariance =
-                estimate.covariance.view((at.start, at.start), (at.len(), at.len())).into_owned();
-            if let Some(value) = channel.of(effect) {
-                let spread = DMatrix::from_element(1, 1, covariance[(1, 1)]);
-                let next = *value + mean[1];
-                fitted.push(of(effect, placed.joint, &[next], &spread));
-                // The last round only reads.
-                if round + 1 < ROUNDS {
-                    *value = next;
+impl Search<'_, '_> {
+    /// Improves the shapes of a set by new tangents until they stay; the table has them then.
+    pub fn polish(&mut self, set: &[Chosen]) -> Option<Polished> {
+        let pieces: Vec<usize> = set.iter().flat_map(|of| of.pieces.clone()).collect();
+        let columns = self.columns(set);
+        let mut round = 0;
+        loop {
+            round += 1;
+            for number in &pieces {
+                let placed = &self.table.pieces[*number];
+                let is_fixed = matches!(placed.owner, Owner::Generic(_));
+                if !is_fixed {
+                    let piece = remade(placed, self.records);
+                    self.table.replace(*number, piece, self.records);
                 }
-                shape[0] = *value;
+            }
+            self.table.through(&self.channels, &columns);
+            let evidence = self.table.evidence_of(self.error, &columns);
+            let all: Vec<usize> = (0..columns.len()).collect();
+            let estimate = evidence.estimate(&all)?;
+            let mut fitted = Vec::new();
+            let mut moved = 0.0_f64;
+            for number in &pieces {
+                let placed = &mut self.table.pieces[*number];
+                let Owner::Effect(effect) = placed.owner else { continue };
+                let at: Vec<usize> =
+                    placed.columns.clone().filter_map(|k| columns.binary_search(&k).ok()).collect();
+                let mean = DVector::from_iterator(at.len(), at.iter().map(|k| estimate.mean[*k]));
+                let covariance = DMatrix::from_fn(at.len(), at.len(), |i, k| {
+                    estimate.covariance[(at[i], at[k])]
+                });
+                let (coordinates, jacobian) = coordinates_of(effect, &placed.shape, &mean);
+                let spread = &jacobian * &covariance * jacobian.transpose();
+                fitted.push(of(effect, placed.joint, &coordinates, &spread));
+                for (k, coordinate) in effect.coordinates.iter().enumerate() {
+                    if !matches!(coordinate.role, Role::Shape(_)) {
+                        continue;
+                    }
+                    let before = placed.shape[k];
+                    let most = STEP * before.abs();
+                    let mut next = before + (coordinates[k] - before).clamp(-most, most);
+                    if let Some([low, high]) = range(effect, self.records, placed.joint, k) {
+                        next = next.clamp(low, high);
+                    }
+                    moved = moved.max((next - before).abs() / spread[(k, k)].sqrt().max(1e-12));
+                    placed.shape[k] = next;
+                }
+            }
+            if round < ROUNDS && moved > STAYS {
                 continue;
             }
-            let (coordinates, jacobian) = coordinates_of(effect, shape, &mean);
-            let spread = &jacobian * &covariance * jacobian.transpose();
-            fitted.push(of(effect, placed.joint, &coordinates, &spread));
-            for (k, coordinate) in effect.coordinates.iter().enumerate() {
-                if matches!(coordinate.role, Role::Shape(_)) {
-                    let most = STEP * shape[k].abs();
-                    shape[k] += (coordinates[k] - shape[k]).clamp(-most, most);
-                    if let Some([low, high]) = range(effect, records, placed.joint, k) {
-                        shape[k] = shape[k].clamp(low, high);
-                    }
-                }
-            }
-        }
-        if round + 1 == ROUNDS {
-            let generic = table.pieces.iter().filter_map(|piece| match piece.owner {
-                Owner::Generic(id) => Some((id, piece.joint)),
-                Owner::Effect(_) => None,
-            });
             let gained = evidence.gain(&all);
-            result = Some(Polished {
+            return Some(Polished {
                 effects: fitted,
-                channel,
-                pieces: first
-                    .iter()
-                    .zip(&shapes)
-                    .map(|(placed, shape)| remade(placed, records, shape))
-                    .collect(),
-                generic: generic.collect(),
                 parameters: evidence.parameters(&all, &estimate.mean),
                 misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
             });
         }
     }
-    result
 }
 
 /// What lies within the tried values of a shape, and a little beyond.
@@ -150,24 +124,21 @@ fn range(
     Some([beyond(*low, 1.0 / BEYOND), beyond(*high, BEYOND)])
 }
 
-/// The piece at another shape.
-fn remade(placed: &Placed, records: &[Record<'_>], shape: &[f64]) -> Piece {
+/// The piece at its shape.
+fn remade(placed: &Placed, records: &[Record<'_>]) -> Piece {
     let columns = match placed.owner {
-        Owner::Effect(effect) if Channel::default().of(effect).is_some() => {
-            more_of(effect, records)
-        }
         Owner::Effect(effect) => columns_at(
             effect,
             records,
             placed.joint.unwrap_or_else(|| of_robot(effect, records)),
-            shape,
+            &placed.shape,
         ),
         Owner::Generic(id) => super::generic::named(id, records, placed.joint.unwrap_or(0)),
     };
     Piece {
         owner: placed.owner,
         joint: placed.joint,
-        shape: shape.to_vec(),
+        shape: placed.shape.clone(),
         choices: placed.choices,
         columns,
     }

@@ -34,7 +34,8 @@ pub enum RecordKind {
 pub struct Record<'a> {
     /// What it is of.
     pub kind: RecordKind,
-    /// When repetitions were after the motion's rows \[s\], and their weights in the record.
+    /// When repetitions began, by the clock of all logs \[s\], and their weights in the record.
+    /// The motion's own time begins at 0.
     pub times: Vec<(f64, f64)>,
     /// The motion and the model's torques.
     pub motion: Motion<'a>,
@@ -70,14 +71,16 @@ impl<'a> Record<'a> {
         let mut records = Vec::new();
         for block in &samples.blocks {
             let series = [block.q.clone(), block.qd.clone(), block.qdd.clone()];
-            let motion = Motion::new(model, block.t.clone(), series, &rest, closed);
+            let begins = block.t.first().copied().unwrap_or(0.0);
+            let t = block.t.iter().map(|t| t - begins).collect();
+            let motion = Motion::new(model, t, series, &rest, closed);
             let windows = Windows::new(&motion, &rest, highest);
             let spread = samples.repetitions.as_deref();
-            records.push(windows.mean(motion.clone(), block.tau.clone(), spread, period));
+            records.push(windows.mean(motion.clone(), block.tau.clone(), spread, [begins, period]));
             if let Some(spread) = spread
                 && spread.first().is_some_and(|of| of.len() >= TO_DRIFT)
             {
-                records.push(windows.drift(motion, spread, period));
+                records.push(windows.drift(motion, spread, [begins, period]));
             }
         }
         records
@@ -139,7 +142,7 @@ impl Windows {
         motion: Motion<'a>,
         measured: Vec<Vec<f64>>,
         spread: Option<&[Vec<Vec<f64>>]>,
-        period: f64,
+        [begins, period]: [f64; 2],
     ) -> Record<'a> {
         let repetitions = spread.and_then(<[_]>::first).map_or(1, Vec::len).max(1);
         let share = 1.0 / repetitions as f64;
@@ -163,7 +166,7 @@ impl Windows {
             .collect();
         Record {
             kind: RecordKind::Mean,
-            times: (0..repetitions).map(|k| (period * k as f64, share)).collect(),
+            times: (0..repetitions).map(|k| (begins + period * k as f64, share)).collect(),
             motion,
             measured,
             repetitions,
@@ -175,7 +178,12 @@ impl Windows {
         }
     }
 
-    fn drift<'a>(&self, motion: Motion<'a>, spread: &[Vec<Vec<f64>>], period: f64) -> Record<'a> {
+    fn drift<'a>(
+        &self,
+        motion: Motion<'a>,
+        spread: &[Vec<Vec<f64>>],
+        [begins, period]: [f64; 2],
+    ) -> Record<'a> {
         let repetitions = spread.first().map_or(0, Vec::len);
         let line = line(repetitions);
         let measured = spread
@@ -190,7 +198,7 @@ impl Windows {
             spread.iter().enumerate().map(|(joint, of)| self.noise(joint, of)).collect();
         Record {
             kind: RecordKind::Drift,
-            times: line.iter().enumerate().map(|(k, w)| (period * k as f64, *w)).collect(),
+            times: line.iter().enumerate().map(|(k, w)| (begins + period * k as f64, *w)).collect(),
             motion,
             measured,
             repetitions,

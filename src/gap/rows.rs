@@ -1,4 +1,4 @@
-//! Rows of one joint: the difference, and what may explain it there.
+//! Rows of one joint in all records of a kind: the difference, and what may explain it there.
 
 use nalgebra::DMatrix;
 
@@ -11,9 +11,10 @@ use super::spectrum::Spectrum;
 /// Least variance of a row \[N²m²\].
 const LEAST: f64 = 1e-18;
 
-/// Rows of one joint.
-#[derive(Clone)]
+/// Rows of one joint in all records of a kind.
 pub(super) struct Rows {
+    joint: usize,
+    kind: RecordKind,
     /// Difference, then the columns that reach the joint, as they are logged.
     values: DMatrix<f64>,
     /// The same before the channel, and the model's torque and the measured one.
@@ -29,15 +30,20 @@ pub(super) struct Rows {
 }
 
 impl Rows {
+    /// Of all records of a kind.
     pub(super) fn new(
         records: &[Record<'_>],
         nuisances: &[Nuisance],
         columns: &[&Column],
         joint: usize,
+        kind: RecordKind,
     ) -> Rows {
+        let numbers: Vec<usize> =
+            (0..records.len()).filter(|number| records[*number].kind == kind).collect();
+        let records: Vec<&Record<'_>> = numbers.iter().map(|number| &records[*number]).collect();
         let parameters = nuisances.first().map_or(0, |of| of.series.len());
-        let of_parameter = |record: usize, k: usize| find(&nuisances[record].series[k], joint);
-        let of_column = |record: usize, k: usize| find(&columns[k].series[record], joint);
+        let of_parameter = |at: usize, k: usize| find(&nuisances[numbers[at]].series[k], joint);
+        let of_column = |at: usize, k: usize| find(&columns[k].series[numbers[at]], joint);
         let mut reached = vec![0];
         reached.extend((0..parameters).filter_map(|k| {
             let there = (0..records.len()).any(|record| of_parameter(record, k).is_some());
@@ -81,8 +87,9 @@ impl Rows {
             first += rows;
         }
         let plain = values.clone();
-        let mut rows = Rows { values, plain, model, measured, frequency, reached, noise, power };
-        rows.through(&Channel::default());
+        let mut rows =
+            Rows { joint, kind, values, plain, model, measured, frequency, reached, noise, power };
+        rows.through(&[], |_| true);
         rows
     }
 
@@ -90,67 +97,72 @@ impl Rows {
         self.noise.len()
     }
 
-    pub(super) fn reached(&self) -> &[usize] {
-        &self.reached
-    }
-
     /// Another column in the place of the one with the number.
-    pub(super) fn replace(
-        &mut self,
-        number: usize,
-        column: &Column,
-        joint: usize,
-        records: &[Record<'_>],
-    ) {
+    pub(super) fn replace(&mut self, number: usize, column: &Column, records: &[Record<'_>]) {
         let Ok(place) = self.reached.binary_search(&number) else { return };
         let mut first = 0;
-        for (record, series) in records.iter().zip(&column.series) {
+        let of_kind = |(record, _): &(&Record<'_>, _)| record.kind == self.kind;
+        for (record, series) in records.iter().zip(&column.series).filter(of_kind) {
             let count = record.spectrum.rows();
-            if let Some(series) = find(series, joint) {
-                let spectrum = record.rows_of(joint, series);
+            if let Some(series) = find(series, self.joint) {
+                let spectrum = record.rows_of(self.joint, series);
                 self.plain.view_mut((first, place), (count, 1)).copy_from_slice(&spectrum);
             }
             first += count;
         }
     }
 
-    pub(super) fn through(&mut self, channel: &Channel) {
-        let still = *channel == Channel::default();
-        let mut row = 0;
-        while row < self.frequency.len() {
-            let frequency = self.frequency[row];
-            if frequency == 0.0 {
-                self.values[(row, 0)] = self.measured[row] - self.model[row];
-                row += 1;
-                continue;
-            }
-            let [re, im] = channel.response(frequency);
-            let [a, b] = [self.model[row], self.model[row + 1]];
-            self.values[(row, 0)] = self.measured[row] - (re * a - im * b);
-            self.values[(row + 1, 0)] = self.measured[row + 1] - (re * b + im * a);
-            row += 2;
-        }
-        for k in 1..self.values.ncols() {
-            let plain = self.plain.column(k);
-            let mut to = self.values.column_mut(k);
-            to.copy_from(&plain);
-            let mut row = 0;
-            while !still && row < self.frequency.len() {
-                if self.frequency[row] == 0.0 {
-                    row += 1;
-                    continue;
-                }
-                let [re, im] = channel.response(self.frequency[row]);
-                let [a, b] = [plain[row], plain[row + 1]];
-                to[row] = re * a - im * b;
-                to[row + 1] = re * b + im * a;
-                row += 2;
+    pub(super) fn flip(&mut self, joint: usize) {
+        if joint == self.joint {
+            self.measured.iter_mut().for_each(|x| *x = -*x);
+            for (row, measured) in self.measured.iter().enumerate() {
+                self.values[(row, 0)] += 2.0 * measured;
             }
         }
     }
 
-    /// Products of all columns, weighted, and the sum of the logarithms of the weights' roots.
-    pub(super) fn gram(&self, error: f64) -> (DMatrix<f64>, f64) {
+    pub(super) fn through(&mut self, channels: &[Channel], is_used: impl Fn(usize) -> bool) {
+        let channel = channels.get(self.joint).copied().unwrap_or_default();
+        let still = channel == Channel::default();
+        let responses: Vec<[f64; 2]> =
+            self.frequency.iter().map(|frequency| channel.response(*frequency)).collect();
+        let turned = |from: &[f64], to: &mut [f64]| {
+            to.copy_from_slice(from);
+            let mut row = 0;
+            while !still && row < from.len() {
+                // A mean has no phase.
+                if self.frequency[row] == 0.0 {
+                    row += 1;
+                    continue;
+                }
+                let [re, im] = responses[row];
+                let [a, b] = [from[row], from[row + 1]];
+                to[row] = re * a - im * b;
+                to[row + 1] = re * b + im * a;
+                row += 2;
+            }
+        };
+        let height = self.frequency.len();
+        let mut model = vec![0.0; height];
+        turned(&self.model, &mut model);
+        let values = self.values.as_mut_slice();
+        for (row, model) in model.iter().enumerate() {
+            values[row] = self.measured[row] - model;
+        }
+        let plain = self.plain.as_slice();
+        for k in (1..self.reached.len()).filter(|k| is_used(self.reached[*k])) {
+            let at = k * height..(k + 1) * height;
+            turned(&plain[at.clone()], &mut values[at]);
+        }
+    }
+
+    /// Products of the columns with a place, weighted, their places, and the sum of the
+    /// logarithms of the weights' roots.
+    pub(super) fn gram(
+        &self,
+        error: f64,
+        place: impl Fn(usize) -> Option<usize>,
+    ) -> (DMatrix<f64>, Vec<usize>, f64) {
         let mut weights = Vec::with_capacity(self.len());
         let mut log_weights = 0.0;
         for (noise, power) in self.noise.iter().zip(&self.power) {
@@ -158,11 +170,21 @@ impl Rows {
             log_weights += weight.ln();
             weights.push(weight);
         }
-        let mut weighted = self.values.clone();
-        for mut column in weighted.column_iter_mut() {
-            column.iter_mut().zip(&weights).for_each(|(x, weight)| *x *= weight);
+        let used: Vec<(usize, usize)> = self
+            .reached
+            .iter()
+            .enumerate()
+            .filter_map(|(k, number)| Some((k, place(*number)?)))
+            .collect();
+        let mut weighted = DMatrix::zeros(self.len(), used.len());
+        for (mut to, (k, _)) in weighted.column_iter_mut().zip(&used) {
+            let from = self.values.column(*k);
+            for ((to, from), weight) in to.iter_mut().zip(from.iter()).zip(&weights) {
+                *to = from * weight;
+            }
         }
-        (weighted.tr_mul(&weighted), log_weights)
+        let places = used.into_iter().map(|(_, place)| place).collect();
+        (weighted.tr_mul(&weighted), places, log_weights)
     }
 }
 

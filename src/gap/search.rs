@@ -2,14 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::channel::Channel;
+use super::channel::{Channel, Late};
 use super::column::Owner;
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Given};
 use super::hypothesis::{Family, families};
-use super::nuisance::{Nuisance, Trust};
-use super::polish::polish;
+use super::nuisance::Trust;
 use super::record::Record;
-use super::table::{Table, nuisances};
+use super::table::Table;
 
 /// What naming an effect costs, and each joint of it.
 const FAMILY: f64 = 3.0;
@@ -45,10 +44,10 @@ pub struct Search<'a, 'm> {
     pub trust: Trust,
     /// Share of its torques to which the model is right.
     pub error: f64,
-    /// What all torques go through, as far as it was found.
-    pub channel: Channel,
-    /// The parameters' columns of each record.
-    pub(super) nuisances: Vec<Nuisance>,
+    /// What the torques of each joint go through.
+    pub(super) channels: Vec<Channel>,
+    /// What they go through as an effect, if it is one.
+    pub late: Option<Late>,
     /// What may explain the difference.
     pub table: Table,
     /// Its families.
@@ -71,30 +70,50 @@ impl<'a, 'm> Search<'a, 'm> {
             records,
             trust,
             error,
-            channel: Channel::default(),
-            nuisances: nuisances(records, trust),
+            channels: vec![
+                Channel::default();
+                records.first().map_or(0, |record| record.motion.model.dof)
+            ],
+            late: None,
             families: families(&table),
             table,
             evidence,
         }
     }
 
+    pub(super) fn dof(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// Puts all that is computed behind channels.
+    pub(super) fn set_channels(&mut self, channels: &[Channel]) {
+        self.channels = channels.to_vec();
+        self.table.through_all(channels);
+        self.evidence = self.table.evidence(self.error);
+    }
+
+    /// Takes the model for right to this share of its torques.
+    pub(super) fn set_error(&mut self, error: f64) {
+        self.error = error;
+        self.evidence = self.table.evidence(error);
+    }
+
     /// Takes the error of the model with which the measurement is most probable, effects that a
-    /// quick search finds being there.
-    pub fn choose_error(&mut self, errors: &[f64]) {
+    /// quick search finds being there; the logarithm of that probability.
+    pub fn choose_error(&mut self, errors: &[f64]) -> f64 {
         let mut best: Option<(f64, f64)> = None;
         for error in errors {
-            self.error = *error;
-            self.evidence = self.table.evidence(*error);
+            self.set_error(*error);
             let total = self.evidence.null + self.quick().score;
-            if best.is_none_or(|(most, _)| total > most) {
-                best = Some((total, *error));
+            if best.is_some_and(|(most, _)| total < most) {
+                // Beyond the most probable one it only gets worse.
+                break;
             }
+            best = Some((total, *error));
         }
-        if let Some((_, error)) = best {
-            self.error = error;
-            self.evidence = self.table.evidence(error);
-        }
+        let Some((total, error)) = best else { return f64::NEG_INFINITY };
+        self.set_error(error);
+        total
     }
 
     /// The best set of effects at the shapes that are tried.
@@ -111,11 +130,18 @@ impl<'a, 'm> Search<'a, 'm> {
 
     /// The best set with one family more.
     fn next(&self, found: &Found) -> Option<Found> {
+        let given = self.given(&found.chosen);
         (0..self.families.len())
             .into_par_iter()
             .filter(|family| found.chosen.iter().all(|of| of.family != *family))
-            .filter_map(|family| self.with(&found.chosen, family))
+            .filter_map(|family| self.with(&given, &found.chosen, family))
             .max_by(|a, b| a.score.total_cmp(&b.score))
+    }
+
+    /// The evidence when a set is there.
+    #[must_use]
+    pub fn given(&self, set: &[Chosen]) -> Given {
+        self.evidence.given(&self.columns(set))
     }
 
     /// The best set of effects, found one after another. Each is brought to its best shape
@@ -135,21 +161,21 @@ impl<'a, 'm> Search<'a, 'm> {
 
     /// Shapes of what was found become the best ones.
     fn refine(&mut self, found: &mut Found) {
-        let pieces: Vec<usize> = found.chosen.iter().flat_map(|of| of.pieces.clone()).collect();
-        let Some(polished) = polish(self, &pieces) else { return };
-        for (number, piece) in pieces.iter().zip(polished.pieces) {
-            self.table.replace(*number, piece, self.records);
+        self.sharpen(&found.chosen);
+        let columns = self.columns(&found.chosen);
+        self.tune(&columns);
+        if self.polish(&found.chosen).is_some() {
+            self.evidence = self.table.evidence(self.error);
+            found.score = self.score(&found.chosen);
         }
-        self.channel = polished.channel;
-        self.table.through(&self.channel);
-        self.evidence = self.table.evidence(self.error);
-        found.score = self.score(&found.chosen);
     }
 
-    /// The set with another family, whose joints and shapes are chosen one after another.
+    /// The set `chosen` with another family, whose joints and shapes are chosen one after
+    /// another; `given` is the evidence when the set is there.
     #[must_use]
-    pub fn with(&self, chosen: &[Chosen], family: usize) -> Option<Found> {
-        let mut best: Option<Found> = None;
+    pub fn with(&self, given: &Given, chosen: &[Chosen], family: usize) -> Option<Found> {
+        let before = self.cost(chosen);
+        let mut best: Option<f64> = None;
         let mut pieces: Vec<usize> = Vec::new();
         loop {
             let mut next: Option<(f64, usize)> = None;
@@ -161,24 +187,23 @@ impl<'a, 'm> Search<'a, 'm> {
                 for piece in all {
                     let mut more = pieces.clone();
                     more.push(*piece);
-                    let mut set = chosen.to_vec();
-                    set.push(Chosen { family, pieces: more });
-                    let score = self.score(&set);
+                    let own = [Chosen { family, pieces: more }];
+                    let score = given.gain(&self.columns(&own)) - before - self.cost(&own);
                     if next.is_none_or(|(most, _)| score > most) {
                         next = Some((score, *piece));
                     }
                 }
             }
             let Some((score, piece)) = next else { break };
-            if best.as_ref().is_some_and(|best| score <= best.score) {
+            if best.is_some_and(|best| score <= best) {
                 break;
             }
             pieces.push(piece);
-            let mut set = chosen.to_vec();
-            set.push(Chosen { family, pieces: pieces.clone() });
-            best = Some(Found { chosen: set, score });
+            best = Some(score);
         }
-        best
+        let mut set = chosen.to_vec();
+        set.push(Chosen { family, pieces });
+        best.map(|score| Found { chosen: set, score })
     }
 
     /// Families that later ones made needless are taken out.
@@ -203,6 +228,11 @@ impl<'a, 'm> Search<'a, 'm> {
     /// Logarithm of the odds of a set against no effect.
     #[must_use]
     pub fn score(&self, set: &[Chosen]) -> f64 {
+        self.evidence.gain(&self.columns(set)) - self.cost(set)
+    }
+
+    /// What naming a set costs.
+    fn cost(&self, set: &[Chosen]) -> f64 {
         let mut cost = 0.0;
         for chosen in set {
             cost += FAMILY + JOINT * chosen.pieces.len() as f64;
@@ -210,7 +240,7 @@ impl<'a, 'm> Search<'a, 'm> {
                 cost += (self.table.pieces[*piece].choices.max(1) as f64).ln();
             }
         }
-        self.evidence.gain(&self.columns(set)) - cost
+        cost
     }
 
     /// The columns of a set, those that effects bring among them.

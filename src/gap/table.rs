@@ -10,8 +10,9 @@ use super::channel::Channel;
 use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::Evidence;
 use super::generic::generic;
-use super::nuisance::{Nuisance, Trust, nuisance};
-use super::record::Record;
+use super::nuisance::{Nuisance, Trust, nuisance, smooth_error};
+use super::record::{Record, RecordKind};
+use super::ripples::ripples;
 use super::rows::Rows;
 
 /// A piece with its place among the columns.
@@ -46,13 +47,19 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of records of one robot, with the effects that may be found.
+    /// Of records of one robot, with the effects that may be found and with pieces `more`.
     #[must_use]
-    pub fn new(records: &[Record<'_>], effects: &[&'static Effect], trust: Trust) -> Table {
+    pub(super) fn new(
+        records: &[Record<'_>],
+        effects: &[&'static Effect],
+        trust: Trust,
+        more: Vec<Piece>,
+    ) -> Table {
         let n = records.first().map_or(0, |record| record.motion.model.dof);
         let wanted: Vec<(Option<&'static Effect>, usize)> = effects
             .iter()
             .filter(|e| e.channel == effects::Channel::Torque && !matches!(e.form, Form::Elsewhere))
+            .filter(|e| !["current_sign", "time_delay", "filter_lag"].contains(&e.id))
             .flat_map(|effect| {
                 let joints = (effect.joints)(n);
                 let joints = if effect.of == Of::Robot {
@@ -67,9 +74,11 @@ impl Table {
         let all: Vec<Piece> = wanted
             .into_par_iter()
             .flat_map_iter(|(effect, joint)| match effect {
+                Some(effect) if effect.id == "ripple" => ripples(effect, records, joint),
                 Some(effect) => pieces(effect, records, joint),
                 None => generic(records, joint),
             })
+            .chain(more)
             .collect();
         Table::of(records, all, &nuisances(records, trust))
     }
@@ -79,9 +88,12 @@ impl Table {
     pub(super) fn of(records: &[Record<'_>], all: Vec<Piece>, nuisances: &[Nuisance]) -> Table {
         let n = records.first().map_or(0, |record| record.motion.model.dof);
         let columns: Vec<&Column> = all.iter().flat_map(|piece| &piece.columns).collect();
-        let joints = (0..n)
+        let kinds = [RecordKind::Mean, RecordKind::Drift];
+        let joints = (0..kinds.len() * n)
             .into_par_iter()
-            .map(|joint| Rows::new(records, nuisances, &columns, joint))
+            .map(|i| {
+                Rows::new(records, nuisances, &columns, i / kinds.len(), kinds[i % kinds.len()])
+            })
             .collect();
         let mut means = Vec::new();
         let mut sds = Vec::new();
@@ -119,32 +131,55 @@ impl Table {
         for (k, column) in placed.columns.clone().zip(&piece.columns) {
             self.means[k] = column.mean;
             self.sds[k] = column.sd;
-            for (joint, rows) in self.joints.iter_mut().enumerate() {
-                rows.replace(1 + parameters + k, column, joint, records);
+            for rows in &mut self.joints {
+                rows.replace(1 + parameters + k, column, records);
             }
         }
     }
 
-    /// All that is computed goes through a channel before it is compared.
-    pub(super) fn through(&mut self, channel: &Channel) {
-        self.joints.par_iter_mut().for_each(|rows| rows.through(channel));
+    /// The measured torque of a joint is taken with the other sign.
+    pub(super) fn flip(&mut self, joint: usize) {
+        self.joints.iter_mut().for_each(|rows| rows.flip(joint));
+    }
+
+    /// All that is computed goes through the channel of its joint before it is compared.
+    pub(super) fn through_all(&mut self, channels: &[Channel]) {
+        self.joints.par_iter_mut().for_each(|rows| rows.through(channels, |_| true));
+    }
+
+    /// The same of the model, its parameters and some columns.
+    pub(super) fn through(&mut self, channels: &[Channel], columns: &[usize]) {
+        let first = 1 + self.parameters.len();
+        let is_used =
+            |number: usize| number < first || columns.binary_search(&(number - first)).is_ok();
+        self.joints.par_iter_mut().for_each(|rows| rows.through(channels, is_used));
     }
 
     /// How well everything explains the difference if the model's torques are known to the
     /// share `error` of their own.
     #[must_use]
     pub fn evidence(&self, error: f64) -> Evidence {
+        let all: Vec<usize> = (0..self.means.len()).collect();
+        self.evidence_of(error, &all)
+    }
+
+    /// The same of some columns alone, which count in their order.
+    pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
         let parameters = self.parameters.len();
-        let size = 1 + parameters + self.means.len();
+        let size = 1 + parameters + columns.len();
+        let mut places = vec![None; 1 + parameters + self.means.len()];
+        for (k, place) in places.iter_mut().enumerate().take(1 + parameters) {
+            *place = Some(k);
+        }
+        for (k, column) in columns.iter().enumerate() {
+            places[1 + parameters + column] = Some(1 + parameters + k);
+        }
+        let parts: Vec<(DMatrix<f64>, Vec<usize>, f64)> =
+            self.joints.par_iter().map(|rows| rows.gram(error, |number| places[number])).collect();
         let mut gram = DMatrix::zeros(size, size);
         let mut log_weights = 0.0;
-        let mut rows = 0;
-        let parts: Vec<(DMatrix<f64>, f64)> =
-            self.joints.par_iter().map(|joint| joint.gram(error)).collect();
-        for (joint, (part, log_weight)) in self.joints.iter().zip(parts) {
+        for (part, reached, log_weight) in parts {
             log_weights += log_weight;
-            rows += joint.len();
-            let reached = joint.reached();
             for (b, to) in reached.iter().enumerate() {
                 for (a, from) in reached.iter().enumerate() {
                     gram[(*from, *to)] += part[(a, b)];
@@ -152,10 +187,13 @@ impl Table {
             }
         }
         for k in 1 + self.errors_from..=parameters {
-            gram.row_mut(k).scale_mut(error);
-            gram.column_mut(k).scale_mut(error);
+            gram.row_mut(k).scale_mut(smooth_error(error));
+            gram.column_mut(k).scale_mut(smooth_error(error));
         }
-        Evidence::new(&gram, parameters, self.means.clone(), self.sds.clone(), log_weights, rows)
+        let rows = self.joints.iter().map(Rows::len).sum();
+        let of =
+            |x: &DVector<f64>| DVector::from_iterator(columns.len(), columns.iter().map(|k| x[*k]));
+        Evidence::new(&gram, parameters, of(&self.means), of(&self.sds), log_weights, rows)
     }
 }
 
