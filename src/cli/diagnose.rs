@@ -1,5 +1,7 @@
 //! `joulepath diagnose`: which effect separates a model from its robot.
 
+mod channels;
+
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,7 +14,9 @@ use super::common::{self, Format};
 use super::logs::{Reader, Ready, read_all};
 use super::output;
 use crate::effects::{self, ALL, Effect};
-use crate::gap::{Diagnosis, Record, Settings, Trust, Verdict, diagnose};
+use crate::gap::{
+    Diagnosis, Record, Settings, Trust, Verdict, diagnose, diagnose_power, diagnose_runs,
+};
 use crate::identify::Hints;
 use crate::log::ColumnMap;
 use crate::report::diagnose as report;
@@ -40,6 +44,10 @@ pub struct DiagnoseArgs {
     /// Logs from when the model was believed true.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     baseline: Vec<PathBuf>,
+
+    /// The program whose runs the logs are, by their column `cmd`.
+    #[arg(long, value_name = "PATH")]
+    program: Option<PathBuf>,
 
     /// How much the model's parameters are believed; by default commissioned with a baseline,
     /// otherwise cad.
@@ -109,6 +117,7 @@ pub fn of_case(case: &Path, options: &Value) -> anyhow::Result<Value> {
         log: vec![case.join("log-1.csv"), case.join("log-2.csv")],
         heldout: vec![case.join("heldout.csv")],
         baseline: if baseline.exists() { vec![baseline] } else { Vec::new() },
+        program: text("program").map(|folder| case.join(folder)),
         trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
         effects: None,
         map: String::new(),
@@ -148,8 +157,38 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         "trajectory".clone_into(&mut basis.heldout);
         held.extend(if train.len() > 1 { train.pop() } else { None });
     }
-    let found = of_logs(&model, &train, &held, &Settings { trust, effects: wanted });
+    let before = read(&args.baseline)?;
+    let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
+    let of_power = diagnose_power(
+        &model,
+        &channels::powers(&before),
+        &channels::powers(&train),
+        &channels::powers(&held),
+        &may,
+    );
+    let of_runs = diagnose_runs(
+        &model,
+        &channels::runs(&before),
+        &channels::runs(&train),
+        &channels::runs(&held),
+        &may,
+    );
     basis.notes = reader.notes;
+    let mut found = of_logs(&model, &train, &held, &Settings { trust, effects: wanted });
+    if let Some(of) = &of_power {
+        found.add_power(of);
+    }
+    if let Some(of) = &of_runs {
+        found.add_runs(of);
+        if let Some(program) = &args.program {
+            let lines = channels::lines(program, &args.robot)
+                .with_context(|| format!("--program {}", program.display()))?;
+            for place in &mut found.places {
+                let movement = place.movement.and_then(|movement| movement.checked_sub(1));
+                place.line = movement.and_then(|movement| lines.get(movement).cloned());
+            }
+        }
+    }
     if let Some(path) = &args.out {
         output::write(path, to_toml(&found.improved.written).as_bytes())
             .with_context(|| path.display().to_string())?;

@@ -107,6 +107,11 @@ impl Search<'_, '_> {
         let error = self.error;
         for joint in joints {
             for kind in &kinds {
+                if let Some(joint) = joint
+                    && !self.may_be_late(*kind, joint)
+                {
+                    continue;
+                }
                 let late = self.tuned(*kind, joint, &[]);
                 let cost = if joint.is_some() { JOINT } else { 0.0 };
                 if late.nats - cost > best.map_or(WORTH, |best| best.nats) {
@@ -126,6 +131,23 @@ impl Search<'_, '_> {
             self.set_channels(&vec![Channel::default(); dof]);
             self.set_error(error);
         }
+    }
+
+    /// Whether a joint by itself is more probable behind some delay or lag.
+    fn may_be_late(&mut self, kind: Kind, joint: usize) -> bool {
+        let dof = self.dof();
+        let mut null = |value: f64| {
+            let late = Late { kind, joint: Some(joint), value, ..Late::none() };
+            self.table.of_joint(joint, &late.channels(dof), self.error).null
+        };
+        let none = null(0.0);
+        let tried: &[f64] = match kind {
+            Kind::Delay => &[0.0025, 0.007, 0.015],
+            Kind::Lag => &[0.005, 0.015],
+        };
+        let late = tried.iter().any(|value| null(*value) > none + WORTH);
+        null(0.0);
+        late
     }
 
     /// The delay or lag that was found, tuned once more with some columns there.

@@ -6,9 +6,9 @@ use crate::effects::{Effect, find};
 use crate::robot::{MAX_DOF, Model};
 
 use super::channel::Late;
-use super::column::{Owner, Piece};
+use super::column::Owner;
 use super::diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
-use super::gated::{OF_TIME, gated};
+use super::gated::{GATED, OF_TIME, gated};
 use super::heldout::{predicted, shrink};
 use super::improved::Improved;
 use super::nuisance::Trust;
@@ -18,7 +18,7 @@ use super::search::{Chosen, Found, Search};
 use super::table::{Table, nuisances};
 
 /// Errors of the model that are tried.
-const ERRORS: [f64; 5] = [0.001, 0.0025, 0.006, 0.015, 0.04];
+const ERRORS: [f64; 4] = [0.0015, 0.005, 0.015, 0.045];
 /// Odds below which two explanations cannot be told apart: 1 to 100.
 const CLASS: f64 = 4.6;
 /// Most ids that say anything.
@@ -31,6 +31,8 @@ const BEYOND: f64 = 3.0;
 const RIGHT: f64 = 0.02;
 /// What another sign has to bring.
 const FLIP: f64 = 50.0;
+/// What a function of time may still bring beside a gated effect, of what that does.
+const LEFT: f64 = 0.3;
 /// What an effect has to bring, of what the strongest does.
 const OF_STRONGEST: f64 = 0.005;
 /// What an effect has to bring.
@@ -55,15 +57,26 @@ pub fn diagnose(
     settings: &Settings,
 ) -> Diagnosis {
     let flipped = flip(&mut train, settings);
-    let mut search = searched(&train, settings, Vec::new());
+    let table = Table::new(&train, &settings.effects, settings.trust, Vec::new());
+    let mut search = Search::new(&train, table, settings.trust, ERRORS[0]);
+    let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
+    search.choose_channel(&ERRORS, &may);
     let none = search.evidence.parameters(&[], &DVector::zeros(0));
     let refit = Improved::new(model, &search.table.mixing, &none, &[]);
     let mut found = search.run();
     let of_time = joints_of_time(&search, &found);
     if !of_time.is_empty() {
         let more = gated(&settings.effects, &train, &of_time);
-        search = searched(&train, settings, more);
+        let table = Table::new(&train, &settings.effects, settings.trust, more);
+        let (error, channels, late) = (search.error, search.channels.clone(), search.late);
+        search = Search::new(&train, table, settings.trust, error);
+        search.late = late;
+        search.set_channels(&channels);
+        // First what has a window, then what that leaves.
+        search.banned = OF_TIME.to_vec();
         found = search.run();
+        search.banned.clear();
+        found = search.run_from(found);
     }
     let mut polished = search.polish(&found.chosen);
     let mut judged = judged(&search, &found, polished.as_ref());
@@ -105,6 +118,7 @@ pub fn diagnose(
         refit,
         improved,
         reasons: judged.reasons,
+        channels: Vec::new(),
     }
 }
 
@@ -136,19 +150,6 @@ fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
         }
     }
     flipped
-}
-
-/// A search at the most probable error.
-fn searched<'a, 'm>(
-    train: &'a [Record<'m>],
-    settings: &Settings,
-    more: Vec<Piece>,
-) -> Search<'a, 'm> {
-    let table = Table::new(train, &settings.effects, settings.trust, more);
-    let mut search = Search::new(train, table, settings.trust, ERRORS[0]);
-    let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
-    search.choose_channel(&ERRORS, &may);
-    search
 }
 
 /// Joints of functions of time that were found.
@@ -260,7 +261,12 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
             Owner::Effect(effect) => {
                 let fitted: Vec<&Fitted> =
                     polished.effects.iter().filter(|of| of.effect.id == effect.id).collect();
-                let (class, probability) = rivals(search, found, k);
+                let least = LEAST_NATS.max(OF_STRONGEST * strongest);
+                let (class, probability) = if drops[k] < least {
+                    (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
+                } else {
+                    rivals(search, found, k)
+                };
                 let said = Said {
                     effect,
                     joints: fitted.iter().filter_map(|of| of.joint).collect(),
@@ -270,7 +276,6 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
                     share,
                     nats: drops[k],
                 };
-                let least = LEAST_NATS.max(OF_STRONGEST * strongest);
                 match refused(search, &said, &fitted, polished, least) {
                     Some(why) => {
                         judged.reasons.push(format!("{}: {why}", effect.id));
@@ -281,6 +286,17 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
             }
         }
     }
+    // A window that leaves much of what changes with time is none.
+    let left: f64 = (0..found.chosen.len())
+        .filter(|k| OF_TIME.contains(&search.families[found.chosen[*k].family].owner.id()))
+        .map(|k| drops[k])
+        .sum();
+    let (kept, doubtful): (Vec<Said>, Vec<Said>) = judged
+        .effects
+        .drain(..)
+        .partition(|said| !GATED.contains(&said.effect.id) || left < LEFT * said.nats);
+    judged.effects = kept;
+    judged.candidates.extend(doubtful);
     let strongest = judged.effects.iter().map(|said| said.nats).fold(0.0, f64::max);
     let unknown: f64 = judged.anything.iter().map(|of| of.share).sum();
     if unknown > 0.5 || (unknown > 0.0 && strongest == 0.0) {
@@ -463,6 +479,8 @@ fn places(
             joint: Some(joint),
             regime: "all".to_owned(),
             share: shares[joint] / sum,
+            movement: None,
+            line: None,
         })
         .collect()
 }

@@ -4,6 +4,8 @@ use crate::effects::Effect;
 
 use super::heldout::Shrink;
 use super::improved::Improved;
+use super::power::PowerFound;
+use super::runs::RunFound;
 
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +94,10 @@ pub struct Place {
     pub regime: String,
     /// Share of the gap \[1\].
     pub share: f64,
+    /// The movement behind which it is, from 1.
+    pub movement: Option<usize>,
+    /// File and line of the program.
+    pub line: Option<(String, usize)>,
 }
 
 /// A diagnosis of torques.
@@ -117,4 +123,60 @@ pub struct Diagnosis {
     pub improved: Improved,
     /// Why the verdict is what it is.
     pub reasons: Vec<String>,
+    /// Rms gaps of other channels: name, unit; noise, before, after.
+    pub channels: Vec<(&'static str, &'static str, [f64; 3])>,
+}
+
+impl Diagnosis {
+    /// What the power says is a part of it.
+    pub fn add_power(&mut self, found: &PowerFound) {
+        if let Some(of) = &found.effect {
+            self.effects.push(Said {
+                effect: of.effect,
+                joints: of.joint.into_iter().collect(),
+                class: of.class.clone(),
+                probability: 1.0 / (1.0 + (-of.nats).exp()),
+                parameters: of.parameters.clone(),
+                share: 1.0,
+                nats: of.nats,
+            });
+        }
+        self.channels.push(("power", "W", found.gap));
+        self.add(found.effect.is_some(), found.is_unknown);
+    }
+
+    /// What runs of the program say is a part of it.
+    pub fn add_runs(&mut self, found: &RunFound) {
+        for of in &found.effects {
+            self.effects.push(Said {
+                effect: of.effect,
+                joints: Vec::new(),
+                class: of.class.clone(),
+                probability: 1.0 / (1.0 + (-of.nats).exp()),
+                parameters: of.parameters.clone(),
+                share: 1.0,
+                nats: of.nats,
+            });
+            if of.movement.is_some() {
+                self.places.push(Place {
+                    joint: None,
+                    regime: of.effect.id.to_owned(),
+                    share: 1.0,
+                    movement: of.movement,
+                    line: None,
+                });
+            }
+        }
+        self.channels.push(("motion", "s", found.gap));
+        self.add(!found.effects.is_empty(), found.is_unknown);
+    }
+
+    fn add(&mut self, has_effect: bool, is_unknown: bool) {
+        self.verdict = match (self.verdict, has_effect, is_unknown) {
+            (Verdict::NoGap | Verdict::ParametersOnly, true, false) => Verdict::Effect,
+            (Verdict::NoGap | Verdict::ParametersOnly, false, true) => Verdict::Unknown,
+            (Verdict::Effect, _, true) | (Verdict::Unknown, true, _) => Verdict::Partial,
+            (verdict, ..) => verdict,
+        };
+    }
 }

@@ -16,6 +16,9 @@ const FINEST: f64 = 0.1;
 /// Functions of time that were found, whose windows may be gated effects.
 pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
 
+/// Effects with windows.
+pub(super) const GATED: [&str; 2] = ["brake_drag", "contact"];
+
 /// Pieces with windows of a brake's drag at some joints and of a contact.
 pub(super) fn gated(
     effects: &[&'static Effect],
@@ -64,7 +67,7 @@ impl Search<'_, '_> {
         for piece in set.iter().flat_map(|of| of.pieces.clone()) {
             let placed = &self.table.pieces[piece];
             let Owner::Effect(effect) = placed.owner else { continue };
-            let has_window = ["brake_drag", "contact"].contains(&effect.id);
+            let has_window = GATED.contains(&effect.id);
             let count = placed.shape.len();
             if !has_window || placed.shape[count - 2] <= placed.shape[count - 3] {
                 continue;

@@ -112,6 +112,10 @@ impl Rows {
         }
     }
 
+    pub(super) fn is_mean_of(&self, joint: usize) -> bool {
+        self.joint == joint && self.kind == RecordKind::Mean
+    }
+
     pub(super) fn flip(&mut self, joint: usize) {
         if joint == self.joint {
             self.measured.iter_mut().for_each(|x| *x = -*x);

@@ -17,6 +17,8 @@ const JOINT: f64 = 1.2;
 const WORTH: f64 = 3.0;
 /// Effects at most.
 const MOST: usize = 4;
+/// Effects of a quick search at most.
+const QUICK: usize = 2;
 
 /// A chosen family with its pieces.
 #[derive(Clone)]
@@ -48,6 +50,8 @@ pub struct Search<'a, 'm> {
     pub(super) channels: Vec<Channel>,
     /// What they go through as an effect, if it is one.
     pub late: Option<Late>,
+    /// Ids that are not looked for.
+    pub banned: Vec<&'static str>,
     /// What may explain the difference.
     pub table: Table,
     /// Its families.
@@ -75,6 +79,7 @@ impl<'a, 'm> Search<'a, 'm> {
                 records.first().map_or(0, |record| record.motion.model.dof)
             ],
             late: None,
+            banned: Vec::new(),
             families: families(&table),
             table,
             evidence,
@@ -119,7 +124,7 @@ impl<'a, 'm> Search<'a, 'm> {
     /// The best set of effects at the shapes that are tried.
     fn quick(&self) -> Found {
         let mut found = Found { chosen: Vec::new(), score: 0.0 };
-        while found.chosen.len() < MOST {
+        while found.chosen.len() < QUICK {
             match self.next(&found) {
                 Some(next) if next.score > found.score + WORTH => found = next,
                 _ => break,
@@ -134,6 +139,7 @@ impl<'a, 'm> Search<'a, 'm> {
         (0..self.families.len())
             .into_par_iter()
             .filter(|family| found.chosen.iter().all(|of| of.family != *family))
+            .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
             .filter_map(|family| self.with(&given, &found.chosen, family))
             .max_by(|a, b| a.score.total_cmp(&b.score))
     }
@@ -147,7 +153,11 @@ impl<'a, 'm> Search<'a, 'm> {
     /// The best set of effects, found one after another. Each is brought to its best shape
     /// before the next one is looked for: what a coarse shape leaves is no other effect.
     pub fn run(&mut self) -> Found {
-        let mut found = Found { chosen: Vec::new(), score: 0.0 };
+        self.run_from(Found { chosen: Vec::new(), score: 0.0 })
+    }
+
+    /// The best set that one leads to.
+    pub fn run_from(&mut self, mut found: Found) -> Found {
         while found.chosen.len() < MOST {
             match self.next(&found) {
                 Some(next) if next.score > found.score + WORTH => found = next,

@@ -163,6 +163,31 @@ impl Table {
         self.evidence_of(error, &all)
     }
 
+    /// How probable the measurement of one joint is, without any column, behind channels.
+    pub(super) fn of_joint(&mut self, joint: usize, channels: &[Channel], error: f64) -> Evidence {
+        let parameters = self.parameters.len();
+        let place = |number: usize| (number <= parameters).then_some(number);
+        let mut gram = DMatrix::zeros(1 + parameters, 1 + parameters);
+        let mut log_weights = 0.0;
+        for rows in self.joints.iter_mut().filter(|rows| rows.is_mean_of(joint)) {
+            rows.through(channels, |number| number <= parameters);
+            let (part, reached, log_weight) = rows.gram(error, place);
+            add(&mut gram, &part, &reached);
+            log_weights += log_weight;
+        }
+        self.smooth(&mut gram, error);
+        let none = || DVector::zeros(0);
+        Evidence::new(&gram, parameters, none(), none(), log_weights, 1)
+    }
+
+    /// Scales the columns that are in shares of the model's error.
+    fn smooth(&self, gram: &mut DMatrix<f64>, error: f64) {
+        for k in 1 + self.errors_from..=self.parameters.len() {
+            gram.row_mut(k).scale_mut(smooth_error(error));
+            gram.column_mut(k).scale_mut(smooth_error(error));
+        }
+    }
+
     /// The same of some columns alone, which count in their order.
     pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
         let parameters = self.parameters.len();
@@ -180,20 +205,22 @@ impl Table {
         let mut log_weights = 0.0;
         for (part, reached, log_weight) in parts {
             log_weights += log_weight;
-            for (b, to) in reached.iter().enumerate() {
-                for (a, from) in reached.iter().enumerate() {
-                    gram[(*from, *to)] += part[(a, b)];
-                }
-            }
+            add(&mut gram, &part, &reached);
         }
-        for k in 1 + self.errors_from..=parameters {
-            gram.row_mut(k).scale_mut(smooth_error(error));
-            gram.column_mut(k).scale_mut(smooth_error(error));
-        }
+        self.smooth(&mut gram, error);
         let rows = self.joints.iter().map(Rows::len).sum();
         let of =
             |x: &DVector<f64>| DVector::from_iterator(columns.len(), columns.iter().map(|k| x[*k]));
         Evidence::new(&gram, parameters, of(&self.means), of(&self.sds), log_weights, rows)
+    }
+}
+
+/// Adds products of columns at their places.
+fn add(gram: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
+    for (b, to) in places.iter().enumerate() {
+        for (a, from) in places.iter().enumerate() {
+            gram[(*from, *to)] += part[(a, b)];
+        }
     }
 }
 

@@ -39,8 +39,9 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
             json!({
                 "joint": of.joint.map(|joint| joint + 1),
                 "regime": of.regime,
-                "file": null,
-                "line": null,
+                "file": of.line.as_ref().map(|(file, _)| file),
+                "line": of.line.as_ref().map(|(_, line)| line),
+                "movement": of.movement,
                 "t_start_s": null,
                 "t_end_s": null,
                 "share_percent": 100.0 * of.share,
@@ -63,20 +64,38 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
             })
         })
         .collect();
+    let mut gap = vec![json!({
+        "channel": "torque",
+        "unit": "Nm",
+        "per_joint": joints,
+        "heldout": basis.heldout,
+        "shrink_percent": interval(&found.shrink.total),
+        "shrink_by_effect_percent": interval(&found.shrink.by_effect),
+    })];
+    for (name, unit, [noise, before, after]) in &found.channels {
+        let shrinks = if *before > 0.0 { 100.0 * (1.0 - after / before) } else { 0.0 };
+        gap.push(json!({
+            "channel": name,
+            "unit": unit,
+            "per_joint": [{
+                "joint": null,
+                "noise": noise,
+                "model": before,
+                "refit": before,
+                "refit_plus_effect": after,
+            }],
+            "heldout": basis.heldout,
+            "shrink_percent": {"value": shrinks, "low": null, "high": null},
+            "shrink_by_effect_percent": {"value": shrinks, "low": null, "high": null},
+        }));
+    }
     json!({
         "verdict": found.verdict.name(),
         "effects": all(&found.effects),
         "candidates": all(&found.candidates),
         "generic": generic,
         "where": places,
-        "gap": [{
-            "channel": "torque",
-            "unit": "Nm",
-            "per_joint": joints,
-            "heldout": basis.heldout,
-            "shrink_percent": interval(&found.shrink.total),
-            "shrink_by_effect_percent": interval(&found.shrink.by_effect),
-        }],
+        "gap": gap,
         "next_experiment": next(found),
         "model_error_percent": 100.0 * found.error,
         "reasons": found.reasons,
