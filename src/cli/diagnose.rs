@@ -139,11 +139,10 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     }
     let wanted = wanted(args.effects.as_deref())?;
     let trust = match args.trust {
-        Some(TrustArg::Commissioned) => Trust::Commissioned,
-        Some(TrustArg::Cad) => Trust::Cad,
         Some(TrustArg::Unknown) => Trust::Unknown,
+        Some(TrustArg::Cad) => Trust::Cad,
         None if args.baseline.is_empty() => Trust::Cad,
-        None => Trust::Commissioned,
+        Some(TrustArg::Commissioned) | None => Trust::Commissioned,
     };
     let hints = Hints { period: args.period, cutoff: None };
     let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
@@ -174,7 +173,17 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         &may,
     );
     basis.notes = reader.notes;
-    let mut found = of_logs(&model, &train, &held, &Settings { trust, effects: wanted });
+    // Repetitions of a program are never alike to the millisecond, so that their mean torque is
+    // no torque: it only refits.
+    let of_torque = if of_runs.is_some() {
+        basis
+            .notes
+            .push("the logs are runs of a program: torques are not searched for effects".into());
+        Vec::new()
+    } else {
+        wanted.clone()
+    };
+    let mut found = of_logs(&model, &train, &held, &Settings { trust, effects: of_torque });
     if let Some(of) = &of_power {
         found.add_power(of);
     }

@@ -33,6 +33,7 @@ mod load_friction;
 mod motion;
 mod no_regeneration;
 mod nonlinear_viscous;
+mod page;
 mod payload;
 mod position_friction;
 mod presliding;
@@ -59,4 +60,5 @@ pub use effect::{
     Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,
 };
 pub use motion::Motion;
+pub use page::page;
 pub use register::{ALL, find};

@@ -105,6 +105,8 @@ impl Search<'_, '_> {
         let joints = std::iter::once(None).chain((0..dof).map(Some));
         let mut best: Option<Late> = None;
         let error = self.error;
+        // With a large error of the model nothing would be late.
+        self.error = errors.get(1).copied().unwrap_or(error);
         for joint in joints {
             for kind in &kinds {
                 if let Some(joint) = joint
@@ -120,6 +122,7 @@ impl Search<'_, '_> {
             }
         }
         let Some(late) = best else {
+            self.error = error;
             self.set_channels(&vec![Channel::default(); dof]);
             return;
         };
@@ -128,8 +131,8 @@ impl Search<'_, '_> {
         if behind > plain + COST {
             self.late = Some(Late { nats: behind - plain - COST, ..late });
         } else {
+            self.error = error;
             self.set_channels(&vec![Channel::default(); dof]);
-            self.set_error(error);
         }
     }
 

@@ -9,6 +9,9 @@ const TANGENT: f64 = 0.5;
 /// Relative step of differences over a shape.
 const STEP: f64 = 1e-3;
 
+/// Joints that something reaches, with their series \[Nm\].
+pub(super) type Reached = Vec<(usize, Vec<f64>)>;
+
 /// Whose a piece is.
 #[derive(Clone, Copy)]
 pub enum Owner {
@@ -159,7 +162,7 @@ fn columns(
     shape: &[f64],
     tried: &[Vec<f64>],
 ) -> Vec<Column> {
-    let with = |values: &[f64]| -> Vec<Vec<(usize, Vec<f64>)>> {
+    let with = |values: &[f64]| -> Vec<Reached> {
         records.iter().map(|record| added(effect, record, joint, values)).collect()
     };
     let is_linear = |k: &usize| matches!(effect.coordinates[*k].role, Role::Linear);
@@ -168,7 +171,7 @@ fn columns(
         (0..shape.len()).map(value).collect()
     };
     // What the shape does by itself, and how each torque changes with it.
-    let block = |kept: Option<usize>, less: Option<&[Vec<(usize, Vec<f64>)>]>| -> Vec<Column> {
+    let block = |kept: Option<usize>, less: Option<&[Reached]>| -> Vec<Column> {
         let relative = |values: &[f64]| match less {
             Some(less) => difference(&with(values), less, 1.0),
             None => with(values),
@@ -212,11 +215,7 @@ fn nearest_spacing(tried: &[f64], value: f64) -> f64 {
 }
 
 /// (a − b) · factor.
-fn difference(
-    a: &[Vec<(usize, Vec<f64>)>],
-    b: &[Vec<(usize, Vec<f64>)>],
-    factor: f64,
-) -> Vec<Vec<(usize, Vec<f64>)>> {
+fn difference(a: &[Reached], b: &[Reached], factor: f64) -> Vec<Reached> {
     a.iter()
         .zip(b)
         .map(|(a, b)| {

@@ -37,8 +37,12 @@ const LEFT: f64 = 0.3;
 const OF_STRONGEST: f64 = 0.005;
 /// What an effect has to bring.
 const LEAST_NATS: f64 = 8.0;
-/// Share of its joint's torque that an effect has to have.
+/// Share of its joint's torque that an effect has to have, and where it brings as many nats.
 const RELEVANT: f64 = 0.005;
+const CLEARLY: f64 = 0.002;
+const CLEAR: f64 = 30.0;
+/// Ripple that any motor may have, of the noise.
+const BELOW_NOISE: f64 = 0.25;
 
 /// How a diagnosis is made.
 pub struct Settings {
@@ -60,6 +64,10 @@ pub fn diagnose(
     let table = Table::new(&train, &settings.effects, settings.trust, Vec::new());
     let mut search = Search::new(&train, table, settings.trust, ERRORS[0]);
     let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
+    if settings.effects.is_empty() {
+        // Nothing is to be found, not even a function of anything.
+        search.banned = search.families.iter().map(|family| family.owner.id()).collect();
+    }
     search.choose_channel(&ERRORS, &may);
     let none = search.evidence.parameters(&[], &DVector::zeros(0));
     let refit = Improved::new(model, &search.table.mixing, &none, &[]);
@@ -330,8 +338,13 @@ fn refused(
     if said.class.len() > LARGEST_CLASS {
         return Some(format!("cannot be told from {}", said.class.join(", ")));
     }
-    if size(search, said.effect, fitted) < RELEVANT {
-        return Some(format!("is less than {} % of the torque", 100.0 * RELEVANT));
+    let size = size(search, said.effect, fitted);
+    let relevant = if said.nats > CLEAR { CLEARLY } else { RELEVANT };
+    if size < relevant {
+        return Some(format!("is less than {} % of the torque", 100.0 * relevant));
+    }
+    if id == "ripple" && fitted.iter().all(|of| of.parameters[0] < noise(search, of.joint)) {
+        return Some("is below the noise, as any motor's".to_owned());
     }
     if said.nats < least {
         return Some(format!("brings {:.1} nats only", said.nats));
@@ -380,6 +393,15 @@ fn refused(
         return Some("within what the parameters are believed".to_owned());
     }
     None
+}
+
+/// Ripple of a joint that nobody asks for \[Nm\].
+fn noise(search: &Search<'_, '_>, joint: Option<usize>) -> f64 {
+    let of = |record: &Record<'_>| {
+        let variance = record.variance[joint.unwrap_or(0)];
+        variance * if record.kind == RecordKind::Mean { record.repetitions as f64 } else { 1.0 }
+    };
+    BELOW_NOISE * search.records.iter().map(of).fold(0.0, f64::max).sqrt()
 }
 
 /// The largest share that an effect has in the torques of a joint.

@@ -5,9 +5,9 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Marginal likelihoods at one size of the model's own error.
 pub struct Evidence {
-    /// ΦᵀWΦ with the parameters marginalised.
+    /// `ΦᵀWΦ` with the parameters marginalised.
     a: DMatrix<f64>,
-    /// ΦᵀWy, the same.
+    /// `ΦᵀWy`, the same.
     b: DVector<f64>,
     means: DVector<f64>,
     sds: DVector<f64>,
@@ -23,7 +23,7 @@ pub struct Evidence {
 /// What tells the model's parameters, in deviations.
 struct OfParameters {
     factor: Cholesky<f64, nalgebra::Dyn>,
-    /// YᵀWy and `YᵀWΦ`.
+    /// `YᵀWy` and `YᵀWΦ`.
     y: DVector<f64>,
     c: DMatrix<f64>,
 }

@@ -114,7 +114,7 @@ impl Search<'_, '_> {
             choices: placed.choices,
             columns: columns_at(effect, self.records, joint, shape),
         };
-        self.table.replace(piece, made, self.records);
+        self.table.replace(piece, &made, self.records);
         let columns: Vec<usize> = self.table.pieces[piece].columns.clone().collect();
         self.table.through(&self.channels, &columns);
     }

@@ -252,7 +252,9 @@ fn of_link(link: &Link, spread: &Spread) -> Vec<([f64; RIGID], f64)> {
     }
     // To first order: a large deviation is no displaced body.
     for (change, size) in &mut all[1..] {
-        change.iter_mut().for_each(|x| *x *= spread.com / SMALL);
+        for x in change.iter_mut() {
+            *x *= spread.com / SMALL;
+        }
         *size = spread.com;
     }
     for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {

@@ -61,7 +61,7 @@ impl Search<'_, '_> {
                 let is_fixed = matches!(placed.owner, Owner::Generic(_));
                 if !is_fixed {
                     let piece = remade(placed, self.records);
-                    self.table.replace(*number, piece, self.records);
+                    self.table.replace(*number, &piece, self.records);
                 }
             }
             self.table.through(&self.channels, &columns);

@@ -191,7 +191,7 @@ impl<'a, 'm> Search<'a, 'm> {
             let mut next: Option<(f64, usize)> = None;
             for (joint, all) in &self.families[family].joints {
                 let taken = |piece: &usize| self.table.pieces[*piece].joint == *joint;
-                if pieces.iter().any(|piece| taken(piece)) {
+                if pieces.iter().any(taken) {
                     continue;
                 }
                 for piece in all {

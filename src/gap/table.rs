@@ -124,7 +124,7 @@ impl Table {
     }
 
     /// Puts a piece in the place of another one of the same effect and joint.
-    pub(super) fn replace(&mut self, number: usize, piece: Piece, records: &[Record<'_>]) {
+    pub(super) fn replace(&mut self, number: usize, piece: &Piece, records: &[Record<'_>]) {
         let placed = &mut self.pieces[number];
         placed.shape.clone_from(&piece.shape);
         let parameters = self.parameters.len();

@@ -130,7 +130,8 @@ fn said(of: &Said) -> Value {
 /// What to measure next, and why.
 fn next(found: &Diagnosis) -> Value {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
-        of.class.len() > 1 || found.verdict != Verdict::Effect && of.effect.experiment[1] != ""
+        of.class.len() > 1
+            || found.verdict != Verdict::Effect && !of.effect.experiment[1].is_empty()
     });
     match unclear {
         Some(of) => {
