@@ -87,7 +87,7 @@ fn wrong_input_is_refused() {
     for (args, way_out) in [
         (vec!["--robot", &robot, "--log", &few], "q1 to q6"),
         (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
-        (vec!["--robot", &robot, "--log", &log, "--period", "-1"], "more than 0"),
+        (vec!["--robot", &robot, "--log", &log, "--period", "0"], "more than 0"),
         (vec!["--robot", &robot, "--log", "missing.csv"], "cannot read"),
     ] {
         let output = joulepath(&[&["diagnose"], &args[..]].concat());

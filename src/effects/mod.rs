@@ -59,6 +59,7 @@ pub use bodies::added as with_body;
 pub use effect::{
     Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,
 };
+pub use filter_lag::lagged;
 pub use motion::Motion;
 pub use page::page;
 pub use register::{ALL, find};

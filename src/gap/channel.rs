@@ -1,6 +1,6 @@
 //! What torques go through on their way into a log.
 
-use crate::effects::find;
+use crate::effects::{Motion, find, lagged};
 
 use super::polish::Fitted;
 use super::search::Search;
@@ -28,14 +28,10 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Real and imaginary part of the response at a frequency \[Hz\].
-    pub(super) fn response(&self, frequency: f64) -> [f64; 2] {
-        let w = std::f64::consts::TAU * frequency;
-        let (sin, cos) = (w * self.delay).sin_cos();
-        let x = w * self.lag;
-        let scale = 1.0 / (1.0 + x * x);
-        // e^(−iwd) / (1 + iwl)
-        [scale * (cos - sin * x), scale * (-sin - cos * x)]
+    /// A series of a motion behind it.
+    pub(super) fn behind(&self, motion: &Motion<'_>, x: &[f64]) -> Vec<f64> {
+        let late = if self.delay == 0.0 { x.to_vec() } else { motion.later(x, self.delay) };
+        if self.lag > 0.0 { lagged(motion, &late, self.lag) } else { late }
     }
 }
 
@@ -141,7 +137,7 @@ impl Search<'_, '_> {
         let dof = self.dof();
         let mut null = |value: f64| {
             let late = Late { kind, joint: Some(joint), value, ..Late::none() };
-            self.table.of_joint(joint, &late.channels(dof), self.error).null
+            self.table.of_joint(self.records, joint, &late.channels(dof), self.error).null
         };
         let none = null(0.0);
         let tried: &[f64] = match kind {
@@ -176,7 +172,7 @@ impl Search<'_, '_> {
         let dof = self.dof();
         let total = |search: &mut Search<'_, '_>, value: f64| {
             let late = Late { kind, joint, value, sd: 0.0, nats: 0.0 };
-            search.table.through(&late.channels(dof), columns);
+            search.table.through(search.records, &late.channels(dof), columns);
             let evidence = search.table.evidence_of(search.error, columns);
             evidence.null + evidence.gain(&all)
         };
@@ -222,18 +218,5 @@ impl Search<'_, '_> {
 impl Late {
     fn none() -> Late {
         Late { kind: Kind::Delay, joint: None, value: 0.0, sd: 0.0, nats: 0.0 }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_lag_takes_what_a_delay_leaves() {
-        let [re, im] = Channel { delay: 0.25, lag: 0.0 }.response(1.0);
-        assert!(re.abs() < 1e-12 && (im + 1.0).abs() < 1e-12);
-        let [re, im] = Channel { delay: 0.0, lag: 1.0 / std::f64::consts::TAU }.response(1.0);
-        assert!((re - 0.5).abs() < 1e-12 && (im + 0.5).abs() < 1e-12);
     }
 }

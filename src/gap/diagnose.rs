@@ -9,6 +9,7 @@ use super::channel::Late;
 use super::column::Owner;
 use super::diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
 use super::gated::{GATED, OF_TIME, gated};
+use super::generic::OF_DRIFT;
 use super::heldout::{predicted, shrink};
 use super::improved::Improved;
 use super::nuisance::Trust;
@@ -86,6 +87,7 @@ pub fn diagnose(
         search.banned.clear();
         found = search.run_from(found);
     }
+    search.simplify(&mut found, CLASS);
     let mut polished = search.polish(&found.chosen);
     let mut judged = judged(&search, &found, polished.as_ref());
     if let Some(late) = search.late {
@@ -254,6 +256,7 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
             found.score - search.score(&less)
         })
         .collect();
+    let mut refusal = false;
     let strongest = drops.iter().copied().fold(0.0, f64::max);
     let all: f64 = drops.iter().map(|drop| drop.max(0.0)).sum::<f64>().max(1e-12);
     for (k, chosen) in found.chosen.iter().enumerate() {
@@ -285,7 +288,8 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
                     nats: drops[k],
                 };
                 match refused(search, &said, &fitted, polished, least) {
-                    Some(why) => {
+                    Some(Refused { why, is_open }) => {
+                        refusal |= is_open;
                         judged.reasons.push(format!("{}: {why}", effect.id));
                         judged.candidates.push(said);
                     }
@@ -294,6 +298,18 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
             }
         }
     }
+    // What drifts is not what stays.
+    let drifting: Vec<usize> = judged
+        .anything
+        .iter()
+        .filter(|of| OF_DRIFT.contains(&of.id))
+        .filter_map(|of| of.joint)
+        .collect();
+    let (kept, doubtful): (Vec<Said>, Vec<Said>) = judged.effects.drain(..).partition(|said| {
+        said.effect.id == "warm_up" || !said.joints.iter().any(|joint| drifting.contains(joint))
+    });
+    judged.effects = kept;
+    judged.candidates.extend(doubtful);
     // A window that leaves much of what changes with time is none.
     let left: f64 = (0..found.chosen.len())
         .filter(|k| OF_TIME.contains(&search.families[found.chosen[*k].family].owner.id()))
@@ -304,23 +320,30 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
         .drain(..)
         .partition(|said| !GATED.contains(&said.effect.id) || left < LEFT * said.nats);
     judged.effects = kept;
+    refusal |= !doubtful.is_empty();
     judged.candidates.extend(doubtful);
     let strongest = judged.effects.iter().map(|said| said.nats).fold(0.0, f64::max);
     let unknown: f64 = judged.anything.iter().map(|of| of.share).sum();
     if unknown > 0.5 || (unknown > 0.0 && strongest == 0.0) {
         judged.candidates.append(&mut judged.effects);
     }
-    let refused = judged.candidates.iter().any(|said| said.effect.id != "link_parameters");
     let too_many = judged.candidates.iter().any(|said| said.class.len() > LARGEST_CLASS);
     judged.verdict = match (judged.effects.is_empty(), judged.anything.is_empty()) {
         (false, true) => Verdict::Effect,
         (false, false) => Verdict::Partial,
         (true, false) => Verdict::Unknown,
         (true, true) if too_many => Verdict::NotSeparable,
-        (true, true) if refused => Verdict::Unknown,
+        (true, true) if refusal => Verdict::Unknown,
         (true, true) => Verdict::ParametersOnly,
     };
     judged
+}
+
+/// Why an effect is not asserted.
+struct Refused {
+    why: String,
+    /// Whether something is there all the same that is not known.
+    is_open: bool,
 }
 
 /// Why an effect is not asserted, if it is not.
@@ -330,27 +353,29 @@ fn refused(
     fitted: &[&Fitted],
     polished: &Polished,
     least: f64,
-) -> Option<String> {
+) -> Option<Refused> {
+    let no = |why: String| Some(Refused { why, is_open: false });
+    let open = |why: String| Some(Refused { why, is_open: true });
     let id = said.effect.id;
     if ["link_parameters", "apparent_torque"].contains(&id) {
-        return Some("a matter of parameters".to_owned());
+        return no("a matter of parameters".to_owned());
     }
     if said.class.len() > LARGEST_CLASS {
-        return Some(format!("cannot be told from {}", said.class.join(", ")));
+        return open(format!("cannot be told from {}", said.class.join(", ")));
     }
     let size = size(search, said.effect, fitted);
     let relevant = if said.nats > CLEAR { CLEARLY } else { RELEVANT };
     if size < relevant {
-        return Some(format!("is less than {} % of the torque", 100.0 * relevant));
+        return no(format!("is less than {} % of the torque", 100.0 * relevant));
     }
     if id == "ripple" && fitted.iter().all(|of| of.parameters[0] < noise(search, of.joint)) {
-        return Some("is below the noise, as any motor's".to_owned());
+        return no("is below the noise, as any motor's".to_owned());
     }
     if said.nats < least {
-        return Some(format!("brings {:.1} nats only", said.nats));
+        return no(format!("brings {:.1} nats only", said.nats));
     }
     if fitted.iter().all(|of| of.significance < SIGNIFICANT) {
-        return Some("is not significant".to_owned());
+        return no("is not significant".to_owned());
     }
     for of in fitted {
         for (parameter, (value, sd)) in
@@ -358,7 +383,7 @@ fn refused(
         {
             let [low, high] = parameter.bounds;
             if *value < low - SIGNIFICANT * sd || *value > high + SIGNIFICANT * sd {
-                return Some(format!("{} = {value:.4} cannot be", parameter.name));
+                return open(format!("{} = {value:.4} cannot be", parameter.name));
             }
         }
     }
@@ -366,7 +391,7 @@ fn refused(
     if ["cable", "gravity_spring"].contains(&id)
         && fitted.iter().any(|of| of.parameters[0].abs() < SIGNIFICANT * of.deviations[0])
     {
-        return Some("is no more than an offset".to_owned());
+        return open("is no more than an offset".to_owned());
     }
     let of_parameters: &[&str] = match id {
         "friction_level" => &["coulomb", "viscous"],
@@ -375,7 +400,7 @@ fn refused(
         _ => return None,
     };
     if search.trust == Trust::Unknown {
-        return Some("nothing is known of the parameters".to_owned());
+        return no("nothing is known of the parameters".to_owned());
     }
     let within = |of: &&&Fitted| {
         let Some(joint) = of.joint else { return false };
@@ -390,7 +415,7 @@ fn refused(
         })
     };
     if !of_parameters.is_empty() && fitted.iter().filter(within).count() == fitted.len() {
-        return Some("within what the parameters are believed".to_owned());
+        return no("within what the parameters are believed".to_owned());
     }
     None
 }

@@ -130,7 +130,9 @@ pub struct Diagnosis {
 impl Diagnosis {
     /// What the power says is a part of it.
     pub fn add_power(&mut self, found: &PowerFound) {
-        if let Some(of) = &found.effect {
+        // Torques that are wrong make wrong powers.
+        let trusted = matches!(self.verdict, Verdict::NoGap | Verdict::ParametersOnly);
+        if let Some(of) = found.effect.as_ref().filter(|_| trusted) {
             self.effects.push(Said {
                 effect: of.effect,
                 joints: of.joint.into_iter().collect(),
@@ -142,7 +144,7 @@ impl Diagnosis {
             });
         }
         self.channels.push(("power", "W", found.gap));
-        self.add(found.effect.is_some(), found.is_unknown);
+        self.add(found.effect.is_some() && trusted, found.is_unknown && trusted);
     }
 
     /// What runs of the program say is a part of it.

@@ -116,6 +116,6 @@ impl Search<'_, '_> {
         };
         self.table.replace(piece, &made, self.records);
         let columns: Vec<usize> = self.table.pieces[piece].columns.clone().collect();
-        self.table.through(&self.channels, &columns);
+        self.table.through(self.records, &self.channels, &columns);
     }
 }

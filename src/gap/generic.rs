@@ -26,7 +26,7 @@ struct Extent {
     range: f64,
 }
 
-const KINDS: [Kind; 7] = [
+const KINDS: [Kind; 9] = [
     Kind {
         id: "speed",
         bumps: 13,
@@ -64,7 +64,22 @@ const KINDS: [Kind; 7] = [
         of: |m, _, i, _| [2.0 * i as f64 / m.len().max(1) as f64 - 1.0, 1.0],
         dense: false,
     },
+    Kind {
+        id: "drift_with_position",
+        bumps: 8,
+        of: |m, j, i, e| [(m.q[j][i] - e.middle) / e.range, 1.0],
+        dense: false,
+    },
+    Kind {
+        id: "drift_with_load",
+        bumps: 6,
+        of: |m, j, i, e| [m.gear[j][i] / e.gear, 1.0],
+        dense: false,
+    },
 ];
+
+/// Functions that change from repetition to repetition.
+pub(super) const OF_DRIFT: [&str; 2] = ["drift_with_position", "drift_with_load"];
 
 /// One piece for each thing that torques of a joint may depend on.
 #[must_use]
@@ -114,7 +129,8 @@ fn column(
     let series = records
         .iter()
         .map(|record| {
-            if record.kind == RecordKind::Drift {
+            let of_drift = OF_DRIFT.contains(&kind.id);
+            if of_drift != (record.kind == RecordKind::Drift) {
                 return Vec::new();
             }
             let motion = &record.motion;

@@ -1,6 +1,6 @@
 //! The model with what was found of it.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 
 use crate::dynamics::{JOINT, RIGID, link_parameters};
 use crate::effects::{Effect, Of, applied};
@@ -10,8 +10,8 @@ use super::polish::Fitted;
 
 /// Effects of the log, which robot files keep as numbers of their own.
 const OF_LOG: [&str; 4] = ["apparent_torque", "encoder_offset", "torque_offset", "torque_constant"];
-/// Halvings of a change that leaves a body impossible.
-const HALVINGS: usize = 30;
+/// Least spread of a body's mass along an axis, of the largest.
+const LEAST_SPREAD: f64 = 1e-4;
 
 /// A model as it is written, and as it predicts.
 #[derive(Clone, Debug)]
@@ -71,16 +71,9 @@ fn refit(model: &mut Model, change: &DVector<f64>) {
         if more.iter().all(|x| *x == 0.0) {
             continue;
         }
-        let mut share = 1.0;
-        for _ in 0..HALVINGS {
-            let after: Vec<f64> =
-                before.iter().zip(more.iter()).map(|(a, b)| a + share * b).collect();
-            let next = body(&after);
-            if next.mass > 0.0 && next.is_consistent() {
-                *link = next;
-                break;
-            }
-            share *= 0.5;
+        let after: Vec<f64> = before.iter().zip(more.iter()).map(|(a, b)| a + b).collect();
+        if after[0] > 0.0 {
+            *link = body(&after);
         }
     }
     for joint in 0..n {
@@ -103,7 +96,19 @@ fn body(parameters: &[f64]) -> Link {
     let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|k| parameters[4 + k]);
     let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let steiner = (Matrix3::identity() * com.norm_squared() - com * com.transpose()) * m;
-    Link { mass: m, com, inertia: about - steiner }
+    let link = Link { mass: m, com, inertia: about - steiner };
+    if link.is_consistent() {
+        return link;
+    }
+    // The nearest body: its mass is spread along each axis, by no less than nothing.
+    let spread = Matrix3::identity() * (0.5 * link.inertia.trace()) - link.inertia;
+    let mut eigen = SymmetricEigen::new(spread);
+    let least = LEAST_SPREAD * eigen.eigenvalues.amax();
+    for value in eigen.eigenvalues.iter_mut() {
+        *value = value.max(least);
+    }
+    let spread = eigen.recompose();
+    Link { inertia: Matrix3::identity() * spread.trace() - spread, ..link }
 }
 
 fn add(model: &mut Model, fitted: &Fitted) {

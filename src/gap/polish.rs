@@ -64,7 +64,7 @@ impl Search<'_, '_> {
                     self.table.replace(*number, &piece, self.records);
                 }
             }
-            self.table.through(&self.channels, &columns);
+            self.table.through(self.records, &self.channels, &columns);
             let evidence = self.table.evidence_of(self.error, &columns);
             let all: Vec<usize> = (0..columns.len()).collect();
             let estimate = evidence.estimate(&all)?;

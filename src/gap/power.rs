@@ -12,7 +12,7 @@ use crate::robot::Model;
 use super::diagnosis::Estimated;
 
 /// What an effect has to bring \[nats\].
-const LEAST_NATS: f64 = 12.0;
+const LEAST_NATS: f64 = 25.0;
 /// Odds below which two explanations cannot be told apart: 1 to 100.
 const CLASS: f64 = 4.6;
 /// Share of the difference that an effect has to explain.

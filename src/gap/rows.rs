@@ -17,12 +17,9 @@ pub(super) struct Rows {
     kind: RecordKind,
     /// Difference, then the columns that reach the joint, as they are logged.
     values: DMatrix<f64>,
-    /// The same before the channel, and the model's torque and the measured one.
-    plain: DMatrix<f64>,
-    model: Vec<f64>,
+    /// Of each column, of each record of the kind, its series before the channel.
+    plain: Vec<Vec<Option<Vec<f64>>>>,
     measured: Vec<f64>,
-    /// Of each row \[Hz\]; 0 of a mean. Rows of one frequency are real and imaginary part.
-    frequency: Vec<f64>,
     /// Numbers of the columns: 0 is the difference, then parameters, then what may be found.
     reached: Vec<usize>,
     noise: Vec<f64>,
@@ -32,15 +29,15 @@ pub(super) struct Rows {
 impl Rows {
     /// Of all records of a kind.
     pub(super) fn new(
-        records: &[Record<'_>],
+        all: &[Record<'_>],
         nuisances: &[Nuisance],
         columns: &[&Column],
         joint: usize,
         kind: RecordKind,
     ) -> Rows {
         let numbers: Vec<usize> =
-            (0..records.len()).filter(|number| records[*number].kind == kind).collect();
-        let records: Vec<&Record<'_>> = numbers.iter().map(|number| &records[*number]).collect();
+            (0..all.len()).filter(|number| all[*number].kind == kind).collect();
+        let records: Vec<&Record<'_>> = numbers.iter().map(|number| &all[*number]).collect();
         let parameters = nuisances.first().map_or(0, |of| of.series.len());
         let of_parameter = |at: usize, k: usize| find(&nuisances[numbers[at]].series[k], joint);
         let of_column = |at: usize, k: usize| find(&columns[k].series[numbers[at]], joint);
@@ -54,42 +51,30 @@ impl Rows {
             there.then_some(1 + parameters + k)
         }));
         let height = records.iter().map(|record| record.spectrum.rows()).sum();
-        let mut values = DMatrix::zeros(height, reached.len());
-        let (mut noise, mut power, mut frequency) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut model, mut measured) = (Vec::new(), Vec::new());
-        let mut first = 0;
-        for (number, record) in records.iter().enumerate() {
-            let rows = record.spectrum.rows();
+        let (mut noise, mut power, mut measured) = (Vec::new(), Vec::new(), Vec::new());
+        for record in &records {
             measured.extend(record.rows_of(joint, &record.measured[joint]));
-            match record.kind {
-                RecordKind::Mean => {
-                    model.extend(record.rows_of(joint, &record.motion.torque[joint]));
-                }
-                RecordKind::Drift => model.extend(vec![0.0; rows]),
-            }
-            for (to, k) in reached.iter().enumerate().skip(1) {
-                let series = if *k <= parameters {
-                    of_parameter(number, k - 1)
-                } else {
-                    of_column(number, k - 1 - parameters)
-                };
-                if let Some(series) = series {
-                    let spectrum = record.rows_of(joint, series);
-                    values.view_mut((first, to), (rows, 1)).copy_from_slice(&spectrum);
-                }
-            }
-            for row in 0..rows {
+            for row in 0..record.spectrum.rows() {
                 let bin = Spectrum::bin(row);
-                frequency.push(bin as f64 / (record.motion.step() * record.motion.len() as f64));
                 noise.push(record.noise[joint][bin]);
                 power.push(record.power[joint][bin]);
             }
-            first += rows;
         }
-        let plain = values.clone();
-        let mut rows =
-            Rows { joint, kind, values, plain, model, measured, frequency, reached, noise, power };
-        rows.through(&[], |_| true);
+        let series = |number: usize, k: usize| -> Option<Vec<f64>> {
+            match (k, kind) {
+                (0, RecordKind::Mean) => Some(records[number].motion.torque[joint].clone()),
+                (0, RecordKind::Drift) => None,
+                (k, _) if k <= parameters => of_parameter(number, k - 1).cloned(),
+                (k, _) => of_column(number, k - 1 - parameters).cloned(),
+            }
+        };
+        let plain = reached
+            .iter()
+            .map(|k| (0..records.len()).map(|number| series(number, *k)).collect())
+            .collect();
+        let values = DMatrix::zeros(height, reached.len());
+        let mut rows = Rows { joint, kind, values, plain, measured, reached, noise, power };
+        rows.through(all, &[], |_| true);
         rows
     }
 
@@ -100,15 +85,10 @@ impl Rows {
     /// Another column in the place of the one with the number.
     pub(super) fn replace(&mut self, number: usize, column: &Column, records: &[Record<'_>]) {
         let Ok(place) = self.reached.binary_search(&number) else { return };
-        let mut first = 0;
         let of_kind = |(record, _): &(&Record<'_>, _)| record.kind == self.kind;
-        for (record, series) in records.iter().zip(&column.series).filter(of_kind) {
-            let count = record.spectrum.rows();
-            if let Some(series) = find(series, self.joint) {
-                let spectrum = record.rows_of(self.joint, series);
-                self.plain.view_mut((first, place), (count, 1)).copy_from_slice(&spectrum);
-            }
-            first += count;
+        let of = records.iter().zip(&column.series).filter(of_kind);
+        for ((_, series), plain) in of.zip(&mut self.plain[place]) {
+            *plain = find(series, self.joint).cloned();
         }
     }
 
@@ -125,38 +105,33 @@ impl Rows {
         }
     }
 
-    pub(super) fn through(&mut self, channels: &[Channel], is_used: impl Fn(usize) -> bool) {
+    /// The columns that are used, as they are behind the joint's channel: what is logged at an
+    /// instant is later than what was, so windows come last.
+    pub(super) fn through(
+        &mut self,
+        records: &[Record<'_>],
+        channels: &[Channel],
+        is_used: impl Fn(usize) -> bool,
+    ) {
         let channel = channels.get(self.joint).copied().unwrap_or_default();
-        let still = channel == Channel::default();
-        let responses: Vec<[f64; 2]> =
-            self.frequency.iter().map(|frequency| channel.response(*frequency)).collect();
-        let turned = |from: &[f64], to: &mut [f64]| {
-            to.copy_from_slice(from);
-            let mut row = 0;
-            while !still && row < from.len() {
-                // A mean has no phase.
-                if self.frequency[row] == 0.0 {
-                    row += 1;
-                    continue;
-                }
-                let [re, im] = responses[row];
-                let [a, b] = [from[row], from[row + 1]];
-                to[row] = re * a - im * b;
-                to[row + 1] = re * b + im * a;
-                row += 2;
+        for (k, series) in self.plain.iter().enumerate() {
+            if !is_used(self.reached[k]) {
+                continue;
             }
-        };
-        let height = self.frequency.len();
-        let mut model = vec![0.0; height];
-        turned(&self.model, &mut model);
-        let values = self.values.as_mut_slice();
-        for (row, model) in model.iter().enumerate() {
-            values[row] = self.measured[row] - model;
+            let mut first = 0;
+            let of_kind = records.iter().filter(|record| record.kind == self.kind);
+            for (record, series) in of_kind.zip(series) {
+                let rows = record.spectrum.rows();
+                if let Some(series) = series {
+                    let late = channel.behind(&record.motion, series);
+                    let spectrum = record.rows_of(self.joint, &late);
+                    self.values.view_mut((first, k), (rows, 1)).copy_from_slice(&spectrum);
+                }
+                first += rows;
+            }
         }
-        let plain = self.plain.as_slice();
-        for k in (1..self.reached.len()).filter(|k| is_used(self.reached[*k])) {
-            let at = k * height..(k + 1) * height;
-            turned(&plain[at.clone()], &mut values[at]);
+        for (row, measured) in self.measured.iter().enumerate() {
+            self.values[(row, 0)] = measured - self.values[(row, 0)];
         }
     }
 

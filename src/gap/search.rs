@@ -13,6 +13,14 @@ use super::table::Table;
 /// What naming an effect costs, and each joint of it.
 const FAMILY: f64 = 3.0;
 const JOINT: f64 = 1.2;
+/// Effects, and what is left of them without what makes them special.
+const PLAINER: [(&str, &str); 5] = [
+    ("cable", "torque_offset"),
+    ("gravity_spring", "torque_offset"),
+    ("nonlinear_viscous", "friction_level"),
+    ("stribeck", "friction_level"),
+    ("gear_efficiency", "load_friction"),
+];
 /// What another effect has to bring.
 const WORTH: f64 = 3.0;
 /// Effects at most.
@@ -93,7 +101,7 @@ impl<'a, 'm> Search<'a, 'm> {
     /// Puts all that is computed behind channels.
     pub(super) fn set_channels(&mut self, channels: &[Channel]) {
         self.channels = channels.to_vec();
-        self.table.through_all(channels);
+        self.table.through_all(self.records, channels);
         self.evidence = self.table.evidence(self.error);
     }
 
@@ -214,6 +222,28 @@ impl<'a, 'm> Search<'a, 'm> {
         let mut set = chosen.to_vec();
         set.push(Chosen { family, pieces });
         best.map(|score| Found { chosen: set, score })
+    }
+
+    /// Puts plainer effects in the place of those that explain hardly more.
+    pub fn simplify(&mut self, found: &mut Found, hardly: f64) {
+        for place in 0..found.chosen.len() {
+            let id = self.families[found.chosen[place].family].owner.id();
+            let Some((_, plainer)) = PLAINER.iter().find(|(of, _)| *of == id) else { continue };
+            let family = self.families.iter().position(|family| family.owner.id() == *plainer);
+            let taken = found.chosen.iter().any(|of| Some(of.family) == family);
+            let Some(family) = family.filter(|_| !taken) else { continue };
+            let mut rest = found.chosen.clone();
+            rest.remove(place);
+            let given = self.given(&rest);
+            if let Some(other) = self.with(&given, &rest, family)
+                && other.score > found.score - hardly
+            {
+                *found = other;
+                self.refine(found);
+                // The order has changed.
+                return;
+            }
+        }
     }
 
     /// Families that later ones made needless are taken out.

@@ -143,16 +143,21 @@ impl Table {
     }
 
     /// All that is computed goes through the channel of its joint before it is compared.
-    pub(super) fn through_all(&mut self, channels: &[Channel]) {
-        self.joints.par_iter_mut().for_each(|rows| rows.through(channels, |_| true));
+    pub(super) fn through_all(&mut self, records: &[Record<'_>], channels: &[Channel]) {
+        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, |_| true));
     }
 
     /// The same of the model, its parameters and some columns.
-    pub(super) fn through(&mut self, channels: &[Channel], columns: &[usize]) {
+    pub(super) fn through(
+        &mut self,
+        records: &[Record<'_>],
+        channels: &[Channel],
+        columns: &[usize],
+    ) {
         let first = 1 + self.parameters.len();
         let is_used =
             |number: usize| number < first || columns.binary_search(&(number - first)).is_ok();
-        self.joints.par_iter_mut().for_each(|rows| rows.through(channels, is_used));
+        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, is_used));
     }
 
     /// How well everything explains the difference if the model's torques are known to the
@@ -164,13 +169,19 @@ impl Table {
     }
 
     /// How probable the measurement of one joint is, without any column, behind channels.
-    pub(super) fn of_joint(&mut self, joint: usize, channels: &[Channel], error: f64) -> Evidence {
+    pub(super) fn of_joint(
+        &mut self,
+        records: &[Record<'_>],
+        joint: usize,
+        channels: &[Channel],
+        error: f64,
+    ) -> Evidence {
         let parameters = self.parameters.len();
         let place = |number: usize| (number <= parameters).then_some(number);
         let mut gram = DMatrix::zeros(1 + parameters, 1 + parameters);
         let mut log_weights = 0.0;
         for rows in self.joints.iter_mut().filter(|rows| rows.is_mean_of(joint)) {
-            rows.through(channels, |number| number <= parameters);
+            rows.through(records, channels, |number| number <= parameters);
             let (part, reached, log_weight) = rows.gram(error, place);
             add(&mut gram, &part, &reached);
             log_weights += log_weight;

@@ -46,13 +46,13 @@ fn offsets_are_found_with_their_size() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
     let offset = effect("torque_offset").unwrap();
-    let size = |motion: &Motion<'_>| vec![0.05 * motion.scale(4).torque[1]];
+    let expected = 0.6;
+    let size = |_: &Motion<'_>| vec![expected];
     let robot = Robot { model: &truth, effect: Some((offset, 4, &size)), noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
     assert_eq!(named(&found), [("torque_offset", vec![5])]);
     let samples = robot.samples(1);
     let record = Record::all(&nominal, &samples);
-    let expected = size(&record[0].motion)[0];
     let of = &found.effects[0].parameters[0];
     // What the nominal model has as its own offset is believed to this share of the torque.
     let believed = 0.002 * record[0].motion.scale(4).torque[1];
