@@ -30,6 +30,8 @@ const SIGNIFICANT: f64 = 3.0;
 const BEYOND: f64 = 3.0;
 /// Share of the torques below which a model without a gap is right.
 const RIGHT: f64 = 0.02;
+/// Changes of parameters, which a model has whether they are asserted or not.
+const OF_PARAMETERS: [&str; 4] = ["link_parameters", "friction_level", "rotor_inertia", "payload"];
 /// What another sign has to bring.
 const FLIP: f64 = 50.0;
 /// What a function of time may still bring beside a gated effect, of what that does.
@@ -88,27 +90,30 @@ pub fn diagnose(
         found = search.run_from(found);
     }
     search.simplify(&mut found, CLASS);
-    let mut polished = search.polish(&found.chosen);
+    let polished = search.polish(&found.chosen);
     let mut judged = judged(&search, &found, polished.as_ref());
+    // What is not asserted is not in the model, so that its parameters are those without it.
+    let kept: Vec<Chosen> = found
+        .chosen
+        .iter()
+        .filter(|of| {
+            let id = search.families[of.family].owner.id();
+            OF_PARAMETERS.contains(&id) || judged.effects.iter().any(|said| said.effect.id == id)
+        })
+        .cloned()
+        .collect();
+    let mut polished = search.polish(&kept);
     if let Some(late) = search.late {
         judged.assert_late(&late, polished.as_mut());
     }
     for joint in flipped {
         judged.assert_flipped(joint, polished.as_mut());
     }
-    let improved = match (&polished, judged.effects.is_empty()) {
-        (Some(_), true) | (None, _) => refit.clone(),
-        (Some(of), false) => {
-            let asserted: Vec<Fitted> = of
-                .effects
-                .iter()
-                .filter(|fitted| {
-                    judged.effects.iter().any(|said| said.effect.id == fitted.effect.id)
-                })
-                .cloned()
-                .collect();
-            Improved::new(model, &search.table.mixing, &of.parameters, &asserted)
+    let improved = match &polished {
+        Some(of) if !of.effects.is_empty() => {
+            Improved::new(model, &search.table.mixing, &of.parameters, &of.effects)
         }
+        _ => refit.clone(),
     };
     let graded = shrink(held, [model, &refit.applied, &improved.applied]);
     let mut verdict = judged.verdict;
@@ -119,7 +124,7 @@ pub fn diagnose(
     }
     Diagnosis {
         verdict,
-        places: places(&train, model, &refit, &improved, judged.effects.is_empty()),
+        places: places(&train, model, &refit, &improved),
         effects: judged.effects,
         candidates: judged.candidates,
         anything: judged.anything,
@@ -494,20 +499,18 @@ fn places(
     model: &Model,
     refit: &Improved,
     improved: &Improved,
-    is_refit: bool,
 ) -> Vec<Place> {
     let n = model.dof;
     let mut shares = vec![0.0; n];
-    let bare = if is_refit {
-        model.clone()
+    // The same parameters without the effects, or, where there are none, the nominal ones.
+    let mut bare = improved.written.clone();
+    if bare == refit.written {
+        bare = model.clone();
     } else {
-        // The same parameters without the effects.
-        let mut bare = improved.written.clone();
         bare.effects.clone_from(&refit.written.effects);
         bare.sensors.clone_from(&refit.written.sensors);
         bare.laws.clone_from(&refit.written.laws);
-        bare
-    };
+    }
     let (mut change, mut size) = (vec![0.0; n], vec![0.0; n]);
     for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
         let (with, without) = (predicted(record, &improved.applied), predicted(record, &bare));

@@ -71,8 +71,6 @@ const OF_JOINT: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"
 /// which 1/e of it is left \[rad/s\].
 const STICTION: f64 = 0.012;
 const SLOW: f64 = 0.08;
-/// Ripple of the motor's turn that any robot may have, of the torque.
-const RIPPLE: f64 = 0.0015;
 /// Smooth torques that no model has: powers of position and of speed.
 const POWERS: [usize; 5] = [2, 3, 4, 5, 6];
 /// Of them, of the torque, where the model's error is no larger, and of this where it is.
@@ -200,11 +198,6 @@ fn without_model(record: &Record<'_>, of: &mut Nuisance) {
         };
         let series = senses.iter().zip(rates).map(slow).collect();
         push(of, "at low speed", joint, is_mean, series);
-        let rms = RIPPLE * scale.torque[0];
-        for wave in [f64::sin, f64::cos] {
-            let at = |q: &f64| rms * wave(scale.ratio * q);
-            push(of, "ripple", joint, is_mean, motion.q[joint].iter().map(at).collect());
-        }
         for (name, size, series) in
             [("dry", scale.coulomb, senses), ("viscous", scale.viscous, rates)]
         {
