@@ -100,7 +100,18 @@ pub fn diagnose(
             let id = search.families[of.family].owner.id();
             OF_PARAMETERS.contains(&id) || judged.effects.iter().any(|said| said.effect.id == id)
         })
-        .cloned()
+        .map(|of| {
+            let id = search.families[of.family].owner.id();
+            let said = judged.effects.iter().find(|said| said.effect.id == id);
+            let is_told = |piece: &usize| match (search.table.pieces[*piece].joint, said) {
+                (Some(joint), Some(said)) => said.joints.contains(&joint),
+                _ => true,
+            };
+            Chosen {
+                family: of.family,
+                pieces: of.pieces.iter().copied().filter(is_told).collect(),
+            }
+        })
         .collect();
     let mut polished = search.polish(&kept);
     if let Some(late) = search.late {
@@ -275,8 +286,12 @@ fn judged(search: &Search<'_, '_>, found: &Found, polished: Option<&Polished>) -
                 }
             }
             Owner::Effect(effect) => {
-                let fitted: Vec<&Fitted> =
+                let all_of: Vec<&Fitted> =
                     polished.effects.iter().filter(|of| of.effect.id == effect.id).collect();
+                // Joints of which nobody asks are not told beside those that matter.
+                let matter: Vec<&Fitted> =
+                    all_of.iter().copied().filter(|of| matters(search, of)).collect();
+                let fitted = if matter.is_empty() { all_of } else { matter };
                 let least = LEAST_NATS.max(OF_STRONGEST * strongest);
                 let (class, probability) = if drops[k] < least {
                     (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
@@ -423,6 +438,13 @@ fn refused(
         return no("within what the parameters are believed".to_owned());
     }
     None
+}
+
+/// Whether an effect at a joint is large enough to be told.
+fn matters(search: &Search<'_, '_>, of: &Fitted) -> bool {
+    let is_ripple = of.effect.id == "ripple";
+    size(search, of.effect, &[of]) >= CLEARLY
+        && !(is_ripple && of.parameters[0] < noise(search, of.joint))
 }
 
 /// Ripple of a joint that nobody asks for \[Nm\].
