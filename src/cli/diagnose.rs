@@ -11,14 +11,14 @@ use clap::{Args, ValueEnum};
 use serde_json::Value;
 
 use super::common::{self, Format};
-use super::logs::{Reader, Ready, read_all};
+use super::logs::{Read, Reader, Ready, read_all};
 use super::output;
 use crate::effects::{self, ALL, Effect};
 use crate::gap::{
     Diagnosis, Record, Settings, Trust, Verdict, diagnose, diagnose_power, diagnose_runs,
 };
 use crate::identify::Hints;
-use crate::log::ColumnMap;
+use crate::log::{Channel, ColumnMap};
 use crate::report::diagnose as report;
 use crate::robot::{Model, Use, nearest, ready, to_toml};
 
@@ -79,6 +79,9 @@ pub struct DiagnoseArgs {
     #[arg(long, short)]
     quiet: bool,
 }
+
+/// Cut-off frequency of the filter of runs of a program \[Hz\].
+const OF_RUNS: f64 = 10.0;
 
 /// How much parameters are believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -147,7 +150,13 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     let hints = Hints { period: args.period, cutoff: None };
     let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
     let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
-        read_all(paths, &map)?.into_iter().map(|read| reader.ready(read, hints)).collect()
+        let one = |read: Read| {
+            // Repetitions of a program are never alike to the millisecond.
+            let is_run = read.log.column(Channel::Command).is_some();
+            let cutoff = is_run.then_some(OF_RUNS);
+            reader.ready(read, Hints { cutoff, ..hints })
+        };
+        read_all(paths, &map)?.into_iter().map(one).collect()
     };
     let mut train = read(&args.log)?;
     let mut held = read(&args.heldout)?;
@@ -173,8 +182,7 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         &may,
     );
     basis.notes = reader.notes;
-    // Repetitions of a program are never alike to the millisecond, so that their mean torque is
-    // no torque: it only refits.
+    // Without a mean there is no noise to weigh effects by.
     let of_torque = if of_runs.is_some() {
         basis
             .notes
