@@ -6,13 +6,15 @@ use std::fs;
 use std::path::Path;
 
 /// Pages that people are sent to.
-const PAGES: [&str; 11] = [
+const PAGES: [&str; 13] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
     "docs/blind.md",
     "docs/controller.md",
+    "docs/effects.md",
     "docs/energy.md",
+    "docs/gap.md",
     "docs/identification.md",
     "docs/reasons.md",
     "docs/robots.md",

@@ -7,7 +7,7 @@ use std::fs;
 use insta::assert_snapshot;
 use joulepath::dynamics::{Data, Load, gravity};
 use joulepath::kinematics::limits_ok;
-use joulepath::robot::{Model, Provenance, RobotError, Sharing, find, from_toml, load};
+use joulepath::robot::{self, Model, Provenance, RobotError, Sharing, find, from_toml, load};
 
 const TWO_JOINTS: &str = r#"name = "two"
 [kinematics]
@@ -139,7 +139,7 @@ fn base_arm_loads_and_effects() {
                 [effects.stribeck]\njoint = 2\nstiction = 3\nvelocity = 0.05\n";
     let hung = from_toml("hung.toml", text).unwrap();
     assert!((hung.kinematics.up() + nalgebra::Vector3::z()).norm() < 1e-12);
-    let of_joint_2 = |value| vec![0.0, value, 0.0, 0.0, 0.0, 0.0];
+    let of_joint_2 = |value| robot::Given::Joints(vec![0.0, value, 0.0, 0.0, 0.0, 0.0]);
     let expected =
         [("stiction".to_owned(), of_joint_2(3.0)), ("velocity".to_owned(), of_joint_2(0.05))];
     assert_eq!(

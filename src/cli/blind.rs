@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use super::common::{self, Format};
-use super::output;
+use super::{diagnose, output};
 use crate::blind::{self, Asked, Case, Grades, KEY, SEALS, Sealed, Settings};
 
 /// The sealed examination of diagnose: generate cases, grade what was said of them.
@@ -183,7 +183,13 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
 
 /// What `diagnose` says of a case, in its JSON.
 fn diagnosed(case: &Path) -> anyhow::Result<Value> {
-    bail!("'{}' has no diagnosis.json; run diagnose first", case.display())
+    let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
+        .with_context(|| format!("'{}' has no case.json", case.display()))?;
+    let value = diagnose::of_case(case, &options).with_context(|| case.display().to_string())?;
+    // What was said once need not be computed again.
+    let text = format!("{value:#}\n");
+    output::write(&case.join("diagnosis.json"), text.as_bytes())?;
+    Ok(value)
 }
 
 fn read(path: &Path) -> anyhow::Result<String> {

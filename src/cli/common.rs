@@ -11,6 +11,7 @@ use super::backup::motion_configuration;
 use super::choice;
 use super::input::{self, Input};
 use crate::config::{self, Config};
+use crate::effects;
 use crate::kinematics::limits_ok;
 use crate::motion::{Options, Simulation};
 use crate::retrofit::Source;
@@ -139,7 +140,7 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     let name = robot_name(args, &config, &folder).or_else(|| of_task.map(str::to_owned));
     let name = name.with_context(which_robot)?;
     let of_backup = args.robot.is_none() && config.robot.is_none();
-    let model = robot::load(&name).map_err(|error| {
+    let model = effects::load(&name).map_err(|error| {
         if of_backup {
             anyhow::anyhow!("the robot of the backup is a {name}: {error}; name yours with --robot")
         } else {
@@ -233,7 +234,7 @@ fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
 /// None is named, or it can't be read.
 pub fn robot(args: &ProgramArgs) -> anyhow::Result<Model> {
     let (config, folder) = configuration(args)?;
-    Ok(robot::load(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
+    Ok(effects::load(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
 }
 
 fn robot_name(args: &ProgramArgs, config: &Config, folder: &Path) -> Option<String> {

@@ -18,13 +18,14 @@ use self::area::{keep_out, numbers, plane};
 use super::common::{self, Format};
 use super::{load, output};
 use crate::dynamics::{Data, Load, torque};
+use crate::effects;
 use crate::emit::{Excitation, LoggedTorques, Points, excitation};
 use crate::excite::{
     Blend, Checked, Design, Focus, Information, Plateaus, Series, State, blends, check, design,
     friction_plateaus, wrist_plateaus,
 };
 use crate::kinematics::{Body, Obstacle, Plane};
-use crate::robot::{self, Model};
+use crate::robot::Model;
 
 /// Interval of the rows of the table \[s\]: the grid on which limits are checked.
 const FINE: f64 = 0.001;
@@ -203,7 +204,7 @@ struct Motion {
 /// # Errors
 /// A robot without limits, options that make no sense, or output that can't be written.
 pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
-    let model = robot::load(&args.robot)?;
+    let model = effects::load(&args.robot)?;
     if model.dof != 6 {
         bail!("{} has {} joints; RAPID is written for robots with 6", model.name, model.dof);
     }

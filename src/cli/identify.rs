@@ -1,25 +1,24 @@
 //! `joulepath identify`: a dynamic model from measured logs.
 
-use std::fs::File;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use sha2::{Digest, Sha256};
 
+use super::logs::{Reader, Ready, read_all};
 use super::{common, output};
 use crate::cli::common::Format;
+use crate::effects;
 use crate::identify::{
-    Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, check_angles,
-    check_torques, cleaned, identify, prepare, synchronised, torques, weight_factor,
+    Free, Grade, Hints, Identified, Samples, Settings, Source, Weighting, by_descent, identify,
 };
-use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
+use crate::log::ColumnMap;
 use crate::report::html::{Traces, identify_report};
 use crate::report::identify as report;
-use crate::robot::{self, Model};
+use crate::robot::Model;
 
 /// A dynamic model with standard errors from measured logs.
 #[derive(Debug, Args)]
@@ -102,25 +101,6 @@ enum Method {
     Ordinary,
 }
 
-/// A log that was read.
-struct Read {
-    shown: String,
-    hash: String,
-    log: Log,
-    /// How well its halves were brought together, where it has two.
-    clocks: Option<String>,
-}
-
-/// A log ready to be used.
-struct Ready {
-    record: (String, String, usize, usize),
-    samples: Samples,
-    origin: String,
-    /// How many times the weight of the robot file's masses the torques carry, where that is
-    /// strange.
-    weight: Option<f64>,
-}
-
 /// A day that the calendar has.
 fn date(text: &str) -> Result<String, String> {
     let wrong = || "give a day as 2026-11-30".to_owned();
@@ -147,7 +127,7 @@ fn date(text: &str) -> Result<String, String> {
 /// # Errors
 /// A log or a robot that can't be used, or output that can't be written.
 pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
-    let model = robot::load(&args.robot)?;
+    let model = effects::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {
         bail!(
@@ -157,9 +137,10 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     }
     let hints = Hints { period: args.period, cutoff: None };
     let mut basis = report::Basis { date: args.date.clone(), ..report::Basis::default() };
+    let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
     let mut training = Vec::new();
     for read in read_all(&args.log, &map, &model)? {
-        training.push(ready(args, &model, read, hints, &mut basis)?);
+        training.push(reader.ready(read, hints)?);
     }
     // One filter for all: what is compared has to have the same band.
     let cutoff = training.iter().find_map(|ready| match ready.samples.source {
@@ -169,10 +150,11 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let mut validation = Vec::new();
     let held_out = Hints { period: args.period, cutoff };
     for read in read_all(&args.validate, &map, &model)? {
-        let ready = ready(args, &model, read, held_out, &mut basis)?;
+        let ready = reader.ready(read, held_out)?;
         basis.validation.push(ready.record);
         validation.push(ready.samples);
     }
+    basis.notes = reader.notes;
     for text in repeated(training.iter().map(|ready| &ready.record), &basis.validation) {
         tell(args, &mut basis, text);
     }
@@ -345,115 +327,6 @@ fn doubts(found: &Identified) -> Vec<String> {
     texts
 }
 
-/// Reads logs; halves of one run become one.
-fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Result<Vec<Read>> {
-    let mut logs: Vec<Read> = Vec::new();
-    for path in paths {
-        let read = read(path, map)?;
-        let half = logs
-            .iter_mut()
-            .find(|other| are_halves(&other.log, &read.log) || are_halves(&read.log, &other.log));
-        let Some(other) = half else {
-            logs.push(read);
-            continue;
-        };
-        let (positions, currents) = if are_halves(&other.log, &read.log) {
-            (&other.log, &read.log)
-        } else {
-            (&read.log, &other.log)
-        };
-        let both = aligned(positions, currents)
-            .with_context(|| format!("{} and {}", other.shown, read.shown))?;
-        let (both, said) = synchronised(model, both);
-        (other.log, other.clocks) = (both, Some(said));
-        other.shown = format!("{} + {}", other.shown, read.shown);
-        other.hash = format!("{} + {}", other.hash, read.hash);
-    }
-    Ok(logs)
-}
-
-fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
-    let shown = path.display().to_string();
-    let file = File::open(path)
-        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
-    let mut stream = Hashed { stream: file, hash: Sha256::new() };
-    let log = log::read_from(&mut stream, map).with_context(|| shown.clone())?;
-    let hash = format!("{:x}", stream.hash.finalize());
-    Ok(Read { shown, hash, log, clocks: None })
-}
-
-/// A stream whose bytes are hashed as they are read.
-struct Hashed {
-    stream: File,
-    hash: Sha256,
-}
-
-impl io::Read for Hashed {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.stream.read(buffer)?;
-        self.hash.update(&buffer[..count]);
-        Ok(count)
-    }
-}
-
-/// Checks a log and makes instants of it.
-fn ready(
-    args: &IdentifyArgs,
-    model: &Model,
-    read: Read,
-    hints: Hints,
-    basis: &mut report::Basis,
-) -> anyhow::Result<Ready> {
-    let Read { shown, hash, log, clocks } = read;
-    if log.joints() != model.dof {
-        bail!(
-            "{shown}: positions of {} joints are logged, {} has {}; give a log with q1 to q{}, or \
-             another --robot",
-            log.joints(),
-            model.name,
-            model.dof,
-            model.dof
-        );
-    }
-    let (log, impossible) = cleaned(&log);
-    for text in summed_up(log.rejected.iter().chain(&impossible)) {
-        common::note(args.quiet, &format!("{shown}: {text}"));
-    }
-    let left_out = log.rejected.len() + impossible.len();
-    let usable = log.time().len();
-    if usable < MIN_ROWS || left_out > usable {
-        let first = log.rejected.iter().chain(&impossible).next();
-        let why = first.map_or_else(String::new, |first| {
-            format!("; the first is row {}: {}", first.row, first.reason)
-        });
-        bail!("{shown}: {left_out} rows can't be used and {usable} can{why}");
-    }
-    check_angles(model, &log).with_context(|| shown.clone())?;
-    let torque = torques(model, &log).with_context(|| shown.clone())?;
-    check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
-    let weight = weight_factor(model, &log, &torque.tau);
-    let strange = weight.map(|(factor, joint)| of_weight(factor, joint));
-    for text in clocks.into_iter().chain(strange) {
-        tell(args, basis, format!("{shown}: {text}"));
-    }
-    for text in torque.notes {
-        tell(args, basis, format!("{shown}: {text}"));
-    }
-    if let Some(text) = unused(&log) {
-        tell(args, basis, format!("{shown}: {text}"));
-    }
-    let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
-    if let Some(text) = unfitting(args.period, &samples.source) {
-        tell(args, basis, format!("{shown}: {text}"));
-    }
-    Ok(Ready {
-        record: (shown, hash, usable, left_out),
-        samples,
-        origin: torque.origin,
-        weight: weight.map(|(factor, _)| factor),
-    })
-}
-
 /// Logs that were given twice.
 fn repeated<'a>(
     training: impl Iterator<Item = &'a (String, String, usize, usize)>,
@@ -477,97 +350,8 @@ fn repeated<'a>(
     texts
 }
 
-/// Torques that do not carry the masses of the robot file.
-fn of_weight(factor: f64, joint: usize) -> String {
-    let times = |times: f64| if times < 10.0 { times } else { times.round() };
-    if factor < 1.0 {
-        format!(
-            "the torques carry {:.0} times less than the masses of the robot file weigh (joint {}): \
-             are they those of the motors, before the gear? Then multiply each tau by its ratio",
-            times(1.0 / factor),
-            joint + 1
-        )
-    } else {
-        format!(
-            "the torques carry {:.0} times what the masses of the robot file weigh (joint {}): are \
-             they in Nm, and is it this robot?",
-            times(factor),
-            joint + 1
-        )
-    }
-}
-
-/// A period that was given and is not that of the motion.
-fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
-    let given = period?;
-    match source {
-        Source::Periodic { period, .. } if (period / given - 1.0).abs() <= OTHER_PERIOD => None,
-        Source::Periodic { period, .. } => {
-            Some(format!("--period {given}: the motion repeats every {period:.4} s; that was used"))
-        }
-        Source::Logged => {
-            Some(format!("--period {given} is not used: rates and accelerations are logged"))
-        }
-        Source::Filtered { .. } => Some(format!(
-            "--period {given}: the motion does not repeat so; it is differentiated by a filter"
-        )),
-    }
-}
-
 /// Repetitions that a log can hold \[s\].
 const PERIODS: RangeInclusive<f64> = 1e-3..=1e5;
-
-/// Share by which a period may differ from the one that was given.
-const OTHER_PERIOD: f64 = 0.01;
-
-/// Rows of one kind that are told one by one.
-const TOLD: usize = 3;
-
-/// What was left out; of many rows for one reason the first ones and the number of the others.
-fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
-    // Numbers differ from row to row, the words tell the kind.
-    let kind = |reason: &str| -> String {
-        let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
-        reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
-    };
-    let mut kinds: Vec<(String, usize)> = Vec::new();
-    let mut texts = Vec::new();
-    for row in rejected {
-        let text = format!("row {} left out: {}", row.row, row.reason);
-        let kind = kind(&row.reason);
-        if let Some((_, count)) = kinds.iter_mut().find(|(known, _)| *known == kind) {
-            *count += 1;
-            if *count <= TOLD {
-                texts.push(text);
-            }
-        } else {
-            kinds.push((kind, 1));
-            texts.push(text);
-        }
-    }
-    for (kind, count) in kinds.into_iter().filter(|(_, count)| *count > TOLD) {
-        texts.push(format!("{} more rows left out for the same reason ({kind})", count - TOLD));
-    }
-    texts
-}
-
-/// Rates and accelerations that are logged, but not of all joints.
-fn unused(log: &Log) -> Option<String> {
-    let part = |name: &str, channel: fn(usize) -> Channel| {
-        let has = |joint: &usize| log.column(channel(*joint)).is_some();
-        let (with, without): (Vec<usize>, Vec<usize>) = (0..log.joints()).partition(has);
-        let list = |joints: &[usize]| -> String {
-            joints.iter().map(|j| format!("{name}{}", j + 1)).collect::<Vec<_>>().join(", ")
-        };
-        let told = !with.is_empty() && !without.is_empty();
-        told.then(|| format!("no column {}: {} not used", list(&without), list(&with)))
-    };
-    let parts: Vec<String> = [part("qd", Channel::Velocity), part("qdd", Channel::Acceleration)]
-        .into_iter()
-        .flatten()
-        .collect();
-    (!parts.is_empty()).then(|| format!("{}; differentiated instead", parts.join("; ")))
-}
 
 /// The instants of several logs as one.
 fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
@@ -606,7 +390,7 @@ fn write(
     if let Some(path) = &args.out {
         let text = report::toml(found, basis);
         // What is written has to be a robot file.
-        robot::from_toml(&path.display().to_string(), &text)
+        effects::from_toml(&path.display().to_string(), &text)
             .context("the identified numbers are no robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;
     }

@@ -4,12 +4,14 @@ pub mod backup;
 pub mod blind;
 pub mod choice;
 pub mod common;
+pub mod diagnose;
 pub mod excite;
 pub mod generate;
 pub mod identify;
 pub mod input;
 pub mod listing;
 pub mod load;
+pub mod logs;
 pub mod optimize;
 pub mod output;
 pub mod parse;
@@ -42,6 +44,7 @@ enum Command {
     Excite(Box<excite::ExciteArgs>),
     Identify(Box<identify::IdentifyArgs>),
     Predict(predict::PredictArgs),
+    Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
 }
@@ -58,6 +61,7 @@ pub fn main() -> ExitCode {
         Command::Excite(args) => excite::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Predict(args) => predict::run(&args),
+        Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),
     };

@@ -14,9 +14,10 @@ use clap::Args;
 use self::doubts::doubts;
 use super::{common, load, output};
 use crate::dynamics::{Data, Load, apparent_torques};
+use crate::effects;
 use crate::energy::power::{power_at, supply_w};
 use crate::log::{self, ColumnMap, MIN_ROWS, Motion};
-use crate::robot::{self, Model, Use, ready};
+use crate::robot::{Model, Use, ready};
 use crate::text::{FileId, SourceFile};
 
 /// Marks of texts as spreadsheets export them.
@@ -62,7 +63,7 @@ pub struct PredictArgs {
 /// # Errors
 /// A model without dynamics, a log that can't be used, or output that can't be written.
 pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
-    let model = robot::load(&args.robot)?;
+    let model = effects::load(&args.robot)?;
     ready(&model, Use::Predict)?;
     let load = load::of_option(args.load.as_deref())?;
     let map = ColumnMap::parse(&args.map)?;
@@ -119,6 +120,23 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Torques with effects that the model's numbers do not hold; `None` where it has none.
+fn shown(model: &Model, load: &Load, motion: &Motion) -> Option<Vec<Vec<f64>>> {
+    if model.laws.is_empty() && model.effects.is_empty() {
+        return None;
+    }
+    let series = [motion.q.clone(), motion.qd.clone(), motion.qdd.clone()];
+    // Laws count the time from the beginning of the log.
+    let start = motion.time.first().copied().unwrap_or(0.0);
+    let time = motion.time.iter().map(|t| t - start).collect();
+    let moved = effects::Motion::new(model, time, series, &[], false);
+    let mut shown = moved.torques_of(model, load);
+    for (to, added) in shown.iter_mut().zip(effects::of_the_whole_motion(&moved)) {
+        to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
+    }
+    Some(shown)
+}
+
 /// `t,tau1..taun,p_mech,p_elec`, numbers in shortest round-trip form. Torques are as a log
 /// would have them, powers those of the robot. With the rows of which they are not finite.
 fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>) {
@@ -131,6 +149,7 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>)
     let mut data = Data::new();
     let mut beyond = Vec::new();
     let sensors = &model.sensors;
+    let shown = shown(model, load, motion);
     for (row, t) in motion.time.iter().enumerate() {
         let at = |columns: &[Vec<f64>]| columns.iter().map(|column| column[row]).collect();
         let [mut q, qd, qdd]: [Vec<f64>; 3] = [at(&motion.q), at(&motion.qd), at(&motion.qdd)];
@@ -147,6 +166,8 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>)
             .iter()
             .zip(logged)
             .map(|(tau, ((error, offset), apparent))| tau * (1.0 + error) + offset + apparent)
+            .enumerate()
+            .map(|(joint, tau)| shown.as_ref().map_or(tau, |shown| shown[joint][row]))
             .chain([power.mechanical_w(), supply])
             .collect();
         if !values.iter().all(|value| value.is_finite()) {

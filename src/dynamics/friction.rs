@@ -20,7 +20,7 @@ use super::motor_side::{joint_torques, motor_rates, motor_torques};
 /// sign(0) = 0.
 #[must_use]
 pub fn friction(model: &Model, qd: &[f64], load_torque: &[f64; MAX_DOF]) -> [f64; MAX_DOF] {
-    law(model, qd, load_torque, sign)
+    law(model, qd, load_torque, |_, velocity| sign(velocity))
 }
 
 /// The same, differentiable in the velocities: s = tanh(q̇ / `width`), with `width`
@@ -32,7 +32,24 @@ pub fn smooth_friction(
     load_torque: &[f64; MAX_DOF],
     width: f64,
 ) -> [f64; MAX_DOF] {
-    law(model, qd, load_torque, |velocity| (velocity / width).tanh())
+    law(model, qd, load_torque, |_, velocity| (velocity / width).tanh())
+}
+
+/// The same with given senses of the motors: 0 for one that counts as at rest.
+#[must_use]
+pub fn friction_of_senses(
+    model: &Model,
+    qd: &[f64],
+    load_torque: &[f64; MAX_DOF],
+    senses: &[f64; MAX_DOF],
+) -> [f64; MAX_DOF] {
+    law(model, qd, load_torque, |joint, _| senses[joint])
+}
+
+/// The sense of a velocity: 1, −1, or 0 at 0.
+#[must_use]
+pub fn sense(velocity: f64) -> f64 {
+    sign(velocity)
 }
 
 /// 1, −1, or 0 at 0.
@@ -44,7 +61,7 @@ fn law(
     model: &Model,
     qd: &[f64],
     load_torque: &[f64; MAX_DOF],
-    sign: impl Fn(f64) -> f64,
+    sign: impl Fn(usize, f64) -> f64,
 ) -> [f64; MAX_DOF] {
     let friction = &model.friction;
     let rates = motor_rates(model, qd);
@@ -52,7 +69,7 @@ fn law(
     let mut tau = [0.0; MAX_DOF];
     for joint in 0..model.dof {
         let velocity = rates[joint];
-        let s = sign(velocity);
+        let s = sign(joint, velocity);
         let mut dry = friction.coulomb[joint];
         if let Some(law) = &friction.stribeck {
             dry += law.stiction[joint] * (-(velocity / law.velocity[joint]).powi(2)).exp();

@@ -16,6 +16,7 @@ mod energy;
 mod forward;
 mod friction;
 mod joint_matrix;
+mod laws;
 mod load;
 mod motor_side;
 mod parameters;
@@ -32,13 +33,14 @@ pub use data::Data;
 pub use derivatives::{Derivatives, rnea_derivatives};
 pub use energy::{kinetic_energy, potential_energy};
 pub use forward::forward_dynamics;
-pub use friction::{friction, smooth_friction};
+pub use friction::{friction, friction_of_senses, sense, smooth_friction};
 pub use joint_matrix::JointMatrix;
+pub use laws::laws;
 pub use load::Load;
 pub use motor_side::{apparent_torques, motor_rates, motor_torques};
 pub use parameters::{JOINT, Parameters, RIGID, link_parameters, parameters};
 pub use regressor::{Regressor, regressor};
-pub use rnea::{gravity, rnea, rnea_each};
+pub use rnea::{gravity, rigid_bodies, rnea, rnea_each};
 pub use torque::{Torque, torque};
 
 /// Acceleration of free fall \[m/s²\].

@@ -32,7 +32,7 @@ pub fn rnea(
 }
 
 /// The same without the rotors: the torque through the gears.
-pub(super) fn rigid_bodies(
+pub fn rigid_bodies(
     model: &Model,
     data: &mut Data,
     load: &Load,

@@ -3,15 +3,17 @@
 use crate::robot::{MAX_DOF, Model};
 
 use super::data::Data;
-use super::friction::friction;
+use super::friction::{friction, sign};
+use super::laws::laws;
 use super::load::Load;
-use super::motor_side::rotor_torques;
+use super::motor_side::{motor_rates, rotor_torques};
 use super::rnea::rigid_bodies;
 
 /// Torques at the joints \[Nm\].
 #[derive(Clone, Copy, Debug)]
 pub struct Torque {
-    /// Of the rigid bodies and the rotors, as [`rnea`](super::rnea) gives it.
+    /// Of the rigid bodies and the rotors, as [`rnea`](super::rnea) gives it, and of what else
+    /// is between the links.
     pub rigid: [f64; MAX_DOF],
     /// Of friction, with exact signs.
     pub friction: [f64; MAX_DOF],
@@ -28,7 +30,15 @@ pub fn torque(
     qdd: &[f64],
 ) -> Torque {
     let mut rigid = rigid_bodies(model, data, load, q, qd, qdd);
-    let friction = friction(model, qd, &rigid);
+    let mut friction = friction(model, qd, &rigid);
+    if !model.laws.is_empty() {
+        let senses = motor_rates(model, qd).map(sign);
+        let [between, rubbing] = laws(model, f64::INFINITY, [q, qd], &rigid, &senses);
+        for joint in 0..model.dof {
+            rigid[joint] += between[joint];
+            friction[joint] += rubbing[joint];
+        }
+    }
     for (sum, rotor) in rigid.iter_mut().zip(rotor_torques(model, qdd)) {
         *sum += rotor;
     }

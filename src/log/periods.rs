@@ -25,7 +25,9 @@ const RESTING: f64 = 0.01;
 /// Shortest period, in samples.
 const SHORTEST: usize = 20;
 /// Harmonics of the series at most.
-const HARMONICS: usize = 80;
+const HARMONICS: usize = 240;
+/// Frequencies at which noise is looked at.
+const IN_TAIL: usize = 60;
 /// A harmonic counts where its power is this many times what noise would give it.
 const ABOVE_NOISE: f64 = 16.0;
 
@@ -222,9 +224,13 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
             .flat_map(|one| one.iter().zip(&mean).map(|(a, b)| (a - b).powi(2)))
             .sum::<f64>()
             / ((count - 1.0) * samples as f64);
-        let series = fourier(&mean, HARMONICS.min((samples - 1) / 4));
-        // Power of a coefficient of the mean that is noise alone.
-        let floor = 4.0 * noise / (count * samples as f64);
+        let series = fourier(&mean, 0..=HARMONICS.min((samples - 1) / 4));
+        // Power of a coefficient of the mean that is noise alone. Rounding is the same in each
+        // repetition: only frequencies without motion show it.
+        let tail: Vec<[f64; 2]> = fourier(&mean, tail(samples));
+        let rounding = tail.iter().map(|[a, b]| a * a + b * b).sum::<f64>();
+        let rounding = rounding / tail.len().max(1) as f64;
+        let floor = (4.0 * noise / (count * samples as f64)).max(rounding);
         let scale = series.iter().skip(1).map(|[a, b]| a * a + b * b).fold(0.0, f64::max);
         let counts = |[a, b]: &[f64; 2]| {
             let power = a * a + b * b;
@@ -232,12 +238,11 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
         };
         let highest = series.iter().skip(1).rposition(counts).map_or(0, |k| k + 1);
         harmonics = harmonics.max(highest);
-        fits.push(series);
+        fits.push(series.into_iter().take(highest + 1).collect::<Vec<_>>());
     }
     let mut motion: [Vec<Vec<f64>>; 3] = Default::default();
     for series in &fits {
-        let values =
-            evaluated(&series[..=harmonics.min(series.len() - 1)], samples, periods.period);
+        let values = evaluated(series, samples, periods.period);
         for (to, values) in motion.iter_mut().zip(values) {
             to.push(values);
         }
@@ -270,9 +275,9 @@ fn sample(x: &[f64], place: f64) -> f64 {
 }
 
 /// Coefficients of cosine and sine, the mean first, of one period.
-fn fourier(x: &[f64], harmonics: usize) -> Vec<[f64; 2]> {
+fn fourier(x: &[f64], harmonics: impl Iterator<Item = usize>) -> Vec<[f64; 2]> {
     let n = x.len() as f64;
-    (0..=harmonics)
+    harmonics
         .map(|k| {
             let (mut a, mut b) = (0.0, 0.0);
             for (i, value) in x.iter().enumerate() {
@@ -286,6 +291,12 @@ fn fourier(x: &[f64], harmonics: usize) -> Vec<[f64; 2]> {
             [a * scale, b * scale]
         })
         .collect()
+}
+
+/// Some frequencies that no motion has, of a period with so many samples.
+fn tail(samples: usize) -> impl Iterator<Item = usize> {
+    let (from, to) = (3 * samples / 8, samples.saturating_sub(1) / 2);
+    (from..to).step_by(((to - from.min(to)) / IN_TAIL).max(1))
 }
 
 /// The series and its two derivatives at `samples` times of the period.

@@ -132,6 +132,11 @@ impl Fields {
         self.entries.contains_key(key)
     }
 
+    /// Whether a list stands at a key that is not read yet.
+    pub(super) fn is_list(&self, key: &str) -> bool {
+        self.entries.get(key).is_some_and(|node| matches!(node.value, Value::List(_)))
+    }
+
     /// The keys that are not read yet.
     pub(super) fn keys(&self) -> Vec<String> {
         self.entries.keys().cloned().collect()

@@ -8,6 +8,7 @@ use super::error::RobotError;
 use super::fields::Fields;
 use super::friction::Friction;
 use super::geometry::Geometry;
+use super::law::Law;
 use super::limits::Limits;
 use super::link::{ArmLoad, Link};
 use super::motors::Motors;
@@ -48,8 +49,10 @@ pub struct Model {
     pub controller: Controller,
     /// How its logs differ from it.
     pub sensors: Sensors,
-    /// What identification or diagnosis added; the fields above contain it.
+    /// What identification or diagnosis added, as far as the fields above do not contain it.
     pub effects: Vec<EffectParameters>,
+    /// The laws of these effects.
+    pub laws: Vec<Law>,
     /// The origin of every number, in the order of the fields above.
     pub origins: Vec<Origin>,
 }
@@ -144,7 +147,7 @@ impl Model {
         // How an identification came to its numbers is for people; nothing is computed from it.
         robot.take("identification");
         origins.extend(robot.finish()?);
-        let mut model = Model {
+        Ok(Model {
             name,
             file: None,
             dof,
@@ -159,13 +162,9 @@ impl Model {
             standstill,
             controller,
             sensors: Sensors::exact(dof),
-            effects: Vec::new(),
+            effects,
+            laws: Vec::new(),
             origins,
-        };
-        for effect in &effects {
-            effect.apply(&mut model)?;
-        }
-        model.effects = effects;
-        Ok(model)
+        })
     }
 }

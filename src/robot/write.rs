@@ -5,6 +5,7 @@ use std::fmt::Write;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 use super::drive::Sharing;
+use super::effect::Given;
 use super::geometry::{Coupling, Joint};
 use super::model::Model;
 use super::provenance::{Origin, Provenance};
@@ -44,7 +45,22 @@ pub fn to_toml(model: &Model) -> String {
         out.table("[wrist]", "wrist", &[("coupling", number(model.wrist.coupling))]);
     }
     power(model, &mut out);
-    // Effects are in the numbers above, but for those of the log.
+    for effect in &model.effects {
+        let table = format!("effects.{}", effect.id);
+        let entries: Vec<(&str, String)> = effect
+            .values
+            .iter()
+            .map(|(name, given)| {
+                let value = match given {
+                    Given::Robot(value) => number(*value),
+                    Given::Joints(values) => list(values),
+                };
+                (name.as_str(), value)
+            })
+            .collect();
+        out.table(&format!("[{table}]"), &table, &entries);
+    }
+    // Those of the log are in the model's numbers.
     let sensors = &model.sensors;
     let (inertia, viscous) = (&sensors.apparent_inertia, &sensors.apparent_viscous);
     for (id, parameters) in [

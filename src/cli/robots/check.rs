@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use serde_json::{Map, Value, json};
 
 use crate::cli::common::Format;
+use crate::effects;
 use crate::kinematics::{fk, ik_near, limits_ok, radical_inverse};
 use crate::robot::{self, Lack, Model, Use, implausible, lacking};
 
@@ -33,7 +34,7 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
     };
     let mut findings = Vec::with_capacity(names.len());
     for name in &names {
-        findings.push(checked(&robot::load(name)?));
+        findings.push(checked(&effects::load(name)?));
     }
     let passed = findings.iter().filter(|finding| finding.problems.is_empty()).count();
     let mut out = std::io::stdout().lock();

@@ -6,11 +6,12 @@ use std::io::Write as _;
 use serde_json::{Value, json};
 
 use crate::cli::common::Format;
-use crate::robot::{self, Model};
+use crate::effects;
+use crate::robot::Model;
 
 /// Shows one robot.
 pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
-    let model = robot::load(robot)?;
+    let model = effects::load(robot)?;
     let mut out = std::io::stdout().lock();
     match format {
         Format::Text => write!(out, "{}", text(&model))?,

@@ -1,0 +1,245 @@
+//! `joulepath diagnose`: which effect separates a model from its robot.
+
+mod channels;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+use serde_json::Value;
+
+use super::common::{self, Format};
+use super::logs::{Read, Reader, Ready, read_all};
+use super::output;
+use crate::effects::{self, ALL, Effect};
+use crate::gap::{
+    Diagnosis, Record, Settings, Trust, Verdict, diagnose, diagnose_power, diagnose_runs,
+};
+use crate::identify::Hints;
+use crate::log::{Channel, ColumnMap};
+use crate::report::diagnose as report;
+use crate::robot::{Model, Use, nearest, ready, to_toml};
+
+/// Where a model and logs of its robot part, which effect it is, and how far the gap shrinks.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"
+)]
+pub struct DiagnoseArgs {
+    /// The robot as it is believed: a name (joulepath robots list) or a robot file.
+    #[arg(long, value_name = "NAME|FILE")]
+    robot: String,
+
+    /// Logs of the robot as it is now, CSV or Parquet: `t`, `q1…` and `tau1…`, `i1…` or
+    /// `ia1,ib1,ic1…`.
+    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
+    log: Vec<PathBuf>,
+
+    /// Logs that only grade; otherwise the last of several logs.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    heldout: Vec<PathBuf>,
+
+    /// Logs from when the model was believed true.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    baseline: Vec<PathBuf>,
+
+    /// The program whose runs the logs are, by their column `cmd`.
+    #[arg(long, value_name = "PATH")]
+    program: Option<PathBuf>,
+
+    /// How much the model's parameters are believed; by default commissioned with a baseline,
+    /// otherwise cad.
+    #[arg(long, value_enum)]
+    trust: Option<TrustArg>,
+
+    /// Effects that may be found, such as payload,stribeck; with a minus before the first, all
+    /// but these.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    effects: Option<String>,
+
+    /// Columns under other names, such as `q1_deg=J1,tau1=Torque_1`.
+    #[arg(long, value_name = "CHANNEL=COLUMN,…", default_value = "", hide_default_value = true)]
+    map: String,
+
+    /// Duration of a repetition, seconds; otherwise it is found.
+    #[arg(long, value_name = "SECONDS")]
+    period: Option<f64>,
+
+    /// Where the improved model goes, Robot TOML.
+    #[arg(long, value_name = "MODEL.toml")]
+    out: Option<PathBuf>,
+
+    /// How the result is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+
+    /// No notes on standard error.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Cut-off frequency of the filter of runs of a program \[Hz\].
+const OF_RUNS: f64 = 10.0;
+
+/// How much parameters are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TrustArg {
+    /// Identified on this robot.
+    Commissioned,
+    /// From drawings.
+    Cad,
+    /// Not at all.
+    Unknown,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A log or a robot that can't be used, or output that can't be written.
+pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
+    let (found, basis) = diagnosed(args)?;
+    let mut out = std::io::stdout().lock();
+    match args.format {
+        Format::Json => writeln!(out, "{:#}", report::json(&found, &basis))?,
+        Format::Text => write!(out, "{}", report::text(&found, &basis))?,
+    }
+    Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// The JSON of a case that `blind generate` wrote.
+///
+/// # Errors
+/// As of [`run`].
+pub fn of_case(case: &Path, options: &Value) -> anyhow::Result<Value> {
+    let text = |key: &str| options.get(key).and_then(Value::as_str);
+    let baseline = case.join("baseline-1.csv");
+    let args = DiagnoseArgs {
+        robot: case.join("nominal.toml").display().to_string(),
+        log: vec![case.join("log-1.csv"), case.join("log-2.csv")],
+        heldout: vec![case.join("heldout.csv")],
+        baseline: if baseline.exists() { vec![baseline] } else { Vec::new() },
+        program: text("program").map(|folder| case.join(folder)),
+        trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
+        effects: None,
+        map: String::new(),
+        period: options.get("period").and_then(Value::as_f64),
+        out: Some(case.join("improved.toml")),
+        format: Format::Json,
+        quiet: true,
+    };
+    let (found, basis) = diagnosed(&args)?;
+    Ok(report::json(&found, &basis))
+}
+
+fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+    let model = effects::load(&args.robot)?;
+    ready(&model, Use::Predict)?;
+    let map = ColumnMap::parse(&args.map)?;
+    if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
+        bail!("--period {period}: give the duration of a repetition in seconds, more than 0");
+    }
+    let wanted = wanted(args.effects.as_deref())?;
+    let trust = match args.trust {
+        Some(TrustArg::Unknown) => Trust::Unknown,
+        Some(TrustArg::Cad) => Trust::Cad,
+        None if args.baseline.is_empty() => Trust::Cad,
+        Some(TrustArg::Commissioned) | None => Trust::Commissioned,
+    };
+    let hints = Hints { period: args.period, cutoff: None };
+    let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
+    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
+        let one = |read: Read| {
+            // Repetitions of a program are never alike to the millisecond.
+            let is_run = read.log.column(Channel::Command).is_some();
+            let cutoff = is_run.then_some(OF_RUNS);
+            reader.ready(read, Hints { cutoff, ..hints })
+        };
+        read_all(paths, &map, &model)?.into_iter().map(one).collect()
+    };
+    let mut train = read(&args.log)?;
+    let mut held = read(&args.heldout)?;
+    let mut basis = report::Basis { heldout: "file".to_owned(), ..report::Basis::default() };
+    if held.is_empty() {
+        "trajectory".clone_into(&mut basis.heldout);
+        held.extend(if train.len() > 1 { train.pop() } else { None });
+    }
+    let before = read(&args.baseline)?;
+    let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
+    let of_power = diagnose_power(
+        &model,
+        &channels::powers(&before),
+        &channels::powers(&train),
+        &channels::powers(&held),
+        &may,
+    );
+    let of_runs = diagnose_runs(
+        &model,
+        &channels::runs(&before),
+        &channels::runs(&train),
+        &channels::runs(&held),
+        &may,
+    );
+    basis.notes = reader.notes;
+    // Without a mean there is no noise to weigh effects by.
+    let of_torque = if of_runs.is_some() {
+        basis
+            .notes
+            .push("the logs are runs of a program: torques are not searched for effects".into());
+        Vec::new()
+    } else {
+        wanted.clone()
+    };
+    let mut found = of_logs(&model, &train, &held, &Settings { trust, effects: of_torque });
+    if let Some(of) = &of_power {
+        found.add_power(of);
+    }
+    if let Some(of) = &of_runs {
+        found.add_runs(of);
+        if let Some(program) = &args.program {
+            let lines = channels::lines(program, &args.robot)
+                .with_context(|| format!("--program {}", program.display()))?;
+            for place in &mut found.places {
+                let movement = place.movement.and_then(|movement| movement.checked_sub(1));
+                place.line = movement.and_then(|movement| lines.get(movement).cloned());
+            }
+        }
+    }
+    if let Some(path) = &args.out {
+        output::write(path, to_toml(&found.improved.written).as_bytes())
+            .with_context(|| path.display().to_string())?;
+        basis.model = path.display().to_string();
+    }
+    for text in &basis.notes {
+        common::note(args.quiet, text);
+    }
+    Ok((found, basis))
+}
+
+fn of_logs(model: &Model, train: &[Ready], held: &[Ready], settings: &Settings) -> Diagnosis {
+    let records = |logs: &[Ready]| -> Vec<Record<'_>> {
+        logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
+    };
+    let graded = if held.is_empty() { records(train) } else { records(held) };
+    diagnose(model, records(train), &graded, settings)
+}
+
+/// The effects that may be found.
+fn wanted(list: Option<&str>) -> anyhow::Result<Vec<&'static Effect>> {
+    let Some(list) = list else { return Ok(ALL.iter().collect()) };
+    let (but, list) = match list.trim().strip_prefix('-') {
+        Some(rest) => (true, rest),
+        None => (false, list),
+    };
+    let mut named = Vec::new();
+    for id in list.split(',').map(|id| id.trim().trim_start_matches('-')) {
+        if effects::find(id).is_none() {
+            let near = nearest(id, ALL.iter().map(|effect| effect.id));
+            let meant = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            bail!("--effects {id}: no effect has this id{meant}");
+        }
+        named.push(id);
+    }
+    Ok(ALL.iter().filter(|effect| named.contains(&effect.id) != but).collect())
+}

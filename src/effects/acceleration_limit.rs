@@ -1,0 +1,21 @@
+//! Acceleration that is higher or lower.
+
+use super::effect::{Channel, Effect, Form, Of, bounded};
+
+/// Acceleration that is higher or lower.
+pub(super) const ACCELERATION_LIMIT: Effect = Effect {
+    id: "acceleration_limit",
+    channel: Channel::Motion,
+    of: Of::Robot,
+    title: "Acceleration that is higher or lower",
+    law: "acceleration × factor",
+    source: "docs/controller.md",
+    parameters: &[bounded("factor", "1", "acceleration over planned acceleration", [0.01, 10.0])],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["speed_limit"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

@@ -1,0 +1,21 @@
+//! Controller, fans, brakes.
+
+use super::effect::{Channel, Effect, Form, Of, free};
+
+/// Controller, fans, brakes.
+pub(super) const BASE_LOAD: Effect = Effect {
+    id: "base_load",
+    channel: Channel::Power,
+    of: Of::Robot,
+    title: "Controller, fans, brakes",
+    law: "P = power",
+    source: "EFFECTS of energy: docs/energy.md",
+    parameters: &[free("power", "W", "power more")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["brake_power"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Model(|model, _, values| model.drive.base_w += values[0]),
+};

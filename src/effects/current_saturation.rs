@@ -1,0 +1,33 @@
+//! Torque that lags behind the current where the iron saturates.
+
+use super::effect::{Channel, Effect, Form, Of, bounded, every, linear};
+use super::motion::Motion;
+
+/// Saturation of the motor.
+pub(super) const CURRENT_SATURATION: Effect = Effect {
+    id: "current_saturation",
+    channel: Channel::Torque,
+    of: Of::Joint,
+    title: "Saturation of the motor",
+    law: "τ = τ·(1 + error·(τ/τ_max)²), logged",
+    source: "G. Terzic, M. Jadric, IEEE T-IE 48, 2001",
+    parameters: &[bounded(
+        "error",
+        "1",
+        "logged over true torque at the largest current, less 1",
+        [-0.5, 1.0],
+    )],
+    coordinates: &[linear(|_| 0.08)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["torque_constant", "load_friction"],
+    experiment: ["--harmonics 1,4,7,11", "larger torques"],
+    form: Form::Series(added),
+};
+
+fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
+    let tau = &motion.torque[joint];
+    let largest = tau.iter().fold(1e-9, |m: f64, x| m.max(x.abs()));
+    vec![(joint, tau.iter().map(|x| values[0] * x * (x / largest).powi(2)).collect())]
+}

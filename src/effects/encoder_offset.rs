@@ -1,0 +1,21 @@
+//! An angle that is not where the log says: calibration, a revolution counter that slipped.
+
+use super::effect::{Channel, Effect, Form, Of, bounded, every, linear};
+
+/// Offset of an angle.
+pub(super) const ENCODER_OFFSET: Effect = Effect {
+    id: "encoder_offset",
+    channel: Channel::Torque,
+    of: Of::Joint,
+    title: "Offset of an angle",
+    law: "τ = τ(q + offset)",
+    source: "FACTS of calibration: fine calibration is within 0.5 mrad, one motor turn is 2π/n",
+    parameters: &[bounded("offset", "rad", "true less logged angle", [-0.5, 0.5])],
+    coordinates: &[linear(|of| (2.0 / of.ratio).clamp(5e-3, 0.05))],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["link_parameters", "base_tilt"],
+    experiment: ["--variant gravity", "poses on both sides of the vertical"],
+    form: Form::Model(|model, joint, values| model.sensors.position_offset[joint] += values[0]),
+};

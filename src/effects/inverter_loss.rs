@@ -1,0 +1,21 @@
+//! Loss of inverter and cables.
+
+use super::effect::{Channel, Effect, Form, Of, free};
+
+/// Loss of inverter and cables.
+pub(super) const INVERTER_LOSS: Effect = Effect {
+    id: "inverter_loss",
+    channel: Channel::Power,
+    of: Of::Robot,
+    title: "Loss of inverter and cables",
+    law: "P = per_current·Σ|τ|/(n k_t)",
+    source: "EFFECTS of energy: docs/energy.md",
+    parameters: &[free("per_current", "W/A", "loss per current")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["copper_loss", "base_load"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Elsewhere,
+};

@@ -1,0 +1,21 @@
+//! Loss in the iron.
+
+use super::effect::{Channel, Effect, Form, Of, every, free};
+
+/// Loss in the iron.
+pub(super) const IRON_LOSS: Effect = Effect {
+    id: "iron_loss",
+    channel: Channel::Power,
+    of: Of::Joint,
+    title: "Loss in the iron",
+    law: "P = loss·q̇²",
+    source: "EFFECTS of energy: docs/energy.md",
+    parameters: &[free("loss", "W s2/rad2", "loss per squared rate")],
+    coordinates: &[],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["friction_level"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Elsewhere,
+};

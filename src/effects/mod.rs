@@ -1,0 +1,65 @@
+//! What robots and their logs have beyond rigid bodies and plain friction: one effect a file,
+//! with its law, what is usual of it, and what is written about it.
+//!
+//! [`ALL`] is the register. An effect that is in it can be written in a robot file, is in every
+//! prediction and simulation, and can be found by a diagnosis.
+
+mod acceleration_limit;
+mod apparent_torque;
+mod applied;
+mod backlash;
+mod base_load;
+mod base_tilt;
+mod bodies;
+mod brake_drag;
+mod brake_power;
+mod cable;
+mod contact;
+mod copper_loss;
+mod current_saturation;
+mod current_sign;
+mod effect;
+mod elasticity;
+mod encoder_offset;
+mod filter_lag;
+mod flux_weakening;
+mod friction_level;
+mod gear_efficiency;
+mod gravity_spring;
+mod inverter_loss;
+mod iron_loss;
+mod link_parameters;
+mod load_friction;
+mod motion;
+mod no_regeneration;
+mod nonlinear_viscous;
+mod page;
+mod payload;
+mod position_friction;
+mod presliding;
+mod program_wait;
+mod register;
+mod ripple;
+mod rotor_inertia;
+mod speed_limit;
+mod springs;
+mod stribeck;
+mod time_delay;
+mod torque_constant;
+mod torque_offset;
+mod tracking_lag;
+mod viscous_asymmetry;
+mod warm_up;
+mod waves;
+mod wrist_coupling;
+mod zone_blending;
+
+pub use applied::{applied, from_toml, load, of_the_whole_motion};
+pub use bodies::added as with_body;
+pub use effect::{
+    Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,
+};
+pub use filter_lag::lagged;
+pub use motion::Motion;
+pub use page::page;
+pub use register::{ALL, find};

@@ -1,0 +1,21 @@
+//! Braking energy that is lost.
+
+use super::effect::{Channel, Effect, Form, Of};
+
+/// Braking energy that is lost.
+pub(super) const NO_REGENERATION: Effect = Effect {
+    id: "no_regeneration",
+    channel: Channel::Power,
+    of: Of::Robot,
+    title: "Braking energy that is lost",
+    law: "P = max(P, 0)",
+    source: "EFFECTS of energy: docs/energy.md",
+    parameters: &[],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["copper_loss"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Model(|model, _, _| model.drive.regeneration = 0.0),
+};

@@ -1,0 +1,21 @@
+//! A wait that the model does not know.
+
+use super::effect::{Channel, Effect, Form, Of, free};
+
+/// A wait that the model does not know.
+pub(super) const PROGRAM_WAIT: Effect = Effect {
+    id: "program_wait",
+    channel: Channel::Motion,
+    of: Of::Robot,
+    title: "A wait that the model does not know",
+    law: "wait between two movements",
+    source: "docs/controller.md",
+    parameters: &[free("wait", "s", "time more")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["acceleration_limit"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

@@ -1,0 +1,21 @@
+//! Speed that is limited.
+
+use super::effect::{Channel, Effect, Form, Of, bounded};
+
+/// Speed that is limited.
+pub(super) const SPEED_LIMIT: Effect = Effect {
+    id: "speed_limit",
+    channel: Channel::Motion,
+    of: Of::Robot,
+    title: "Speed that is limited",
+    law: "speed × factor",
+    source: "docs/controller.md",
+    parameters: &[bounded("factor", "1", "speed over planned speed", [0.01, 10.0])],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["acceleration_limit"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

@@ -1,0 +1,21 @@
+//! A torque constant or a gain of a current sensor that is not as stated.
+
+use super::effect::{Channel, Effect, Form, Of, bounded, every, linear};
+
+/// Torque constant.
+pub(super) const TORQUE_CONSTANT: Effect = Effect {
+    id: "torque_constant",
+    channel: Channel::Torque,
+    of: Of::Joint,
+    title: "Torque constant",
+    law: "τ = (1 + error) τ",
+    source: "M. Gautier, S. Briot, Global identification of drive gains parameters of robots using a known payload, ICRA 2011",
+    parameters: &[bounded("error", "1", "logged over true torque, less 1", [-0.9, 4.0])],
+    coordinates: &[linear(|_| 0.1)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["link_parameters", "current_saturation"],
+    experiment: ["--variant payload", "with and without a known payload"],
+    form: Form::Model(|model, joint, values| model.sensors.torque_error[joint] += values[0]),
+};

@@ -1,0 +1,21 @@
+//! A constant of amplifier or sensor, or another Coulomb friction forwards than backwards.
+
+use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+
+/// Offset of the torque.
+pub(super) const TORQUE_OFFSET: Effect = Effect {
+    id: "torque_offset",
+    channel: Channel::Torque,
+    of: Of::Joint,
+    title: "Offset of the torque",
+    law: "τ = offset",
+    source: "B. Armstrong-Hélouvry et al., Automatica 30, 1994: asymmetric Coulomb friction is the same while a joint moves",
+    parameters: &[free("offset", "Nm", "added to the logged torque")],
+    coordinates: &[linear(|of| 0.05 * of.torque[1])],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["cable", "gravity_spring", "base_tilt"],
+    experiment: ["--variant gravity", "each pose from both sides, slowly"],
+    form: Form::Model(|model, joint, values| model.sensors.torque_offset[joint] += values[0]),
+};

@@ -1,0 +1,184 @@
+//! What a diagnosis says.
+
+use crate::effects::Effect;
+
+use super::heldout::Shrink;
+use super::improved::Improved;
+use super::power::PowerFound;
+use super::runs::RunFound;
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The model is right.
+    NoGap,
+    /// Other parameters of the model explain the gap.
+    ParametersOnly,
+    /// Effects explain it.
+    Effect,
+    /// Effects explain a part, the rest is not known.
+    Partial,
+    /// No known law explains it.
+    Unknown,
+    /// More laws explain it than can be told apart.
+    NotSeparable,
+    /// The motion shows too little.
+    NotExcited,
+}
+
+impl Verdict {
+    /// As JSON has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::NoGap => "no_gap",
+            Verdict::ParametersOnly => "parameters_only",
+            Verdict::Effect => "effect",
+            Verdict::Partial => "partial",
+            Verdict::Unknown => "unknown",
+            Verdict::NotSeparable => "not_separable",
+            Verdict::NotExcited => "not_excited",
+        }
+    }
+}
+
+/// A parameter with its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimated {
+    /// Name, with the joint behind it where there are several.
+    pub name: String,
+    /// Value, SI.
+    pub value: f64,
+    /// Standard deviation.
+    pub sd: f64,
+    /// Unit.
+    pub unit: &'static str,
+}
+
+/// An effect that is asserted or was considered.
+#[derive(Clone)]
+pub struct Said {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Joints, from 0; empty where it is of the robot.
+    pub joints: Vec<usize>,
+    /// Effects that these data cannot tell from it, itself among them.
+    pub class: Vec<&'static str>,
+    /// Posterior probability.
+    pub probability: f64,
+    /// Its parameters.
+    pub parameters: Vec<Estimated>,
+    /// Share of what all effects and functions explain \[1\].
+    pub share: f64,
+    /// Logarithm of the odds that it brings.
+    pub nats: f64,
+}
+
+/// A smooth function that explains what no law does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Anything {
+    /// What it is of.
+    pub id: &'static str,
+    /// Joint, from 0.
+    pub joint: Option<usize>,
+    /// Share of what all explain \[1\].
+    pub share: f64,
+}
+
+/// Where the gap is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Joint, from 0.
+    pub joint: Option<usize>,
+    /// When.
+    pub regime: String,
+    /// Share of the gap \[1\].
+    pub share: f64,
+    /// The movement behind which it is, from 1.
+    pub movement: Option<usize>,
+    /// File and line of the program.
+    pub line: Option<(String, usize)>,
+}
+
+/// A diagnosis of torques.
+#[derive(Clone)]
+pub struct Diagnosis {
+    /// What was found.
+    pub verdict: Verdict,
+    /// What is asserted.
+    pub effects: Vec<Said>,
+    /// What was considered.
+    pub candidates: Vec<Said>,
+    /// What no law explains.
+    pub anything: Vec<Anything>,
+    /// Where the gap is.
+    pub places: Vec<Place>,
+    /// How far it shrinks.
+    pub shrink: Shrink,
+    /// The model's own error, as a share of its torques.
+    pub error: f64,
+    /// The nominal model with its parameters refitted.
+    pub refit: Improved,
+    /// That with the asserted effects.
+    pub improved: Improved,
+    /// Why the verdict is what it is.
+    pub reasons: Vec<String>,
+    /// Rms gaps of other channels: name, unit; noise, before, after.
+    pub channels: Vec<(&'static str, &'static str, [f64; 3])>,
+}
+
+impl Diagnosis {
+    /// What the power says is a part of it.
+    pub fn add_power(&mut self, found: &PowerFound) {
+        // Torques that are wrong make wrong powers.
+        let trusted = matches!(self.verdict, Verdict::NoGap | Verdict::ParametersOnly);
+        if let Some(of) = found.effect.as_ref().filter(|_| trusted) {
+            self.effects.push(Said {
+                effect: of.effect,
+                joints: of.joint.into_iter().collect(),
+                class: of.class.clone(),
+                probability: 1.0 / (1.0 + (-of.nats).exp()),
+                parameters: of.parameters.clone(),
+                share: 1.0,
+                nats: of.nats,
+            });
+        }
+        self.channels.push(("power", "W", found.gap));
+        self.add(found.effect.is_some() && trusted, found.is_unknown && trusted);
+    }
+
+    /// What runs of the program say is a part of it.
+    pub fn add_runs(&mut self, found: &RunFound) {
+        for of in &found.effects {
+            self.effects.push(Said {
+                effect: of.effect,
+                joints: Vec::new(),
+                class: of.class.clone(),
+                probability: 1.0 / (1.0 + (-of.nats).exp()),
+                parameters: of.parameters.clone(),
+                share: 1.0,
+                nats: of.nats,
+            });
+            if of.movement.is_some() {
+                self.places.push(Place {
+                    joint: None,
+                    regime: of.effect.id.to_owned(),
+                    share: 1.0,
+                    movement: of.movement,
+                    line: None,
+                });
+            }
+        }
+        self.channels.push(("motion", "s", found.gap));
+        self.add(!found.effects.is_empty(), found.is_unknown);
+    }
+
+    fn add(&mut self, has_effect: bool, is_unknown: bool) {
+        self.verdict = match (self.verdict, has_effect, is_unknown) {
+            (Verdict::NoGap | Verdict::ParametersOnly, true, false) => Verdict::Effect,
+            (Verdict::NoGap | Verdict::ParametersOnly, false, true) => Verdict::Unknown,
+            (Verdict::Effect, _, true) | (Verdict::Unknown, true, _) => Verdict::Partial,
+            (verdict, ..) => verdict,
+        };
+    }
+}

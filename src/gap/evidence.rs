@@ -1,0 +1,204 @@
+//! How probable the measurement is with some columns and without them, whatever their factors
+//! and the model's parameters are.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Marginal likelihoods at one size of the model's own error.
+pub struct Evidence {
+    /// `ΦᵀWΦ` with the parameters marginalised.
+    a: DMatrix<f64>,
+    /// `ΦᵀWy`, the same.
+    b: DVector<f64>,
+    means: DVector<f64>,
+    sds: DVector<f64>,
+    parameters: Option<OfParameters>,
+    /// Logarithm of the probability of the measurement without any column, up to a constant.
+    pub null: f64,
+    /// yᵀWy with the parameters marginalised, over the number of rows: 1 where nothing is missed.
+    pub misfit: f64,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+/// What tells the model's parameters, in deviations.
+struct OfParameters {
+    factor: Cholesky<f64, nalgebra::Dyn>,
+    /// `YᵀWy` and `YᵀWΦ`.
+    y: DVector<f64>,
+    c: DMatrix<f64>,
+}
+
+/// Evidence when some columns are there.
+pub struct Given {
+    /// What these bring.
+    base: f64,
+    columns: Vec<usize>,
+    evidence: Evidence,
+}
+
+impl Given {
+    /// Gain of the columns that are there and of more.
+    #[must_use]
+    pub fn gain(&self, more: &[usize]) -> f64 {
+        let more: Vec<usize> =
+            more.iter().copied().filter(|column| !self.columns.contains(column)).collect();
+        self.base + self.evidence.gain(&more)
+    }
+}
+
+/// Factors of some columns.
+pub struct Estimate {
+    /// Their expected values.
+    pub mean: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+}
+
+impl Evidence {
+    /// Of weighted products of difference, `parameters` parameters (in deviations) and columns.
+    pub(super) fn new(
+        gram: &DMatrix<f64>,
+        parameters: usize,
+        means: DVector<f64>,
+        sds: DVector<f64>,
+        log_weights: f64,
+        rows: usize,
+    ) -> Evidence {
+        let count = means.len();
+        let first = 1 + parameters;
+        let yy = gram[(0, 0)];
+        let yp = gram.view((1, 0), (parameters, 1)).into_owned();
+        let pp = gram.view((1, 1), (parameters, parameters)).into_owned()
+            + DMatrix::identity(parameters, parameters);
+        let pc = gram.view((1, first), (parameters, count)).into_owned();
+        let cc = gram.view((first, first), (count, count)).into_owned();
+        let yc = gram.view((first, 0), (count, 1)).column(0).into_owned();
+        let Some(factor) = Cholesky::new(pp) else {
+            let null = f64::NEG_INFINITY;
+            let (parameters, misfit) = (None, f64::INFINITY);
+            return Evidence { a: cc, b: yc, means, sds, parameters, null, misfit, rows };
+        };
+        let lower = factor.l();
+        let solved_c = lower.solve_lower_triangular(&pc).unwrap_or_else(|| pc.clone());
+        let solved_y = lower.solve_lower_triangular(&yp).unwrap_or_else(|| yp.clone());
+        let left = yy - solved_y.norm_squared();
+        let log_det: f64 = lower.diagonal().iter().map(|x| x.ln()).sum();
+        Evidence {
+            a: cc - solved_c.tr_mul(&solved_c),
+            b: yc - solved_c.tr_mul(&solved_y).column(0),
+            means,
+            sds,
+            parameters: Some(OfParameters { factor, y: yp.column(0).into_owned(), c: pc }),
+            null: log_weights - 0.5 * left - log_det,
+            misfit: left / rows.max(1) as f64,
+            rows,
+        }
+    }
+
+    /// Logarithm of how much more probable the measurement is with the columns than without.
+    #[must_use]
+    pub fn gain(&self, columns: &[usize]) -> f64 {
+        let (fixed, left) = self.of_means(columns);
+        let free: Vec<usize> = (0..columns.len()).filter(|k| self.sds[columns[*k]] > 0.0).collect();
+        if free.is_empty() {
+            return fixed;
+        }
+        // In deviations: I + S A S.
+        let sd = |k: usize| self.sds[columns[free[k]]];
+        let a = |i: usize, k: usize| self.a[(columns[free[i]], columns[free[k]])];
+        let scaled = DMatrix::from_fn(free.len(), free.len(), |i, k| {
+            sd(i) * sd(k) * a(i, k) + if i == k { 1.0 } else { 0.0 }
+        });
+        let right = DVector::from_fn(free.len(), |k, _| sd(k) * left[free[k]]);
+        let Some(factor) = Cholesky::new(scaled) else { return f64::NEG_INFINITY };
+        let lower = factor.l();
+        let log_det: f64 = lower.diagonal().iter().map(|x| x.ln()).sum();
+        let solved = lower.solve_lower_triangular(&right).unwrap_or(right);
+        fixed + 0.5 * solved.norm_squared() - log_det
+    }
+
+    /// What is left to explain when some columns are there: gains count on top of theirs.
+    #[must_use]
+    pub fn given(&self, columns: &[usize]) -> Given {
+        let base = self.gain(columns);
+        let mut b = self.b.clone();
+        for column in columns.iter().filter(|column| self.means[**column] != 0.0) {
+            b.axpy(-self.means[*column], &self.a.column(*column), 1.0);
+        }
+        let free: Vec<usize> =
+            columns.iter().copied().filter(|column| self.sds[*column] > 0.0).collect();
+        let mut a = self.a.clone();
+        if !free.is_empty() {
+            let n = free.len();
+            let sd = |k: usize| self.sds[free[k]];
+            let scaled = DMatrix::from_fn(n, n, |i, k| {
+                sd(i) * sd(k) * self.a[(free[i], free[k])] + if i == k { 1.0 } else { 0.0 }
+            });
+            let across = DMatrix::from_fn(n, a.ncols(), |i, k| sd(i) * self.a[(free[i], k)]);
+            let left = DVector::from_fn(n, |k, _| sd(k) * b[free[k]]);
+            if let Some(factor) = Cholesky::new(scaled) {
+                let lower = factor.l();
+                let across = lower.solve_lower_triangular(&across).unwrap_or(across);
+                let left = lower.solve_lower_triangular(&left).unwrap_or(left);
+                a.gemm_tr(-1.0, &across, &across, 1.0);
+                b.gemv_tr(-1.0, &across, &left, 1.0);
+            }
+        }
+        let evidence = Evidence {
+            a,
+            b,
+            means: self.means.clone(),
+            sds: self.sds.clone(),
+            parameters: None,
+            null: self.null,
+            misfit: self.misfit,
+            rows: self.rows,
+        };
+        Given { base, columns: columns.to_vec(), evidence }
+    }
+
+    /// The columns' factors.
+    #[must_use]
+    pub fn estimate(&self, columns: &[usize]) -> Option<Estimate> {
+        let (_, left) = self.of_means(columns);
+        let n = columns.len();
+        let sd = DVector::from_fn(n, |k, _| self.sds[columns[k]]);
+        let scaled = DMatrix::from_fn(n, n, |i, k| {
+            sd[i] * sd[k] * self.a[(columns[i], columns[k])] + if i == k { 1.0 } else { 0.0 }
+        });
+        let inverse = Cholesky::new(scaled)?.inverse();
+        let covariance = DMatrix::from_fn(n, n, |i, k| sd[i] * sd[k] * inverse[(i, k)]);
+        let means = DVector::from_fn(n, |k, _| self.means[columns[k]]);
+        Some(Estimate { mean: means + &covariance * left, covariance })
+    }
+
+    /// The parameters of the model, in deviations, with these factors of columns.
+    #[must_use]
+    pub fn parameters(&self, columns: &[usize], factors: &DVector<f64>) -> DVector<f64> {
+        let Some(of) = &self.parameters else { return DVector::zeros(0) };
+        let mut right = of.y.clone();
+        for (column, factor) in columns.iter().zip(factors.iter()) {
+            right.axpy(-factor, &of.c.column(*column), 1.0);
+        }
+        of.factor.solve(&right)
+    }
+
+    /// What the expected factors explain, and what is left for the rest.
+    fn of_means(&self, columns: &[usize]) -> (f64, DVector<f64>) {
+        let mut fixed = 0.0;
+        let mut left = DVector::from_fn(columns.len(), |k, _| self.b[columns[k]]);
+        for column in columns {
+            let mean = self.means[*column];
+            if mean == 0.0 {
+                continue;
+            }
+            fixed += mean * self.b[*column];
+            for (i, other) in columns.iter().enumerate() {
+                let product = mean * self.a[(*other, *column)];
+                left[i] -= product;
+                fixed -= 0.5 * product * self.means[*other];
+            }
+        }
+        (fixed, left)
+    }
+}

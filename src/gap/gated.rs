@@ -1,0 +1,121 @@
+//! Effects that act for a part of each repetition.
+
+use crate::effects::{Effect, find};
+
+use super::column::{Owner, Piece, columns_at};
+use super::record::Record;
+use super::search::{Chosen, Search};
+
+/// Parts of a repetition at which windows begin and end.
+const PARTS: usize = 20;
+/// Lengths of windows, in parts.
+const LENGTHS: [usize; 6] = [1, 2, 3, 4, 5, 7];
+/// The finest step of a window, in parts.
+const FINEST: f64 = 0.1;
+
+/// Functions of time that were found, whose windows may be gated effects.
+pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
+
+/// Effects with windows.
+pub(super) const GATED: [&str; 2] = ["brake_drag", "contact"];
+
+/// Pieces with windows of a brake's drag at some joints and of a contact.
+pub(super) fn gated(
+    effects: &[&'static Effect],
+    records: &[Record<'_>],
+    joints: &[usize],
+) -> Vec<Piece> {
+    let Some(first) = records.first() else { return Vec::new() };
+    let motion = &first.motion;
+    let period = if motion.closed { motion.step() * motion.len() as f64 } else { 0.0 };
+    let lasts = motion.step() * motion.len() as f64;
+    let part = lasts / PARTS as f64;
+    let mut wanted: Vec<(&'static Effect, Option<usize>)> = Vec::new();
+    let may = |id: &str| find(id).filter(|of| effects.iter().any(|other| other.id == of.id));
+    if let Some(effect) = may("brake_drag") {
+        wanted.extend(joints.iter().map(|joint| (effect, Some(*joint))));
+    }
+    wanted.extend(may("contact").map(|effect| (effect, None)));
+    let mut pieces = Vec::new();
+    for (effect, joint) in wanted {
+        let at = joint.unwrap_or(0);
+        let scale = motion.scale(at);
+        for begin in 0..PARTS {
+            for length in LENGTHS.into_iter().filter(|length| begin + length <= PARTS) {
+                let window = [part * begin as f64, part * (begin + length) as f64, period];
+                let mut shape: Vec<f64> = effect
+                    .coordinates
+                    .iter()
+                    .map(|coordinate| (coordinate.usual)(&scale))
+                    .collect();
+                let from = shape.len() - window.len();
+                shape[from..].copy_from_slice(&window);
+                let columns = columns_at(effect, records, at, &shape);
+                let choices = PARTS * LENGTHS.len();
+                pieces.push(Piece { owner: Owner::Effect(effect), joint, shape, choices, columns });
+            }
+        }
+    }
+    pieces
+}
+
+impl Search<'_, '_> {
+    /// Moves the ends of windows as long as it helps.
+    pub(super) fn sharpen(&mut self, set: &[Chosen]) {
+        let columns = self.columns(set);
+        let all: Vec<usize> = (0..columns.len()).collect();
+        for piece in set.iter().flat_map(|of| of.pieces.clone()) {
+            let placed = &self.table.pieces[piece];
+            let Owner::Effect(effect) = placed.owner else { continue };
+            let has_window = GATED.contains(&effect.id);
+            let count = placed.shape.len();
+            if !has_window || placed.shape[count - 2] <= placed.shape[count - 3] {
+                continue;
+            }
+            let joint = placed.joint.unwrap_or(0);
+            let mut best = placed.shape.clone();
+            let mut most = self.table.evidence_of(self.error, &columns).gain(&all);
+            let lasts = self
+                .records
+                .first()
+                .map_or(0.0, |record| record.motion.step() * record.motion.len() as f64);
+            let part = lasts / PARTS as f64;
+            let mut reach = 0.5;
+            while reach > FINEST {
+                let mut improved = false;
+                for end in [count - 3, count - 2] {
+                    for step in [-reach * part, reach * part] {
+                        let mut shape = best.clone();
+                        shape[end] += step;
+                        if shape[count - 2] - shape[count - 3] < FINEST * part {
+                            continue;
+                        }
+                        self.reshape(piece, effect, joint, &shape);
+                        let gain = self.table.evidence_of(self.error, &columns).gain(&all);
+                        if gain > most {
+                            (most, best, improved) = (gain, shape, true);
+                        }
+                    }
+                }
+                if !improved {
+                    reach *= 0.5;
+                }
+            }
+            self.reshape(piece, effect, joint, &best);
+        }
+    }
+
+    fn reshape(&mut self, piece: usize, effect: &'static Effect, joint: usize, shape: &[f64]) {
+        let placed = &self.table.pieces[piece];
+        let made = Piece {
+            owner: placed.owner,
+            joint: placed.joint,
+            shape: shape.to_vec(),
+            choices: placed.choices,
+            columns: columns_at(effect, self.records, joint, shape),
+        };
+        self.table.replace(piece, &made, self.records);
+        let columns: Vec<usize> = self.table.pieces[piece].columns.clone().collect();
+        self.table.through(self.records, &self.channels, &columns);
+    }
+}

@@ -1,0 +1,181 @@
+//! How large the gap is in data that took no part, before and after.
+
+use crate::dynamics::Load;
+use crate::effects::{Motion, of_the_whole_motion};
+use crate::robot::Model;
+
+use super::record::{Record, RecordKind};
+
+/// Blocks into which a log is cut for intervals.
+const BLOCKS: usize = 20;
+/// Draws of blocks.
+const DRAWS: usize = 400;
+/// Ends of a 95 % interval.
+const ENDS: [f64; 2] = [0.025, 0.975];
+
+/// Rms torques of a joint that a model misses, less the noise \[Nm\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointGap {
+    /// Of the measurement's noise.
+    pub noise: f64,
+    /// Of the measured torque itself.
+    pub torque: f64,
+    /// Missed by the nominal model.
+    pub model: f64,
+    /// By the model with other parameters.
+    pub refit: f64,
+    /// By that with the effects.
+    pub refit_plus_effect: f64,
+}
+
+/// A share with its 95 % interval \[1\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Interval {
+    /// Its value.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// The gap, joint by joint, and how far it shrinks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shrink {
+    /// By joint.
+    pub joints: Vec<JointGap>,
+    /// Of refit and effects.
+    pub total: Interval,
+    /// Of the effects alone.
+    pub by_effect: Interval,
+}
+
+/// Sums of squares of a joint in a block: measured, missed by each of three models; noise; rows.
+type Sums = [f64; 6];
+
+/// The gap of three models in some records.
+#[must_use]
+pub fn shrink(records: &[Record<'_>], models: [&Model; 3]) -> Shrink {
+    let n = models[0].dof;
+    let mut blocks: Vec<Vec<Sums>> = Vec::new();
+    for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
+        let predicted = models.map(|model| predicted(record, model));
+        let rows = record.motion.len();
+        for block in 0..BLOCKS {
+            let (from, to) = (rows * block / BLOCKS, rows * (block + 1) / BLOCKS);
+            blocks.push((0..n).map(|joint| sums(record, &predicted, joint, from..to)).collect());
+        }
+    }
+    let all: Vec<usize> = (0..blocks.len()).collect();
+    let joints = pooled(&blocks, &all, n);
+    let of = |joints: &[JointGap]| [shrunk(joints, |of| of.model), shrunk(joints, |of| of.refit)];
+    let [total, by_effect] = of(&joints);
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut drawn: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+    for _ in 0..DRAWS {
+        let draw: Vec<usize> =
+            (0..blocks.len()).map(|_| random.usize(0..blocks.len().max(1))).collect();
+        for (to, value) in drawn.iter_mut().zip(of(&pooled(&blocks, &draw, n))) {
+            to.push(value);
+        }
+    }
+    let [total, by_effect] = [total, by_effect]
+        .into_iter()
+        .zip(drawn)
+        .map(|(value, drawn)| interval(value, drawn))
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap_or_default();
+    Shrink { joints, total, by_effect }
+}
+
+/// The torques that a log of the record's motion would show by a model.
+#[must_use]
+pub fn predicted(record: &Record<'_>, model: &Model) -> Vec<Vec<f64>> {
+    let of = &record.motion;
+    let rest: Vec<f64> = vec![0.0; model.dof];
+    let series = [of.q.clone(), of.qd.clone(), of.qdd.clone()];
+    let mut sum = vec![vec![0.0; of.len()]; model.dof];
+    // Only warming up differs from repetition to repetition.
+    let at = |later: f64| {
+        let t = of.t.iter().map(|t| t + later).collect();
+        let motion = Motion::new(model, t, series.clone(), &rest, of.closed);
+        let mut torques = motion.torques_of(model, &Load::none());
+        for (to, added) in torques.iter_mut().zip(of_the_whole_motion(&motion)) {
+            to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
+        }
+        torques
+    };
+    let warms = model.effects.iter().any(|of| of.id == "warm_up");
+    let times = if warms { record.times.clone() } else { vec![(0.0, 1.0)] };
+    for (later, weight) in times {
+        for (sum, torque) in sum.iter_mut().zip(at(later)) {
+            sum.iter_mut().zip(torque).for_each(|(sum, x)| *sum += weight * x);
+        }
+    }
+    sum
+}
+
+fn sums(
+    record: &Record<'_>,
+    predicted: &[Vec<Vec<f64>>; 3],
+    joint: usize,
+    rows: std::ops::Range<usize>,
+) -> Sums {
+    let mut sums = [0.0; 6];
+    for row in rows {
+        if record.window[joint][row] == 0.0 {
+            continue;
+        }
+        let measured = record.measured[joint][row];
+        sums[0] += measured * measured;
+        for (k, of) in predicted.iter().enumerate() {
+            sums[1 + k] += (measured - of[joint][row]).powi(2);
+        }
+        sums[4] += record.variance[joint];
+        sums[5] += 1.0;
+    }
+    sums
+}
+
+fn pooled(blocks: &[Vec<Sums>], chosen: &[usize], n: usize) -> Vec<JointGap> {
+    (0..n)
+        .map(|joint| {
+            let mut sum = [0.0; 6];
+            for block in chosen {
+                for (sum, x) in sum.iter_mut().zip(blocks[*block][joint]) {
+                    *sum += x;
+                }
+            }
+            let rows = sum[5].max(1.0);
+            let rms = |k: usize| ((sum[k] - sum[4]) / rows).max(0.0).sqrt();
+            JointGap {
+                noise: (sum[4] / rows).sqrt(),
+                torque: (sum[0] / rows).sqrt(),
+                model: rms(1),
+                refit: rms(2),
+                refit_plus_effect: rms(3),
+            }
+        })
+        .collect()
+}
+
+/// By how much the gap is smaller after than before; joints count alike after division by their
+/// torques.
+fn shrunk(joints: &[JointGap], before: impl Fn(&JointGap) -> f64) -> f64 {
+    let (mut first, mut last) = (0.0, 0.0);
+    for joint in joints.iter().filter(|joint| joint.torque > 0.0) {
+        first += (before(joint) / joint.torque).powi(2);
+        last += (joint.refit_plus_effect / joint.torque).powi(2);
+    }
+    if first > 0.0 { 1.0 - (last / first).sqrt() } else { 0.0 }
+}
+
+fn interval(value: f64, mut drawn: Vec<f64>) -> Interval {
+    drawn.sort_by(f64::total_cmp);
+    let end = |share: f64| {
+        let at = (share * (drawn.len().max(1) - 1) as f64).round() as usize;
+        drawn.get(at).copied().unwrap_or(value)
+    };
+    Interval { value, low: end(ENDS[0]).min(value), high: end(ENDS[1]).max(value) }
+}

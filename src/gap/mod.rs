@@ -1,0 +1,41 @@
+//! Where model and measurement part, and which effect it is.
+//!
+//! [`Record`] is a log ready to be compared, [`Table`] all that may explain the difference,
+//! [`Evidence`] how well some of it does.
+
+mod channel;
+mod column;
+mod diagnose;
+mod diagnosis;
+mod evidence;
+mod gated;
+mod generic;
+mod heldout;
+mod hypothesis;
+mod improved;
+mod nuisance;
+mod polish;
+mod power;
+mod record;
+mod ripples;
+mod rows;
+mod runs;
+mod search;
+mod spectrum;
+mod table;
+
+pub use channel::{Channel, Late};
+pub use column::{Column, Owner, Piece};
+pub use diagnose::{Settings, diagnose};
+pub use diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
+pub use evidence::{Evidence, Given};
+pub use heldout::{Interval, JointGap, Shrink, predicted, shrink};
+pub use hypothesis::{Family, families};
+pub use improved::Improved;
+pub use nuisance::Trust;
+pub use polish::{Fitted, Polished};
+pub use power::{PowerEffect, PowerFound, Powers, diagnose_power};
+pub use record::{Record, RecordKind};
+pub use runs::{Run, RunEffect, RunFound, diagnose_runs};
+pub use search::{Chosen, Found, Search};
+pub use table::{Placed, Table};

@@ -1,0 +1,264 @@
+//! Parameters of the model that are not exactly known: they may explain what they can, within
+//! what they are trusted.
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+use crate::dynamics::{JOINT, Parameters, RIGID, Regressor, link_parameters, write_rows};
+use crate::effects::Motion;
+use crate::robot::Link;
+
+use super::record::{Record, RecordKind};
+
+/// How much the parameters of the model are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trust {
+    /// Identified on this robot.
+    Commissioned,
+    /// From drawings.
+    Cad,
+    /// Not at all.
+    Unknown,
+}
+
+/// Standard deviations of the parameters.
+struct Spread {
+    /// Of a mass, relative.
+    mass: f64,
+    /// Of a centre of mass \[m\].
+    com: f64,
+    /// Of inertias of links and rotors, relative.
+    inertia: f64,
+    /// Of friction, relative.
+    friction: f64,
+    /// Of an offset, of the largest torque.
+    offset: f64,
+}
+
+impl Trust {
+    fn spread(self) -> Spread {
+        match self {
+            Trust::Commissioned => {
+                Spread { mass: 0.01, com: 0.003, inertia: 0.03, friction: 0.05, offset: 0.002 }
+            }
+            Trust::Cad => {
+                Spread { mass: 0.1, com: 0.015, inertia: 0.2, friction: 0.25, offset: 0.005 }
+            }
+            Trust::Unknown => {
+                Spread { mass: 10.0, com: 1.0, inertia: 20.0, friction: 20.0, offset: 2.0 }
+            }
+        }
+    }
+}
+
+/// Displacement of a centre of mass over which differences are taken \[m\].
+const SMALL: f64 = 1e-6;
+/// Names of the parameters of a link and of a joint.
+const LINK: [&str; RIGID] = [
+    "mass",
+    "com_x",
+    "com_y",
+    "com_z",
+    "inertia_xx",
+    "inertia_yy",
+    "inertia_zz",
+    "inertia_xy",
+    "inertia_xz",
+    "inertia_yz",
+];
+const OF_JOINT: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"];
+
+/// Stiction that any robot may have beyond its model, of Coulomb friction, and the speed at
+/// which 1/e of it is left \[rad/s\].
+const STICTION: f64 = 0.012;
+const SLOW: f64 = 0.08;
+/// Smooth torques that no model has: powers of position and of speed.
+const POWERS: [usize; 5] = [2, 3, 4, 5, 6];
+/// Of them, of the torque, where the model's error is no larger, and of this where it is.
+const SMOOTH: f64 = 0.004;
+const OF_ERROR: f64 = 0.7;
+/// Least error that smooth torques have.
+pub(super) fn smooth_error(error: f64) -> f64 {
+    error.max(SMOOTH / OF_ERROR)
+}
+
+/// Change of friction from repetition to repetition, of itself.
+const VARIES: f64 = 0.004;
+
+/// What a change of each parameter by one standard deviation adds to the torques: of each
+/// parameter, of each joint, the series; behind the parameters what no model has.
+pub(super) struct Nuisance {
+    /// Names, such as `link 3 mass`.
+    pub(super) names: Vec<String>,
+    /// The size of one deviation in the parameter's unit.
+    pub(super) deviations: Vec<f64>,
+    /// Changes of the standard parameters for one deviation of each of the model's.
+    pub(super) mixing: DMatrix<f64>,
+    /// Columns from here on are in shares of the model's error.
+    pub(super) errors_from: usize,
+    /// By column, joints that it reaches with their rows \[Nm\].
+    pub(super) series: Vec<Vec<(usize, Vec<f64>)>>,
+}
+
+/// The parameters of a motion's model.
+pub(super) fn nuisance(record: &Record<'_>, trust: Trust) -> Nuisance {
+    let motion = &record.motion;
+    let model = motion.model;
+    let n = model.dof;
+    let spread = trust.spread();
+    let count = Parameters::WithJoints.count(n);
+    let mut names = Vec::new();
+    let mut deviations = Vec::new();
+    // Parameters of the regressor for a change of one deviation.
+    let mut mixing = DMatrix::zeros(count, count);
+    for (number, link) in model.links.iter().enumerate() {
+        for (k, (change, size)) in of_link(link, &spread).into_iter().enumerate() {
+            let column = RIGID * number + k;
+            for (row, value) in change.into_iter().enumerate() {
+                mixing[(RIGID * number + row, column)] = value;
+            }
+            names.push(format!("link {} {}", number + 1, LINK[k]));
+            deviations.push(size);
+        }
+    }
+    for joint in 0..n {
+        let scale = motion.scale(joint);
+        let inertia = spread.inertia * scale.rotor;
+        let sizes = [
+            inertia,
+            spread.friction * scale.viscous,
+            spread.friction * scale.coulomb,
+            spread.offset * scale.torque[1],
+        ];
+        for (k, size) in sizes.into_iter().enumerate() {
+            let column = RIGID * n + JOINT * joint + k;
+            mixing[(column, column)] = size;
+            names.push(format!("joint {} {}", joint + 1, OF_JOINT[k]));
+            deviations.push(size);
+        }
+    }
+    let series = match record.kind {
+        RecordKind::Mean => of_parameters(motion, &mixing),
+        // No parameter changes from repetition to repetition.
+        RecordKind::Drift => vec![Vec::new(); count],
+    };
+    let mut of = Nuisance { names, deviations, mixing, errors_from: 0, series };
+    without_model(record, &mut of);
+    of
+}
+
+/// What one deviation of each parameter adds.
+fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, Vec<f64>)>> {
+    let model = motion.model;
+    let (n, rows, count) = (model.dof, motion.len(), mixing.ncols());
+    let mut scratch = Regressor::new();
+    let mut regressor = DMatrix::zeros(n, count);
+    let mut series: Vec<Vec<(usize, Vec<f64>)>> =
+        (0..count).map(|_| (0..n).map(|joint| (joint, vec![0.0; rows])).collect()).collect();
+    for row in 0..rows {
+        let [mut q, qd, qdd] = motion.state(row);
+        for (q, offset) in q.iter_mut().zip(&model.sensors.position_offset) {
+            *q += offset;
+        }
+        let state = [&q[..n], &qd[..n], &qdd[..n]];
+        write_rows(model, &mut scratch, state, Parameters::WithJoints, &mut regressor, 0);
+        for joint in 0..n {
+            // A joint that counts as at rest has no sense.
+            regressor[(joint, RIGID * n + JOINT * joint + 2)] = motion.senses[joint][row];
+        }
+        let changed = &regressor * mixing;
+        for (parameter, of) in series.iter_mut().enumerate() {
+            for (joint, of) in of.iter_mut() {
+                of[row] = changed[(*joint, parameter)];
+            }
+        }
+    }
+    for of in &mut series {
+        of.retain(|(_, series)| series.iter().any(|x| *x != 0.0));
+    }
+    series
+}
+
+/// What no model has: a little friction at low speed, smooth functions of position and speed;
+/// friction that changes from repetition to repetition.
+fn without_model(record: &Record<'_>, of: &mut Nuisance) {
+    let motion = &record.motion;
+    let n = motion.model.dof;
+    let is_mean = record.kind == RecordKind::Mean;
+    let push = |of: &mut Nuisance, name: &str, joint: usize, there: bool, series: Vec<f64>| {
+        of.names.push(format!("joint {} {name}", joint + 1));
+        of.deviations.push(1.0);
+        of.series.push(if there { vec![(joint, series)] } else { Vec::new() });
+    };
+    for joint in 0..n {
+        let scale = motion.scale(joint);
+        let senses = &motion.senses[joint];
+        let rates = &motion.rates[joint];
+        let slow = |(sense, rate): (&f64, &f64)| {
+            STICTION * scale.coulomb * sense * (-rate.abs() / SLOW).exp()
+        };
+        let series = senses.iter().zip(rates).map(slow).collect();
+        push(of, "at low speed", joint, is_mean, series);
+        for (name, size, series) in
+            [("dry", scale.coulomb, senses), ("viscous", scale.viscous, rates)]
+        {
+            let series = series.iter().map(|x| VARIES * size * x).collect();
+            push(of, &format!("{name} friction changes"), joint, !is_mean, series);
+        }
+    }
+    of.errors_from = of.series.len();
+    for joint in 0..n {
+        let size = OF_ERROR * motion.scale(joint).torque[0];
+        for x in [&motion.q[joint], &motion.rates[joint]] {
+            let low = x.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let (middle, half) = (f64::midpoint(low, high), (0.5 * (high - low)).max(1e-9));
+            for power in POWERS {
+                // Chebyshev polynomials: none is like another one.
+                let wave = |x: &f64| {
+                    let angle = ((x - middle) / half).clamp(-1.0, 1.0).acos();
+                    size * (power as f64 * angle).cos()
+                };
+                push(of, "smooth", joint, is_mean, x.iter().map(wave).collect());
+            }
+        }
+    }
+}
+
+/// Changes of the ten parameters of a link for one deviation of mass, centre and inertia.
+fn of_link(link: &Link, spread: &Spread) -> Vec<([f64; RIGID], f64)> {
+    let before = link_parameters(link);
+    let moment = (link.inertia.trace() / 3.0).abs();
+    let mut all = Vec::with_capacity(RIGID);
+    let push = |all: &mut Vec<([f64; RIGID], f64)>, changed: Link, size: f64| {
+        let after = link_parameters(&changed);
+        let mut change = [0.0; RIGID];
+        for (to, (after, before)) in change.iter_mut().zip(after.iter().zip(&before)) {
+            *to = after - before;
+        }
+        all.push((change, size));
+    };
+    let mass = spread.mass * link.mass;
+    push(&mut all, Link { mass: link.mass + mass, ..link.clone() }, mass);
+    for axis in 0..3 {
+        let changed = Link { com: link.com + Vector3::ith(axis, SMALL), ..link.clone() };
+        push(&mut all, changed, SMALL);
+    }
+    // To first order: a large deviation is no displaced body.
+    for (change, size) in &mut all[1..] {
+        for x in change.iter_mut() {
+            *x *= spread.com / SMALL;
+        }
+        *size = spread.com;
+    }
+    for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+        let own = link.inertia[(row, column)].abs();
+        let size = spread.inertia * if row == column { own } else { moment };
+        let mut inertia: Matrix3<f64> = link.inertia;
+        inertia[(row, column)] += size;
+        if row != column {
+            inertia[(column, row)] += size;
+        }
+        push(&mut all, Link { inertia, ..link.clone() }, size);
+    }
+    all
+}

@@ -1,0 +1,237 @@
+//! From the nearest of the tried shapes to the best one, with deviations.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::effects::{Effect, Role};
+
+use super::column::{Owner, Piece, columns_at};
+use super::record::Record;
+use super::search::{Chosen, Search};
+use super::table::Placed;
+
+/// Rounds of new tangents.
+const ROUNDS: usize = 6;
+/// Deviations that a shape may still move.
+const STAYS: f64 = 0.1;
+/// Relative change of a shape in one round at most.
+const STEP: f64 = 0.5;
+/// A shape may be this many times beyond the tried values.
+const BEYOND: f64 = 2.0;
+/// Step over which parameters are differentiated, in deviations.
+const DIFFERENCE: f64 = 1e-3;
+
+/// An effect at a joint, with its parameters.
+#[derive(Clone)]
+pub struct Fitted {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Joint, from 0; `None` of the robot.
+    pub joint: Option<usize>,
+    /// Its coordinates.
+    pub coordinates: Vec<f64>,
+    /// Its parameters, as they are written.
+    pub parameters: Vec<f64>,
+    /// Their standard deviations.
+    pub deviations: Vec<f64>,
+    /// The largest of its linear coordinates over their deviation; infinite where the effect
+    /// has none.
+    pub significance: f64,
+}
+
+/// All effects that were found, and the parameters of the model with them.
+pub struct Polished {
+    /// Effects joint by joint.
+    pub effects: Vec<Fitted>,
+    /// Changes of the model's parameters, in deviations.
+    pub parameters: DVector<f64>,
+    /// What is left, 1 where it is noise.
+    pub misfit: f64,
+}
+
+impl Search<'_, '_> {
+    /// Improves the shapes of a set by new tangents until they stay; the table has them then.
+    pub fn polish(&mut self, set: &[Chosen]) -> Option<Polished> {
+        let pieces: Vec<usize> = set.iter().flat_map(|of| of.pieces.clone()).collect();
+        let columns = self.columns(set);
+        let mut round = 0;
+        loop {
+            round += 1;
+            for number in &pieces {
+                let placed = &self.table.pieces[*number];
+                let is_fixed = matches!(placed.owner, Owner::Generic(_));
+                if !is_fixed {
+                    let piece = remade(placed, self.records);
+                    self.table.replace(*number, &piece, self.records);
+                }
+            }
+            self.table.through(self.records, &self.channels, &columns);
+            let evidence = self.table.evidence_of(self.error, &columns);
+            let all: Vec<usize> = (0..columns.len()).collect();
+            let estimate = evidence.estimate(&all)?;
+            let mut fitted = Vec::new();
+            let mut moved = 0.0_f64;
+            for number in &pieces {
+                let placed = &mut self.table.pieces[*number];
+                let Owner::Effect(effect) = placed.owner else { continue };
+                let at: Vec<usize> =
+                    placed.columns.clone().filter_map(|k| columns.binary_search(&k).ok()).collect();
+                let mean = DVector::from_iterator(at.len(), at.iter().map(|k| estimate.mean[*k]));
+                let covariance = DMatrix::from_fn(at.len(), at.len(), |i, k| {
+                    estimate.covariance[(at[i], at[k])]
+                });
+                let (coordinates, jacobian) = coordinates_of(effect, &placed.shape, &mean);
+                let spread = &jacobian * &covariance * jacobian.transpose();
+                fitted.push(of(effect, placed.joint, &coordinates, &spread));
+                for (k, coordinate) in effect.coordinates.iter().enumerate() {
+                    if !matches!(coordinate.role, Role::Shape(_)) {
+                        continue;
+                    }
+                    let before = placed.shape[k];
+                    let most = STEP * before.abs();
+                    let mut next = before + (coordinates[k] - before).clamp(-most, most);
+                    if let Some([low, high]) = range(effect, self.records, placed.joint, k) {
+                        next = next.clamp(low, high);
+                    }
+                    moved = moved.max((next - before).abs() / spread[(k, k)].sqrt().max(1e-12));
+                    placed.shape[k] = next;
+                }
+            }
+            if round < ROUNDS && moved > STAYS {
+                continue;
+            }
+            let gained = evidence.gain(&all);
+            return Some(Polished {
+                effects: fitted,
+                parameters: evidence.parameters(&all, &estimate.mean),
+                misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
+            });
+        }
+    }
+}
+
+/// What lies within the tried values of a shape, and a little beyond.
+fn range(
+    effect: &Effect,
+    records: &[Record<'_>],
+    joint: Option<usize>,
+    k: usize,
+) -> Option<[f64; 2]> {
+    let scale = records.first()?.motion.scale(joint.unwrap_or(0));
+    let Role::Shape(tried) = effect.coordinates[k].role else { return None };
+    let tried = tried(&scale);
+    let (low, high) = (tried.first()?, tried.last()?);
+    let beyond = |x: f64, factor: f64| if x > 0.0 { x * factor } else { x / factor };
+    Some([beyond(*low, 1.0 / BEYOND), beyond(*high, BEYOND)])
+}
+
+/// The piece at its shape.
+fn remade(placed: &Placed, records: &[Record<'_>]) -> Piece {
+    let columns = match placed.owner {
+        Owner::Effect(effect) => columns_at(
+            effect,
+            records,
+            placed.joint.unwrap_or_else(|| of_robot(effect, records)),
+            &placed.shape,
+        ),
+        Owner::Generic(id) => super::generic::named(id, records, placed.joint.unwrap_or(0)),
+    };
+    Piece {
+        owner: placed.owner,
+        joint: placed.joint,
+        shape: placed.shape.clone(),
+        choices: placed.choices,
+        columns,
+    }
+}
+
+/// The joint that stands for the robot.
+fn of_robot(effect: &Effect, records: &[Record<'_>]) -> usize {
+    let dof = records.first().map_or(0, |record| record.motion.model.dof);
+    (effect.joints)(dof).first().copied().unwrap_or(0)
+}
+
+/// Coordinates of the columns' factors, and how they change with these.
+fn coordinates_of(
+    effect: &Effect,
+    shape: &[f64],
+    factors: &DVector<f64>,
+) -> (Vec<f64>, DMatrix<f64>) {
+    let count = effect.coordinates.len();
+    let of = |factors: &DVector<f64>| -> Vec<f64> {
+        let mut coordinates = shape.to_vec();
+        let shapes: Vec<usize> =
+            (0..count).filter(|k| matches!(effect.coordinates[*k].role, Role::Shape(_))).collect();
+        let linear: Vec<usize> =
+            (0..count).filter(|k| matches!(effect.coordinates[*k].role, Role::Linear)).collect();
+        let width = 1 + shapes.len();
+        // What the shape does by itself comes first, where it does.
+        let blocks = factors.len() / width;
+        let alone = blocks - linear.len();
+        // It tells the shape, else the largest of the linear coordinates.
+        let strongest = if alone > 0 {
+            0
+        } else {
+            (0..blocks)
+                .max_by(|a, b| factors[a * width].abs().total_cmp(&factors[b * width].abs()))
+                .unwrap_or(0)
+        };
+        for (place, k) in linear.iter().enumerate() {
+            coordinates[*k] = shape[*k] * factors[(alone + place) * width];
+        }
+        for (place, k) in shapes.iter().enumerate() {
+            let amplitude = factors[strongest * width];
+            let tangent = factors[strongest * width + 1 + place];
+            if amplitude != 0.0 {
+                coordinates[*k] = shape[*k] + tangent / amplitude;
+            }
+        }
+        coordinates
+    };
+    let here = of(factors);
+    let mut jacobian = DMatrix::zeros(count, factors.len());
+    for column in 0..factors.len() {
+        let mut next = factors.clone();
+        let step = DIFFERENCE * next[column].abs().max(DIFFERENCE);
+        next[column] += step;
+        for (row, (a, b)) in of(&next).iter().zip(&here).enumerate() {
+            jacobian[(row, column)] = (a - b) / step;
+        }
+    }
+    (here, jacobian)
+}
+
+/// Parameters of coordinates with their deviations.
+fn of(
+    effect: &'static Effect,
+    joint: Option<usize>,
+    coordinates: &[f64],
+    spread: &DMatrix<f64>,
+) -> Fitted {
+    let parameters = effect.parameters_of(coordinates);
+    let mut jacobian = DMatrix::zeros(parameters.len(), coordinates.len());
+    for column in 0..coordinates.len() {
+        let mut next = coordinates.to_vec();
+        let step = (DIFFERENCE * spread[(column, column)].sqrt()).max(1e-12);
+        next[column] += step;
+        for (row, (a, b)) in effect.parameters_of(&next).iter().zip(&parameters).enumerate() {
+            jacobian[(row, column)] = (a - b) / step;
+        }
+    }
+    let covariance = &jacobian * spread * jacobian.transpose();
+    let significance = effect
+        .coordinates
+        .iter()
+        .enumerate()
+        .filter(|(_, coordinate)| matches!(coordinate.role, Role::Linear))
+        .map(|(k, _)| coordinates[k].abs() / spread[(k, k)].sqrt().max(1e-300))
+        .fold(None, |most: Option<f64>, x| Some(most.map_or(x, |most| most.max(x))))
+        .unwrap_or(f64::INFINITY);
+    Fitted {
+        effect,
+        joint,
+        coordinates: coordinates.to_vec(),
+        parameters,
+        deviations: covariance.diagonal().iter().map(|x| x.max(0.0).sqrt()).collect(),
+        significance,
+    }
+}

@@ -1,0 +1,249 @@
+//! A log ready to be compared with the model.
+
+use crate::effects::Motion;
+use crate::identify::{Samples, Source};
+use crate::robot::Model;
+
+use super::spectrum::Spectrum;
+
+/// Rate below which a joint counts as at rest \[rad/s\]: its friction has no sense.
+pub(super) const REST: f64 = 0.02;
+/// Neighbours over which the power of noise is averaged.
+const SMOOTHED: usize = 8;
+/// The same of the model's torque.
+const OF_MODEL: usize = 4;
+/// Share of the sampling rate up to which repetitions are compared.
+const BAND: f64 = 0.45;
+/// Part of an open log at each end that is faded in and out.
+const FADED: f64 = 0.05;
+/// Repetitions from which on their drift is looked at.
+const TO_DRIFT: usize = 4;
+/// Power of the model's torque that is there at all frequencies, of its mean power.
+const FLOOR: f64 = 1e-4;
+
+/// What a record is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordKind {
+    /// The mean of repetitions, or a log that does not repeat.
+    Mean,
+    /// How repetitions drift: their weighted sum, the weights a line about 0.
+    Drift,
+}
+
+/// Mean torques of a motion, how well they are known, and what the model says.
+pub struct Record<'a> {
+    /// What it is of.
+    pub kind: RecordKind,
+    /// When repetitions began, by the clock of all logs \[s\], and their weights in the record.
+    /// The motion's own time begins at 0.
+    pub times: Vec<(f64, f64)>,
+    /// The motion and the model's torques.
+    pub motion: Motion<'a>,
+    /// Measured torques by joint \[Nm\].
+    pub measured: Vec<Vec<f64>>,
+    /// Repetitions that were averaged.
+    pub repetitions: usize,
+    /// Share of each instant, by joint: 0 where it rests.
+    pub(super) window: Vec<Vec<f64>>,
+    pub(super) spectrum: Spectrum,
+    /// Variance of the noise of each instant, by joint \[N²m²\].
+    pub variance: Vec<f64>,
+    /// Variance of the noise in the rows of each frequency, by joint \[N²m²\].
+    pub(super) noise: Vec<Vec<f64>>,
+    /// Power of the model's torque there.
+    pub(super) power: Vec<Vec<f64>>,
+}
+
+impl<'a> Record<'a> {
+    /// The records of a log: its mean and its drift where it repeats, else one for each piece
+    /// without a gap.
+    #[must_use]
+    pub fn all(model: &'a Model, samples: &Samples) -> Vec<Record<'a>> {
+        let (closed, period) = match samples.source {
+            Source::Periodic { period, .. } => (true, period),
+            Source::Filtered { .. } | Source::Logged => (false, 0.0),
+        };
+        let highest = match samples.source {
+            Source::Filtered { cutoff } => cutoff,
+            Source::Periodic { .. } | Source::Logged => BAND / samples.step,
+        };
+        let rest: Vec<f64> = samples.rest.iter().map(|rest| rest.max(REST)).collect();
+        let mut records = Vec::new();
+        for block in &samples.blocks {
+            let series = [block.q.clone(), block.qd.clone(), block.qdd.clone()];
+            let begins = block.t.first().copied().unwrap_or(0.0);
+            let t = block.t.iter().map(|t| t - begins).collect();
+            let motion = Motion::new(model, t, series, &rest, closed);
+            let windows = Windows::new(&motion, &rest, highest);
+            let spread = samples.repetitions.as_deref();
+            records.push(windows.mean(motion.clone(), block.tau.clone(), spread, [begins, period]));
+            if let Some(spread) = spread
+                && spread.first().is_some_and(|of| of.len() >= TO_DRIFT)
+            {
+                records.push(windows.drift(motion, spread, [begins, period]));
+            }
+        }
+        records
+    }
+
+    /// Rows of a series of a joint.
+    pub(super) fn rows_of(&self, joint: usize, x: &[f64]) -> Vec<f64> {
+        self.spectrum.of(x.iter().zip(&self.window[joint]).map(|(x, w)| x * w))
+    }
+}
+
+/// What is used of a motion.
+struct Windows {
+    window: Vec<Vec<f64>>,
+    spectrum: Spectrum,
+}
+
+impl Windows {
+    fn new(motion: &Motion<'_>, rest: &[f64], highest: f64) -> Windows {
+        let fade: Vec<f64> = (0..motion.len()).map(|row| faded(row, motion)).collect();
+        let of = |joint: usize| -> Vec<f64> {
+            let moves = |row: usize| {
+                motion.qd[joint][row].abs() > rest[joint] && senses_known(motion, joint, row)
+            };
+            (0..motion.len()).map(|row| if moves(row) { fade[row] } else { 0.0 }).collect()
+        };
+        let window = (0..motion.model.dof).map(of).collect();
+        Windows { window, spectrum: Spectrum::new(motion.len(), motion.step(), highest) }
+    }
+
+    fn rows(&self, joint: usize, x: &[f64]) -> Vec<f64> {
+        self.spectrum.of(x.iter().zip(&self.window[joint]).map(|(x, w)| x * w))
+    }
+
+    /// Variances of one repetition's noise in the rows of each frequency, and at an instant:
+    /// of what is neither the mean nor a drift of the repetitions.
+    fn noise(&self, joint: usize, spread: &[Vec<f64>]) -> (Vec<f64>, f64) {
+        let count = spread.len();
+        let line = line(count);
+        let rows = spread.first().map_or(0, Vec::len);
+        let drift: Vec<f64> = (0..rows)
+            .map(|k| spread.iter().zip(&line).map(|(of, w)| w * of[k]).sum::<f64>())
+            .collect();
+        let left = (count - if count > 2 { 2 } else { 1 }).max(1) as f64;
+        let mut sum = vec![0.0; self.spectrum.bins];
+        let mut variance = 0.0;
+        for (of, weight) in spread.iter().zip(&line) {
+            let weight = if count > 2 { *weight } else { 0.0 };
+            let rest: Vec<f64> = of.iter().zip(&drift).map(|(x, d)| x - weight * d).collect();
+            variance += rest.iter().map(|x| x * x).sum::<f64>() / rows.max(1) as f64;
+            let power = self.spectrum.smoothed(&self.rows(joint, &rest), SMOOTHED);
+            sum.iter_mut().zip(power).for_each(|(sum, power)| *sum += power);
+        }
+        (sum.iter().map(|sum| sum / left).collect(), variance / left)
+    }
+
+    fn mean<'a>(
+        &self,
+        motion: Motion<'a>,
+        measured: Vec<Vec<f64>>,
+        spread: Option<&[Vec<Vec<f64>>]>,
+        [begins, period]: [f64; 2],
+    ) -> Record<'a> {
+        let repetitions = spread.and_then(<[_]>::first).map_or(1, Vec::len).max(1);
+        let share = 1.0 / repetitions as f64;
+        let mut noise = Vec::new();
+        let mut variance = Vec::new();
+        for joint in 0..motion.model.dof {
+            let (of, at) = match spread {
+                Some(all) if repetitions > 1 => self.noise(joint, &all[joint]),
+                _ => floor_of_noise(&self.spectrum, &measured[joint], &self.window[joint]),
+            };
+            noise.push(of.iter().map(|noise| noise * share).collect());
+            variance.push(at * share);
+        }
+        let power = (0..motion.model.dof)
+            .map(|joint| {
+                let tau = &motion.torque[joint];
+                let power = self.spectrum.smoothed(&self.rows(joint, tau), OF_MODEL);
+                let mean = tau.iter().map(|x| x * x).sum::<f64>() / tau.len().max(1) as f64;
+                power.iter().map(|power| power + FLOOR * mean).collect()
+            })
+            .collect();
+        Record {
+            kind: RecordKind::Mean,
+            times: (0..repetitions).map(|k| (begins + period * k as f64, share)).collect(),
+            motion,
+            measured,
+            repetitions,
+            window: self.window.clone(),
+            spectrum: self.spectrum.clone(),
+            variance,
+            noise,
+            power,
+        }
+    }
+
+    fn drift<'a>(
+        &self,
+        motion: Motion<'a>,
+        spread: &[Vec<Vec<f64>>],
+        [begins, period]: [f64; 2],
+    ) -> Record<'a> {
+        let repetitions = spread.first().map_or(0, Vec::len);
+        let line = line(repetitions);
+        let measured = spread
+            .iter()
+            .map(|of| {
+                let rows = of.first().map_or(0, Vec::len);
+                let at = |k: usize| of.iter().zip(&line).map(|(of, w)| w * of[k]).sum();
+                (0..rows).map(at).collect()
+            })
+            .collect();
+        let noise: Vec<(Vec<f64>, f64)> =
+            spread.iter().enumerate().map(|(joint, of)| self.noise(joint, of)).collect();
+        Record {
+            kind: RecordKind::Drift,
+            times: line.iter().enumerate().map(|(k, w)| (begins + period * k as f64, *w)).collect(),
+            motion,
+            measured,
+            repetitions,
+            window: self.window.clone(),
+            spectrum: self.spectrum.clone(),
+            power: noise.iter().map(|(of, _)| vec![0.0; of.len()]).collect(),
+            variance: noise.iter().map(|(_, at)| *at).collect(),
+            noise: noise.into_iter().map(|(of, _)| of).collect(),
+        }
+    }
+}
+
+/// Whether all motors whose friction a joint feels turn.
+fn senses_known(motion: &Motion<'_>, joint: usize, row: usize) -> bool {
+    let coupled = joint == 4 && motion.model.wrist.coupling != 0.0;
+    motion.senses[joint][row] != 0.0 && !(coupled && motion.senses[5][row] == 0.0)
+}
+
+/// Weights of a line about 0, squares of the sum 1.
+fn line(count: usize) -> Vec<f64> {
+    let middle = 0.5 * (count as f64 - 1.0);
+    let weights: Vec<f64> = (0..count).map(|k| k as f64 - middle).collect();
+    let norm = weights.iter().map(|w| w * w).sum::<f64>().sqrt().max(1e-12);
+    weights.iter().map(|w| w / norm).collect()
+}
+
+/// Ends of an open log fade in and out, so that they do not count as jumps.
+fn faded(row: usize, motion: &Motion<'_>) -> f64 {
+    if motion.closed {
+        return 1.0;
+    }
+    let n = motion.len();
+    let edge = (FADED * n as f64).max(1.0);
+    let near = row.min(n - 1 - row) as f64;
+    if near >= edge { 1.0 } else { 0.5 - 0.5 * (std::f64::consts::PI * near / edge).cos() }
+}
+
+/// White noise as the fastest changes show it; motion has none of them.
+fn floor_of_noise(spectrum: &Spectrum, tau: &[f64], window: &[f64]) -> (Vec<f64>, f64) {
+    // Fourth differences have 70 times the variance of white noise.
+    let differences = tau.windows(5).map(|x| x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4]);
+    let mut squares: Vec<f64> = differences.map(|x| x * x / 70.0).collect();
+    squares.sort_by(f64::total_cmp);
+    // The median of the squares of a normal deviate is 0.455 of its variance.
+    let variance = squares.get(squares.len() / 2).map_or(0.0, |x| x / 0.455);
+    let used = window.iter().map(|w| w * w).sum::<f64>() / window.len().max(1) as f64;
+    (vec![variance * used; spectrum.bins], variance)
+}

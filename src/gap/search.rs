@@ -1,0 +1,304 @@
+//! Which effects explain a difference.
+
+use rayon::prelude::*;
+
+use super::channel::{Channel, Late};
+use super::column::Owner;
+use super::evidence::{Evidence, Given};
+use super::hypothesis::{Family, families};
+use super::nuisance::Trust;
+use super::record::Record;
+use super::table::Table;
+
+/// What naming an effect costs, and each joint of it.
+const FAMILY: f64 = 3.0;
+const JOINT: f64 = 1.2;
+/// Effects, and what is left of them without what makes them special.
+const PLAINER: [(&str, &str); 5] = [
+    ("cable", "torque_offset"),
+    ("gravity_spring", "torque_offset"),
+    ("nonlinear_viscous", "friction_level"),
+    ("stribeck", "friction_level"),
+    ("gear_efficiency", "load_friction"),
+];
+/// What another effect has to bring.
+const WORTH: f64 = 3.0;
+/// Effects at most.
+const MOST: usize = 4;
+/// Effects of a quick search at most.
+const QUICK: usize = 2;
+
+/// A chosen family with its pieces.
+#[derive(Clone)]
+pub struct Chosen {
+    /// Number of the family.
+    pub family: usize,
+    /// Its pieces.
+    pub pieces: Vec<usize>,
+}
+
+/// Effects that were found.
+#[derive(Clone)]
+pub struct Found {
+    /// In the order in which they were found.
+    pub chosen: Vec<Chosen>,
+    /// Logarithm of the odds against no effect.
+    pub score: f64,
+}
+
+/// A search.
+pub struct Search<'a, 'm> {
+    /// The logs.
+    pub records: &'a [Record<'m>],
+    /// How much the model's parameters are believed.
+    pub trust: Trust,
+    /// Share of its torques to which the model is right.
+    pub error: f64,
+    /// What the torques of each joint go through.
+    pub(super) channels: Vec<Channel>,
+    /// What they go through as an effect, if it is one.
+    pub late: Option<Late>,
+    /// Ids that are not looked for.
+    pub banned: Vec<&'static str>,
+    /// What may explain the difference.
+    pub table: Table,
+    /// Its families.
+    pub families: Vec<Family>,
+    /// How well it does.
+    pub evidence: Evidence,
+}
+
+impl<'a, 'm> Search<'a, 'm> {
+    /// A search in a table of these records.
+    #[must_use]
+    pub fn new(
+        records: &'a [Record<'m>],
+        table: Table,
+        trust: Trust,
+        error: f64,
+    ) -> Search<'a, 'm> {
+        let evidence = table.evidence(error);
+        Search {
+            records,
+            trust,
+            error,
+            channels: vec![
+                Channel::default();
+                records.first().map_or(0, |record| record.motion.model.dof)
+            ],
+            late: None,
+            banned: Vec::new(),
+            families: families(&table),
+            table,
+            evidence,
+        }
+    }
+
+    pub(super) fn dof(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// Puts all that is computed behind channels.
+    pub(super) fn set_channels(&mut self, channels: &[Channel]) {
+        self.channels = channels.to_vec();
+        self.table.through_all(self.records, channels);
+        self.evidence = self.table.evidence(self.error);
+    }
+
+    /// Takes the model for right to this share of its torques.
+    pub(super) fn set_error(&mut self, error: f64) {
+        self.error = error;
+        self.evidence = self.table.evidence(error);
+    }
+
+    /// Takes the error of the model with which the measurement is most probable, effects that a
+    /// quick search finds being there; the logarithm of that probability.
+    pub fn choose_error(&mut self, errors: &[f64]) -> f64 {
+        let mut best: Option<(f64, f64)> = None;
+        for error in errors {
+            self.set_error(*error);
+            let total = self.evidence.null + self.quick().score;
+            if best.is_some_and(|(most, _)| total < most) {
+                // Beyond the most probable one it only gets worse.
+                break;
+            }
+            best = Some((total, *error));
+        }
+        let Some((total, error)) = best else { return f64::NEG_INFINITY };
+        self.set_error(error);
+        total
+    }
+
+    /// The best set of effects at the shapes that are tried.
+    fn quick(&self) -> Found {
+        let mut found = Found { chosen: Vec::new(), score: 0.0 };
+        while found.chosen.len() < QUICK {
+            match self.next(&found) {
+                Some(next) if next.score > found.score + WORTH => found = next,
+                _ => break,
+            }
+        }
+        found
+    }
+
+    /// The best set with one family more.
+    fn next(&self, found: &Found) -> Option<Found> {
+        let given = self.given(&found.chosen);
+        (0..self.families.len())
+            .into_par_iter()
+            .filter(|family| found.chosen.iter().all(|of| of.family != *family))
+            .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
+            .filter_map(|family| self.with(&given, &found.chosen, family))
+            .max_by(|a, b| a.score.total_cmp(&b.score))
+    }
+
+    /// The evidence when a set is there.
+    #[must_use]
+    pub fn given(&self, set: &[Chosen]) -> Given {
+        self.evidence.given(&self.columns(set))
+    }
+
+    /// The best set of effects, found one after another. Each is brought to its best shape
+    /// before the next one is looked for: what a coarse shape leaves is no other effect.
+    pub fn run(&mut self) -> Found {
+        self.run_from(Found { chosen: Vec::new(), score: 0.0 })
+    }
+
+    /// The best set that one leads to.
+    pub fn run_from(&mut self, mut found: Found) -> Found {
+        while found.chosen.len() < MOST {
+            match self.next(&found) {
+                Some(next) if next.score > found.score + WORTH => found = next,
+                _ => break,
+            }
+            found = self.without_needless(found);
+            self.refine(&mut found);
+        }
+        found
+    }
+
+    /// Shapes of what was found become the best ones.
+    fn refine(&mut self, found: &mut Found) {
+        self.sharpen(&found.chosen);
+        let columns = self.columns(&found.chosen);
+        self.tune(&columns);
+        if self.polish(&found.chosen).is_some() {
+            self.evidence = self.table.evidence(self.error);
+            found.score = self.score(&found.chosen);
+        }
+    }
+
+    /// The set `chosen` with another family, whose joints and shapes are chosen one after
+    /// another; `given` is the evidence when the set is there.
+    #[must_use]
+    pub fn with(&self, given: &Given, chosen: &[Chosen], family: usize) -> Option<Found> {
+        let before = self.cost(chosen);
+        let mut best: Option<f64> = None;
+        let mut pieces: Vec<usize> = Vec::new();
+        loop {
+            let mut next: Option<(f64, usize)> = None;
+            for (joint, all) in &self.families[family].joints {
+                let taken = |piece: &usize| self.table.pieces[*piece].joint == *joint;
+                if pieces.iter().any(taken) {
+                    continue;
+                }
+                for piece in all {
+                    let mut more = pieces.clone();
+                    more.push(*piece);
+                    let own = [Chosen { family, pieces: more }];
+                    let score = given.gain(&self.columns(&own)) - before - self.cost(&own);
+                    if next.is_none_or(|(most, _)| score > most) {
+                        next = Some((score, *piece));
+                    }
+                }
+            }
+            let Some((score, piece)) = next else { break };
+            if best.is_some_and(|best| score <= best) {
+                break;
+            }
+            pieces.push(piece);
+            best = Some(score);
+        }
+        let mut set = chosen.to_vec();
+        set.push(Chosen { family, pieces });
+        best.map(|score| Found { chosen: set, score })
+    }
+
+    /// Puts plainer effects in the place of those that explain hardly more.
+    pub fn simplify(&mut self, found: &mut Found, hardly: f64) {
+        for place in 0..found.chosen.len() {
+            let id = self.families[found.chosen[place].family].owner.id();
+            let Some((_, plainer)) = PLAINER.iter().find(|(of, _)| *of == id) else { continue };
+            let family = self.families.iter().position(|family| family.owner.id() == *plainer);
+            let taken = found.chosen.iter().any(|of| Some(of.family) == family);
+            let Some(family) = family.filter(|_| !taken) else { continue };
+            let mut rest = found.chosen.clone();
+            rest.remove(place);
+            let given = self.given(&rest);
+            if let Some(other) = self.with(&given, &rest, family)
+                && other.score > found.score - hardly
+            {
+                *found = other;
+                self.refine(found);
+                // The order has changed.
+                return;
+            }
+        }
+    }
+
+    /// Families that later ones made needless are taken out.
+    fn without_needless(&self, mut found: Found) -> Found {
+        while found.chosen.len() > 1 {
+            let less = (0..found.chosen.len())
+                .map(|k| {
+                    let mut set = found.chosen.clone();
+                    set.remove(k);
+                    let score = self.score(&set);
+                    Found { chosen: set, score }
+                })
+                .max_by(|a, b| a.score.total_cmp(&b.score));
+            match less {
+                Some(less) if less.score > found.score - WORTH => found = less,
+                _ => break,
+            }
+        }
+        found
+    }
+
+    /// Logarithm of the odds of a set against no effect.
+    #[must_use]
+    pub fn score(&self, set: &[Chosen]) -> f64 {
+        self.evidence.gain(&self.columns(set)) - self.cost(set)
+    }
+
+    /// What naming a set costs.
+    fn cost(&self, set: &[Chosen]) -> f64 {
+        let mut cost = 0.0;
+        for chosen in set {
+            cost += FAMILY + JOINT * chosen.pieces.len() as f64;
+            for piece in &chosen.pieces {
+                cost += (self.table.pieces[*piece].choices.max(1) as f64).ln();
+            }
+        }
+        cost
+    }
+
+    /// The columns of a set, those that effects bring among them.
+    #[must_use]
+    pub fn columns(&self, set: &[Chosen]) -> Vec<usize> {
+        let mut columns: Vec<usize> = Vec::new();
+        for piece in set.iter().flat_map(|chosen| &chosen.pieces) {
+            let piece = &self.table.pieces[*piece];
+            columns.extend(piece.columns.clone());
+            let Owner::Effect(effect) = piece.owner else { continue };
+            for brought in self.table.pieces.iter().filter(|other| {
+                effect.brings.contains(&other.owner.id()) && other.joint == piece.joint
+            }) {
+                columns.extend(brought.columns.clone());
+            }
+        }
+        columns.sort_unstable();
+        columns.dedup();
+        columns
+    }
+}

@@ -1,0 +1,89 @@
+//! Series as real rows of a spectrum: noise that is coloured over time is not so from row to
+//! row.
+
+use std::sync::Arc;
+
+use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+
+/// The transform of series of one length.
+#[derive(Clone)]
+pub(super) struct Spectrum {
+    fft: Arc<dyn Fft<f64>>,
+    length: usize,
+    /// Number of frequencies that are used, the mean among them.
+    pub(super) bins: usize,
+}
+
+impl Spectrum {
+    /// For series of `length` samples every `step` \[s\], up to the frequency `highest` \[Hz\].
+    pub(super) fn new(length: usize, step: f64, highest: f64) -> Spectrum {
+        let bins = (highest * step * length as f64) as usize + 1;
+        Spectrum {
+            fft: FftPlanner::new().plan_fft_forward(length),
+            length,
+            bins: bins.clamp(1, length.div_ceil(2)),
+        }
+    }
+
+    /// Number of rows.
+    pub(super) fn rows(&self) -> usize {
+        2 * self.bins - 1
+    }
+
+    /// The frequency's number of a row.
+    pub(super) fn bin(row: usize) -> usize {
+        row.div_ceil(2)
+    }
+
+    /// The mean, then real and imaginary part of each frequency; white noise of some variance
+    /// has the same in each row.
+    pub(super) fn of(&self, x: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut values: Vec<Complex<f64>> = x.map(|x| Complex::new(x, 0.0)).collect();
+        values.resize(self.length, Complex::new(0.0, 0.0));
+        self.fft.process(&mut values);
+        let scale = (2.0 / self.length as f64).sqrt();
+        let mut rows = Vec::with_capacity(self.rows());
+        rows.push(values[0].re * scale * std::f64::consts::FRAC_1_SQRT_2);
+        for value in &values[1..self.bins] {
+            rows.push(value.re * scale);
+            rows.push(value.im * scale);
+        }
+        rows
+    }
+
+    /// Mean power of a row at each frequency, over the neighbours within `reach`.
+    pub(super) fn smoothed(&self, rows: &[f64], reach: usize) -> Vec<f64> {
+        let mut sums = vec![0.0];
+        let mut counts = vec![0.0];
+        for bin in 0..self.bins {
+            let (power, count) = match bin {
+                0 => (rows[0] * rows[0], 1.0),
+                _ => (rows[2 * bin - 1].powi(2) + rows[2 * bin].powi(2), 2.0),
+            };
+            sums.push(sums[bin] + power);
+            counts.push(counts[bin] + count);
+        }
+        (0..self.bins)
+            .map(|bin| {
+                let (from, to) = (bin.saturating_sub(reach), (bin + reach + 1).min(self.bins));
+                (sums[to] - sums[from]) / (counts[to] - counts[from])
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_is_kept() {
+        let x: Vec<f64> = (0..101).map(|i| (0.7 * f64::from(i)).sin() + 0.3).collect();
+        let spectrum = Spectrum::new(101, 0.01, 1e9);
+        let rows = spectrum.of(x.iter().copied());
+        assert_eq!(rows.len(), 101);
+        let power = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+        assert!((power(&rows) - power(&x)).abs() < 1e-9 * power(&x));
+    }
+}

@@ -1,0 +1,241 @@
+//! The difference between measurement and model, and all that may explain it, as rows of
+//! spectra.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::effects::{self, Effect, Form, Of};
+
+use super::channel::Channel;
+use super::column::{Column, Owner, Piece, pieces};
+use super::evidence::Evidence;
+use super::generic::generic;
+use super::nuisance::{Nuisance, Trust, nuisance, smooth_error};
+use super::record::{Record, RecordKind};
+use super::ripples::ripples;
+use super::rows::Rows;
+
+/// A piece with its place among the columns.
+pub struct Placed {
+    /// Whose it is.
+    pub owner: Owner,
+    /// Joint, from 0; `None` of the robot.
+    pub joint: Option<usize>,
+    /// Values of its coordinates; 1 usual size for linear ones.
+    pub shape: Vec<f64>,
+    /// Shapes that are tried at the joint.
+    pub choices: usize,
+    /// Its columns.
+    pub columns: std::ops::Range<usize>,
+}
+
+/// Rows of all joints and records.
+pub struct Table {
+    /// All that may explain the difference.
+    pub pieces: Vec<Placed>,
+    /// Names of the parameters of the model, then of what no model has.
+    pub parameters: Vec<String>,
+    /// Their deviations, in their units.
+    pub deviations: Vec<f64>,
+    /// Changes of the standard parameters for one deviation of each of the model's.
+    pub mixing: DMatrix<f64>,
+    /// Parameters from here on are in shares of the model's error.
+    errors_from: usize,
+    means: DVector<f64>,
+    sds: DVector<f64>,
+    joints: Vec<Rows>,
+}
+
+impl Table {
+    /// Of records of one robot, with the effects that may be found and with pieces `more`.
+    #[must_use]
+    pub(super) fn new(
+        records: &[Record<'_>],
+        effects: &[&'static Effect],
+        trust: Trust,
+        more: Vec<Piece>,
+    ) -> Table {
+        let n = records.first().map_or(0, |record| record.motion.model.dof);
+        let wanted: Vec<(Option<&'static Effect>, usize)> = effects
+            .iter()
+            .filter(|e| e.channel == effects::Channel::Torque && !matches!(e.form, Form::Elsewhere))
+            .filter(|e| !["current_sign", "time_delay", "filter_lag"].contains(&e.id))
+            .flat_map(|effect| {
+                let joints = (effect.joints)(n);
+                let joints = if effect.of == Of::Robot {
+                    joints.into_iter().take(1).collect()
+                } else {
+                    joints
+                };
+                joints.into_iter().map(|joint| (Some(*effect), joint))
+            })
+            .chain((0..n).map(|joint| (None, joint)))
+            .collect();
+        let all: Vec<Piece> = wanted
+            .into_par_iter()
+            .flat_map_iter(|(effect, joint)| match effect {
+                Some(effect) if effect.id == "ripple" => ripples(effect, records, joint),
+                Some(effect) => pieces(effect, records, joint),
+                None => generic(records, joint),
+            })
+            .chain(more)
+            .collect();
+        Table::of(records, all, &nuisances(records, trust))
+    }
+
+    /// Of records and pieces that are given.
+    #[must_use]
+    pub(super) fn of(records: &[Record<'_>], all: Vec<Piece>, nuisances: &[Nuisance]) -> Table {
+        let n = records.first().map_or(0, |record| record.motion.model.dof);
+        let columns: Vec<&Column> = all.iter().flat_map(|piece| &piece.columns).collect();
+        let kinds = [RecordKind::Mean, RecordKind::Drift];
+        let joints = (0..kinds.len() * n)
+            .into_par_iter()
+            .map(|i| {
+                Rows::new(records, nuisances, &columns, i / kinds.len(), kinds[i % kinds.len()])
+            })
+            .collect();
+        let mut means = Vec::new();
+        let mut sds = Vec::new();
+        let mut placed = Vec::new();
+        for piece in all {
+            let from = means.len();
+            means.extend(piece.columns.iter().map(|column| column.mean));
+            sds.extend(piece.columns.iter().map(|column| column.sd));
+            placed.push(Placed {
+                owner: piece.owner,
+                joint: piece.joint,
+                shape: piece.shape,
+                choices: piece.choices,
+                columns: from..means.len(),
+            });
+        }
+        let first = nuisances.first();
+        Table {
+            pieces: placed,
+            parameters: first.map_or_else(Vec::new, |of| of.names.clone()),
+            deviations: first.map_or_else(Vec::new, |of| of.deviations.clone()),
+            mixing: first.map_or_else(|| DMatrix::zeros(0, 0), |of| of.mixing.clone()),
+            errors_from: first.map_or(0, |of| of.errors_from),
+            means: DVector::from_vec(means),
+            sds: DVector::from_vec(sds),
+            joints,
+        }
+    }
+
+    /// Puts a piece in the place of another one of the same effect and joint.
+    pub(super) fn replace(&mut self, number: usize, piece: &Piece, records: &[Record<'_>]) {
+        let placed = &mut self.pieces[number];
+        placed.shape.clone_from(&piece.shape);
+        let parameters = self.parameters.len();
+        for (k, column) in placed.columns.clone().zip(&piece.columns) {
+            self.means[k] = column.mean;
+            self.sds[k] = column.sd;
+            for rows in &mut self.joints {
+                rows.replace(1 + parameters + k, column, records);
+            }
+        }
+    }
+
+    /// The measured torque of a joint is taken with the other sign.
+    pub(super) fn flip(&mut self, joint: usize) {
+        self.joints.iter_mut().for_each(|rows| rows.flip(joint));
+    }
+
+    /// All that is computed goes through the channel of its joint before it is compared.
+    pub(super) fn through_all(&mut self, records: &[Record<'_>], channels: &[Channel]) {
+        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, |_| true));
+    }
+
+    /// The same of the model, its parameters and some columns.
+    pub(super) fn through(
+        &mut self,
+        records: &[Record<'_>],
+        channels: &[Channel],
+        columns: &[usize],
+    ) {
+        let first = 1 + self.parameters.len();
+        let is_used =
+            |number: usize| number < first || columns.binary_search(&(number - first)).is_ok();
+        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, is_used));
+    }
+
+    /// How well everything explains the difference if the model's torques are known to the
+    /// share `error` of their own.
+    #[must_use]
+    pub fn evidence(&self, error: f64) -> Evidence {
+        let all: Vec<usize> = (0..self.means.len()).collect();
+        self.evidence_of(error, &all)
+    }
+
+    /// How probable the measurement of one joint is, without any column, behind channels.
+    pub(super) fn of_joint(
+        &mut self,
+        records: &[Record<'_>],
+        joint: usize,
+        channels: &[Channel],
+        error: f64,
+    ) -> Evidence {
+        let parameters = self.parameters.len();
+        let place = |number: usize| (number <= parameters).then_some(number);
+        let mut gram = DMatrix::zeros(1 + parameters, 1 + parameters);
+        let mut log_weights = 0.0;
+        for rows in self.joints.iter_mut().filter(|rows| rows.is_mean_of(joint)) {
+            rows.through(records, channels, |number| number <= parameters);
+            let (part, reached, log_weight) = rows.gram(error, place);
+            add(&mut gram, &part, &reached);
+            log_weights += log_weight;
+        }
+        self.smooth(&mut gram, error);
+        let none = || DVector::zeros(0);
+        Evidence::new(&gram, parameters, none(), none(), log_weights, 1)
+    }
+
+    /// Scales the columns that are in shares of the model's error.
+    fn smooth(&self, gram: &mut DMatrix<f64>, error: f64) {
+        for k in 1 + self.errors_from..=self.parameters.len() {
+            gram.row_mut(k).scale_mut(smooth_error(error));
+            gram.column_mut(k).scale_mut(smooth_error(error));
+        }
+    }
+
+    /// The same of some columns alone, which count in their order.
+    pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
+        let parameters = self.parameters.len();
+        let size = 1 + parameters + columns.len();
+        let mut places = vec![None; 1 + parameters + self.means.len()];
+        for (k, place) in places.iter_mut().enumerate().take(1 + parameters) {
+            *place = Some(k);
+        }
+        for (k, column) in columns.iter().enumerate() {
+            places[1 + parameters + column] = Some(1 + parameters + k);
+        }
+        let parts: Vec<(DMatrix<f64>, Vec<usize>, f64)> =
+            self.joints.par_iter().map(|rows| rows.gram(error, |number| places[number])).collect();
+        let mut gram = DMatrix::zeros(size, size);
+        let mut log_weights = 0.0;
+        for (part, reached, log_weight) in parts {
+            log_weights += log_weight;
+            add(&mut gram, &part, &reached);
+        }
+        self.smooth(&mut gram, error);
+        let rows = self.joints.iter().map(Rows::len).sum();
+        let of =
+            |x: &DVector<f64>| DVector::from_iterator(columns.len(), columns.iter().map(|k| x[*k]));
+        Evidence::new(&gram, parameters, of(&self.means), of(&self.sds), log_weights, rows)
+    }
+}
+
+/// Adds products of columns at their places.
+fn add(gram: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
+    for (b, to) in places.iter().enumerate() {
+        for (a, from) in places.iter().enumerate() {
+            gram[(*from, *to)] += part[(a, b)];
+        }
+    }
+}
+
+/// The parameters' columns of each record.
+pub(super) fn nuisances(records: &[Record<'_>], trust: Trust) -> Vec<Nuisance> {
+    records.par_iter().map(|record| nuisance(record, trust)).collect()
+}

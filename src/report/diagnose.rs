@@ -1,0 +1,213 @@
+//! The result of a diagnosis as JSON and text.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use crate::gap::{Diagnosis, Interval, Said, Verdict};
+
+/// What a result rests on, beside the result itself.
+#[derive(Clone, Debug, Default)]
+pub struct Basis {
+    /// What was held out: `file`, `trajectory` or `cycles`.
+    pub heldout: String,
+    /// Where the model went.
+    pub model: String,
+    /// What else a reader has to know.
+    pub notes: Vec<String>,
+}
+
+/// The contract's JSON.
+#[must_use]
+pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
+    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(said).collect() };
+    let generic: Vec<Value> = found
+        .anything
+        .iter()
+        .map(|of| {
+            json!({
+                "id": of.id,
+                "joint": of.joint.map(|joint| joint + 1),
+                "share_percent": 100.0 * of.share,
+            })
+        })
+        .collect();
+    let places: Vec<Value> = found
+        .places
+        .iter()
+        .map(|of| {
+            json!({
+                "joint": of.joint.map(|joint| joint + 1),
+                "regime": of.regime,
+                "file": of.line.as_ref().map(|(file, _)| file),
+                "line": of.line.as_ref().map(|(_, line)| line),
+                "movement": of.movement,
+                "t_start_s": null,
+                "t_end_s": null,
+                "share_percent": 100.0 * of.share,
+            })
+        })
+        .collect();
+    let joints: Vec<Value> = found
+        .shrink
+        .joints
+        .iter()
+        .enumerate()
+        .map(|(joint, of)| {
+            json!({
+                "joint": joint + 1,
+                "noise": of.noise,
+                "torque": of.torque,
+                "model": of.model,
+                "refit": of.refit,
+                "refit_plus_effect": of.refit_plus_effect,
+            })
+        })
+        .collect();
+    let mut gap = vec![json!({
+        "channel": "torque",
+        "unit": "Nm",
+        "per_joint": joints,
+        "heldout": basis.heldout,
+        "shrink_percent": interval(&found.shrink.total),
+        "shrink_by_effect_percent": interval(&found.shrink.by_effect),
+    })];
+    for (name, unit, [noise, before, after]) in &found.channels {
+        let shrinks = if *before > 0.0 { 100.0 * (1.0 - after / before) } else { 0.0 };
+        gap.push(json!({
+            "channel": name,
+            "unit": unit,
+            "per_joint": [{
+                "joint": null,
+                "noise": noise,
+                "model": before,
+                "refit": before,
+                "refit_plus_effect": after,
+            }],
+            "heldout": basis.heldout,
+            "shrink_percent": {"value": shrinks, "low": null, "high": null},
+            "shrink_by_effect_percent": {"value": shrinks, "low": null, "high": null},
+        }));
+    }
+    json!({
+        "verdict": found.verdict.name(),
+        "effects": all(&found.effects),
+        "candidates": all(&found.candidates),
+        "generic": generic,
+        "where": places,
+        "gap": gap,
+        "next_experiment": next(found),
+        "model_error_percent": 100.0 * found.error,
+        "reasons": found.reasons,
+        "notes": basis.notes,
+        "model": basis.model,
+    })
+}
+
+fn interval(of: &Interval) -> Value {
+    json!({"value": 100.0 * of.value, "low": 100.0 * of.low, "high": 100.0 * of.high})
+}
+
+fn said(of: &Said) -> Value {
+    let mut parameters = Map::new();
+    for parameter in &of.parameters {
+        parameters.insert(
+            parameter.name.clone(),
+            json!({"value": parameter.value, "sd": parameter.sd, "unit": parameter.unit}),
+        );
+    }
+    json!({
+        "id": of.effect.id,
+        "joints": of.joints.iter().map(|joint| joint + 1).collect::<Vec<_>>(),
+        "class": of.class,
+        "probability": of.probability,
+        "parameters": parameters,
+        "share_percent": 100.0 * of.share,
+        "nats": of.nats,
+    })
+}
+
+/// What to measure next, and why.
+fn next(found: &Diagnosis) -> Value {
+    let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
+        of.class.len() > 1
+            || found.verdict != Verdict::Effect && !of.effect.experiment[1].is_empty()
+    });
+    match unclear {
+        Some(of) => {
+            let [options, why] = of.effect.experiment;
+            let command = format!("joulepath excite --out excitation {options}");
+            json!({"why": format!("{}: {why}", of.effect.id), "command": command.trim_end()})
+        }
+        None => Value::Null,
+    }
+}
+
+/// For people.
+#[must_use]
+pub fn text(found: &Diagnosis, basis: &Basis) -> String {
+    let mut out = String::new();
+    let sentence = match found.verdict {
+        Verdict::NoGap => "no gap: model and robot are the same as far as the logs show",
+        Verdict::ParametersOnly => "parameters only: no effect, the model's numbers are others",
+        Verdict::Effect => "an effect that the model has not",
+        Verdict::Partial => "an effect, and something that no known law explains",
+        Verdict::Unknown => "a gap that no known law explains",
+        Verdict::NotSeparable => "a gap that more laws explain than these logs can tell apart",
+        Verdict::NotExcited => "the motion shows too little",
+    };
+    let _ = writeln!(out, "{sentence}");
+    for (title, all) in [("found", &found.effects), ("considered", &found.candidates)] {
+        for of in all {
+            let joints: Vec<String> =
+                of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
+            let place = match joints.len() {
+                0 => "the robot".to_owned(),
+                _ => format!("joint {}", joints.join(", ")),
+            };
+            let _ = writeln!(
+                out,
+                "\n{title}: {} of {place}, probability {:.2}, {:.0} nats",
+                of.effect.title, of.probability, of.nats
+            );
+            if of.class.len() > 1 {
+                let _ = writeln!(out, "  cannot be told apart: {}", of.class.join(", "));
+            }
+            for parameter in &of.parameters {
+                let (name, value, sd) = (&parameter.name, parameter.value, parameter.sd);
+                let _ = writeln!(out, "  {name:<20} {value:>12.5} ± {sd:.5} {}", parameter.unit);
+            }
+        }
+    }
+    for of in &found.anything {
+        let joint = of.joint.map_or_else(String::new, |joint| format!(" of joint {}", joint + 1));
+        let _ = writeln!(out, "unknown: a function of the {}{joint}", of.id.replace('_', " "));
+    }
+    for reason in &found.reasons {
+        let _ = writeln!(out, "not asserted: {reason}");
+    }
+    let _ = writeln!(
+        out,
+        "\nheld-out {}, rms Nm\njoint     noise     model     refit   +effect",
+        basis.heldout
+    );
+    for (joint, of) in found.shrink.joints.iter().enumerate() {
+        let _ = writeln!(
+            out,
+            "{:>5} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
+            joint + 1,
+            of.noise,
+            of.model,
+            of.refit,
+            of.refit_plus_effect
+        );
+    }
+    for (name, of) in [("all", &found.shrink.total), ("by effect", &found.shrink.by_effect)] {
+        let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
+        let _ = writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})");
+    }
+    if !basis.model.is_empty() {
+        let _ = writeln!(out, "model: {}", basis.model);
+    }
+    out
+}

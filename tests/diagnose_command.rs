@@ -1,0 +1,98 @@
+//! The command `diagnose`: its JSON, its model, what it refuses.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use joulepath::blind::{self, Settings};
+use serde_json::Value;
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
+}
+
+/// A short case of the examination in a folder.
+fn case(folder: &Path) {
+    let settings = Settings { cycles: 3, period_s: 4.0, ..Settings::new(5) };
+    let case = blind::case(&settings, 3).unwrap();
+    for (name, text) in &case.files {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+}
+
+#[test]
+fn the_json_has_what_is_promised() {
+    let folder = tempfile::tempdir().unwrap();
+    case(folder.path());
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let out = at("model.toml");
+    let (robot, logs, held) =
+        (at("nominal.toml"), [at("log-1.csv"), at("log-2.csv")], at("heldout.csv"));
+    let output = joulepath(&[
+        "diagnose",
+        "--robot",
+        &robot,
+        "--log",
+        &logs[0],
+        &logs[1],
+        "--heldout",
+        &held,
+        "--period",
+        "4",
+        "--out",
+        &out,
+        "--format",
+        "json",
+        "--effects",
+        "torque_offset,friction_level",
+    ]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{message}");
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in
+        ["verdict", "effects", "candidates", "generic", "where", "gap", "next_experiment", "model"]
+    {
+        assert!(value.get(key).is_some(), "no {key}");
+    }
+    let gap = &value["gap"][0];
+    assert_eq!(gap["per_joint"].as_array().unwrap().len(), 6);
+    for key in ["noise", "model", "refit", "refit_plus_effect"] {
+        assert!(gap["per_joint"][0][key].is_number(), "no {key}");
+    }
+    // The model predicts by itself.
+    let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn wrong_input_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    case(folder.path());
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (robot, log) = (at("nominal.toml"), at("log-1.csv"));
+    let few = at("few.csv");
+    let text = fs::read_to_string(&log).unwrap();
+    let five: Vec<String> = text
+        .lines()
+        .map(|line| {
+            let fields: Vec<&str> = line.split(',').collect();
+            [&fields[..6], &fields[7..12]].concat().join(",")
+        })
+        .collect();
+    fs::write(&few, five.join("\n")).unwrap();
+    for (args, way_out) in [
+        (vec!["--robot", &robot, "--log", &few], "q1 to q6"),
+        (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
+        (vec!["--robot", &robot, "--log", &log, "--period", "0"], "more than 0"),
+        (vec!["--robot", &robot, "--log", "missing.csv"], "cannot read"),
+    ] {
+        let output = joulepath(&[&["diagnose"], &args[..]].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(way_out), "{message}\nlacks {way_out}");
+    }
+}

@@ -1,0 +1,73 @@
+//! Diagnosis of simulated gaps, with effects in the library's own forms.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+mod simulated;
+
+use joulepath::effects::{ALL, Motion, find as effect};
+use joulepath::gap::{Diagnosis, Record, Settings, Trust, Verdict, diagnose};
+use joulepath::robot::Model;
+
+use simulated::{Robot, irb1600, spread};
+
+/// Deviations by which a parameter may be off.
+const WITHIN: f64 = 4.0;
+/// Part of the gap that a found effect takes off.
+const SHRINKS: f64 = 0.5;
+
+fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
+    let samples = [1, 2, 3].map(|seed| robot.samples(seed));
+    let records = |which: &[usize]| -> Vec<Record<'_>> {
+        which.iter().flat_map(|k| Record::all(nominal, &samples[*k])).collect()
+    };
+    let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
+    diagnose(nominal, records(&[0, 1]), &records(&[2]), &settings)
+}
+
+/// Names with their joints, from 1.
+fn named(found: &Diagnosis) -> Vec<(&'static str, Vec<usize>)> {
+    let joints = |joints: &[usize]| joints.iter().map(|joint| joint + 1).collect();
+    found.effects.iter().map(|said| (said.effect.id, joints(&said.joints))).collect()
+}
+
+#[test]
+fn healthy_robots_have_no_effect() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 3);
+    let found = diagnosed(&nominal, &Robot { model: &truth, effect: None, noise: 0.005 });
+    assert!(named(&found).is_empty(), "{:?}", named(&found));
+    assert!(matches!(found.verdict, Verdict::ParametersOnly | Verdict::NoGap));
+    // The parameters were off, and are so no more.
+    assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+}
+
+#[test]
+fn offsets_are_found_with_their_size() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 3);
+    let offset = effect("torque_offset").unwrap();
+    let expected = 0.6;
+    let size = |_: &Motion<'_>| vec![expected];
+    let robot = Robot { model: &truth, effect: Some((offset, 4, &size)), noise: 0.005 };
+    let found = diagnosed(&nominal, &robot);
+    assert_eq!(named(&found), [("torque_offset", vec![5])]);
+    let samples = robot.samples(1);
+    let record = Record::all(&nominal, &samples);
+    let of = &found.effects[0].parameters[0];
+    // What the nominal model has as its own offset is believed to this share of the torque.
+    let believed = 0.002 * record[0].motion.scale(4).torque[1];
+    assert!((of.value - expected).abs() < WITHIN * of.sd.hypot(believed), "{of:?} {expected}");
+    assert!(found.shrink.by_effect.value > SHRINKS, "{:?}", found.shrink);
+}
+
+#[test]
+fn flipped_currents_are_told() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 4);
+    let sign = effect("current_sign").unwrap();
+    let size = |_: &Motion<'_>| vec![1.0];
+    let robot = Robot { model: &truth, effect: Some((sign, 2, &size)), noise: 0.005 };
+    let found = diagnosed(&nominal, &robot);
+    assert_eq!(named(&found), [("current_sign", vec![3])]);
+    assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+}

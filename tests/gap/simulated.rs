@@ -1,0 +1,116 @@
+//! Logs of a robot with an effect.
+
+use joulepath::effects::{Effect, Motion};
+use joulepath::excite::Series;
+use joulepath::identify::{Hints, Samples, prepare};
+use joulepath::log::{Channel, Log};
+use joulepath::robot::{Model, find};
+
+/// The robot of the paper.
+pub(crate) fn irb1600() -> Model {
+    find("IRB1600-10/1.45").unwrap()
+}
+
+/// The robot with parameters that are off by about what identification leaves.
+pub(crate) fn spread(model: &Model, seed: u64) -> Model {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut other = model.clone();
+    for link in &mut other.links {
+        link.mass *= 1.0 + 0.01 * normal(&mut random);
+        for axis in 0..3 {
+            link.com[axis] += 0.003 * normal(&mut random);
+        }
+        link.inertia *= 1.0 + 0.03 * normal(&mut random);
+    }
+    for joint in 0..model.dof {
+        other.friction.coulomb[joint] *= 1.0 + 0.05 * normal(&mut random);
+        other.friction.viscous[joint] *= 1.0 + 0.05 * normal(&mut random);
+    }
+    other
+}
+
+/// Size of an effect in a motion.
+pub(crate) type Size<'a> = &'a dyn Fn(&Motion<'_>) -> Vec<f64>;
+
+/// A robot and what its logs are like.
+pub(crate) struct Robot<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) effect: Option<(&'static Effect, usize, Size<'a>)>,
+    /// Noise of the torque, of its largest value.
+    pub(crate) noise: f64,
+}
+
+impl Robot<'_> {
+    /// Seven repetitions of 10 s at 100 Hz.
+    pub(crate) fn samples(&self, seed: u64) -> Samples {
+        let series = series(seed);
+        let count = 1000;
+        let states = series.sampled(count);
+        let n = self.model.dof;
+        let of = |order: usize| -> Vec<Vec<f64>> {
+            (0..n).map(|j| states.iter().map(|s| s[order][j]).collect()).collect()
+        };
+        let t = (0..count).map(|i| 0.01 * i as f64).collect();
+        let motion = Motion::new(self.model, t, [of(0), of(1), of(2)], &[], true);
+        let mut torque = motion.torque.clone();
+        if let Some((effect, joint, size)) = self.effect {
+            for (to, added) in effect.added(&motion, joint, &size(&motion)) {
+                torque[to].iter_mut().zip(added).for_each(|(x, a)| *x += a);
+            }
+        }
+        let mut random = fastrand::Rng::with_seed(seed + 100);
+        let repetitions = 7;
+        let mut values = vec![Vec::new(); 1 + 2 * n];
+        for row in 0..repetitions * count {
+            values[0].push(0.01 * row as f64);
+            for joint in 0..n {
+                values[1 + joint].push(motion.q[joint][row % count]);
+                let largest = torque[joint].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let noise = self.noise * largest * normal(&mut random);
+                values[1 + n + joint].push(torque[joint][row % count] + noise);
+            }
+        }
+        let mut channels = vec![Channel::Time];
+        channels.extend((0..n).map(Channel::Position));
+        channels.extend((0..n).map(Channel::Torque));
+        let tau = values[1 + n..].to_vec();
+        let rows = (2..values[0].len() as u64 + 2).collect();
+        let log = Log { channels, values, rows, rejected: Vec::new() };
+        prepare(&log, &tau, Hints { period: Some(10.0), cutoff: None }).unwrap()
+    }
+}
+
+/// A periodic motion with random phases, within the limits of the IRB1600.
+fn series(seed: u64) -> Series {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let limits = [2.5, 1.2, 1.5, 3.0, 1.8, 5.0];
+    let middle = [0.0, 0.3, -1.2, 0.0, 0.1, 0.0];
+    let speeds = [2.4, 2.4, 2.5, 5.0, 5.4, 6.0];
+    let harmonics = vec![1, 3, 4, 7];
+    let amplitude = (0..6)
+        .map(|joint: usize| {
+            let raw: Vec<f64> =
+                harmonics.iter().map(|k| (0.4 + random.f64()) / *k as f64).collect();
+            let reach: f64 = raw.iter().sum();
+            let fast: f64 = raw
+                .iter()
+                .zip(&harmonics)
+                .map(|(a, k)| a * 0.2 * std::f64::consts::PI * *k as f64)
+                .sum();
+            let scale = (limits[joint] / reach).min(speeds[joint] / fast);
+            raw.iter()
+                .map(|a| {
+                    let (sin, cos) = (std::f64::consts::TAU * random.f64()).sin_cos();
+                    [scale * a * sin, scale * a * cos]
+                })
+                .collect()
+        })
+        .collect();
+    Series { base_frequency: 0.1, harmonics, offset: middle.to_vec(), amplitude }
+}
+
+/// Standard normal.
+pub(crate) fn normal(random: &mut fastrand::Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - random.f64()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * random.f64()).cos()
+}
