@@ -56,6 +56,9 @@ pub struct Reader<'a> {
 
 impl Reader<'_> {
     fn tell(&mut self, text: String) {
+        if self.notes.contains(&text) {
+            return;
+        }
         common::note(self.quiet, &text);
         self.notes.push(text);
     }

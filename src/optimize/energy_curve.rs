@@ -105,12 +105,15 @@ impl<'a> Curve<'a> {
         if neighbours.into_iter().any(near) {
             return false;
         }
-        let before = self.known.len();
-        self.known.splice(place..place, self.at(time));
-        self.known.len() > before
+        let found = self.at(time);
+        let is_new = !found.is_empty();
+        self.known.extend(found);
+        self.known.sort_by(|a, b| a.0.time.total_cmp(&b.0.time));
+        is_new
     }
 
-    fn at(&self, time: f64) -> Option<(Known, Vec<f64>)> {
+    /// What the run takes in a time, s; beyond the one of least energy that one too.
+    fn at(&self, time: f64) -> Vec<(Known, Vec<f64>)> {
         let settling = self.work.task.run.settling;
         let moving = time - settling;
         let (grid, model) = (&self.grid, &self.work.electrical);
@@ -124,19 +127,27 @@ impl<'a> Curve<'a> {
         });
         let (limits, guess) = (&self.limits, guess.as_ref());
         let outcome = minimize_energy_from(grid, limits, model, &self.fast, moving, guess);
-        let optimum = outcome.into_optimum()?;
+        let Some(optimum) = outcome.into_optimum() else { return Vec::new() };
         let b = optimum.profile.b().to_vec();
+        let least = optimum.energy.total();
         if optimum.marginal > 0.0 {
-            let energy = optimum.energy.total();
-            return Some((Known { time, energy, slope: -optimum.marginal }, b));
+            return vec![(Known { time, energy: least, slope: -optimum.marginal }, b)];
         }
         // The motors hold the arm up for longer: more time costs energy then.
         let energy = |duration: f64| {
             let slow = optimum.profile.scaled_to(duration)?;
             Some(evaluate(grid, &slow, model).total())
         };
-        let (here, later) = (energy(moving)?, energy(moving * (1.0 + LONGER))?);
-        Some((Known { time, energy: here, slope: (later - here) / (moving * LONGER) }, b))
+        let thriftiest = optimum.profile.duration() + settling;
+        let mut found = Vec::new();
+        if thriftiest < time * (1.0 - NEAR) {
+            found.push((Known { time: thriftiest, energy: least, slope: 0.0 }, b.clone()));
+        }
+        if let (Some(here), Some(later)) = (energy(moving), energy(moving * (1.0 + LONGER))) {
+            let slope = (later - here) / (moving * LONGER);
+            found.push((Known { time, energy: here, slope }, b));
+        }
+        found
     }
 
     /// What is known of it by now.

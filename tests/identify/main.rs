@@ -9,12 +9,13 @@ mod simulated;
 use joulepath::dynamics::{
     BaseParameters, Load, Parameters, Regressor, base_parameters, parameters, write_rows,
 };
+use joulepath::effects::from_toml;
 use joulepath::identify::{
     Equations, Fit, Free, Hints, Known, Samples, Settings, Source, Weighting, fit, identify,
     prepare, torques,
 };
 use joulepath::log::{Channel, Log};
-use joulepath::robot::{Model, from_toml, to_toml};
+use joulepath::robot::{Model, to_toml};
 use nalgebra::{DMatrix, DVector};
 
 use simulated::{With, irb1600, log, series};
