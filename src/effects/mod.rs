@@ -39,6 +39,7 @@ mod position_friction;
 mod presliding;
 mod program_wait;
 mod register;
+mod response;
 mod ripple;
 mod rotor_inertia;
 mod speed_limit;
@@ -59,7 +60,7 @@ pub use bodies::added as with_body;
 pub use effect::{
     Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,
 };
-pub use filter_lag::lagged;
 pub use motion::Motion;
 pub use page::page;
 pub use register::{ALL, find};
+pub use response::Response;

@@ -214,26 +214,13 @@ impl<'a> Motion<'a> {
             .collect()
     }
 
-    /// A series `delay` \[s\] later, between rows on lines; before its beginning, its end where
-    /// the motion is closed, else its first value.
-    #[must_use]
-    pub fn later(&self, x: &[f64], delay: f64) -> Vec<f64> {
-        let n = x.len();
-        let shift = delay / self.step();
-        (0..n)
-            .map(|i| {
-                let place = i as f64 - shift;
-                let place = if self.closed {
-                    place.rem_euclid(n as f64)
-                } else {
-                    place.clamp(0.0, (n - 1) as f64)
-                };
-                let before = (place.floor() as usize).min(n - 1);
-                let share = place - before as f64;
-                let after = if self.closed { (before + 1) % n } else { (before + 1).min(n - 1) };
-                x[before] * (1.0 - share) + x[after] * share
-            })
-            .collect()
+    /// Motors whose friction a joint feels.
+    pub(super) fn motors_of(&self, joint: usize) -> Vec<usize> {
+        if joint == 4 && self.model.wrist.coupling != 0.0 && self.model.dof > 5 {
+            vec![4, 5]
+        } else {
+            vec![joint]
+        }
     }
 
     /// What is usual at a joint.

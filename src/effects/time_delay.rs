@@ -2,6 +2,7 @@
 
 use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, bounded, every, shape, shaped};
 use super::motion::Motion;
+use super::response::Response;
 
 /// Delay.
 pub(super) const TIME_DELAY: Effect = Effect {
@@ -28,11 +29,5 @@ pub(super) const TIME_DELAY: Effect = Effect {
 };
 
 fn added(motion: &Motion<'_>, _: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
-    let of =
-        |tau: &Vec<f64>| motion.later(tau, values[0]).iter().zip(tau).map(|(a, b)| a - b).collect();
-    let of_joint = |joint: &usize| values[1] == 0.0 || *joint as f64 + 1.0 == values[1];
-    (0..motion.torque.len())
-        .filter(of_joint)
-        .map(|joint| (joint, of(&motion.torque[joint])))
-        .collect()
+    Response { delay: values[0], lag: 0.0 }.added(motion, values[1])
 }

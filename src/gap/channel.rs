@@ -1,6 +1,6 @@
 //! What torques go through on their way into a log.
 
-use crate::effects::{Motion, find, lagged};
+use crate::effects::{Response, find};
 
 use super::polish::Fitted;
 use super::search::Search;
@@ -17,23 +17,6 @@ const WORTH: f64 = 15.0;
 /// What naming one costs, and one joint of it.
 const COST: f64 = 6.0;
 const JOINT: f64 = 2.0;
-
-/// A delay and the lag of a filter.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Channel {
-    /// \[s\].
-    pub delay: f64,
-    /// Time constant \[s\].
-    pub lag: f64,
-}
-
-impl Channel {
-    /// A series of a motion behind it.
-    pub(super) fn behind(&self, motion: &Motion<'_>, x: &[f64]) -> Vec<f64> {
-        let late = if self.delay == 0.0 { x.to_vec() } else { motion.later(x, self.delay) };
-        if self.lag > 0.0 { lagged(motion, &late, self.lag) } else { late }
-    }
-}
 
 /// Which one it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,13 +61,13 @@ impl Late {
         })
     }
 
-    fn channels(&self, dof: usize) -> Vec<Channel> {
+    fn channels(&self, dof: usize) -> Vec<Response> {
         let channel = match self.kind {
-            Kind::Delay => Channel { delay: self.value, lag: 0.0 },
-            Kind::Lag => Channel { delay: 0.0, lag: self.value },
+            Kind::Delay => Response { delay: self.value, lag: 0.0 },
+            Kind::Lag => Response { delay: 0.0, lag: self.value },
         };
         let of = |joint: usize| self.joint.is_none_or(|own| own == joint);
-        (0..dof).map(|joint| if of(joint) { channel } else { Channel::default() }).collect()
+        (0..dof).map(|joint| if of(joint) { channel } else { Response::default() }).collect()
     }
 }
 
@@ -119,7 +102,7 @@ impl Search<'_, '_> {
         }
         let Some(late) = best else {
             self.error = error;
-            self.set_channels(&vec![Channel::default(); dof]);
+            self.set_channels(&vec![Response::default(); dof]);
             return;
         };
         self.set_channels(&late.channels(dof));
@@ -128,7 +111,7 @@ impl Search<'_, '_> {
             self.late = Some(Late { nats: behind - plain - COST, ..late });
         } else {
             self.error = error;
-            self.set_channels(&vec![Channel::default(); dof]);
+            self.set_channels(&vec![Response::default(); dof]);
         }
     }
 

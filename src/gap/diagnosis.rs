@@ -72,6 +72,8 @@ pub struct Said {
     pub share: f64,
     /// Logarithm of the odds that it brings.
     pub nats: f64,
+    /// The largest share that it has of a joint's torque \[1\].
+    pub size: f64,
 }
 
 /// A smooth function that explains what no law does.
@@ -141,6 +143,7 @@ impl Diagnosis {
                 parameters: of.parameters.clone(),
                 share: 1.0,
                 nats: of.nats,
+                size: 1.0,
             });
         }
         self.channels.push(("power", "W", found.gap));
@@ -158,6 +161,7 @@ impl Diagnosis {
                 parameters: of.parameters.clone(),
                 share: 1.0,
                 nats: of.nats,
+                size: 1.0,
             });
             if of.movement.is_some() {
                 self.places.push(Place {

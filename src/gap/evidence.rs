@@ -84,7 +84,7 @@ impl Evidence {
         let left = yy - solved_y.norm_squared();
         let log_det: f64 = lower.diagonal().iter().map(|x| x.ln()).sum();
         Evidence {
-            a: cc - solved_c.tr_mul(&solved_c),
+            a: cc - solved_c.transpose() * &solved_c,
             b: yc - solved_c.tr_mul(&solved_y).column(0),
             means,
             sds,
@@ -140,7 +140,7 @@ impl Evidence {
                 let lower = factor.l();
                 let across = lower.solve_lower_triangular(&across).unwrap_or(across);
                 let left = lower.solve_lower_triangular(&left).unwrap_or(left);
-                a.gemm_tr(-1.0, &across, &across, 1.0);
+                a.gemm(-1.0, &across.transpose(), &across, 1.0);
                 b.gemv_tr(-1.0, &across, &left, 1.0);
             }
         }

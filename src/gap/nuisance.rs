@@ -72,9 +72,10 @@ const OF_JOINT: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"
 const STICTION: f64 = 0.012;
 const SLOW: f64 = 0.08;
 /// Smooth torques that no model has: powers of position and of speed.
-const POWERS: [usize; 5] = [2, 3, 4, 5, 6];
+const OF_POSITION: std::ops::RangeInclusive<usize> = 0..=6;
+const OF_SPEED: std::ops::RangeInclusive<usize> = 2..=6;
 /// Of them, of the torque, where the model's error is no larger, and of this where it is.
-const SMOOTH: f64 = 0.004;
+const SMOOTH: f64 = 0.005;
 const OF_ERROR: f64 = 0.7;
 /// Least error that smooth torques have.
 pub(super) fn smooth_error(error: f64) -> f64 {
@@ -100,7 +101,10 @@ pub(super) struct Nuisance {
 }
 
 /// The parameters of a motion's model.
-pub(super) fn nuisance(record: &Record<'_>, trust: Trust) -> Nuisance {
+///
+/// `of` is the place of a mean among them, and their number.
+pub(super) fn nuisance(record: &Record<'_>, trust: Trust, of: (usize, usize)) -> Nuisance {
+    let place = of;
     let motion = &record.motion;
     let model = motion.model;
     let n = model.dof;
@@ -142,7 +146,7 @@ pub(super) fn nuisance(record: &Record<'_>, trust: Trust) -> Nuisance {
         RecordKind::Drift => vec![Vec::new(); count],
     };
     let mut of = Nuisance { names, deviations, mixing, errors_from: 0, series };
-    without_model(record, &mut of);
+    without_model(record, place, &mut of);
     of
 }
 
@@ -180,7 +184,7 @@ fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, 
 
 /// What no model has: a little friction at low speed, smooth functions of position and speed;
 /// friction that changes from repetition to repetition.
-fn without_model(record: &Record<'_>, of: &mut Nuisance) {
+fn without_model(record: &Record<'_>, (place, means): (usize, usize), of: &mut Nuisance) {
     let motion = &record.motion;
     let n = motion.model.dof;
     let is_mean = record.kind == RecordKind::Mean;
@@ -201,18 +205,25 @@ fn without_model(record: &Record<'_>, of: &mut Nuisance) {
         for (name, size, series) in
             [("dry", scale.coulomb, senses), ("viscous", scale.viscous, rates)]
         {
-            let series = series.iter().map(|x| VARIES * size * x).collect();
-            push(of, &format!("{name} friction changes"), joint, !is_mean, series);
+            let series: Vec<f64> = series.iter().map(|x| VARIES * size * x).collect();
+            push(of, &format!("{name} friction changes"), joint, !is_mean, series.clone());
+            // From log to log as well, where there are several.
+            for log in 0..if means > 1 { means } else { 0 } {
+                let there = is_mean && place == log;
+                let name = format!("{name} friction in log {}", log + 1);
+                push(of, &name, joint, there, series.clone());
+            }
         }
     }
     of.errors_from = of.series.len();
     for joint in 0..n {
         let size = OF_ERROR * motion.scale(joint).torque[0];
-        for x in [&motion.q[joint], &motion.rates[joint]] {
+        // A line over the speed is viscous friction.
+        for (x, powers) in [(&motion.q[joint], OF_POSITION), (&motion.rates[joint], OF_SPEED)] {
             let low = x.iter().copied().fold(f64::INFINITY, f64::min);
             let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let (middle, half) = (f64::midpoint(low, high), (0.5 * (high - low)).max(1e-9));
-            for power in POWERS {
+            for power in powers {
                 // Chebyshev polynomials: none is like another one.
                 let wave = |x: &f64| {
                     let angle = ((x - middle) / half).clamp(-1.0, 1.0).acos();

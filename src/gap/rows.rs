@@ -2,7 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::channel::Channel;
+use crate::effects::Response;
+
 use super::column::Column;
 use super::nuisance::Nuisance;
 use super::record::{Record, RecordKind};
@@ -110,7 +111,7 @@ impl Rows {
     pub(super) fn through(
         &mut self,
         records: &[Record<'_>],
-        channels: &[Channel],
+        channels: &[Response],
         is_used: impl Fn(usize) -> bool,
     ) {
         let channel = channels.get(self.joint).copied().unwrap_or_default();
@@ -122,10 +123,14 @@ impl Rows {
             let of_kind = records.iter().filter(|record| record.kind == self.kind);
             for (record, series) in of_kind.zip(series) {
                 let rows = record.spectrum.rows();
-                if let Some(series) = series {
-                    let late = channel.behind(&record.motion, series);
-                    let spectrum = record.rows_of(self.joint, &late);
-                    self.values.view_mut((first, k), (rows, 1)).copy_from_slice(&spectrum);
+                let mut to = self.values.view_mut((first, k), (rows, 1));
+                match series {
+                    Some(series) => {
+                        let late = channel.behind(&record.motion, self.joint, series);
+                        to.copy_from_slice(&record.rows_of(self.joint, &late));
+                    }
+                    // The model does not drift: what was there is the difference.
+                    None => to.fill(0.0),
                 }
                 first += rows;
             }
@@ -163,7 +168,7 @@ impl Rows {
             }
         }
         let places = used.into_iter().map(|(_, place)| place).collect();
-        (weighted.tr_mul(&weighted), places, log_weights)
+        (weighted.transpose() * &weighted, places, log_weights)
     }
 }
 

@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::channel::{Channel, Late};
+use crate::effects::Response;
+
+use super::channel::Late;
 use super::column::Owner;
 use super::evidence::{Evidence, Given};
 use super::hypothesis::{Family, families};
@@ -24,7 +26,7 @@ const PLAINER: [(&str, &str); 5] = [
 /// What another effect has to bring.
 const WORTH: f64 = 3.0;
 /// Effects at most.
-const MOST: usize = 4;
+const MOST: usize = 6;
 /// Effects of a quick search at most.
 const QUICK: usize = 2;
 
@@ -55,7 +57,7 @@ pub struct Search<'a, 'm> {
     /// Share of its torques to which the model is right.
     pub error: f64,
     /// What the torques of each joint go through.
-    pub(super) channels: Vec<Channel>,
+    pub(super) channels: Vec<Response>,
     /// What they go through as an effect, if it is one.
     pub late: Option<Late>,
     /// Ids that are not looked for.
@@ -83,7 +85,7 @@ impl<'a, 'm> Search<'a, 'm> {
             trust,
             error,
             channels: vec![
-                Channel::default();
+                Response::default();
                 records.first().map_or(0, |record| record.motion.model.dof)
             ],
             late: None,
@@ -99,7 +101,7 @@ impl<'a, 'm> Search<'a, 'm> {
     }
 
     /// Puts all that is computed behind channels.
-    pub(super) fn set_channels(&mut self, channels: &[Channel]) {
+    pub(super) fn set_channels(&mut self, channels: &[Response]) {
         self.channels = channels.to_vec();
         self.table.through_all(self.records, channels);
         self.evidence = self.table.evidence(self.error);
@@ -178,7 +180,7 @@ impl<'a, 'm> Search<'a, 'm> {
     }
 
     /// Shapes of what was found become the best ones.
-    fn refine(&mut self, found: &mut Found) {
+    pub(super) fn refine(&mut self, found: &mut Found) {
         self.sharpen(&found.chosen);
         let columns = self.columns(&found.chosen);
         self.tune(&columns);

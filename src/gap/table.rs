@@ -4,9 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::effects::{self, Effect, Form, Of};
+use crate::effects::{self, Effect, Form, Of, Response};
 
-use super::channel::Channel;
 use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::Evidence;
 use super::generic::generic;
@@ -143,7 +142,7 @@ impl Table {
     }
 
     /// All that is computed goes through the channel of its joint before it is compared.
-    pub(super) fn through_all(&mut self, records: &[Record<'_>], channels: &[Channel]) {
+    pub(super) fn through_all(&mut self, records: &[Record<'_>], channels: &[Response]) {
         self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, |_| true));
     }
 
@@ -151,7 +150,7 @@ impl Table {
     pub(super) fn through(
         &mut self,
         records: &[Record<'_>],
-        channels: &[Channel],
+        channels: &[Response],
         columns: &[usize],
     ) {
         let first = 1 + self.parameters.len();
@@ -173,7 +172,7 @@ impl Table {
         &mut self,
         records: &[Record<'_>],
         joint: usize,
-        channels: &[Channel],
+        channels: &[Response],
         error: f64,
     ) -> Evidence {
         let parameters = self.parameters.len();
@@ -237,5 +236,14 @@ fn add(gram: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
 
 /// The parameters' columns of each record.
 pub(super) fn nuisances(records: &[Record<'_>], trust: Trust) -> Vec<Nuisance> {
-    records.par_iter().map(|record| nuisance(record, trust)).collect()
+    let is_mean = |record: &&Record<'_>| record.kind == RecordKind::Mean;
+    let means = records.iter().filter(is_mean).count();
+    records
+        .par_iter()
+        .enumerate()
+        .map(|(number, record)| {
+            let place = records[..number].iter().filter(is_mean).count();
+            nuisance(record, trust, (place, means))
+        })
+        .collect()
 }

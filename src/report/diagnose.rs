@@ -124,6 +124,7 @@ fn said(of: &Said) -> Value {
         "parameters": parameters,
         "share_percent": 100.0 * of.share,
         "nats": of.nats,
+        "size_percent": 100.0 * of.size,
     })
 }
 

@@ -1,0 +1,132 @@
+//! Laws in the place of smooth functions: what rubs, gives way or saturates does so in forms that
+//! no library has all of, and a function that follows the form exactly wins against the law.
+
+use super::column::Owner;
+use super::search::{Chosen, Found, Search};
+
+/// Share of what functions at a joint explain that a law has to explain by itself.
+pub(super) const FORM: f64 = 0.65;
+/// Share of what the best law explains with which another one cannot be told from it.
+const RIVAL: f64 = 0.85;
+/// Laws that are brought to their best shape.
+const TRIED: usize = 3;
+/// Changes of parameters are no laws.
+const NO_LAWS: [&str; 2] = ["link_parameters", "apparent_torque"];
+
+impl Search<'_, '_> {
+    /// Whether a family is of functions.
+    fn is_generic(&self, family: usize) -> bool {
+        self.families[family].is_generic()
+    }
+
+    /// Joints of the functions in a set.
+    pub(super) fn joints_of_functions(&self, set: &[Chosen]) -> Vec<usize> {
+        let pieces = set.iter().filter(|of| self.is_generic(of.family)).flat_map(|of| &of.pieces);
+        let mut joints: Vec<usize> = pieces.filter_map(|p| self.table.pieces[*p].joint).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        joints
+    }
+
+    /// A set without the functions at a joint.
+    pub(super) fn without_functions(&self, set: &[Chosen], joint: usize) -> Vec<Chosen> {
+        let kept = |of: &Chosen| Chosen {
+            family: of.family,
+            pieces: of
+                .pieces
+                .iter()
+                .copied()
+                .filter(|piece| {
+                    !self.is_generic(of.family) || self.table.pieces[*piece].joint != Some(joint)
+                })
+                .collect(),
+        };
+        set.iter().map(kept).filter(|of| !of.pieces.is_empty()).collect()
+    }
+
+    /// Puts laws in the place of functions, joint by joint, where they explain most of what these
+    /// do; what is left is looked for again.
+    pub fn name_functions(&mut self, mut found: Found) -> Found {
+        for joint in self.joints_of_functions(&found.chosen) {
+            let rest = self.without_functions(&found.chosen, joint);
+            let base = self.score(&rest);
+            let full = found.score - base;
+            if full <= 0.0 {
+                continue;
+            }
+            let given = self.given(&rest);
+            let mut laws: Vec<Found> = (0..self.families.len())
+                .filter(|family| !self.is_generic(*family))
+                .filter(|family| rest.iter().all(|of| of.family != *family))
+                .filter(|family| {
+                    let id = self.families[*family].owner.id();
+                    !self.banned.contains(&id) && !NO_LAWS.contains(&id)
+                })
+                .filter_map(|family| self.with(&given, &rest, family))
+                .collect();
+            laws.sort_by(|a, b| b.score.total_cmp(&a.score));
+            let mut best: Option<Found> = None;
+            for mut law in laws.into_iter().take(TRIED) {
+                self.refine(&mut law);
+                if best.as_ref().is_none_or(|best| law.score > best.score) {
+                    best = Some(law);
+                }
+            }
+            if let Some(best) = best.filter(|best| best.score - base > FORM * full) {
+                found = self.run_from(best);
+            }
+        }
+        found
+    }
+
+    /// What the functions at the joints of a member of the set bring beside it, as a share of
+    /// what all of these do together.
+    pub(super) fn share_of_form(&self, found: &Found, place: usize) -> f64 {
+        let chosen = &found.chosen[place];
+        let is_robots = chosen.pieces.iter().any(|p| self.table.pieces[*p].joint.is_none());
+        let mut less = found.chosen.clone();
+        for joint in self.joints_of_functions(&found.chosen) {
+            let own = |piece: &usize| self.table.pieces[*piece].joint == Some(joint);
+            if is_robots || chosen.pieces.iter().any(own) {
+                less = self.without_functions(&less, joint);
+            }
+        }
+        let neither: Vec<Chosen> =
+            less.iter().filter(|of| of.family != chosen.family).cloned().collect();
+        let all = found.score - self.score(&neither);
+        ((found.score - self.score(&less)) / all.max(1e-9)).clamp(0.0, 1.0)
+    }
+
+    /// Laws that explain nearly as much as the one at a place, functions at its joints being no
+    /// part of either.
+    pub(super) fn rival_forms(&self, found: &Found, place: usize) -> Vec<&'static str> {
+        let chosen = &found.chosen[place];
+        let mut less = found.chosen.clone();
+        for piece in &chosen.pieces {
+            if let Some(joint) = self.table.pieces[*piece].joint {
+                less = self.without_functions(&less, joint);
+            }
+        }
+        let rest: Vec<Chosen> =
+            less.iter().filter(|of| of.family != chosen.family).cloned().collect();
+        let base = self.score(&rest);
+        let own = self.score(&less) - base;
+        let given = self.given(&rest);
+        let mut class = Vec::new();
+        for (number, family) in self.families.iter().enumerate() {
+            let Owner::Effect(effect) = family.owner else { continue };
+            if number == chosen.family
+                || NO_LAWS.contains(&effect.id)
+                || rest.iter().any(|of| of.family == number)
+            {
+                continue;
+            }
+            if let Some(other) = self.with(&given, &rest, number)
+                && other.score - base > RIVAL * own
+            {
+                class.push(effect.id);
+            }
+        }
+        class
+    }
+}
