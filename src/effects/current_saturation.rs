@@ -9,15 +9,15 @@ pub(super) const CURRENT_SATURATION: Effect = Effect {
     channel: Channel::Torque,
     of: Of::Joint,
     title: "Saturation of the motor",
-    law: "τ = τ·(1 + error·(τ/τ_max)²), logged",
+    law: "τ = τ·(1 + error·(τ/τ_max)²), logged; τ_max: the limit, else of the motion",
     source: "G. Terzic, M. Jadric, IEEE T-IE 48, 2001",
     parameters: &[bounded(
         "error",
         "1",
         "logged over true torque at the largest current, less 1",
-        [-0.5, 1.0],
+        [-0.9, 5.0],
     )],
-    coordinates: &[linear(|_| 0.08)],
+    coordinates: &[linear(|_| 0.15)],
     published: None,
     joints: every,
     brings: &[],
@@ -28,6 +28,9 @@ pub(super) const CURRENT_SATURATION: Effect = Effect {
 
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let tau = &motion.torque[joint];
-    let largest = tau.iter().fold(1e-9, |m: f64, x| m.max(x.abs()));
+    // The same torque for every motion, where the robot has one.
+    let limit = motion.model.limits.torque.as_ref().map(|of| of[joint]);
+    let largest = limit.unwrap_or_else(|| tau.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
+    let largest = largest.max(1e-9);
     vec![(joint, tau.iter().map(|x| values[0] * x * (x / largest).powi(2)).collect())]
 }

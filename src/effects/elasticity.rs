@@ -29,14 +29,23 @@ const STIFFNESS: Published = Published {
     coordinates: |x| x.iter().map(|stiffness| 1.0 / stiffness).collect(),
 };
 
-/// Torques are those of the rotor where the log is, and of the bodies where they are.
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let behind: Vec<f64> = motion.gear[joint].iter().map(|tau| values[0] * tau).collect();
-    let rate = motion.changes(&behind);
+    displaced(motion, joint, &behind)
+}
+
+/// What changes where the link is `behind` \[rad\] the motor: torques are those of the rotor where
+/// the log is, and of the bodies where they are.
+pub(super) fn displaced(
+    motion: &Motion<'_>,
+    joint: usize,
+    behind: &[f64],
+) -> Vec<(usize, Vec<f64>)> {
+    let rate = motion.changes(behind);
     let acceleration = motion.changes(&rate);
     let mut moved = motion.clone();
     for (series, less) in
-        [(&mut moved.q, &behind), (&mut moved.qd, &rate), (&mut moved.qdd, &acceleration)]
+        [(&mut moved.q, behind), (&mut moved.qd, &rate[..]), (&mut moved.qdd, &acceleration[..])]
     {
         series[joint].iter_mut().zip(less).for_each(|(x, less)| *x -= less);
     }

@@ -9,14 +9,14 @@ pub(super) const FLUX_WEAKENING: Effect = Effect {
     channel: Channel::Torque,
     of: Of::Joint,
     title: "Flux weakening",
-    law: "τ = τ·(1 + error·(|q̇| − velocity)/(q̇_max − velocity)) above the velocity, logged",
+    law: "τ = τ·(1 + error·(|q̇| − velocity)/(q̇_max − velocity)) above the velocity, logged; q̇_max: the limit, else of the motion",
     source: "T. Jahns, Flux-weakening regime operation of an interior permanent-magnet synchronous motor drive, IEEE T-IA 23, 1987",
     parameters: &[
-        bounded("error", "1", "logged over true torque at the largest speed, less 1", [-0.5, 2.0]),
+        bounded("error", "1", "logged over true torque at the largest speed, less 1", [-0.9, 5.0]),
         bounded("velocity", "rad/s", "speed from which on", [0.0, 100.0]),
     ],
     coordinates: &[
-        linear(|_| 0.15),
+        linear(|_| 0.3),
         shape(|of| [0.5, 0.65, 0.8].map(|share| share * of.rate).to_vec()),
     ],
     published: None,
@@ -30,7 +30,10 @@ pub(super) const FLUX_WEAKENING: Effect = Effect {
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let [error, from] = [values[0], values[1]];
     let rates = &motion.rates[joint];
-    let fastest = rates.iter().fold(from + 1e-9, |m: f64, x| m.max(x.abs()));
+    // The same speed for every motion, where the robot has one.
+    let limit = motion.model.limits.velocity.as_ref().map(|of| of[joint]);
+    let fastest = limit.unwrap_or_else(|| rates.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
+    let fastest = fastest.max(from + 1e-9);
     let share = |rate: &f64| ((rate.abs() - from) / (fastest - from)).max(0.0);
     let series =
         motion.torque[joint].iter().zip(rates).map(|(tau, rate)| error * tau * share(rate));

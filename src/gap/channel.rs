@@ -6,14 +6,20 @@ use super::polish::Fitted;
 use super::search::Search;
 
 /// Delays that are tried at first \[s\].
-const DELAYS: [f64; 12] =
-    [-0.016, -0.01, -0.006, -0.003, -0.0015, 0.0015, 0.003, 0.006, 0.009, 0.012, 0.016, 0.02];
+const DELAYS: [f64; 18] = [
+    -0.006, -0.0045, -0.003, -0.0015, 0.0015, 0.003, 0.0045, 0.006, 0.0075, 0.009, 0.0105, 0.012,
+    0.0135, 0.015, 0.0165, 0.018, 0.0195, 0.021,
+];
 /// Lags that are tried at first \[s\].
-const LAGS: [f64; 7] = [0.0015, 0.003, 0.006, 0.009, 0.013, 0.018, 0.025];
+const LAGS: [f64; 11] =
+    [0.001, 0.002, 0.003, 0.0045, 0.006, 0.008, 0.01, 0.013, 0.016, 0.02, 0.025];
 /// Rounds of finer steps.
 const ROUNDS: usize = 7;
 /// What a delay or a lag has to bring before all else is looked at.
 const WORTH: f64 = 15.0;
+/// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].
+const FORMS: f64 = 0.05;
+const TICKS: f64 = 1e-4;
 /// What naming one costs, and one joint of it.
 const COST: f64 = 6.0;
 const JOINT: f64 = 2.0;
@@ -56,9 +62,14 @@ impl Late {
             joint: self.joint,
             coordinates: vec![self.value, of],
             parameters: vec![self.value, of],
-            deviations: vec![self.sd, 0.0],
+            deviations: vec![self.deviation(), 0.0],
             significance: self.value.abs() / self.sd.max(1e-300),
         })
+    }
+
+    /// A filter has other forms than one pole, a clock is no better than it ticks.
+    fn deviation(&self) -> f64 {
+        self.sd.hypot(FORMS * self.value).hypot(TICKS)
     }
 
     fn channels(&self, dof: usize) -> Vec<Response> {
@@ -81,23 +92,15 @@ impl Search<'_, '_> {
             .filter(|kind| may(Late { kind: *kind, ..Late::none() }.id()))
             .collect();
         let dof = self.dof();
-        let joints = std::iter::once(None).chain((0..dof).map(Some));
-        let mut best: Option<Late> = None;
         let error = self.error;
         // With a large error of the model nothing would be late.
         self.error = errors.get(1).copied().unwrap_or(error);
-        for joint in joints {
-            for kind in &kinds {
-                if let Some(joint) = joint
-                    && !self.may_be_late(*kind, joint)
-                {
-                    continue;
-                }
-                let late = self.tuned(*kind, joint, &[]);
-                let cost = if joint.is_some() { JOINT } else { 0.0 };
-                if late.nats - cost > best.map_or(WORTH, |best| best.nats) {
-                    best = Some(Late { nats: late.nats - cost, ..late });
-                }
+        let mut best: Option<Late> = None;
+        for (kind, joint, value) in self.suspected(&kinds) {
+            let late = self.tuned(kind, joint, &[], value);
+            let cost = if joint.is_some() { JOINT } else { 0.0 };
+            if late.nats - cost > best.map_or(WORTH, |best| best.nats) {
+                best = Some(Late { nats: late.nats - cost, ..late });
             }
         }
         let Some(late) = best else {
@@ -115,21 +118,41 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Whether a joint by itself is more probable behind some delay or lag.
-    fn may_be_late(&mut self, kind: Kind, joint: usize) -> bool {
+    /// The best delay and lag of all joints and of each one that looks late, as the joints by
+    /// themselves show them.
+    fn suspected(&mut self, kinds: &[Kind]) -> Vec<(Kind, Option<usize>, f64)> {
         let dof = self.dof();
-        let mut null = |value: f64| {
-            let late = Late { kind, joint: Some(joint), value, ..Late::none() };
-            self.table.of_joint(self.records, joint, &late.channels(dof), self.error).null
-        };
-        let none = null(0.0);
-        let tried: &[f64] = match kind {
-            Kind::Delay => &[0.0025, 0.007, 0.015],
-            Kind::Lag => &[0.005, 0.015],
-        };
-        let late = tried.iter().any(|value| null(*value) > none + WORTH);
-        null(0.0);
-        late
+        let mut suspected = Vec::new();
+        for kind in kinds {
+            let tried: &[f64] = match kind {
+                Kind::Delay => &DELAYS,
+                Kind::Lag => &LAGS,
+            };
+            let mut gains = vec![vec![0.0; dof]; tried.len()];
+            for joint in 0..dof {
+                let mut null = |value: f64| {
+                    let late = Late { kind: *kind, joint: Some(joint), value, ..Late::none() };
+                    let channels = late.channels(dof);
+                    self.table.of_joint(self.records, joint, &channels, self.error).null
+                };
+                let none = null(0.0);
+                for (value, gains) in tried.iter().zip(&mut gains) {
+                    gains[joint] = null(*value) - none;
+                }
+                null(0.0);
+            }
+            let all = |gains: &Vec<f64>| gains.iter().sum::<f64>();
+            let best = |of: &dyn Fn(&Vec<f64>) -> f64| {
+                let gains = gains.iter().zip(tried).map(|(gains, value)| (of(gains), *value));
+                gains.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > WORTH)
+            };
+            suspected.extend(best(&all).map(|(_, value)| (*kind, None, value)));
+            for joint in 0..dof {
+                let own = best(&|gains: &Vec<f64>| gains[joint]);
+                suspected.extend(own.map(|(_, value)| (*kind, Some(joint), value)));
+            }
+        }
+        suspected
     }
 
     /// The delay or lag that was found, tuned once more with some columns there.
@@ -137,7 +160,7 @@ impl Search<'_, '_> {
         let Some(late) = self.late else { return };
         let mut best: Option<Late> = None;
         for kind in [Kind::Delay, Kind::Lag] {
-            let tuned = self.tuned(kind, late.joint, columns);
+            let tuned = self.tuned(kind, late.joint, columns, late.value);
             if best.is_none_or(|best| tuned.nats > best.nats) {
                 best = Some(tuned);
             }
@@ -150,7 +173,7 @@ impl Search<'_, '_> {
     }
 
     /// The best value of a kind with some columns there; its gain is over none.
-    fn tuned(&mut self, kind: Kind, joint: Option<usize>, columns: &[usize]) -> Late {
+    fn tuned(&mut self, kind: Kind, joint: Option<usize>, columns: &[usize], near: f64) -> Late {
         let all: Vec<usize> = (0..columns.len()).collect();
         let dof = self.dof();
         let total = |search: &mut Search<'_, '_>, value: f64| {
@@ -160,22 +183,16 @@ impl Search<'_, '_> {
             evidence.null + evidence.gain(&all)
         };
         let none = total(self, 0.0);
-        let tried: &[f64] = match kind {
-            Kind::Delay => &DELAYS,
-            Kind::Lag => &LAGS,
-        };
+        let near = if kind == Kind::Lag { near.abs() } else { near };
         let (mut value, mut most) = (0.0, none);
-        // One joint's changes are small: fewer are enough to see whether there are any.
-        let every = if joint.is_some() && columns.is_empty() { 3 } else { 1 };
-        for next in tried.iter().skip(every / 2).step_by(every) {
-            let found = total(self, *next);
-            if found > most {
-                (value, most) = (*next, found);
-            }
+        let found = total(self, near);
+        if found > most {
+            (value, most) = (near, found);
         }
         let mut sd = f64::INFINITY;
         if most > none + WORTH || !columns.is_empty() {
-            let mut step = 0.4 * value.abs().max(1e-3);
+            let share = if columns.is_empty() { 0.3 } else { 0.1 };
+            let mut step = share * value.abs().max(1e-3);
             for _ in 0..ROUNDS {
                 let [low, high] = [value - step, value + step].map(|next| {
                     let allowed = kind == Kind::Delay || next > 0.0;

@@ -73,7 +73,9 @@ pub fn diagnose(
     }
     found = search.name_functions(found);
     search.simplify(&mut found, CLASS);
-    let polished = search.polish(&found.chosen);
+    // What a law is worth shows where nothing else follows its form.
+    let laws = search.without_forms(&found);
+    let polished = search.polish(&laws);
     let mut judged = judged(&search, &found, polished.as_ref());
     // What is not asserted is not in the model, so that its parameters are those without it.
     let kept: Vec<Chosen> = found

@@ -5,13 +5,29 @@ use super::column::Owner;
 use super::search::{Chosen, Found, Search};
 
 /// Share of what functions at a joint explain that a law has to explain by itself.
-pub(super) const FORM: f64 = 0.65;
+const FORM: f64 = 0.65;
+/// The same where the functions are of what the law is of: friction that depends on the position
+/// alone is friction over the position, in whatever form.
+const OWN_FORM: f64 = 0.02;
+/// Laws of what functions are of.
+const OWN: [(&str, &[&str]); 4] = [
+    ("time_and_sense", &["brake_drag"]),
+    ("speed", &["stribeck", "nonlinear_viscous", "viscous_asymmetry"]),
+    ("position_and_sense", &["position_friction"]),
+    ("load_and_sense", &["load_friction", "gear_efficiency"]),
+];
 /// Share of what the best law explains with which another one cannot be told from it.
 const RIVAL: f64 = 0.85;
 /// Laws that are brought to their best shape.
 const TRIED: usize = 3;
 /// Changes of parameters are no laws.
 const NO_LAWS: [&str; 2] = ["link_parameters", "apparent_torque"];
+
+/// Whether a function is of what a law is of.
+fn is_own(function: Option<&str>, law: Option<&str>) -> bool {
+    let (Some(function), Some(law)) = (function, law) else { return false };
+    OWN.iter().any(|(of, laws)| *of == function && laws.contains(&law))
+}
 
 impl Search<'_, '_> {
     /// Whether a family is of functions.
@@ -65,23 +81,60 @@ impl Search<'_, '_> {
                 .filter_map(|family| self.with(&given, &rest, family))
                 .collect();
             laws.sort_by(|a, b| b.score.total_cmp(&a.score));
-            let mut best: Option<Found> = None;
-            for mut law in laws.into_iter().take(TRIED) {
-                self.refine(&mut law);
-                if best.as_ref().is_none_or(|best| law.score > best.score) {
-                    best = Some(law);
+            let strongest = self.strongest_function(&found, joint);
+            let added = |law: &Found| law.chosen.last().map(|of| of.family);
+            let (own, others): (Vec<Found>, Vec<Found>) = laws.into_iter().partition(|law| {
+                is_own(strongest, added(law).map(|family| self.families[family].owner.id()))
+            });
+            for (laws, needed) in [(others, FORM), (own, OWN_FORM)] {
+                let mut best: Option<Found> = None;
+                for mut law in laws.into_iter().take(TRIED) {
+                    self.refine(&mut law);
+                    if best.as_ref().is_none_or(|best| law.score > best.score) {
+                        best = Some(law);
+                    }
                 }
-            }
-            if let Some(best) = best.filter(|best| best.score - base > FORM * full) {
-                found = self.run_from(best);
+                if let Some(best) = best.filter(|best| best.score - base > needed * full) {
+                    self.kept.extend(added(&best));
+                    found = self.run_from(best);
+                    break;
+                }
             }
         }
         found
     }
 
+    /// The function that brings most at a joint.
+    fn strongest_function(&self, found: &Found, joint: usize) -> Option<&'static str> {
+        (0..found.chosen.len())
+            .filter(|k| self.is_generic(found.chosen[*k].family))
+            .filter(|k| {
+                let own = |piece: &usize| self.table.pieces[*piece].joint == Some(joint);
+                found.chosen[*k].pieces.iter().any(own)
+            })
+            .map(|k| {
+                let mut less = found.chosen.clone();
+                let of = less.remove(k);
+                (found.score - self.score(&less), self.families[of.family].owner.id())
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, id)| id)
+    }
+
+    /// Share of a member's functions beyond which the law is none of it.
+    pub(super) fn largest_form(&self, found: &Found, place: usize) -> f64 {
+        let chosen = &found.chosen[place];
+        let id = self.families[chosen.family].owner.id();
+        let joints = chosen.pieces.iter().filter_map(|p| self.table.pieces[*p].joint);
+        let is_own = joints
+            .filter_map(|joint| self.strongest_function(found, joint))
+            .all(|strongest| is_own(Some(strongest), Some(id)));
+        1.0 - if is_own { OWN_FORM } else { FORM }
+    }
+
     /// What the functions at the joints of a member of the set bring beside it, as a share of
-    /// what all of these do together.
-    pub(super) fn share_of_form(&self, found: &Found, place: usize) -> f64 {
+    /// what all of these do together; and what the member brings by itself.
+    pub(super) fn share_of_form(&self, found: &Found, place: usize) -> (f64, f64) {
         let chosen = &found.chosen[place];
         let is_robots = chosen.pieces.iter().any(|p| self.table.pieces[*p].joint.is_none());
         let mut less = found.chosen.clone();
@@ -94,7 +147,26 @@ impl Search<'_, '_> {
         let neither: Vec<Chosen> =
             less.iter().filter(|of| of.family != chosen.family).cloned().collect();
         let all = found.score - self.score(&neither);
-        ((found.score - self.score(&less)) / all.max(1e-9)).clamp(0.0, 1.0)
+        let form = ((found.score - self.score(&less)) / all.max(1e-9)).clamp(0.0, 1.0);
+        (form, (1.0 - form) * all)
+    }
+
+    /// A set without the functions that are the form of one of its laws.
+    pub(super) fn without_forms(&self, found: &Found) -> Vec<Chosen> {
+        let mut set = found.chosen.clone();
+        for (place, chosen) in found.chosen.iter().enumerate() {
+            if self.is_generic(chosen.family)
+                || self.share_of_form(found, place).0 > self.largest_form(found, place)
+            {
+                continue;
+            }
+            for piece in &chosen.pieces {
+                if let Some(joint) = self.table.pieces[*piece].joint {
+                    set = self.without_functions(&set, joint);
+                }
+            }
+        }
+        set
     }
 
     /// Laws that explain nearly as much as the one at a place, functions at its joints being no

@@ -11,7 +11,7 @@ const PARTS: usize = 20;
 /// Lengths of windows, in parts.
 const LENGTHS: [usize; 6] = [1, 2, 3, 4, 5, 7];
 /// The finest step of a window, in parts.
-const FINEST: f64 = 0.1;
+const FINEST: f64 = 0.02;
 
 /// Functions of time that were found, whose windows may be gated effects.
 pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];

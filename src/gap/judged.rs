@@ -7,7 +7,6 @@ use super::channel::Late;
 use super::column::Owner;
 use super::diagnose::{CLASS, FLIP};
 use super::diagnosis::{Anything, Estimated, Said, Verdict};
-use super::forms::FORM;
 use super::gated::{GATED, OF_TIME};
 use super::generic::OF_DRIFT;
 use super::nuisance::Trust;
@@ -27,11 +26,22 @@ const LEFT: f64 = 0.3;
 const OF_STRONGEST: f64 = 0.005;
 /// What an effect has to bring.
 const LEAST_NATS: f64 = 8.0;
+/// The same of what changes with time, as all friction does a little.
+const LEAST_OF_TIME: f64 = 25.0;
 /// Share of its joint's torque that an effect has to have, and where it brings as many nats and
 /// is no smooth torque, which models miss anyway.
 const RELEVANT: f64 = 0.01;
-const CLEARLY: f64 = 0.005;
-const CLEAR: f64 = 60.0;
+const CLEARLY: f64 = 0.001;
+const CLEAR: f64 = 30.0;
+/// Effects at once, and what each has to bring of what the first one does where there are more.
+const AT_ONCE: usize = 2;
+const OF_FIRST: f64 = 0.05;
+/// Share of what two effects at a joint bring that the lesser one needs.
+const LESSER: f64 = 0.15;
+/// Spread of a parameter where functions follow the form, of the share that they have.
+const FORM_SPREAD: f64 = 0.5;
+/// An effect that is so many times what the model misses is there against others.
+const CANCELS: f64 = 3.0;
 const SMOOTH: [&str; 6] = [
     "torque_offset",
     "cable",
@@ -53,6 +63,56 @@ pub(super) struct Judged {
 }
 
 impl Judged {
+    /// Of two effects at one joint the lesser one is the other's form where it brings little of
+    /// what both do.
+    fn demote_lesser(&mut self, search: &Search<'_, '_>, found: &Found) {
+        let family = |id: &str| {
+            found.chosen.iter().position(|of| search.families[of.family].owner.id() == id)
+        };
+        let score_without = |places: &[usize]| {
+            let kept: Vec<Chosen> = (0..found.chosen.len())
+                .filter(|k| !places.contains(k))
+                .map(|k| found.chosen[k].clone())
+                .collect();
+            search.score(&kept)
+        };
+        let mut lesser: Vec<&str> = Vec::new();
+        for said in &self.effects {
+            for other in self.effects.iter().filter(|other| other.effect.id != said.effect.id) {
+                let both_there = said.joints.iter().all(|joint| other.joints.contains(joint));
+                let (Some(a), Some(b)) = (family(said.effect.id), family(other.effect.id)) else {
+                    continue;
+                };
+                if said.joints.is_empty() || !both_there {
+                    continue;
+                }
+                let own = found.score - score_without(&[a]);
+                let both = found.score - score_without(&[a, b]);
+                if own < LESSER * both && own < found.score - score_without(&[b]) {
+                    lesser.push(said.effect.id);
+                }
+            }
+        }
+        let (demoted, kept): (Vec<Said>, Vec<Said>) =
+            self.effects.drain(..).partition(|said| lesser.contains(&said.effect.id));
+        self.effects = kept;
+        self.candidates.extend(demoted);
+    }
+
+    /// More effects than can be at once are what none of them is; whether it is so.
+    fn demote_too_many(&mut self) -> bool {
+        self.effects.sort_by(|a, b| b.nats.total_cmp(&a.nats));
+        if self.effects.len() <= AT_ONCE {
+            return false;
+        }
+        let strongest = self.effects[0].nats;
+        let strong = self.effects.iter().filter(|said| said.nats > OF_FIRST * strongest).count();
+        let clear = strong <= AT_ONCE;
+        let from = if clear { strong } else { 0 };
+        self.candidates.extend(self.effects.drain(from..));
+        !clear
+    }
+
     /// A delay or a lag.
     pub(super) fn assert_late(&mut self, late: &Late, polished: Option<&mut Polished>) {
         let Some(fitted) = late.fitted() else { return };
@@ -123,7 +183,7 @@ pub(super) fn judged(
         reasons: Vec::new(),
     };
     let Some(polished) = polished else { return judged };
-    let drops: Vec<f64> = (0..found.chosen.len())
+    let mut drops: Vec<f64> = (0..found.chosen.len())
         .map(|k| {
             let mut less = found.chosen.clone();
             less.remove(k);
@@ -133,7 +193,11 @@ pub(super) fn judged(
     // Functions beside a law that explains most of what they do together are its form.
     let form: Vec<f64> = (0..found.chosen.len())
         .map(|k| match search.families[found.chosen[k].family].owner {
-            Owner::Effect(_) => search.share_of_form(found, k),
+            Owner::Effect(_) => {
+                let (form, alone) = search.share_of_form(found, k);
+                drops[k] = drops[k].max(alone);
+                form
+            }
             Owner::Generic(_) => 1.0,
         })
         .collect();
@@ -158,7 +222,9 @@ pub(super) fn judged(
                 let matter: Vec<&Fitted> =
                     all_of.iter().copied().filter(|of| matters(search, of)).collect();
                 let fitted = if matter.is_empty() { all_of } else { matter };
-                let least = LEAST_NATS.max(OF_STRONGEST * strongest);
+                let fades = effect.id == "warm_up";
+                let least = if fades { LEAST_OF_TIME } else { LEAST_NATS };
+                let least = least.max(OF_STRONGEST * strongest);
                 let (class, probability) = if drops[k] < least && form[k] == 0.0 {
                     (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
                 } else {
@@ -169,19 +235,23 @@ pub(super) fn judged(
                     joints: fitted.iter().filter_map(|of| of.joint).collect(),
                     class,
                     probability,
-                    parameters: parameters(&fitted),
+                    parameters: of_form(parameters(&fitted), form[k]),
                     share,
                     nats: drops[k],
                     size: size(search, effect, &fitted),
                 };
-                if let Some(Refused { why, is_open }) =
+                let refused = if form[k] > search.largest_form(found, k) {
+                    let why = "functions follow it better than its law".to_owned();
+                    Some(Refused { why, is_open: true })
+                } else {
                     refused(search, &said, &fitted, polished, least)
-                {
+                };
+                if let Some(Refused { why, is_open }) = refused {
                     refusal |= is_open;
                     judged.reasons.push(format!("{}: {why}", effect.id));
                     judged.candidates.push(said);
                 } else {
-                    if form[k] > 0.0 && form[k] < 1.0 - FORM {
+                    if form[k] > 0.0 {
                         let of = &chosen.pieces;
                         followed.extend(of.iter().map(|p| search.table.pieces[*p].joint));
                     }
@@ -190,6 +260,8 @@ pub(super) fn judged(
             }
         }
     }
+    judged.demote_lesser(search, found);
+    refusal |= judged.demote_too_many();
     let is_form = |of: &Anything| followed.contains(&of.joint) || followed.contains(&None);
     let forms = judged.anything.iter().filter(|of| is_form(of)).map(|of| of.share).sum::<f64>();
     // What drifts is not what stays.
@@ -262,6 +334,9 @@ fn refused(
     let relevant = if may_be_small { CLEARLY } else { RELEVANT };
     if said.size < relevant {
         return no(format!("is less than {} % of the torque", 100.0 * relevant));
+    }
+    if said.size > CANCELS * missed(search, fitted) {
+        return no("is there to cancel others".to_owned());
     }
     if id == "ripple" && fitted.iter().all(|of| of.parameters[0] < noise(search, of.joint)) {
         return no("is below the noise, as any motor's".to_owned());
@@ -341,7 +416,7 @@ fn size(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> f64 {
             let joint = of
                 .joint
                 .unwrap_or_else(|| (effect.joints)(motion.model.dof).first().copied().unwrap_or(0));
-            for (to, series) in effect.added(motion, joint, &of.coordinates) {
+            for (to, series) in shown(search, effect, record, joint, &of.coordinates) {
                 squares[to] += series.iter().map(|x| x * x).sum::<f64>();
             }
         }
@@ -350,6 +425,51 @@ fn size(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> f64 {
         }
     }
     squares.iter().zip(&all).map(|(x, all)| (x / all).sqrt()).fold(0.0, f64::max)
+}
+
+/// The largest share of the torque of an effect's joints that the model misses.
+fn missed(search: &Search<'_, '_>, fitted: &[&Fitted]) -> f64 {
+    let (mut squares, mut all) = (vec![0.0; MAX_DOF], vec![1e-12; MAX_DOF]);
+    for record in search.records.iter().filter(|record| record.kind == RecordKind::Mean) {
+        for joint in 0..record.motion.model.dof {
+            for (x, y) in record.measured[joint].iter().zip(&record.motion.torque[joint]) {
+                squares[joint] += (x - y).powi(2);
+                all[joint] += x * x;
+            }
+        }
+    }
+    let asked = |joint: &usize| {
+        fitted.iter().all(|of| {
+            of.joint.is_none_or(|own| own == *joint || own == 5 && *joint == 4) || fitted.len() > 1
+        })
+    };
+    (0..MAX_DOF).filter(asked).map(|joint| (squares[joint] / all[joint]).sqrt()).fold(0.0, f64::max)
+}
+
+/// What an effect adds to a motion; of what fades, only what has faded over all logs counts.
+fn shown(
+    search: &Search<'_, '_>,
+    effect: &Effect,
+    record: &Record<'_>,
+    joint: usize,
+    coordinates: &[f64],
+) -> Vec<(usize, Vec<f64>)> {
+    if effect.id != "warm_up" {
+        return effect.added(&record.motion, joint, coordinates);
+    }
+    let times = search.records.iter().flat_map(|record| record.times.iter().map(|(t, _)| *t));
+    let (first, last) = times
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(first, last), t| (first.min(t), last.max(t)));
+    let at = |later: f64| {
+        let mut moved = record.motion.clone();
+        moved.t.iter_mut().for_each(|t| *t += later);
+        effect.added(&moved, joint, coordinates)
+    };
+    at(first)
+        .into_iter()
+        .zip(at(last))
+        .map(|((joint, a), (_, b))| (joint, a.iter().zip(&b).map(|(a, b)| a - b).collect()))
+        .collect()
 }
 
 /// What cannot be told from the effect, and how probable it is.
@@ -383,6 +503,14 @@ fn rivals(
         }
     }
     (class, 1.0 / (1.0 + odds))
+}
+
+/// Parameters depend on the form that a law is taken to have.
+fn of_form(mut parameters: Vec<Estimated>, form: f64) -> Vec<Estimated> {
+    for of in &mut parameters {
+        of.sd = of.sd.hypot(FORM_SPREAD * form * of.value);
+    }
+    parameters
 }
 
 fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {

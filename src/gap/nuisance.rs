@@ -83,7 +83,9 @@ pub(super) fn smooth_error(error: f64) -> f64 {
 }
 
 /// Change of friction from repetition to repetition, of itself.
-const VARIES: f64 = 0.004;
+const VARIES: f64 = 0.006;
+/// The same from log to log: not of the same motion.
+const DIFFERS: f64 = 0.02;
 
 /// What a change of each parameter by one standard deviation adds to the torques: of each
 /// parameter, of each joint, the series; behind the parameters what no model has.
@@ -100,11 +102,54 @@ pub(super) struct Nuisance {
     pub(super) series: Vec<Vec<(usize, Vec<f64>)>>,
 }
 
-/// The parameters of a motion's model.
-///
-/// `of` is the place of a mean among them, and their number.
-pub(super) fn nuisance(record: &Record<'_>, trust: Trust, of: (usize, usize)) -> Nuisance {
-    let place = of;
+/// What all logs of a robot have in common: a parameter has one size, a function one range.
+pub(super) struct Common {
+    /// By joint, the root mean square and the largest of the torque \[Nm\].
+    torque: Vec<[f64; 2]>,
+    /// By joint, the ranges of position \[rad\] and of the motor's rate \[rad/s\].
+    ranges: Vec<[[f64; 2]; 2]>,
+    /// Number of means.
+    means: usize,
+}
+
+impl Common {
+    /// Of all records.
+    pub(super) fn new(records: &[Record<'_>]) -> Common {
+        let dof = records.first().map_or(0, |record| record.motion.model.dof);
+        let range = |of: &dyn Fn(&Record<'_>) -> Vec<f64>| -> [f64; 2] {
+            let all = records.iter().flat_map(of);
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        };
+        Common {
+            torque: (0..dof)
+                .map(|joint| {
+                    let scales: Vec<[f64; 2]> =
+                        records.iter().map(|record| record.motion.scale(joint).torque).collect();
+                    let squares: f64 = scales.iter().map(|[rms, _]| rms * rms).sum();
+                    let mean = (squares / scales.len().max(1) as f64).sqrt();
+                    [mean, scales.iter().map(|[_, largest]| *largest).fold(0.0, f64::max)]
+                })
+                .collect(),
+            ranges: (0..dof)
+                .map(|joint| {
+                    [
+                        range(&|record| record.motion.q[joint].clone()),
+                        range(&|record| record.motion.rates[joint].clone()),
+                    ]
+                })
+                .collect(),
+            means: records.iter().filter(|record| record.kind == RecordKind::Mean).count(),
+        }
+    }
+}
+
+/// The parameters of a motion's model; `place` is that of a mean among the means.
+pub(super) fn nuisance(
+    record: &Record<'_>,
+    trust: Trust,
+    common: &Common,
+    place: usize,
+) -> Nuisance {
     let motion = &record.motion;
     let model = motion.model;
     let n = model.dof;
@@ -131,7 +176,7 @@ pub(super) fn nuisance(record: &Record<'_>, trust: Trust, of: (usize, usize)) ->
             inertia,
             spread.friction * scale.viscous,
             spread.friction * scale.coulomb,
-            spread.offset * scale.torque[1],
+            spread.offset * common.torque[joint][1],
         ];
         for (k, size) in sizes.into_iter().enumerate() {
             let column = RIGID * n + JOINT * joint + k;
@@ -146,7 +191,7 @@ pub(super) fn nuisance(record: &Record<'_>, trust: Trust, of: (usize, usize)) ->
         RecordKind::Drift => vec![Vec::new(); count],
     };
     let mut of = Nuisance { names, deviations, mixing, errors_from: 0, series };
-    without_model(record, place, &mut of);
+    without_model(record, common, place, &mut of);
     of
 }
 
@@ -184,7 +229,7 @@ fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, 
 
 /// What no model has: a little friction at low speed, smooth functions of position and speed;
 /// friction that changes from repetition to repetition.
-fn without_model(record: &Record<'_>, (place, means): (usize, usize), of: &mut Nuisance) {
+fn without_model(record: &Record<'_>, common: &Common, place: usize, of: &mut Nuisance) {
     let motion = &record.motion;
     let n = motion.model.dof;
     let is_mean = record.kind == RecordKind::Mean;
@@ -205,23 +250,25 @@ fn without_model(record: &Record<'_>, (place, means): (usize, usize), of: &mut N
         for (name, size, series) in
             [("dry", scale.coulomb, senses), ("viscous", scale.viscous, rates)]
         {
-            let series: Vec<f64> = series.iter().map(|x| VARIES * size * x).collect();
-            push(of, &format!("{name} friction changes"), joint, !is_mean, series.clone());
+            let of_size = |share: f64| series.iter().map(|x| share * size * x).collect();
+            push(of, &format!("{name} friction changes"), joint, !is_mean, of_size(VARIES));
             // From log to log as well, where there are several.
-            for log in 0..if means > 1 { means } else { 0 } {
+            for log in 0..if common.means > 1 { common.means } else { 0 } {
                 let there = is_mean && place == log;
                 let name = format!("{name} friction in log {}", log + 1);
-                push(of, &name, joint, there, series.clone());
+                push(of, &name, joint, there, of_size(DIFFERS));
             }
         }
     }
     of.errors_from = of.series.len();
     for joint in 0..n {
-        let size = OF_ERROR * motion.scale(joint).torque[0];
+        let size = OF_ERROR * common.torque[joint][0];
+        let [of_position, of_speed] = common.ranges[joint];
         // A line over the speed is viscous friction.
-        for (x, powers) in [(&motion.q[joint], OF_POSITION), (&motion.rates[joint], OF_SPEED)] {
-            let low = x.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        for (x, [low, high], powers) in [
+            (&motion.q[joint], of_position, OF_POSITION),
+            (&motion.rates[joint], of_speed, OF_SPEED),
+        ] {
             let (middle, half) = (f64::midpoint(low, high), (0.5 * (high - low)).max(1e-9));
             for power in powers {
                 // Chebyshev polynomials: none is like another one.

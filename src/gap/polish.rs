@@ -49,22 +49,28 @@ pub struct Polished {
 }
 
 impl Search<'_, '_> {
+    /// Whether a piece can be brought to a better shape.
+    pub(super) fn has_shape(&self, piece: usize) -> bool {
+        let Owner::Effect(effect) = self.table.pieces[piece].owner else { return false };
+        effect.coordinates.iter().any(|of| matches!(of.role, Role::Shape(_)))
+    }
+
     /// Improves the shapes of a set by new tangents until they stay; the table has them then.
     pub fn polish(&mut self, set: &[Chosen]) -> Option<Polished> {
         let pieces: Vec<usize> = set.iter().flat_map(|of| of.pieces.clone()).collect();
         let columns = self.columns(set);
+        let shaped: Vec<usize> = pieces.iter().copied().filter(|of| self.has_shape(*of)).collect();
+        let mut changing: Vec<usize> =
+            shaped.iter().flat_map(|of| self.table.pieces[*of].columns.clone()).collect();
+        changing.sort_unstable();
         let mut round = 0;
         loop {
             round += 1;
-            for number in &pieces {
-                let placed = &self.table.pieces[*number];
-                let is_fixed = matches!(placed.owner, Owner::Generic(_));
-                if !is_fixed {
-                    let piece = remade(placed, self.records);
-                    self.table.replace(*number, &piece, self.records);
-                }
+            for number in &shaped {
+                let piece = remade(&self.table.pieces[*number], self.records);
+                self.table.replace(*number, &piece, self.records);
             }
-            self.table.through(self.records, &self.channels, &columns);
+            self.table.through_columns(self.records, &self.channels, &changing);
             let evidence = self.table.evidence_of(self.error, &columns);
             let all: Vec<usize> = (0..columns.len()).collect();
             let estimate = evidence.estimate(&all)?;

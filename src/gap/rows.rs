@@ -135,8 +135,10 @@ impl Rows {
                 first += rows;
             }
         }
-        for (row, measured) in self.measured.iter().enumerate() {
-            self.values[(row, 0)] = measured - self.values[(row, 0)];
+        if is_used(0) {
+            for (row, measured) in self.measured.iter().enumerate() {
+                self.values[(row, 0)] = measured - self.values[(row, 0)];
+            }
         }
     }
 

@@ -7,6 +7,7 @@ use crate::effects::Response;
 use super::channel::Late;
 use super::column::Owner;
 use super::evidence::{Evidence, Given};
+use super::gated::GATED;
 use super::hypothesis::{Family, families};
 use super::nuisance::Trust;
 use super::record::Record;
@@ -60,6 +61,8 @@ pub struct Search<'a, 'm> {
     pub(super) channels: Vec<Response>,
     /// What they go through as an effect, if it is one.
     pub late: Option<Late>,
+    /// Families that stay, though functions do all that they do.
+    pub(super) kept: Vec<usize>,
     /// Ids that are not looked for.
     pub banned: Vec<&'static str>,
     /// What may explain the difference.
@@ -89,6 +92,7 @@ impl<'a, 'm> Search<'a, 'm> {
                 records.first().map_or(0, |record| record.motion.model.dof)
             ],
             late: None,
+            kept: Vec::new(),
             banned: Vec::new(),
             families: families(&table),
             table,
@@ -181,13 +185,16 @@ impl<'a, 'm> Search<'a, 'm> {
 
     /// Shapes of what was found become the best ones.
     pub(super) fn refine(&mut self, found: &mut Found) {
+        let pieces: Vec<usize> = found.chosen.iter().flat_map(|of| of.pieces.clone()).collect();
+        let has_window = |piece: &usize| GATED.contains(&self.table.pieces[*piece].owner.id());
+        let changes = pieces.iter().any(|piece| self.has_shape(*piece) || has_window(piece));
         self.sharpen(&found.chosen);
         let columns = self.columns(&found.chosen);
         self.tune(&columns);
-        if self.polish(&found.chosen).is_some() {
+        if changes && self.polish(&found.chosen).is_some() {
             self.evidence = self.table.evidence(self.error);
-            found.score = self.score(&found.chosen);
         }
+        found.score = self.score(&found.chosen);
     }
 
     /// The set `chosen` with another family, whose joints and shapes are chosen one after
@@ -252,6 +259,7 @@ impl<'a, 'm> Search<'a, 'm> {
     fn without_needless(&self, mut found: Found) -> Found {
         while found.chosen.len() > 1 {
             let less = (0..found.chosen.len())
+                .filter(|k| !self.kept.contains(&found.chosen[*k].family))
                 .map(|k| {
                     let mut set = found.chosen.clone();
                     set.remove(k);

@@ -9,7 +9,7 @@ use crate::effects::{self, Effect, Form, Of, Response};
 use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::Evidence;
 use super::generic::generic;
-use super::nuisance::{Nuisance, Trust, nuisance, smooth_error};
+use super::nuisance::{Common, Nuisance, Trust, nuisance, smooth_error};
 use super::record::{Record, RecordKind};
 use super::ripples::ripples;
 use super::rows::Rows;
@@ -146,6 +146,19 @@ impl Table {
         self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, |_| true));
     }
 
+    /// The same of some columns alone.
+    pub(super) fn through_columns(
+        &mut self,
+        records: &[Record<'_>],
+        channels: &[Response],
+        columns: &[usize],
+    ) {
+        let first = 1 + self.parameters.len();
+        let is_used =
+            |number: usize| number >= first && columns.binary_search(&(number - first)).is_ok();
+        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, is_used));
+    }
+
     /// The same of the model, its parameters and some columns.
     pub(super) fn through(
         &mut self,
@@ -237,13 +250,13 @@ fn add(gram: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
 /// The parameters' columns of each record.
 pub(super) fn nuisances(records: &[Record<'_>], trust: Trust) -> Vec<Nuisance> {
     let is_mean = |record: &&Record<'_>| record.kind == RecordKind::Mean;
-    let means = records.iter().filter(is_mean).count();
+    let common = Common::new(records);
     records
         .par_iter()
         .enumerate()
         .map(|(number, record)| {
             let place = records[..number].iter().filter(is_mean).count();
-            nuisance(record, trust, (place, means))
+            nuisance(record, trust, &common, place)
         })
         .collect()
 }
