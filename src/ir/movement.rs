@@ -250,6 +250,8 @@ pub struct Wait {
     pub routine: Arc<str>,
     /// Length in s where the program states it.
     pub duration: Option<f64>,
+    /// Whether that is the same at each run: it depends on literals and constants alone.
+    pub constant: bool,
     /// `\MaxTime`: longest that it lasts, s.
     pub max_time: Option<f64>,
     /// The input that it waits for.

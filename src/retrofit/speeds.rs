@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{Figures, OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
-use super::goals::parts;
+use super::goals::cycle;
 use super::outputs::{read_again, unchanged};
 use super::verify::same_order;
 use super::work::{
@@ -28,7 +28,7 @@ use crate::motion::timeline::{Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::Check;
 use crate::optimize::corridor::Ceilings;
-use crate::optimize::cycle::{Part, TradeOff, share};
+use crate::optimize::cycle::{Part, TradeOff};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::site::{Site, not_reached};
@@ -48,7 +48,8 @@ const UNCHANGED: f64 = 2e-3;
 const FASTEST: f64 = 7.0;
 /// Decimals of a speed in mm/s and degrees/s.
 const DECIMALS: usize = 1;
-/// Smallest saving that is worth a change, share of the motion energy.
+/// Smallest saving that is worth a change, share of all energy: what is searched on a grid of
+/// factors ends elsewhere by about so much when it is searched again.
 const WORTHWHILE: f64 = 1e-3;
 /// Step of the samples of the verified motions, s.
 const STEP: f64 = 0.002;
@@ -100,7 +101,7 @@ pub(super) fn retrofit(
     let mut kept = None;
     if let Some((factors, tried)) = found {
         let mut verification = verify(&before, model, settings, &slots, &factors, &tried);
-        let least = WORTHWHILE * original.motion_energy_j;
+        let least = WORTHWHILE * original.energy_j;
         let saves = settings.objective == Objective::Time
             || !matches!(settings.budget, Budget::AsBefore)
             || tried.account.total.energy_j() + least < original.energy_j;
@@ -336,17 +337,17 @@ fn times(
         Budget::AsBefore => before.simulation.cycle_s,
         Budget::Takt(takt) => takt,
     };
-    let mut parts = parts(model, settings, &before.simulation, before.sites, ways, &[]);
+    let mut cycle = cycle(model, settings, &before.simulation, before.sites, ways, &[], takt);
     for (i, slot) in slots.iter().enumerate() {
         for event in before.sites[slot.site].variants.iter().flat_map(|v| &v.events) {
-            parts[*event] = Part::Run(i);
+            cycle.parts[*event] = Part::Run(i);
         }
     }
     let curves: Option<Vec<TradeOff>> = known
         .iter()
         .map(|list| TradeOff::new(list.iter().map(|(_, time, energy)| (*time, *energy)).collect()))
         .collect();
-    share(&curves?, &parts, takt)
+    cycle.share(&curves?)
 }
 
 /// Time (s) and motion energy (J) of an execution of a slot's site in the mean.
