@@ -145,3 +145,64 @@ fn lagged(x: &[f64], lag: f64, closed: bool) -> Vec<f64> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::super::load;
+    use super::*;
+    use crate::robot::Model;
+
+    const STEP: f64 = 0.01;
+    const ROWS: usize = 400;
+    const FINE: usize = 500;
+    const FRICTION: f64 = 20.0;
+    const CLOSE: f64 = 0.02;
+
+    fn rate(t: f64) -> f64 {
+        (std::f64::consts::TAU * t / (STEP * ROWS as f64) + 0.123).cos()
+    }
+
+    fn torque(t: f64) -> f64 {
+        FRICTION * rate(t).signum() + 3.0 * rate(t)
+    }
+
+    fn motion(model: &Model) -> Motion<'_> {
+        let series = |of: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+            vec![(0..ROWS).map(|i| of(STEP * i as f64)).collect(); model.dof]
+        };
+        let t = (0..ROWS).map(|i| STEP * i as f64).collect();
+        let still = series(&|_| 0.0);
+        Motion::new(model, t, [still.clone(), series(&rate), still], &vec![0.0; model.dof], true)
+    }
+
+    /// Dry friction behind a lag, against small steps of the filter; a delay, against the torque
+    /// of an earlier moment.
+    #[test]
+    fn jumps_are_where_the_motor_turns_back() {
+        let model = load("IRB1600-6/1.45").unwrap();
+        let motion = motion(&model);
+        let x: Vec<f64> = motion.t.iter().map(|t| torque(*t)).collect();
+        let lag = 0.004;
+        let fine = STEP / FINE as f64;
+        let mut state = torque(0.0);
+        let mut expected = vec![0.0; ROWS];
+        for i in 0..2 * ROWS * FINE {
+            if i % FINE == 0 {
+                expected[(i / FINE) % ROWS] = state;
+            }
+            state += fine / lag * (torque(fine * i as f64) - state);
+        }
+        let got = Response { delay: 0.0, lag }.behind(&motion, 0, &x);
+        for (row, (a, b)) in got.iter().zip(&expected).enumerate() {
+            assert!((a - b).abs() < CLOSE * FRICTION, "{row}: {a} {b}");
+        }
+        let delay = 0.0137;
+        let got = Response { delay, lag: 0.0 }.behind(&motion, 0, &x);
+        for (t, a) in motion.t.iter().zip(&got) {
+            let b = torque(t - delay);
+            assert!((a - b).abs() < CLOSE * FRICTION, "{t}: {a} {b}");
+        }
+    }
+}
