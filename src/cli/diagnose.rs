@@ -15,7 +15,8 @@ use super::logs::{Read, Reader, Ready, read_all};
 use super::output;
 use crate::effects::{self, ALL, Effect};
 use crate::gap::{
-    Diagnosis, Record, Settings, Trust, Verdict, diagnose, diagnose_power, diagnose_runs,
+    Diagnosis, Record, Settings, Trust, Verdict, common_factor, diagnose, diagnose_power,
+    diagnose_runs,
 };
 use crate::identify::Hints;
 use crate::log::{Channel, ColumnMap};
@@ -164,6 +165,14 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     if held.is_empty() {
         "trajectory".clone_into(&mut basis.heldout);
         held.extend(if train.len() > 1 { train.pop() } else { None });
+    }
+    let records = |logs: &[Ready]| -> Vec<Record<'_>> {
+        logs.iter().flat_map(|log| Record::all(&model, &log.samples)).collect()
+    };
+    if let Some(factor) = common_factor(&records(&train), trust) {
+        bail!(
+            "the torques of all joints are {factor:.3} times those of the model: give torques in Nm              at the joints, currents as i1… in A, or the --robot that was logged"
+        );
     }
     let before = read(&args.baseline)?;
     let may = |id: &str| wanted.iter().any(|effect| effect.id == id);

@@ -25,6 +25,7 @@ mod runs;
 mod search;
 mod spectrum;
 mod table;
+mod units;
 
 pub use channel::Late;
 pub use column::{Column, Owner, Piece};
@@ -41,3 +42,4 @@ pub use record::{Record, RecordKind};
 pub use runs::{Run, RunEffect, RunFound, diagnose_runs};
 pub use search::{Chosen, Found, Search};
 pub use table::{Placed, Table};
+pub use units::common_factor;

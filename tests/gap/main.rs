@@ -7,7 +7,7 @@ mod excited;
 mod simulated;
 
 use joulepath::effects::{ALL, Motion, find as effect};
-use joulepath::gap::{Diagnosis, Record, Settings, Trust, Verdict, diagnose};
+use joulepath::gap::{Diagnosis, Record, Settings, Trust, Verdict, common_factor, diagnose};
 use joulepath::robot::Model;
 
 use excited::irb1600;
@@ -73,4 +73,20 @@ fn flipped_currents_are_told() {
     let found = diagnosed(&nominal, &robot);
     assert_eq!(named(&found), [("current_sign", vec![3])]);
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+}
+
+#[test]
+fn another_unit_is_no_effect() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 3);
+    let robot = Robot { model: &truth, effect: None, noise: 0.005 };
+    let mut samples = robot.samples(1);
+    let factor = |samples| common_factor(&Record::all(&nominal, samples), Trust::Commissioned);
+    assert_eq!(factor(&samples), None);
+    let times = 0.4;
+    for block in &mut samples.blocks {
+        block.tau.iter_mut().flatten().for_each(|tau| *tau *= times);
+    }
+    let found = factor(&samples).unwrap();
+    assert!((found / times - 1.0).abs() < 0.05, "{found}");
 }
