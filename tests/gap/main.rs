@@ -8,6 +8,7 @@ mod simulated;
 
 use joulepath::effects::{ALL, Motion, find as effect};
 use joulepath::gap::{Diagnosis, Record, Settings, Trust, Verdict, common_factor, diagnose};
+use joulepath::identify::Samples;
 use joulepath::robot::Model;
 
 use excited::irb1600;
@@ -81,7 +82,8 @@ fn another_unit_is_no_effect() {
     let truth = spread(&nominal, 3);
     let robot = Robot { model: &truth, effect: None, noise: 0.005 };
     let mut samples = robot.samples(1);
-    let factor = |samples| common_factor(&Record::all(&nominal, samples), Trust::Commissioned);
+    let factor =
+        |samples: &Samples| common_factor(&Record::all(&nominal, samples), Trust::Commissioned);
     assert_eq!(factor(&samples), None);
     let times = 0.4;
     for block in &mut samples.blocks {
