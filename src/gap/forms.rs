@@ -126,9 +126,10 @@ impl Search<'_, '_> {
         let chosen = &found.chosen[place];
         let id = self.families[chosen.family].owner.id();
         let joints = chosen.pieces.iter().filter_map(|p| self.table.pieces[*p].joint);
-        let is_own = joints
-            .filter_map(|joint| self.strongest_function(found, joint))
-            .all(|strongest| is_own(Some(strongest), Some(id)));
+        let strongest: Vec<&str> =
+            joints.filter_map(|joint| self.strongest_function(found, joint)).collect();
+        // What is of the robot has no form of its own at a joint.
+        let is_own = !strongest.is_empty() && strongest.iter().all(|of| is_own(Some(of), Some(id)));
         1.0 - if is_own { OWN_FORM } else { FORM }
     }
 

@@ -38,6 +38,8 @@ const AT_ONCE: usize = 2;
 const OF_FIRST: f64 = 0.05;
 /// Share of what two effects at a joint bring that the lesser one needs.
 const LESSER: f64 = 0.15;
+/// Probability below which an effect is not asserted, whatever it brings.
+const IMPROBABLE: f64 = 0.05;
 /// Spread of a parameter where functions follow the form, of the share that they have.
 const FORM_SPREAD: f64 = 0.5;
 /// An effect that is so many times what the model misses is there against others.
@@ -242,6 +244,9 @@ pub(super) fn judged(
                 };
                 let refused = if form[k] > search.largest_form(found, k) {
                     let why = "functions follow it better than its law".to_owned();
+                    Some(Refused { why, is_open: true })
+                } else if form[k] == 0.0 && said.probability < IMPROBABLE {
+                    let why = "something else is far more probable".to_owned();
                     Some(Refused { why, is_open: true })
                 } else {
                     refused(search, &said, &fitted, polished, least)
