@@ -16,6 +16,7 @@ pub mod generate;
 pub mod identify;
 pub mod ir;
 pub mod kinematics;
+pub mod lint;
 pub mod log;
 pub mod motion;
 pub mod optimize;

@@ -9,6 +9,7 @@ pub mod excite;
 pub mod generate;
 pub mod identify;
 pub mod input;
+pub mod lint;
 pub mod listing;
 pub mod load;
 pub mod logs;
@@ -17,6 +18,7 @@ pub mod output;
 pub mod parse;
 pub mod predict;
 pub mod robots;
+pub mod rule;
 pub mod signals;
 pub mod simulate;
 pub mod standstill;
@@ -36,6 +38,8 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Parse(parse::ParseArgs),
+    Lint(Box<lint::LintArgs>),
+    Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
@@ -54,6 +58,8 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Parse(args) => parse::run(&args),
+        Command::Lint(args) => lint::run(&args),
+        Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
         Command::Generate(args) => generate::run(&args),
