@@ -6,15 +6,16 @@ use nalgebra::{Isometry3, Vector3};
 
 use super::flow::{Flow, Next, Place, Through};
 use super::quiet::Quiet;
-use super::site::{Site, compact, facts_of, site};
+use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
 use super::trace::{Deed, Done, executions};
 use super::weigh::{Change, Cycle, Weighed, weigh};
 use crate::ir::exec::Note;
 use crate::ir::graph::Step as GraphStep;
-use crate::ir::hir::StmtKind;
+use crate::ir::hir::{Call, Callee, Expr, Stmt, StmtKind};
 use crate::ir::movement::Target;
 use crate::ir::program::{Program, RoutineId};
+use crate::ir::value::Datum;
 use crate::motion::timeline::{MoveRecord, Run, What};
 use crate::path::Leg;
 use crate::robot::Model;
@@ -47,6 +48,8 @@ pub struct Context<'c> {
     by_place: BTreeMap<Place, usize>,
     /// The movements before each, whatever stands between.
     before: Vec<Vec<usize>>,
+    /// Movements before which the robot may be anywhere.
+    starts: BTreeSet<usize>,
 }
 
 /// The way through the goal of a movement, at its worst.
@@ -113,6 +116,7 @@ impl<'c> Context<'c> {
                 }
             }
         }
+        let starts = starts(&flow, &by_place);
         Context {
             files,
             program,
@@ -127,7 +131,47 @@ impl<'c> Context<'c> {
             system,
             by_place,
             before,
+            starts,
         }
+    }
+
+    /// Whether the robot may be anywhere before a movement: at the start of the program or of a
+    /// routine that nothing calls, behind a call of something unknown, in a handler.
+    pub fn may_start(&self, site: usize) -> bool {
+        self.starts.contains(&site)
+    }
+
+    /// Whether a movement stands in a handler and not in the body of its routine.
+    pub fn in_handler(&self, site: &Site<'_>) -> bool {
+        let routine = self.program.routine(site.place.0);
+        let body = routine.body.first().zip(routine.body.last());
+        body.is_none_or(|(first, last)| {
+            site.stmt.span.start < first.span.start || site.stmt.span.end > last.span.end
+        })
+    }
+
+    /// The constant that an expression of a routine has.
+    pub fn constant(&self, routine: RoutineId, expr: &Expr) -> Option<Datum> {
+        constant(self.program, &self.quiet, routine, expr)
+    }
+
+    /// The calls of instructions with this name (lower case), where control can get.
+    pub fn calls(&self, key: &'static str) -> Vec<(Place, &'c Stmt, &'c Call)> {
+        let mut found = Vec::new();
+        for (routine, graph, reachable) in self.flow.graphs() {
+            for (node, content) in graph.nodes.iter().enumerate() {
+                if let GraphStep::Statement(stmt) = content.step
+                    && let StmtKind::Call(call) = &stmt.kind
+                    && let Callee::Name(name) = &call.callee
+                    && name.key == key
+                    && (reachable[node] || !self.program.routine(routine).error.is_empty())
+                {
+                    found.push(((routine, node), stmt, call));
+                }
+            }
+        }
+        found.sort_by_key(|(_, stmt, _)| stmt.span);
+        found
     }
 
     /// What comes behind a movement on every way.
@@ -248,6 +292,34 @@ impl<'c> Context<'c> {
             _ => Weighed::Unknown,
         }
     }
+}
+
+fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize> {
+    let mut sources: Vec<Place> = Vec::new();
+    for (routine, graph, reachable) in flow.graphs() {
+        if flow.callers(routine).is_empty() || flow.is_entry(routine) || flow.has_late_calls() {
+            sources.push((routine, 0));
+        }
+        for (node, content) in graph.nodes.iter().enumerate().skip(2) {
+            let unknown = match content.step {
+                GraphStep::Statement(stmt) => flow.is_loose(routine, stmt),
+                _ => false,
+            };
+            if unknown || !reachable[node] {
+                sources.push((routine, node));
+            }
+        }
+    }
+    let mut starts = BTreeSet::new();
+    for source in sources {
+        starts.extend(by_place.get(&source).copied());
+        for next in flow.following(source, Through::All) {
+            if let Next::Move(place) = next {
+                starts.extend(by_place.get(&place).copied());
+            }
+        }
+    }
+    starts
 }
 
 /// What the text leaves open of a movement, its executions may tell, if they agree.

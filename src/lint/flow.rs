@@ -209,7 +209,8 @@ impl<'p> Flow<'p> {
                     let passes = match class {
                         Class::Quiet => true,
                         Class::Output => through != Through::Quiet,
-                        Class::Wait | Class::Other => through == Through::All,
+                        Class::Wait => through == Through::All,
+                        Class::Other => through == Through::All && !self.is_unknown(stmt),
                         Class::Move | Class::Call(_) => false,
                     };
                     if passes {
@@ -230,6 +231,32 @@ impl<'p> Flow<'p> {
             }
         }
         found
+    }
+
+    /// Whether the program starts with a routine.
+    pub fn is_entry(&self, routine: RoutineId) -> bool {
+        self.entry == Some(routine)
+    }
+
+    /// Whether the robot may be anywhere behind a statement of a routine.
+    pub fn is_loose(&self, routine: RoutineId, stmt: &Stmt) -> bool {
+        self.class(routine, stmt) == Class::Other && self.is_unknown(stmt)
+    }
+
+    /// Whether a statement may lead anywhere: a call of something that is not among the files.
+    pub fn is_unknown(&self, stmt: &Stmt) -> bool {
+        match &stmt.kind {
+            StmtKind::Call(call) => match &call.callee {
+                Callee::Name(name) => {
+                    !instructions::is_harmless(&name.key)
+                        && !instructions::is_writing(&name.key)
+                        && !instructions::is_waiting(&name.key)
+                }
+                Callee::Late(_) => true,
+            },
+            StmtKind::Broken | StmtKind::Placeholder => true,
+            _ => false,
+        }
     }
 
     fn push_next(&self, (routine, node): Place, open: &mut Vec<Place>) {

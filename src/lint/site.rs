@@ -23,6 +23,8 @@ pub struct Site<'p> {
     pub stmt: &'p Stmt,
     /// The instruction as written.
     pub name: &'p str,
+    /// Where it stands.
+    pub name_span: Span,
     /// Its form.
     pub signature: MoveSignature,
     /// The argument with the target.
@@ -182,6 +184,7 @@ pub fn site<'p>(
         place,
         stmt,
         name: &name.text,
+        name_span: name.span,
         signature,
         target,
         speed,

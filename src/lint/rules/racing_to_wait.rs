@@ -35,26 +35,15 @@ use super::super::context::Context;
 use super::super::edits::{replace, slower};
 use super::super::finding::{Applicability, Finding, Fix};
 use super::super::flow::{Next, Through};
-use super::super::rule::{Family, Needs, Rule};
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
-use crate::diagnostics::Severity;
 use crate::ir::hir::{Callee, StmtKind};
 use crate::ir::movement::{Movement, Speed};
 use crate::motion::Step;
 use crate::motion::timeline::WaitBasis;
 use crate::text::Span;
 
-/// The robot hurries, and then waits for a machine.
-pub(in crate::lint) static RULE: Rule = Rule {
-    code: "EW201",
-    name: "racing-to-wait",
-    family: Family::Speed,
-    needs: Needs::Text,
-    severity: Severity::Warning,
-    source: include_str!("racing_to_wait.rs"),
-    check,
-};
+rule!("EW201", "racing-to-wait", Speed, Text, Warning, "racing_to_wait.rs");
 
 /// Speeds from here on are those of a robot that hurries, m/s.
 const HURRY: f64 = 5.0;
@@ -104,7 +93,7 @@ pub(super) fn run_of(context: &Context<'_>, index: usize) -> Option<Vec<usize>> 
     found?.iter().map(|span| context.site_of(*span)).collect()
 }
 
-fn slower_run(context: &Context<'_>, index: usize, signal: &str) -> Option<Finding> {
+pub(super) fn slower_run(context: &Context<'_>, index: usize, signal: &str) -> Option<Finding> {
     let run = run_of(context, index)?;
     let sites: Vec<_> = run.iter().map(|site| &context.sites[*site]).collect();
     if sites.iter().any(|site| !site.is_plain()) {

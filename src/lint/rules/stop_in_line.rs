@@ -35,21 +35,10 @@
 use super::super::context::{Context, Corner};
 use super::super::edits::{fix, replace, zone_within};
 use super::super::finding::{Applicability, Finding};
-use super::super::rule::{Family, Needs, Rule};
 use super::unneeded_stop_point::{stops_for_movements, with_zone};
-use crate::diagnostics::Severity;
 use crate::ir::instructions::MoveForm;
 
-/// A movement stops although the next one goes on in the same line.
-pub(in crate::lint) static RULE: Rule = Rule {
-    code: "EW102",
-    name: "stop-in-line",
-    family: Family::Stops,
-    needs: Needs::Text,
-    severity: Severity::Warning,
-    source: include_str!("stop_in_line.rs"),
-    check,
-};
+rule!("EW102", "stop-in-line", Stops, Text, Warning, "stop_in_line.rs");
 
 /// Directions that differ by less are one, rad.
 const STRAIGHT: f64 = 0.005;

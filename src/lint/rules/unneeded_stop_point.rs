@@ -39,23 +39,11 @@ use super::super::context::Context;
 use super::super::edits::{NamedZone, fix, replace, zone_within};
 use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
-use super::super::rule::{Family, Needs, Rule};
-use super::super::site::Site;
-use crate::diagnostics::Severity;
 use crate::ir::hir::RoutineKind;
 use crate::ir::movement::Movement;
 use crate::motion::Step;
 
-/// A movement stops although on every way another movement follows at once.
-pub(in crate::lint) static RULE: Rule = Rule {
-    code: "EW101",
-    name: "unneeded-stop-point",
-    family: Family::Stops,
-    needs: Needs::Text,
-    severity: Severity::Warning,
-    source: include_str!("unneeded_stop_point.rs"),
-    check,
-};
+rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point.rs");
 
 /// Slower movements are taken for a process, m/s.
 const PROCESS: f64 = 0.2;
@@ -117,7 +105,7 @@ pub(super) fn stops_for_movements(context: &Context<'_>, index: usize) -> Option
         || !site.reachable
         || matches!(routine.kind, RoutineKind::Trap)
         || first
-        || handlers && in_handler(context, site)
+        || handlers && context.in_handler(site)
     {
         return None;
     }
@@ -127,15 +115,6 @@ pub(super) fn stops_for_movements(context: &Context<'_>, index: usize) -> Option
         other.is_plain() && other.tool_key() == site.tool_key() && site.tool_key().is_some()
     };
     next.iter().all(fits).then_some(next)
-}
-
-/// Whether a movement stands in a handler and not in the body.
-fn in_handler(context: &Context<'_>, site: &Site<'_>) -> bool {
-    let routine = context.program.routine(site.place.0);
-    let body = routine.body.first().zip(routine.body.last());
-    body.is_none_or(|(first, last)| {
-        site.stmt.span.start < first.span.start || site.stmt.span.end > last.span.end
-    })
 }
 
 /// A movement with another zone.
