@@ -7,14 +7,16 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
+use similar::TextDiff;
 
 use super::backup::{self, is_shared};
 use super::common::{self, Format, ProgramArgs, note};
 use super::input::{self, Input};
+use super::output;
 use crate::config::Config;
 use crate::diagnostics::Paint;
 use crate::effects;
-use crate::lint::{self, Group, Job, Report, Settings, System};
+use crate::lint::{self, Applicability, Fixed, Group, Job, Report, Settings, System};
 use crate::report;
 use crate::robot::Model;
 use crate::text::{FileId, SourceFile};
@@ -72,6 +74,18 @@ pub struct LintArgs {
     #[arg(long, value_enum, default_value_t = LintFormat::Full)]
     pub format: LintFormat,
 
+    /// Apply safe fixes in place.
+    #[arg(long)]
+    pub fix: bool,
+
+    /// Apply unsafe fixes too.
+    #[arg(long)]
+    pub unsafe_fixes: bool,
+
+    /// Print what the fixes would change as a unified diff, and write nothing.
+    #[arg(long)]
+    pub diff: bool,
+
     /// Count findings by rule, and list those that save most, on standard error.
     #[arg(long)]
     pub statistics: bool,
@@ -117,19 +131,56 @@ pub enum LintFormat {
 /// # Errors
 /// Nothing can be read, an option is wrong, or the output can't be written.
 pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
-    let setup = Setup::new(args)?;
-    let job = setup.job();
-    let mut report = lint::lint(&job);
+    let mut setup = Setup::new(args)?;
+    let mut report = if args.fix || args.unsafe_fixes || args.diff {
+        let report = fix(args, &mut setup)?;
+        if args.diff {
+            return Ok(ExitCode::SUCCESS);
+        }
+        report
+    } else {
+        lint::lint(&setup.job())
+    };
     if let Some(path) = &args.write_baseline {
         let prints = report::lint::fingerprints(&report.findings, &setup.files);
         let text = serde_json::to_string_pretty(&prints)? + "\n";
-        super::output::write(path, text.as_bytes())?;
+        output::write(path, text.as_bytes())?;
     }
     if let Some(path) = &setup.baseline {
         drop_known(&mut report, &setup.files, path)?;
     }
     write(args, &setup, &report)?;
     over_limit(&setup, &report)
+}
+
+/// Applies fixes; what is left to find.
+fn fix(args: &LintArgs, setup: &mut Setup) -> anyhow::Result<Report> {
+    if setup.model.is_none() {
+        note(args.quiet, "without a robot no fix can be tried: only comments are fixed");
+    }
+    let most = if args.unsafe_fixes { Applicability::Unsafe } else { Applicability::Safe };
+    let Fixed { files, applied, withdrawn, report } = lint::fix(&setup.job(), most);
+    let pairs = || setup.files.iter().zip(&files).filter(|(old, new)| old.bytes != new.bytes);
+    if args.diff {
+        let mut out = std::io::stdout().lock();
+        for (old, new) in pairs() {
+            let text = |file: &SourceFile| file.charset.decode(&file.bytes).into_owned();
+            let (before, after) = (text(old), text(new));
+            let diff = TextDiff::from_lines(&before, &after);
+            let (from, to) = (format!("a/{}", old.path), format!("b/{}", old.path));
+            write!(out, "{}", diff.unified_diff().header(&from, &to))?;
+        }
+        return Ok(report);
+    }
+    let staged: anyhow::Result<Vec<output::Staged>> = pairs()
+        .map(|(old, new)| output::stage(Path::new(&old.path), &new.stored(&new.bytes)))
+        .collect();
+    for file in staged? {
+        file.put()?;
+    }
+    note(args.quiet, &format!("{applied} fixes applied, {withdrawn} taken back"));
+    setup.files = files;
+    Ok(report)
 }
 
 /// What is read before anything is looked at.
@@ -248,10 +299,10 @@ fn groups(
     files: &mut Vec<SourceFile>,
 ) -> Vec<Group> {
     let stated = args.entry.clone().or_else(|| config.entry.clone());
-    let entry_of = |of_task: Option<String>| {
-        stated.clone().or(of_task).unwrap_or_else(|| "main".to_owned())
-    };
-    let places = || input.files.iter().enumerate().filter_map(|(i, f)| Some((i, f.place.as_ref()?)));
+    let entry_of =
+        |of_task: Option<String>| stated.clone().or(of_task).unwrap_or_else(|| "main".to_owned());
+    let places =
+        || input.files.iter().enumerate().filter_map(|(i, f)| Some((i, f.place.as_ref()?)));
     let mut tasks: Vec<(usize, &str)> = Vec::new();
     for (_, place) in places() {
         let task = (place.backup, place.folder.as_str());

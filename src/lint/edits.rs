@@ -22,15 +22,15 @@ const SPEEDS: [u32; 20] = [
 
 /// A zone by its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NamedZone {
+pub(super) struct NamedZone {
     /// `z10` …
-    pub name: &'static str,
+    pub(super) name: &'static str,
     /// What it is.
-    pub zone: crate::ir::movement::Zone,
+    pub(super) zone: crate::ir::movement::Zone,
 }
 
 /// The largest predefined zone that needs no more than this, m.
-pub fn zone_within(most: f64) -> Option<NamedZone> {
+pub(super) fn zone_within(most: f64) -> Option<NamedZone> {
     let fits = |(_, _, orientation): &&(&str, f64, f64)| *orientation * 1e-3 <= most + 1e-9;
     let (name, tcp, orientation) = ZONES.iter().rev().find(fits)?;
     let zone = crate::ir::movement::Zone {
@@ -44,24 +44,24 @@ pub fn zone_within(most: f64) -> Option<NamedZone> {
 }
 
 /// Predefined speeds below one, the fastest first, m/s.
-pub fn slower(than: f64) -> impl Iterator<Item = (String, f64)> {
+pub(super) fn slower(than: f64) -> impl Iterator<Item = (String, f64)> {
     let below = SPEEDS.iter().rev().map(|speed| (*speed, f64::from(*speed) * 1e-3));
     below.filter(move |(_, speed)| *speed < than - 1e-9).map(|(v, speed)| (format!("v{v}"), speed))
 }
 
 /// Other text in place of a span.
-pub fn replace(span: Span, text: &str) -> Edit {
+pub(super) fn replace(span: Span, text: &str) -> Edit {
     Edit { span, text: text.as_bytes().to_vec() }
 }
 
 /// A fix of one edit.
-pub fn fix(applicability: Applicability, edit: Edit) -> Fix {
+pub(super) fn fix(applicability: Applicability, edit: Edit) -> Fix {
     Fix { applicability, edits: vec![edit] }
 }
 
 /// Takes a statement out, with its line if nothing else stands on it. `None` where the statement
 /// can't be missing.
-pub fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
+pub(super) fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
     if site.compact {
         return None;
     }
@@ -69,7 +69,7 @@ pub fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
 }
 
 /// A span with its line if only white space stands around it.
-pub fn with_line(context: &Context<'_>, span: Span) -> Span {
+pub(super) fn with_line(context: &Context<'_>, span: Span) -> Span {
     let bytes = &context.files[span.file.0 as usize].bytes;
     let blank = |byte: &u8| matches!(byte, b' ' | b'\t');
     let before = &bytes[..span.start as usize];

@@ -71,7 +71,7 @@ impl Report {
                 *most = most.max(saving.energy_j);
             }
         }
-        best.values().sum()
+        best.values().fold(0.0, |sum, saving| sum + saving)
     }
 }
 
@@ -84,15 +84,7 @@ struct Read {
 /// Looks at all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
-    let read: Vec<Read> = job
-        .files
-        .par_iter()
-        .map(|file| {
-            let parse = syntax::parse(&file.bytes);
-            let modules = lower(file.id, &parse, &file.bytes);
-            Read { modules, suppressions: suppressions(file, &parse) }
-        })
-        .collect();
+    let read = read(job);
     let units = units(job, &read);
     let results: Vec<Report> = units.par_iter().map(|unit| one(job, unit, &read)).collect();
     let mut report = Report::default();
@@ -106,6 +98,31 @@ pub fn lint(job: &Job<'_>) -> Report {
     report.findings.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.rule.code));
     report.findings.dedup_by(|a, b| a.span == b.span && a.rule.code == b.rule.code);
     report
+}
+
+fn read(job: &Job<'_>) -> Vec<Read> {
+    job.files
+        .par_iter()
+        .map(|file| {
+            let parse = syntax::parse(&file.bytes);
+            let modules = lower(file.id, &parse, &file.bytes);
+            Read { modules, suppressions: suppressions(file, &parse) }
+        })
+        .collect()
+}
+
+/// The simulated cycle of each program, in the order of the programs; none without a robot or
+/// an entry.
+#[must_use]
+pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
+    let read = read(job);
+    let cycle = |unit: &Group| {
+        let modules =
+            unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
+        let program = Program::new(modules);
+        program.entry(&unit.entry).and_then(|entry| self::cycle(job, &program, entry))
+    };
+    units(job, &read).par_iter().map(cycle).collect()
 }
 
 /// The programs of a job. Where the files of a group have several entries, each file with one

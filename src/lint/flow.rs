@@ -60,14 +60,29 @@ pub enum Through {
 /// Settings of the motion that take effect with the next movement, and messages: no reason for a
 /// robot to stand still.
 const QUIET: &[&str] = &[
-    "accset", "velset", "confj", "confl", "singarea", "pathacclim", "worldacclim", "motionsup",
-    "cirpathmode", "speedrefresh", "tpwrite", "tperase", "tpshow", "incr", "decr", "add", "clear",
-    "errwrite", "uimsgwrite",
+    "accset",
+    "velset",
+    "confj",
+    "confl",
+    "singarea",
+    "pathacclim",
+    "worldacclim",
+    "motionsup",
+    "cirpathmode",
+    "speedrefresh",
+    "tpwrite",
+    "tperase",
+    "tpshow",
+    "incr",
+    "decr",
+    "add",
+    "clear",
+    "errwrite",
+    "uimsgwrite",
 ];
 
 /// Instructions that set outputs.
-const OUTPUTS: &[&str] =
-    &["setdo", "set", "reset", "pulsedo", "setgo", "setao", "invertdo"];
+const OUTPUTS: &[&str] = &["setdo", "set", "reset", "pulsedo", "setgo", "setao", "invertdo"];
 
 /// The control flow of a program.
 pub struct Flow<'p> {

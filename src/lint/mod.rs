@@ -9,7 +9,9 @@ pub mod context;
 mod edits;
 pub mod engine;
 pub mod finding;
+pub mod fix;
 pub mod flow;
+mod page;
 mod quiet;
 mod register;
 pub mod rule;
@@ -23,6 +25,8 @@ pub mod weigh;
 
 pub use engine::{Group, Job, Report, lint};
 pub use finding::{Applicability, Finding, Fix, Per, Saving};
+pub use fix::{Fixed, fix};
+pub use page::page;
 pub use register::{ALL, find};
 pub use rule::{Family, HEADINGS, Needs, Rule};
 pub use settings::Settings;

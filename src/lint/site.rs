@@ -174,9 +174,11 @@ pub fn site<'p>(
     let stops = options.iter().any(|(key, _)| *key == "inpos");
     let own = options.iter().any(|(key, _)| *key == "z" || *key == "v" || *key == "t");
     let facts = Facts {
-        zone: zone.and_then(value).and_then(|datum| zone_of(&datum)).filter(|_| !own).map(
-            |zone| Zone { fine: zone.fine || stops, ..zone },
-        ),
+        zone: zone
+            .and_then(value)
+            .and_then(|datum| zone_of(&datum))
+            .filter(|_| !own)
+            .map(|zone| Zone { fine: zone.fine || stops, ..zone }),
         speed: value(speed).and_then(|datum| speed_of(&datum)).filter(|_| !own),
         goal: value(target).and_then(|datum| goal_of(&datum)),
     };

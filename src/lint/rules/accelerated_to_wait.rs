@@ -83,7 +83,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let before = format!("AccSet {percent},100; ").into_bytes();
         let edits = vec![
             Edit { span: Span { end: start, ..site.stmt.span }, text: before },
-            Edit { span: Span { start: end, ..site.stmt.span }, text: b" AccSet 100,100;".to_vec() },
+            Edit {
+                span: Span { start: end, ..site.stmt.span },
+                text: b" AccSet 100,100;".to_vec(),
+            },
         ];
         finding.fix = Some(Fix { applicability: Applicability::Unsafe, edits });
         findings.push(finding);

@@ -56,9 +56,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             let [cf1, cf4, cf6, cfx] = target.conf;
             let conf = Conf { cf1, cf4, cf6, cfx };
             let stated = ik_conf(model, &leg.tool.flange(&leg.target), conf).ok()?;
-            let far = |axis: &usize| {
-                (leg.end[*axis] - stated[*axis]).abs() > std::f64::consts::PI
-            };
+            let far = |axis: &usize| (leg.end[*axis] - stated[*axis]).abs() > std::f64::consts::PI;
             AXES.into_iter().find(far).map(|axis| (axis, leg.end[axis] - stated[axis]))
         });
         let Some((axis, off)) = jump else { continue };

@@ -105,8 +105,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             done.duration
         );
         let mut finding = Finding::new(&RULE, wait.span, message);
-        let degrees: Vec<String> =
-            pose.iter().map(|q| format!("{:.3}", q.to_degrees())).collect();
+        let degrees: Vec<String> = pose.iter().map(|q| format!("{:.3}", q.to_degrees())).collect();
         finding.change = format!(
             "MoveAbsJ [[{}],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine before the wait, {:.3} s less of \
              it, and MoveAbsJ back behind it",

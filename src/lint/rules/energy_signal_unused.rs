@@ -31,8 +31,7 @@ use crate::ir::signals::signals;
 rule!("EW802", "energy-signal-unused", System, Backup, Info, "energy_signal_unused.rs");
 
 /// Parts of names and labels of such signals.
-const SAVING: [&str; 5] =
-    ["energy sav", "energysav", "enensav", "energy_sav", "energiespar"];
+const SAVING: [&str; 5] = ["energy sav", "energysav", "enensav", "energy_sav", "energiespar"];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let Some(system) = context.system else { return };

@@ -48,9 +48,8 @@ use crate::ir::movement::Output;
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
 
 /// Parts of names of outputs that hold something.
-const HOLDING: [&str; 11] = [
-    "grip", "grp", "vac", "suck", "suction", "greif", "saug", "pinza", "ventos", "clamp", "hand",
-];
+const HOLDING: [&str; 11] =
+    ["grip", "grp", "vac", "suck", "suction", "greif", "saug", "pinza", "ventos", "clamp", "hand"];
 /// Parts of names of outputs of the robot's hands that are none of them.
 const OTHERWISE: [&str; 4] = ["handshake", "open", "handle", "blow"];
 
@@ -81,7 +80,10 @@ fn closes(output: &Output) -> bool {
     let key = output.signal.to_lowercase();
     let named = HOLDING.iter().any(|part| key.contains(part));
     let otherwise = OTHERWISE.iter().any(|part| key.contains(part));
-    named && !otherwise && output.value == "1" && !output.instruction.eq_ignore_ascii_case("pulsedo")
+    named
+        && !otherwise
+        && output.value == "1"
+        && !output.instruction.eq_ignore_ascii_case("pulsedo")
 }
 
 /// Whether the robot moves between this output at a stop and its reset at another.

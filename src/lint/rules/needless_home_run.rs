@@ -53,9 +53,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             && is_move(step - 1)
             && is_move(step + 1)
             && goal(context, step).is_some_and(|goal| goal.is_same(&home))
-            && [step - 1, step + 1].iter().all(|other| {
-                goal(context, *other).is_none_or(|goal| !goal.is_same(&home))
-            })
+            && [step - 1, step + 1]
+                .iter()
+                .all(|other| goal(context, *other).is_none_or(|goal| !goal.is_same(&home)))
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for site in &context.sites {

@@ -48,12 +48,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// The depth of the recursion is limited by the parser.
-fn look(
-    context: &Context<'_>,
-    routine: RoutineId,
-    block: &Block,
-    findings: &mut Vec<Finding>,
-) {
+fn look(context: &Context<'_>, routine: RoutineId, block: &Block, findings: &mut Vec<Finding>) {
     for stmt in block {
         if let StmtKind::While { condition, body } = &stmt.kind
             && !context.quiet.expression(routine, condition)

@@ -33,14 +33,7 @@ use super::super::finding::Finding;
 use super::line_in_free_air::as_joint;
 use crate::ir::instructions::MoveForm;
 
-rule!(
-    "EW204",
-    "reorientation-limited-line",
-    Speed,
-    Text,
-    Info,
-    "reorientation_limited_line.rs"
-);
+rule!("EW204", "reorientation-limited-line", Speed, Text, Info, "reorientation_limited_line.rs");
 
 /// Times that turning takes longer than the way.
 const LONGER: f64 = 2.0;
@@ -63,8 +56,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
         let limited = before.iter().all(|before| {
             let before = &context.sites[*before];
-            let same =
-                before.wobj_key() == site.wobj_key() && before.tool_key() == site.tool_key();
+            let same = before.wobj_key() == site.wobj_key() && before.tool_key() == site.tool_key();
             let from = before.facts.goal.as_ref().and_then(|goal| goal.pose());
             let (Some(from), Some(to), true) = (from, goal.pose(), same) else { return false };
             let way = (to.translation.vector - from.translation.vector).norm();

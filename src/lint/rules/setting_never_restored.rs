@@ -39,14 +39,7 @@ use crate::ir::hir::{ArgKind, Call};
 use crate::ir::movement::{Movement, Settings};
 use crate::ir::program::RoutineId;
 
-rule!(
-    "EW601",
-    "setting-never-restored",
-    Settings,
-    Text,
-    Warning,
-    "setting_never_restored.rs"
-);
+rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never_restored.rs");
 
 /// Instructions with what they change.
 const LOWERED: [(&str, fn(&Settings) -> f64); 2] =

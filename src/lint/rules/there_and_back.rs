@@ -35,6 +35,7 @@ use super::super::edits::remove;
 use super::super::finding::{Applicability, Finding, Fix};
 use super::super::flow::Through;
 use super::move_to_same_place::same_goal;
+use crate::ir::instructions::MoveForm;
 
 rule!("EW402", "there-and-back", Path, Text, Info, "there_and_back.rs");
 
@@ -51,7 +52,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let idle = |site: usize| {
             let site = &context.sites[site];
             let fast = site.facts.speed.is_some_and(|speed| speed.tcp >= FAST);
-            site.is_plain() && fast && site.reachable
+            let arc = site.signature.form == MoveForm::Circular;
+            site.is_plain() && fast && site.reachable && !arc
         };
         let again = only_next(context, back).is_some_and(|next| same_goal(context, there, next));
         let before = context.before(first);
@@ -62,6 +64,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let [a, b, c] = [first, there, back].map(|site| &context.sites[site]);
         let spans = [a.stmt.span, b.stmt.span];
         let Ok(saving) = context.weigh(&spans, &|_| Vec::new()).saving() else { continue };
+        if saving.is_some_and(|saving| saving.time_s < 0.0) {
+            continue;
+        }
         let message = format!("{} goes there and straight back, for nothing", b.name);
         let mut finding = Finding::new(&RULE, b.stmt.span, message);
         finding.related.push((a.stmt.span, "from here".to_owned()));

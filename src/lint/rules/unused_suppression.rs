@@ -67,7 +67,9 @@ pub(in crate::lint) fn judge(
     let message = match (suppression.codes.is_empty(), meant().next().is_some()) {
         (true, _) => "the comment names no rule: write ! joulepath: ignore CODE reason".to_owned(),
         (false, false) => format!("there is no rule {codes}: joulepath rule lists them"),
-        (false, true) => format!("nothing here is found by {codes}: the comment takes nothing back"),
+        (false, true) => {
+            format!("nothing here is found by {codes}: the comment takes nothing back")
+        }
     };
     let mut finding = Finding::new(&RULE, suppression.span, message);
     let _ = file;

@@ -37,9 +37,9 @@ fn diagnostic(finding: &Finding) -> Diagnostic {
     diagnostic.code = Some(finding.rule.code.to_owned());
     diagnostic.label = Some(finding.rule.name.to_owned());
     let related = finding.related.iter();
-    diagnostic.labels.extend(
-        related.map(|(span, message)| Label { span: *span, message: message.clone() }),
-    );
+    diagnostic
+        .labels
+        .extend(related.map(|(span, message)| Label { span: *span, message: message.clone() }));
     let assumed = finding.assumptions.iter().map(|text| Note::Note(format!("assumes that {text}")));
     diagnostic.notes.extend(assumed);
     if let Some(fix) = &finding.fix {
