@@ -18,6 +18,8 @@ pub mod ir;
 pub mod kinematics;
 pub mod lint;
 pub mod log;
+#[cfg(feature = "lsp")]
+pub mod lsp;
 pub mod motion;
 pub mod optimize;
 pub mod path;

@@ -184,18 +184,53 @@ fn fix(args: &LintArgs, setup: &mut Setup) -> anyhow::Result<Report> {
 }
 
 /// What is read before anything is looked at.
-struct Setup {
-    files: Vec<SourceFile>,
+#[derive(Default)]
+pub struct Setup {
+    /// The files; their ids count from 0.
+    pub files: Vec<SourceFile>,
     groups: Vec<Group>,
-    model: Option<Model>,
+    /// The robot.
+    pub model: Option<Model>,
     options: crate::motion::Options,
     settings: Settings,
     baseline: Option<PathBuf>,
     max_waste: Option<Limit>,
 }
 
+impl LintArgs {
+    /// The options as they are where nothing is said.
+    #[must_use]
+    pub fn of_paths(paths: Vec<PathBuf>) -> LintArgs {
+        LintArgs {
+            paths,
+            robot: None,
+            config: None,
+            entry: None,
+            start: None,
+            inputs: Vec::new(),
+            levels: Vec::new(),
+            select: Vec::new(),
+            ignore: Vec::new(),
+            threshold: None,
+            format: LintFormat::Full,
+            fix: false,
+            unsafe_fixes: false,
+            diff: false,
+            statistics: false,
+            max_waste: None,
+            baseline: None,
+            write_baseline: None,
+            quiet: true,
+        }
+    }
+}
+
 impl Setup {
-    fn new(args: &LintArgs) -> anyhow::Result<Setup> {
+    /// Reads files, configuration and robot.
+    ///
+    /// # Errors
+    /// Nothing can be read, or an option is wrong.
+    pub fn new(args: &LintArgs) -> anyhow::Result<Setup> {
         let input = input::read(&args.paths)?;
         for unreadable in &input.unreadable {
             note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
@@ -215,7 +250,21 @@ impl Setup {
         Ok(Setup { files, groups, model, options, settings, baseline, max_waste })
     }
 
-    fn job(&self) -> Job<'_> {
+    /// Adds a file to the first program; its index.
+    pub fn add(&mut self, file: SourceFile) -> usize {
+        let index = self.files.len();
+        self.files.push(SourceFile { id: FileId(index as u32), ..file });
+        if self.groups.is_empty() {
+            let entry = "main".to_owned();
+            self.groups.push(Group { files: Vec::new(), entry, system: None });
+        }
+        self.groups[0].files.push(index);
+        index
+    }
+
+    /// What the linter needs of it.
+    #[must_use]
+    pub fn job(&self) -> Job<'_> {
         Job {
             files: &self.files,
             groups: self.groups.clone(),

@@ -13,6 +13,8 @@ pub mod lint;
 pub mod listing;
 pub mod load;
 pub mod logs;
+#[cfg(feature = "lsp")]
+pub mod lsp;
 pub mod optimize;
 pub mod output;
 pub mod parse;
@@ -51,6 +53,8 @@ enum Command {
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
+    #[cfg(feature = "lsp")]
+    Lsp(lsp::LspArgs),
 }
 
 /// Runs the command that the arguments ask for.
@@ -70,6 +74,8 @@ pub fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),
+        #[cfg(feature = "lsp")]
+        Command::Lsp(args) => lsp::run(&args),
     };
     result.unwrap_or_else(|error| {
         report(&error);

@@ -1,7 +1,8 @@
 //! A line passes so near to a singularity that a wrist axis has to race.
 //!
 //! ## What it does
-//! Finds lines on which axis 5 comes within 3° of zero and the speed of an axis sets the pace.
+//! Finds lines on which axis 5 comes within 5° of zero, axis 4 or 6 turns by more than 90°, and the
+//! axes set the pace, not the programmed speed.
 //!
 //! ## Why it wastes energy
 //! Axes 4 and 6 turn against each other at their limit, the TCP has to slow down for them, and
@@ -36,10 +37,12 @@ use crate::kinematics::singularity;
 
 rule!("EW404", "near-singular-line", Path, Robot, Warning, "near_singular_line.rs");
 
-/// Sine of the angle of axis 5 below which it is near zero: 3°.
-const NEAR: f64 = 0.0523;
-/// Name of the pace that a joint's speed sets.
-const BY_JOINT: &str = "joint-speed";
+/// Sine of the angle of axis 5 below which it is near zero: 5°.
+const NEAR: f64 = 0.0872;
+/// Names of the paces that axes set.
+const BY_AXES: [&str; 4] = ["joint-speed", "acceleration", "torque", "estimated"];
+/// Turn of axis 4 or 6 that only a singularity asks for, rad.
+const TURN: f64 = std::f64::consts::FRAC_PI_2;
 /// Looks at a movement.
 const LOOKS: usize = 40;
 
@@ -63,12 +66,14 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 fn is_near(context: &Context<'_>, step: usize) -> bool {
-    let (Some((run, record, _)), Some(model)) = (context.record(step), context.model) else {
+    let (Some((run, record, leg)), Some(model)) = (context.record(step), context.model) else {
         return false;
     };
     let wrist = |i: usize| {
         let t = record.t_start + record.duration * i as f64 / LOOKS as f64;
         singularity(model, &run.at(t).q).map_or(1.0, |singularity| singularity.wrist)
     };
-    record.pace.name() == BY_JOINT && (0..=LOOKS).map(wrist).fold(1.0, f64::min) < NEAR
+    let turns = [3, 5].iter().any(|axis| (leg.end[*axis] - leg.start[*axis]).abs() > TURN);
+    let by_axes = BY_AXES.contains(&record.pace.name());
+    by_axes && turns && (0..=LOOKS).map(wrist).fold(1.0, f64::min) < NEAR
 }

@@ -9,8 +9,8 @@
 //! and the base load runs on.
 //!
 //! ## How the saving is computed
-//! The movement is laid on a time line as it is and as a joint movement. Without a robot nothing
-//! is told.
+//! The movement is laid on a time line with the turning speed that it has and with 500 °/s, that of
+//! the predefined speeds. Where it has that already nothing is told.
 //!
 //! ## Example
 //! ```text
@@ -19,8 +19,8 @@
 //! ```
 //!
 //! ## Use instead
-//! Turn the tool on the way there, where there is time for it, or use `MoveJ` where the TCP need
-//! not keep its place.
+//! Turn the tool on the way there, where there is time for it, or give the speed data a higher
+//! turning speed.
 //!
 //! ## Safety
 //! Without a fix: only the process knows where the tool may turn.
@@ -30,11 +30,15 @@
 
 use super::super::context::Context;
 use super::super::finding::Finding;
-use super::line_in_free_air::as_joint;
+use super::super::weigh::Weighed;
 use crate::ir::instructions::MoveForm;
+use crate::ir::movement::{Movement, Speed};
+use crate::motion::Step;
 
 rule!("EW204", "reorientation-limited-line", Speed, Text, Info, "reorientation_limited_line.rs");
 
+/// Turning speed of the predefined speeds, rad/s: 500 °/s.
+const USUAL: f64 = 8.726_646;
 /// Times that turning takes longer than the way.
 const LONGER: f64 = 2.0;
 /// Smallest turn that is told, rad.
@@ -67,7 +71,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !limited {
             continue;
         }
-        let weighed = context.weigh(&[site.stmt.span], &as_joint);
+        let slow = speed.orientation < USUAL - 1e-3;
+        let weighed = if slow {
+            context.weigh(&[site.stmt.span], &turning_fast)
+        } else {
+            Weighed::Unknown
+        };
         let Ok(saving) = weighed.saving() else { continue };
         let message = format!(
             "the turn of the tool sets the pace of this {}: its {:.0} mm/s are not reached",
@@ -75,8 +84,22 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             speed.tcp * 1e3
         );
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = "MoveJ in place of MoveL".to_owned();
+        finding.change = format!(
+            "a turning speed of 500 °/s in place of {:.0} °/s in the speed data",
+            speed.orientation.to_degrees()
+        );
         finding.saving = saving;
         findings.push(finding);
+    }
+}
+
+/// A movement that turns with the usual speed.
+fn turning_fast(step: &Step) -> Vec<Step> {
+    match step {
+        Step::Move(movement) => {
+            let speed = Speed { orientation: USUAL, ..movement.speed };
+            vec![Step::Move(Box::new(Movement { speed, ..(**movement).clone() }))]
+        }
+        other @ Step::Wait(_) => vec![other.clone()],
     }
 }
