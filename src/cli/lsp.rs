@@ -30,10 +30,6 @@ pub struct LspArgs {
 /// The other side does not speak the protocol.
 pub fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
     let LspArgs { robot, entry, inputs } = args;
-    lsp::serve(Options {
-        robot: robot.clone(),
-        entry: entry.clone(),
-        inputs: inputs.clone(),
-    })?;
+    lsp::serve(Options { robot: robot.clone(), entry: entry.clone(), inputs: inputs.clone() })?;
     Ok(ExitCode::SUCCESS)
 }

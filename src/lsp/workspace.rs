@@ -55,8 +55,7 @@ impl Workspace {
         let range = &change["range"];
         let bytes = match (offset_of(file, &range["start"]), offset_of(file, &range["end"])) {
             (Some(start), Some(end)) if start <= end => {
-                let (before, after) =
-                    (&file.bytes[..start as usize], &file.bytes[end as usize..]);
+                let (before, after) = (&file.bytes[..start as usize], &file.bytes[end as usize..]);
                 [before, text.as_bytes(), after].concat()
             }
             _ => text.as_bytes().to_vec(),
@@ -103,9 +102,11 @@ impl Workspace {
         let report = lint(&job);
         let cycles = cycles(&job);
         let dynamics = setup.model.as_ref().is_some_and(crate::robot::Model::has_dynamics);
-        let file = setup.files.get(own).cloned().unwrap_or_else(|| {
-            SourceFile::new(FileId(0), wanted, Vec::new())
-        });
+        let file = setup
+            .files
+            .get(own)
+            .cloned()
+            .unwrap_or_else(|| SourceFile::new(FileId(0), wanted, Vec::new()));
         Analysis { file, report, cycles, dynamics }
     }
 }

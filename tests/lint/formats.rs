@@ -62,3 +62,30 @@ fn all_forms_name_all_findings() {
         assert_eq!(value["runs"][0]["results"].as_array().unwrap().len(), count);
     }
 }
+
+/// The SARIF is what the official schema allows: types made of that schema read it, and what
+/// they write is what they read, so no property is unknown to it.
+#[test]
+fn sarif_is_what_the_schema_allows() {
+    let mut results = 0;
+    for fixture in fixtures() {
+        let value = sarif::sarif(&fixture.report(), &fixture.files);
+        let read: serde_sarif::sarif::Sarif = serde_json::from_value(value.clone()).unwrap();
+        results += read.runs[0].results.as_ref().unwrap().len();
+        assert_eq!(sorted(serde_json::to_value(&read).unwrap()), sorted(value));
+    }
+    assert!(results > 30, "{results}");
+}
+
+/// Objects with their keys in order.
+fn sorted(value: Value) -> Value {
+    match value {
+        Value::Object(map) => {
+            let map: std::collections::BTreeMap<String, Value> =
+                map.into_iter().map(|(key, value)| (key, sorted(value))).collect();
+            serde_json::to_value(map).unwrap()
+        }
+        Value::Array(list) => Value::Array(list.into_iter().map(sorted).collect()),
+        other => other,
+    }
+}

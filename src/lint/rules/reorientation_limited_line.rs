@@ -72,11 +72,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             continue;
         }
         let slow = speed.orientation < USUAL - 1e-3;
-        let weighed = if slow {
-            context.weigh(&[site.stmt.span], &turning_fast)
-        } else {
-            Weighed::Unknown
-        };
+        let weighed =
+            if slow { context.weigh(&[site.stmt.span], &turning_fast) } else { Weighed::Unknown };
         let Ok(saving) = weighed.saving() else { continue };
         let message = format!(
             "the turn of the tool sets the pace of this {}: its {:.0} mm/s are not reached",
