@@ -82,7 +82,7 @@ fn a_baseline_takes_back_what_is_known() {
     let moved = fs::read_to_string(&path).unwrap().replacen("    VAR", "\n\n    VAR", 1);
     let new = moved.replacen(
         "        rThrough;",
-        "        MoveJ Offs(pAUp,-300,300,50),v900,fine,tGripper;\n        rThrough;",
+        "        MoveJ Offs(pAUp,-100,100,50),v800,fine,tGripper;\n        rThrough;",
         1,
     );
     fs::write(&path, &moved).unwrap();

@@ -9,7 +9,7 @@ use super::quiet::Quiet;
 use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
 use super::trace::{Deed, Done, executions};
-use super::weigh::{Change, Cycle, Weighed, weigh};
+use super::weigh::{Change, Cycle, Weighed, longer, weigh};
 use crate::ir::exec::Note;
 use crate::ir::graph::Step as GraphStep;
 use crate::ir::hir::{Call, Callee, Expr, Stmt, StmtKind};
@@ -283,6 +283,11 @@ impl<'c> Context<'c> {
             }
         }
         worst(corners)
+    }
+
+    /// Time that a change takes more where no wait takes it up, s.
+    pub fn longer(&self, spans: &[Span], change: &Change<'_>) -> Option<f64> {
+        longer(self.model?, self.cycle?, spans, change)
     }
 
     /// What a change of movements or waits would save in a cycle.

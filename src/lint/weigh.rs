@@ -90,13 +90,36 @@ pub fn difference(
     spans: &[Span],
     change: &Change<'_>,
 ) -> Option<(EnergyParts, f64)> {
+    let (saved, replayed) = replayed(model, cycle, spans, change)?;
+    let (more, time_s) = laid_out(model, cycle, &cycle.options.inputs, &replayed);
+    Some((saved - more, time_s))
+}
+
+/// Time that a change takes more, without any wait that takes it up, s; `None` where it can't be
+/// told.
+pub fn longer(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Option<f64> {
+    let (_, replayed) = replayed(model, cycle, spans, change)?;
+    let (_, time_s) = laid_out(model, cycle, &BTreeMap::new(), &replayed);
+    Some(-time_s)
+}
+
+/// A part of the cycle, as events, with what it is after a change and the rest behind it, s.
+type Replayed = (RangeInclusive<usize>, Simulation, f64);
+
+/// The parts of the cycle that a change touches, and the energy that is saved in them.
+fn replayed(
+    model: &Model,
+    cycle: &Cycle,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(EnergyParts, Vec<Replayed>)> {
     let simulation = &cycle.simulation;
     let touched = touched(simulation, spans);
     if touched.is_empty() || touched.len() > MOST_EXECUTIONS || has_concurrent(simulation) {
         return None;
     }
     let mut saved = EnergyParts::default();
-    let mut replayed: Vec<(RangeInclusive<usize>, Simulation, f64)> = Vec::new();
+    let mut replayed: Vec<Replayed> = Vec::new();
     let mut next = 0;
     while next < touched.len() {
         let mut window = window(simulation, touched[next]);
@@ -118,8 +141,7 @@ pub fn difference(
         saved += before - account(model, &after).total - more;
         replayed.push((range, after, longer));
     }
-    let (more, time_s) = laid_out(model, cycle, &replayed);
-    Some((saved - more, time_s))
+    Some((saved, replayed))
 }
 
 /// Events that hold a statement.
@@ -279,10 +301,11 @@ fn at_rest_behind(model: &Model, run: &Run, longer: f64) -> EnergyParts {
 fn laid_out(
     model: &Model,
     cycle: &Cycle,
-    replayed: &[(RangeInclusive<usize>, Simulation, f64)],
+    inputs: &BTreeMap<String, f64>,
+    replayed: &[Replayed],
 ) -> (EnergyParts, f64) {
     let simulation = &cycle.simulation;
-    let mut clock = Clock { inputs: &cycle.options.inputs, waited: BTreeMap::new(), time: 0.0 };
+    let mut clock = Clock { inputs, waited: BTreeMap::new(), time: 0.0 };
     let mut more = EnergyParts::default();
     let mut index = 0;
     let mut windows = replayed.iter().peekable();

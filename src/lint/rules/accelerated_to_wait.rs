@@ -54,18 +54,23 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !site.is_plain() || !site.is_stop() || site.compact {
             continue;
         }
-        let Some(signal) = waits_behind(context, index) else { continue };
+        let Some((signal, slack)) = waits_behind(context, index) else { continue };
         if run_of(context, index).is_none_or(|run| run != [index])
             || !is_full(context, index)
-            || slower_run(context, index, &signal).is_some()
+            || slower_run(context, index, &signal, slack).is_some()
         {
             continue;
         }
         let mut best: Option<(u32, Weighed, f64)> = None;
         for percent in TRIED {
             let share = f64::from(percent) / 100.0;
-            let weighed =
-                context.weigh(&[site.stmt.span], &|step| with_acceleration(step, share, None));
+            let change = |step: &Step| with_acceleration(step, share, None);
+            let times = site.executions.len() as f64;
+            let longer = context.longer(&[site.stmt.span], &change);
+            if longer.is_none_or(|longer| longer > slack * times) {
+                continue;
+            }
+            let weighed = context.weigh(&[site.stmt.span], &change);
             let Weighed::Saves(saving) = weighed else { continue };
             let more = best.as_ref().is_none_or(|(_, _, most)| saving.energy_j > *most);
             if saving.time_s >= -LATE && more {

@@ -58,25 +58,27 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             continue;
         }
         let finding = match waits_behind(context, index) {
-            Some(signal) => slower_run(context, index, &signal),
+            Some((signal, slack)) => slower_run(context, index, &signal, slack),
             None => hurries(context, index),
         };
         findings.extend(finding);
     }
 }
 
-/// The input that is waited for, with its time known, right behind each execution.
-pub(super) fn waits_behind(context: &Context<'_>, index: usize) -> Option<String> {
-    let mut signal = None;
+/// The input that is waited for, with its time known, right behind each execution, and the
+/// shortest of these waits, s.
+pub(super) fn waits_behind(context: &Context<'_>, index: usize) -> Option<(String, f64)> {
+    let mut found: Option<(String, f64)> = None;
     for step in &context.sites[index].executions {
         let done = context.trace.get(step + 1)?;
         let Deed::Wait(wait, WaitBasis::Input) = &done.what else { return None };
         if done.duration < SHORTEST {
             return None;
         }
-        signal = wait.signal.as_ref().map(ToString::to_string);
+        let slack = found.map_or(done.duration, |(_, slack)| slack.min(done.duration));
+        found = Some((wait.signal.as_ref()?.to_string(), slack));
     }
-    signal
+    found
 }
 
 /// The movements of the run that ends with a movement, if they are the same statements each time.
@@ -93,7 +95,14 @@ pub(super) fn run_of(context: &Context<'_>, index: usize) -> Option<Vec<usize>> 
     found?.iter().map(|span| context.site_of(*span)).collect()
 }
 
-pub(super) fn slower_run(context: &Context<'_>, index: usize, signal: &str) -> Option<Finding> {
+/// A finding with the speed that saves most in the run that ends with a movement, if the robot
+/// is no later than `slack` s by it each time.
+pub(super) fn slower_run(
+    context: &Context<'_>,
+    index: usize,
+    signal: &str,
+    slack: f64,
+) -> Option<Finding> {
     let run = run_of(context, index)?;
     let sites: Vec<_> = run.iter().map(|site| &context.sites[*site]).collect();
     if sites.iter().any(|site| !site.is_plain()) {
@@ -104,10 +113,15 @@ pub(super) fn slower_run(context: &Context<'_>, index: usize, signal: &str) -> O
     let fastest = fastest.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
     let mut best: Option<(String, f64, Weighed, f64)> = None;
     for (name, speed) in slower(fastest) {
-        let weighed = context.weigh(&spans, &|step| with_speed(step, speed));
+        let times = context.sites[index].executions.len() as f64;
+        let change = |step: &Step| with_speed(step, speed);
+        if context.longer(&spans, &change)? > slack * times {
+            break;
+        }
+        let weighed = context.weigh(&spans, &change);
         let Weighed::Saves(saving) = weighed else { continue };
         if saving.time_s < -LATE {
-            break;
+            continue;
         }
         if best.as_ref().is_none_or(|(_, _, _, most)| saving.energy_j > *most) {
             best = Some((name, speed, weighed, saving.energy_j));

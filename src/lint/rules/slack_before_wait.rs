@@ -38,6 +38,7 @@ use super::super::finding::Finding;
 use super::super::trace::Deed;
 use super::racing_to_wait::slower_run;
 use crate::motion::timeline::WaitBasis;
+use crate::text::Span;
 
 rule!("EW304", "slack-before-wait", Dwell, Robot, Info, "slack_before_wait.rs");
 
@@ -53,8 +54,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
         let behind = site.executions.iter().map(|step| wait_behind(context, *step));
         let Some(behind) = behind.collect::<Option<Vec<_>>>() else { continue };
-        let (signal, span) = behind[0].clone();
-        let Some(mut finding) = slower_run(context, index, &signal) else { continue };
+        let slack = behind.iter().map(|(_, _, slack)| *slack).fold(f64::INFINITY, f64::min);
+        let (signal, span, _) = behind[0].clone();
+        let Some(mut finding) = slower_run(context, index, &signal, slack) else { continue };
         finding.rule = &RULE;
         finding.related.push((span, format!("waits for {signal}")));
         finding.assumptions.push("no output before the wait starts what it waits for".to_owned());
@@ -62,13 +64,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The input that is waited for behind some outputs and short waits.
-fn wait_behind(context: &Context<'_>, step: usize) -> Option<(String, crate::text::Span)> {
+/// The input that is waited for behind some outputs and short waits, where, and how long, s.
+fn wait_behind(context: &Context<'_>, step: usize) -> Option<(String, Span, f64)> {
     for (count, done) in context.trace[step + 1..].iter().enumerate().take(MOST_BETWEEN) {
         match &done.what {
             Deed::Output(_) | Deed::Wait(_, WaitBasis::Stated) => {}
             Deed::Wait(wait, WaitBasis::Input) if count > 0 && done.duration >= SHORTEST => {
-                return Some((wait.signal.as_ref()?.to_string(), wait.span));
+                return Some((wait.signal.as_ref()?.to_string(), wait.span, done.duration));
             }
             _ => return None,
         }
