@@ -30,11 +30,27 @@ pub struct Options {
     pub inputs: Vec<String>,
 }
 
+/// Why a session ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum LspError {
+    /// The other side sends something else.
+    #[error(
+        "the editor does not speak the language server protocol: {0}; start the server from one"
+    )]
+    Protocol(#[from] lsp_server::ProtocolError),
+    /// The other side is gone.
+    #[error("the editor has closed the connection")]
+    Closed,
+    /// Standard input or output failed.
+    #[error("standard input or output failed: {0}")]
+    Io(#[from] std::io::Error),
+}
+
 /// Serves until the editor says that it is over.
 ///
 /// # Errors
-/// The other side does not speak the protocol.
-pub fn serve(defaults: Options) -> anyhow::Result<()> {
+/// The other side does not speak the protocol, or is gone.
+pub fn serve(defaults: Options) -> Result<(), LspError> {
     let (connection, threads) = Connection::stdio();
     let capabilities = json!({
         "positionEncoding": "utf-16",
@@ -66,7 +82,7 @@ pub fn serve(defaults: Options) -> anyhow::Result<()> {
             Message::Response(_) => Vec::new(),
         };
         for answer in answers {
-            connection.sender.send(answer)?;
+            connection.sender.send(answer).map_err(|_| LspError::Closed)?;
         }
     }
     drop(connection);
