@@ -22,6 +22,7 @@ use crate::robot::Model;
 use crate::text::{FileId, SourceFile};
 
 /// Find wasted energy in RAPID programs.
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 #[derive(Debug, Args)]
 #[command(
     after_help = "Without --robot only what needs no robot is found, and nothing has joules. \

@@ -301,6 +301,7 @@ impl<'c> Context<'c> {
 
 fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize> {
     let mut sources: Vec<Place> = Vec::new();
+    let mut starts = BTreeSet::new();
     for (routine, graph, reachable) in flow.graphs() {
         if flow.callers(routine).is_empty() || flow.is_entry(routine) || flow.has_late_calls() {
             sources.push((routine, 0));
@@ -310,14 +311,15 @@ fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize>
                 GraphStep::Statement(stmt) => flow.is_loose(routine, stmt),
                 _ => false,
             };
-            if unknown || !reachable[node] {
+            if unknown {
                 sources.push((routine, node));
+            }
+            if !reachable[node] {
+                starts.extend(by_place.get(&(routine, node)).copied());
             }
         }
     }
-    let mut starts = BTreeSet::new();
     for source in sources {
-        starts.extend(by_place.get(&source).copied());
         for next in flow.following(source, Through::All) {
             if let Next::Move(place) = next {
                 starts.extend(by_place.get(&place).copied());

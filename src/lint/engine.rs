@@ -238,7 +238,7 @@ fn suppress(job: &Job<'_>, unit: &Group, read: &[Read], findings: &mut Vec<Findi
     for file in &unit.files {
         for (index, suppression) in read[*file].suppressions.iter().enumerate() {
             if !used.contains(&(*file, index)) {
-                unused_suppression::judge(job, &job.files[*file], suppression, findings);
+                unused_suppression::judge(job, suppression, findings);
             }
         }
     }

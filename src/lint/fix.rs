@@ -106,7 +106,7 @@ fn candidates<'r>(
         places.extend(edits.map(|edit| (edit.span.file, edit.span.start, edit.span.end)));
         let free = places.iter().all(|(file, start, end)| {
             !taken.iter().any(|(f, s, e)| f == file && start < e && s < end)
-                && (*file).0 < files.len() as u32
+                && file.0 < files.len() as u32
         });
         if free {
             taken.extend(places);

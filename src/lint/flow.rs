@@ -164,7 +164,9 @@ impl<'p> Flow<'p> {
         let quiet = |is: bool| if is { Class::Quiet } else { Class::Other };
         match &stmt.kind {
             StmtKind::Assign { target, value } => quiet(
-                self.quiet.expression(routine, target) && self.quiet.expression(routine, value),
+                !self.quiet.is_flag(routine, target)
+                    && self.quiet.expression(routine, target)
+                    && self.quiet.expression(routine, value),
             ),
             StmtKind::Call(call) => {
                 let Callee::Name(name) = &call.callee else { return Class::Other };
@@ -209,7 +211,7 @@ impl<'p> Flow<'p> {
             }
             let (routine, node) = place;
             match self.graph(routine).nodes[node].step {
-                Step::Entry => self.push_next(place, &mut open),
+                Step::Entry | Step::Count(_) => self.push_next(place, &mut open),
                 Step::Exit => self.leave(routine, &mut open, &mut found),
                 Step::Condition(expr) | Step::Test(expr) => {
                     if through == Through::All || self.quiet.expression(routine, expr) {
@@ -218,7 +220,6 @@ impl<'p> Flow<'p> {
                         found.insert(Next::Other);
                     }
                 }
-                Step::Count(_) => self.push_next(place, &mut open),
                 Step::Statement(stmt) => {
                     let class = self.class(routine, stmt);
                     let passes = match class {

@@ -61,9 +61,9 @@ pub fn page() -> String {
             };
             let _ = writeln!(
                 out,
-                "| [{code}](#{anchor}) | {name} | {summary} | {needs} |",
+                "| [{code}](#{anchor}-{name}) | {name} | {summary} | {needs} |",
                 code = rule.code,
-                anchor = format!("{}-{}", rule.code.to_lowercase(), rule.name),
+                anchor = rule.code.to_lowercase(),
                 name = rule.name,
                 summary = rule.summary(),
             );

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::ir::hir::{Arg, ArgKind, Block, Expr, ExprKind, StmtKind};
+use crate::ir::hir::{Arg, ArgKind, Block, DataKind, Expr, ExprKind, StmtKind};
 use crate::ir::predefined;
-use crate::ir::program::{Program, RoutineId};
+use crate::ir::program::{Program, RoutineId, Symbol};
 
 /// Functions of RAPID that depend on their arguments alone.
 const PURE: &[&str] = &[
@@ -132,6 +132,23 @@ impl<'p> Quiet<'p> {
         self.is_local(routine, key)
             || self.program.resolve(routine.module, key).is_some()
             || predefined::lookup(key).is_some()
+    }
+
+    /// Whether writing to a target may tell another task something: `PERS` data that are no
+    /// numbers, since those mostly count.
+    pub fn is_flag(&self, routine: RoutineId, target: &Expr) -> bool {
+        match &target.kind {
+            ExprKind::Ref(name) => {
+                let symbol = self.program.resolve(routine.module, &name.key);
+                let Some(Symbol::Data(id)) = symbol else { return false };
+                let data = self.program.data(id);
+                !self.is_local(routine, &name.key)
+                    && data.kind == DataKind::Pers
+                    && data.type_name.key != "num"
+            }
+            ExprKind::Field(base, _) | ExprKind::Index(base, _) => self.is_flag(routine, base),
+            _ => false,
+        }
     }
 
     /// Whether a name belongs to the routine itself.

@@ -62,7 +62,6 @@ pub fn of_simulation(simulation: &Simulation) -> Vec<Done<'_>> {
         match &it.what {
             What::Output(output, position) => {
                 held.push((event, *position, output));
-                continue;
             }
             What::Run(run) => {
                 for (index, record) in run.moves.iter().enumerate() {

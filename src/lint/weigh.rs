@@ -34,6 +34,11 @@ pub struct Cycle {
     pub options: Options,
 }
 
+/// A change saves nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it saves nothing; leave it as it is")]
+pub struct Worthless;
+
 /// What came out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weighed {
@@ -46,11 +51,14 @@ pub enum Weighed {
 }
 
 impl Weighed {
-    /// The saving, if there is one; `Err` where the change saves nothing.
-    pub fn saving(self) -> Result<Option<Saving>, ()> {
+    /// The saving, if there is one.
+    ///
+    /// # Errors
+    /// The change saves nothing.
+    pub fn saving(self) -> Result<Option<Saving>, Worthless> {
         match self {
             Weighed::Unknown => Ok(None),
-            Weighed::Nothing => Err(()),
+            Weighed::Nothing => Err(Worthless),
             Weighed::Saves(saving) => Ok(Some(saving)),
         }
     }

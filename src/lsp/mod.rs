@@ -115,14 +115,15 @@ impl Server {
             "textDocument/didClose" => {
                 self.workspace.close(&uri);
                 self.told.remove(&uri);
-                return vec![publish(&uri, Vec::new())];
+                return vec![publish(&uri, &[])];
             }
             _ => return Vec::new(),
         }
         let analysis = self.workspace.analyse(&uri);
-        let shown = analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
+        let shown: Vec<Value> =
+            analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
         self.told.insert(uri.clone(), analysis);
-        vec![publish(&uri, shown)]
+        vec![publish(&uri, &shown)]
     }
 
     fn answer(&self, request: Request) -> Response {
@@ -145,7 +146,7 @@ impl Server {
     }
 }
 
-fn publish(uri: &str, diagnostics: Vec<Value>) -> Message {
+fn publish(uri: &str, diagnostics: &[Value]) -> Message {
     Message::Notification(Notification {
         method: "textDocument/publishDiagnostics".to_owned(),
         params: json!({ "uri": uri, "diagnostics": diagnostics }),

@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::Options;
 use super::position::offset_of;
 use crate::cli::lint::{LintArgs, Setup};
+use crate::energy::EnergyParts;
 use crate::lint::engine::cycles;
 use crate::lint::weigh::Cycle;
 use crate::lint::{Finding, Report, lint};
@@ -154,7 +155,7 @@ impl Analysis {
                         }
                     }
                     What::Wait(wait) => {
-                        let joules = parts.iter().map(|part| part.energy_j()).sum();
+                        let joules = parts.iter().map(EnergyParts::energy_j).sum();
                         add(wait.wait.span, &wait.wait.instruction, event.duration, joules);
                     }
                     What::Output(..) | What::Left(_) => {}

@@ -51,7 +51,7 @@ fn all_forms_name_all_findings() {
         let entries = gitlab::gitlab(&report, &fixture.files);
         let entries = entries.as_array().unwrap();
         let mut prints: Vec<&Value> = entries.iter().map(|entry| &entry["fingerprint"]).collect();
-        prints.sort_by_key(|print| print.to_string());
+        prints.sort_by_key(ToString::to_string);
         prints.dedup();
         assert_eq!((entries.len(), prints.len()), (count, count));
         let text = junit::junit(&report, &fixture.files);

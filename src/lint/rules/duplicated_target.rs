@@ -27,7 +27,7 @@
 //! ## Assumptions
 //! Targets that are all zero are placeholders, and left alone.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
 use super::super::finding::Finding;
@@ -39,7 +39,7 @@ use crate::ir::value::Datum;
 rule!("EW703", "duplicated-target", Program, Text, Info, "duplicated_target.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let mut used: BTreeMap<DataId, ()> = BTreeMap::new();
+    let mut used: BTreeSet<DataId> = BTreeSet::new();
     for site in &context.sites {
         if let ExprKind::Ref(name) = &site.target.kind
             && !context.quiet.is_local(site.place.0, &name.key)
@@ -47,11 +47,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             && context.program.data(id).kind == DataKind::Const
             && context.program.data(id).dims.is_empty()
         {
-            used.insert(id, ());
+            used.insert(id);
         }
     }
     let mut known: BTreeMap<(usize, String), DataId> = BTreeMap::new();
-    for id in used.into_keys() {
+    for id in used {
         let data = context.program.data(id);
         let value = value_of(context.program, id).datum;
         if data.type_name.key != "robtarget" || is_placeholder(&value) {

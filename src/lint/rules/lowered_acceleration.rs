@@ -68,7 +68,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let Weighed::Saves(saving) = weighed else { continue };
         let message = format!("accelerating with {value} % takes longer and spares nothing");
         let mut finding = Finding::new(&RULE, stmt.span, message);
-        finding.change = "AccSet 100,100".to_owned();
+        "AccSet 100,100".clone_into(&mut finding.change);
         finding.saving = Some(saving);
         finding.assumptions.push("no process asks for the softer start".to_owned());
         finding.fix = Some(Fix {

@@ -59,7 +59,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             finding.related.push((there, "it got there here".to_owned()));
         }
         if let Weighed::Saves(saving) = context.weigh(&[site.stmt.span], &|_| Vec::new()) {
-            finding.change = "leaving it out".to_owned();
+            "leaving it out".clone_into(&mut finding.change);
             finding.saving = Some(saving);
         }
         finding.fix = remove(context, site).map(|edit| fix(Applicability::Unsafe, edit));

@@ -72,7 +72,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         };
         let message = format!("{} goes home on the way to other work, for nothing", site.name);
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = "leaving it out".to_owned();
+        "leaving it out".clone_into(&mut finding.change);
         finding.saving = saving;
         finding.assumptions.push("the direct way is free".to_owned());
         finding.fix = remove(context, site).map(|edit| fix(Applicability::Unsafe, edit));

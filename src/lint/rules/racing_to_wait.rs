@@ -154,7 +154,7 @@ pub(super) fn with_speed(step: &Step, most: f64) -> Vec<Step> {
 /// A movement at the largest speed right before a wait of unknown length for an input.
 fn hurries(context: &Context<'_>, index: usize) -> Option<Finding> {
     let site = &context.sites[index];
-    let speed = site.facts.speed.filter(|speed| speed.tcp >= HURRY)?;
+    site.facts.speed.filter(|speed| speed.tcp >= HURRY)?;
     let known = site.executions.iter().any(|step| {
         context.trace.get(step + 1).is_some_and(|done| match &done.what {
             Deed::Wait(_, basis) => *basis != WaitBasis::Unknown,
@@ -175,7 +175,6 @@ fn hurries(context: &Context<'_>, index: usize) -> Option<Finding> {
     if known || !waits || next.is_empty() {
         return None;
     }
-    let _ = speed;
     let written = context.text(site.speed.span);
     let message = format!(
         "{} hurries with {written} to wait for an input: --input SIGNAL=SECONDS tells what slower \

@@ -41,8 +41,11 @@ use crate::ir::program::RoutineId;
 
 rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never_restored.rs");
 
+/// What a setting is, 1 = 100 %.
+type Share = fn(&Settings) -> f64;
+
 /// Instructions with what they change.
-const LOWERED: [(&str, fn(&Settings) -> f64); 2] =
+const LOWERED: [(&str, Share); 2] =
     [("accset", |settings| settings.acceleration), ("velset", |settings| settings.speed_override)];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {

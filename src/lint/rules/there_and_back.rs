@@ -71,7 +71,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let mut finding = Finding::new(&RULE, b.stmt.span, message);
         finding.related.push((a.stmt.span, "from here".to_owned()));
         finding.related.push((c.stmt.span, "back again".to_owned()));
-        finding.change = "leaving out this movement and the one before".to_owned();
+        "leaving out this movement and the one before".clone_into(&mut finding.change);
         finding.saving = saving;
         let edits = [a, b].map(|site| remove(context, site));
         if let [Some(a), Some(b)] = edits {

@@ -33,7 +33,6 @@ use super::super::register::ALL;
 use super::super::rule::{Family, Needs, Rule};
 use super::super::suppress::Suppression;
 use crate::diagnostics::Severity;
-use crate::text::SourceFile;
 
 /// A comment takes back a finding that is not there.
 pub(in crate::lint) static RULE: Rule = Rule {
@@ -50,7 +49,6 @@ pub(in crate::lint) static RULE: Rule = Rule {
 /// Adds a finding for a comment that took nothing back, unless its rules could not run.
 pub(in crate::lint) fn judge(
     job: &Job<'_>,
-    file: &SourceFile,
     suppression: &Suppression,
     findings: &mut Vec<Finding>,
 ) {
@@ -72,7 +70,6 @@ pub(in crate::lint) fn judge(
         }
     };
     let mut finding = Finding::new(&RULE, suppression.span, message);
-    let _ = file;
     finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
     findings.push(finding);
 }

@@ -1,4 +1,4 @@
-//! Findings as a test report in the form of JUnit: a suite for each file.
+//! Findings as a test report in the form of `JUnit`: a suite for each file.
 
 use std::fmt::Write as _;
 

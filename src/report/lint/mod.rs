@@ -7,6 +7,8 @@ pub mod junit;
 pub mod sarif;
 pub mod text;
 
+use std::fmt::Write as _;
+
 use sha2::{Digest, Sha256};
 
 use crate::lint::Finding;
@@ -27,7 +29,10 @@ pub fn fingerprints(findings: &[Finding], files: &[SourceFile]) -> Vec<String> {
             let own = format!("{}\0{name}\0{}", finding.rule.code, words.join(" "));
             let number = seen.entry(own.clone()).and_modify(|n| *n += 1).or_insert(0_u32);
             let digest = Sha256::digest(format!("{own}\0{number}"));
-            digest.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+            digest.iter().take(16).fold(String::new(), |mut out, byte| {
+                let _ = write!(out, "{byte:02x}");
+                out
+            })
         })
         .collect()
 }

@@ -1,5 +1,7 @@
 //! Findings as SARIF 2.1.0, the form that code scanning of many hosts reads.
 
+use std::fmt::Write as _;
+
 use serde_json::{Value, json};
 
 use super::fingerprints;
@@ -132,7 +134,9 @@ fn uri(path: &str) -> String {
             b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
                 out.push(char::from(byte));
             }
-            _ => out.push_str(&format!("%{byte:02X}")),
+            _ => {
+                let _ = write!(out, "%{byte:02X}");
+            }
         }
     }
     out
