@@ -13,16 +13,19 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use cases::{Case, EASY};
+use joulepath::energy::EnergyParts;
 use joulepath::motion::controller::motion_limits;
 use joulepath::motion::sampling::{Loaded, SpeedCap};
 use joulepath::motion::stream::{Joints, Stream};
 use joulepath::motion::timing::grid::PathGrid;
 use joulepath::motion::timing::limits::PathLimits;
 use joulepath::motion::timing::reachability::time_optimal;
+use joulepath::optimize::corridor::{Ceilings, Freedom};
 use joulepath::optimize::cost::Cost;
 use joulepath::optimize::energy_program::minimize_energy;
 use joulepath::optimize::path_grid;
 use joulepath::optimize::plant::{Plant, realise};
+use joulepath::optimize::retime::{Goal, Task, retime};
 use joulepath::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use joulepath::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::optimize::stream_limits::StreamLimits;
@@ -33,8 +36,11 @@ use serde_json::{Value, json};
 
 /// Paths.
 const COUNT: usize = 12;
+/// Paths whose streams are compared under the same limit on jerk.
+const JERK_COUNT: usize = 48;
 /// Intervals of the grids.
 const SIZES: [usize; 2] = [100, 1000];
+const JERK_INTERVALS: usize = 300;
 /// Points of the free streams, and their time over that of the fastest profile.
 const FREE_POINTS: usize = 50;
 const FREE_FACTOR: f64 = 1.3;
@@ -75,12 +81,13 @@ impl Plant for Arm<'_> {
 
 fn main() {
     // The kinds in turn, the first robot first.
-    let cases = cases::cases(&EASY, 2 * COUNT);
+    let cases = cases::cases(&EASY, 2 * JERK_COUNT);
     let first = cases[0].model.name.clone();
-    let cases: Vec<&Case> =
-        cases.iter().filter(|case| case.model.name == first).take(COUNT).collect();
+    let jerk: Vec<&Case> = cases.iter().filter(|case| case.model.name == first).collect();
+    let cases: Vec<&Case> = jerk.iter().take(COUNT).copied().collect();
     let paths: Vec<Value> = cases.iter().map(|case| path(case)).collect();
-    let value = json!({ "robot": robot(cases[0]), "paths": paths });
+    let jerk: Vec<Value> = jerk.into_iter().filter_map(fastest_stream).collect();
+    let value = json!({ "robot": robot(cases[0]), "paths": paths, "jerk": jerk });
     println!("{value}");
 }
 
@@ -151,6 +158,36 @@ fn coefficients(grid: &PathGrid) -> Value {
     let ends = grid.ends();
     let points = ends.iter().map(|pair| pair[0].q).chain(ends.last().map(|pair| pair[1].q));
     json!({ "s": grid.s(), "q": points.collect::<Vec<_>>() })
+}
+
+/// The time of the fastest stream, less settling, with its path; `None` without one.
+fn fastest_stream(case: &Case) -> Option<Value> {
+    let (path, run) = (case.path()?, case.run());
+    let cap = |leg| SpeedCap { tcp: Ceilings::Programmed.of(case.movement(leg)), ..SpeedCap::NONE };
+    let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
+    let loaded = Loaded { model: &case.model, load: &run.load };
+    let nodes = path_grid::nodes(&case.model, path, &caps, JERK_INTERVALS);
+    let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
+    let freedom = Freedom::none();
+    let task = Task {
+        model: &case.model,
+        run,
+        energy_before: EnergyParts::default(),
+        spacing_s: 0.05,
+        freedom: &freedom,
+        cost: Cost::Electrical,
+    };
+    let stream = retime(&task, Goal::Fastest).ok()?;
+    let ends = grid.ends();
+    let nodes: Vec<_> = ends.iter().map(|pair| pair[0]).chain(ends.last().map(|p| p[1])).collect();
+    Some(json!({
+        "name": case.name,
+        "s": grid.s(),
+        "q": nodes.iter().map(|node| node.q).collect::<Vec<_>>(),
+        "q1": nodes.iter().map(|node| node.q1).collect::<Vec<_>>(),
+        "v_max": nodes.iter().map(|node| node.v_max).collect::<Vec<_>>(),
+        "stream_s": stream.duration_s - run.settling,
+    }))
 }
 
 /// A stream that may leave its path, from the fastest profile made slower.

@@ -118,6 +118,22 @@ fn a_wait_after_an_output_moves_only_where_its_line_says_so() {
 }
 
 #[test]
+fn a_wait_whose_length_may_change_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let constant = "CONST num nCool:=40;\nPROC main()";
+    for (declared, lines) in [
+        (constant, &[9_u64][..]),
+        ("PERS num nCool:=40;\nPROC main()", &[]),
+        ("VAR num nCool:=40;\nPROC main()\nnCool:=40;", &[]),
+    ] {
+        let text = program("").replace("PROC main()", declared);
+        let text = text.replace("WaitTime 40; ! cools down", "WaitTime nCool;");
+        let result = optimize(folder.path(), &text, &["--dwell-pose=30"]);
+        assert_eq!(rewritten(&result), lines, "{declared}: {result}");
+    }
+}
+
+#[test]
 fn what_the_cell_keeps_free_is_not_entered() {
     let folder = tempfile::tempdir().unwrap();
     // Nothing of the arm may come higher than where it stretches out.

@@ -127,3 +127,125 @@ fn what_was_left_stays_left() {
     }
     assert!(!twice.join("Joulepath2.mod").exists());
 }
+
+/// A target with an offset in y that an expression gives.
+fn shifted(offset: &str, rest: &str) -> String {
+    format!("MoveL Offs(pHere,0,{offset},0),{rest},tool0;")
+}
+
+#[test]
+fn what_changes_is_told_by_a_condition() {
+    let here = format!("CONST robtarget pHere:=[[900,50,900],[0,0,1,0],[0,0,0,0],{FAR}];\n");
+    let start = "MoveJ pHere,v1000,fine,tool0;".to_owned();
+    let ways = |offset: &str| vec![shifted(offset, "v500,fine"), start.clone()];
+    let none: [&str; 1] = ["first-movement"];
+    for (declared, first, offset) in [
+        // Of the routine, never assigned, or computed from others.
+        ("", "VAR num h:=60;", "h"),
+        ("", "VAR num h;\nh:=3*20;", "h"),
+        ("", "VAR num h{2}:=[60,0];\nh{2}:=h{1};", "h{2}"),
+        // Of the module, written by the program, or stored by the controller.
+        ("VAR num h:=10;\n", "h:=h+50;", "h"),
+        ("PERS num h:=60;\n", "", "h"),
+        ("VAR num h{2,2};\n", "h{1,2}:=60;", "h{1,2}"),
+    ] {
+        let all = [vec![first.to_owned(), start.clone()], ways(offset)].concat();
+        let found = segments(&format!("{here}{declared}"), &all);
+        assert_eq!(reasons(&found), none, "{declared}{first}: {found:?}");
+    }
+    let targets = format!(
+        "{here}VAR robtarget p1;\nPROC go(robtarget p{{*}})\nFOR i FROM 1 TO 2 DO\n\
+         MoveL p{{i}},v500,fine,tool0;\nENDFOR\nENDPROC\n\
+         CONST robtarget both{{2}}:=[{0},{1}];\n",
+        target(90.0),
+        target(120.0)
+    );
+    let all = ["p1:=Offs(pHere,0,20,0);", &start, "MoveL p1,v500,fine,tool0;", "go both;"];
+    let found = segments(&targets, &all.map(str::to_owned));
+    assert_eq!(reasons(&found), none, "{found:?}");
+    // A variable of a function has no name where the guard stands.
+    let function =
+        format!("{here}VAR num g:=60;\nFUNC num f()\nVAR num x;\nx:=g;\nRETURN x;\nENDFUNC\n");
+    let found = segments(&function, &[vec!["g:=g+1;".into(), start.clone()], ways("f()")].concat());
+    assert_eq!(reasons(&found)[..2], ["first-movement", "not-constant"], "{found:?}");
+}
+
+fn target(y: f64) -> String {
+    format!("[[900,{y},900],[0,0,1,0],[0,0,0,0],{FAR}]")
+}
+
+#[test]
+fn the_original_runs_where_a_variable_has_another_value() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    let program = |shift: &str| {
+        let here = target(50.0);
+        format!(
+            "MODULE M\nCONST robtarget pHere:={here};\nPERS num h:={shift};\nPROC main()\n\
+             MoveJ pHere,v1000,fine,tool0;\n{}\nMoveJ pHere,v1000,fine,tool0;\nENDPROC\n\
+             ENDMODULE\n",
+            shifted("h", "v500,fine")
+        )
+    };
+    fs::write(&path, program("60")).unwrap();
+    let out = folder.path().join("out");
+    let result = optimize(&path, &out);
+    assert_eq!(reasons(result["segments"].as_array().unwrap()), ["first-movement"], "{result}");
+    // On the controller the PERS holds another number.
+    let written = fs::read_to_string(out.join("m.mod")).unwrap();
+    fs::write(out.join("m.mod"), written.replace("h:=60;", "h:=200;")).unwrap();
+    fs::write(&path, program("200")).unwrap();
+    let [was, now] = [&path, &out].map(|input| {
+        let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+            .args(["simulate", input.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
+            .args(["--format", "json", "--quiet"])
+            .output()
+            .unwrap();
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    });
+    let lines = |result: &Value| -> Vec<f64> {
+        let moves = result["moves"].as_array().unwrap();
+        moves.iter().map(|m| m["duration_s"].as_f64().unwrap()).collect()
+    };
+    let (was, now) = (lines(&was), lines(&now));
+    assert_eq!(was[..2], now[..2], "{was:?} {now:?}");
+}
+
+#[test]
+fn an_output_on_the_way_leaves_its_run_and_no_other() {
+    let (a, b) = (pose("MoveL", [900.0, 50.0, 900.0], "v500,z50"), there_and_back());
+    let all = [
+        vec![pose("MoveJ", [900.0, 150.0, 900.0], "v1000,fine"), a],
+        vec!["Set doGrip;".into(), "WaitTime 0.5;".into()],
+        vec![pose("MoveL", [900.0, 150.0, 900.0], "v500,fine")],
+        b,
+    ]
+    .concat();
+    let found = segments("", &all);
+    let timing: Vec<Value> = found.into_iter().filter(|s| s["kind"] == "timing").collect();
+    assert_eq!(reasons(&timing), ["first-movement", "early-output"], "{timing:?}");
+}
+
+#[test]
+fn registers_that_every_controller_has_are_data() {
+    let here = format!("CONST robtarget pHere:=[[900,50,900],[0,0,1,0],[0,0,0,0],{FAR}];\n");
+    let all = [
+        "reg1:=1;",
+        "WHILE reg1<4 DO",
+        "MoveJ pHere,v1000,fine,tool0;",
+        &shifted("20*reg1", "v500,fine"),
+        "reg1:=reg1+1;",
+        "ENDWHILE",
+    ];
+    let found = segments(&here, &all.map(str::to_owned));
+    let executions: Vec<i64> = found.iter().map(|s| s["executions"].as_i64().unwrap()).collect();
+    assert_eq!(executions, [3, 3], "{found:?}");
+    assert_eq!(found[1]["rewritten"], true, "{found:?}");
+}
+
+#[test]
+fn a_first_line_from_a_place_that_is_not_known_ends_where_it_is_told_to() {
+    let lines = [[900.0, 50.0, 900.0], [900.0, 150.0, 900.0], [900.0, 50.0, 900.0]];
+    let found = segments("", &lines.map(|place| pose("MoveL", place, "v500,fine")));
+    assert_eq!(reasons(&found), ["first-movement"], "{found:?}");
+}

@@ -11,10 +11,6 @@ use super::spatial::{Force, Inertia, Motion};
 pub struct Data {
     /// Rotation of each joint's frame in its parent's.
     pub(super) rotation: [Matrix3<f64>; MAX_DOF],
-    /// Force on each link, through its joint \[N\], in the joint's frame.
-    pub(super) force: [Vector3<f64>; MAX_DOF],
-    /// Moment on each link about its joint's origin \[Nm\], in the joint's frame.
-    pub(super) moment: [Vector3<f64>; MAX_DOF],
     /// Each joint's axis S, in the base frame as all that follows.
     pub(super) axis: [Motion; MAX_DOF],
     /// Inertia of each link, then of all links from it on.
@@ -37,8 +33,6 @@ impl Data {
     pub fn new() -> Data {
         Data {
             rotation: [Matrix3::zeros(); MAX_DOF],
-            force: [Vector3::zeros(); MAX_DOF],
-            moment: [Vector3::zeros(); MAX_DOF],
             axis: [Motion::zero(); MAX_DOF],
             inertia: [Inertia::zero(); MAX_DOF],
             wrench: [Force::zero(); MAX_DOF],

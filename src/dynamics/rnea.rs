@@ -42,7 +42,8 @@ pub fn rigid_bodies(
 ) -> [f64; MAX_DOF] {
     let Some(loaded) = load.on(model) else { return [0.0; MAX_DOF] };
     turn(model, data, q);
-    newton_euler(model, data, &loaded, qd, qdd)
+    let [tau] = newton_euler(model, data, &loaded, [[qd, qdd]]);
+    tau
 }
 
 /// [`rnea`] of several motions \[q̇, q̈\] from one position.
@@ -55,13 +56,13 @@ pub fn rnea_each<const N: usize>(
 ) -> [[f64; MAX_DOF]; N] {
     let Some(loaded) = load.on(model) else { return [[0.0; MAX_DOF]; N] };
     turn(model, data, q);
-    motions.map(|[qd, qdd]| {
-        let mut tau = newton_euler(model, data, &loaded, qd, qdd);
+    let mut torques = newton_euler(model, data, &loaded, motions);
+    for (tau, [_, qdd]) in torques.iter_mut().zip(motions) {
         for (sum, rotor) in tau.iter_mut().zip(rotor_torques(model, qdd)) {
             *sum += rotor;
         }
-        tau
-    })
+    }
+    torques
 }
 
 /// Torque of each joint \[Nm\] that holds the robot still at `q` \[rad\].
@@ -82,49 +83,73 @@ fn turn(model: &Model, data: &mut Data, q: &[f64]) {
     }
 }
 
-/// The torques at the position that [`turn`] has kept, `loaded` being the last link.
-fn newton_euler(
+/// The torques of motions \[q̇, q̈\] at the position that [`turn`] has kept, `loaded` being the last
+/// link. Link by link for all motions: no step of one waits for a step of another.
+fn newton_euler<const N: usize>(
     model: &Model,
-    data: &mut Data,
+    data: &Data,
     loaded: &Link,
-    qd: &[f64],
-    qdd: &[f64],
-) -> [f64; MAX_DOF] {
+    motions: [[&[f64]; 2]; N],
+) -> [[f64; MAX_DOF]; N] {
     let geometry = &model.kinematics;
-    let [qd, qdd] = [qd, qdd].map(|values| geometry.to_serial(values));
-    let mut tau = [0.0; MAX_DOF];
+    let rates = motions.map(|motion| motion.map(|values| geometry.to_serial(values)));
     let joints = &geometry.joints;
     let last = links(model) - 1;
 
     // Motion of the parent: angular velocity and acceleration, and acceleration
     // of its origin; gravity enters as an acceleration of the base.
-    let mut w = Vector3::zeros();
-    let mut wd = Vector3::zeros();
-    let mut a = model.kinematics.up() * GRAVITY;
+    let mut w = [Vector3::zeros(); N];
+    let mut wd = [Vector3::zeros(); N];
+    let mut a = [model.kinematics.up() * GRAVITY; N];
+    // Force on each link through its joint [N] and moment about its origin [Nm], in its frame.
+    let mut forces = [[Vector3::zeros(); N]; MAX_DOF];
+    let mut moments = [[Vector3::zeros(); N]; MAX_DOF];
     for i in 0..=last {
         let joint = &joints[i];
         let link = if i == last { loaded } else { &model.links[i] };
         let r = data.rotation[i];
         let p = joint.translation;
         let axis = joint.axis.into_inner();
-        a = r.tr_mul(&(a + wd.cross(&p) + w.cross(&w.cross(&p))));
-        let carried = r.tr_mul(&w);
-        wd = r.tr_mul(&wd) + carried.cross(&axis) * qd[i] + axis * qdd[i];
-        w = carried + axis * qd[i];
-
         let c = link.com;
-        let force = (a + wd.cross(&c) + w.cross(&w.cross(&c))) * link.mass;
-        data.force[i] = force;
-        data.moment[i] = link.inertia * wd + w.cross(&(link.inertia * w)) + c.cross(&force);
-    }
-    for i in (0..=last).rev() {
-        tau[i] = joints[i].axis.dot(&data.moment[i]);
-        if i > 0 {
-            let force = data.rotation[i] * data.force[i];
-            let moment = data.rotation[i] * data.moment[i] + joints[i].translation.cross(&force);
-            data.force[i - 1] += force;
-            data.moment[i - 1] += moment;
+        for k in 0..N {
+            let [qd, qdd] = [rates[k][0][i], rates[k][1][i]];
+            // Without speeds much of the sums is zero, without accelerations too nearly all.
+            let [moves, starts] = motions[k].map(|list| !list.is_empty());
+            let (force, moment);
+            if moves {
+                a[k] = r.tr_mul(&(a[k] + wd[k].cross(&p) + w[k].cross(&w[k].cross(&p))));
+                let carried = r.tr_mul(&w[k]);
+                wd[k] = r.tr_mul(&wd[k]) + carried.cross(&axis) * qd + axis * qdd;
+                w[k] = carried + axis * qd;
+                force = (a[k] + wd[k].cross(&c) + w[k].cross(&w[k].cross(&c))) * link.mass;
+                let turning = link.inertia * wd[k] + w[k].cross(&(link.inertia * w[k]));
+                moment = turning + c.cross(&force);
+            } else if starts {
+                a[k] = r.tr_mul(&(a[k] + wd[k].cross(&p)));
+                wd[k] = r.tr_mul(&wd[k]) + axis * qdd;
+                force = (a[k] + wd[k].cross(&c)) * link.mass;
+                moment = link.inertia * wd[k] + c.cross(&force);
+            } else {
+                a[k] = r.tr_mul(&a[k]);
+                force = a[k] * link.mass;
+                moment = c.cross(&force);
+            }
+            forces[i][k] = force;
+            moments[i][k] = moment;
         }
     }
-    geometry.from_serial_torque(tau)
+    let mut tau = [[0.0; MAX_DOF]; N];
+    for i in (0..=last).rev() {
+        let joint = &joints[i];
+        for k in 0..N {
+            tau[k][i] = joint.axis.dot(&moments[i][k]);
+            if i > 0 {
+                let force = data.rotation[i] * forces[i][k];
+                let moment = data.rotation[i] * moments[i][k] + joint.translation.cross(&force);
+                forces[i - 1][k] += force;
+                moments[i - 1][k] += moment;
+            }
+        }
+    }
+    tau.map(|tau| geometry.from_serial_torque(tau))
 }

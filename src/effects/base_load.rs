@@ -9,7 +9,7 @@ pub(super) const BASE_LOAD: Effect = Effect {
     of: Of::Robot,
     title: "Controller, fans, brakes",
     law: "P = power",
-    source: "EFFECTS of energy: docs/energy.md",
+    source: "docs/energy.md",
     parameters: &[free("power", "W", "power more")],
     coordinates: &[],
     published: None,

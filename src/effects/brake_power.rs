@@ -11,7 +11,7 @@ pub(super) const BRAKE_POWER: Effect = Effect {
     of: Of::Robot,
     title: "Coils of the brakes",
     law: "P = power while they are released",
-    source: "EFFECTS of energy: docs/energy.md",
+    source: "docs/energy.md",
     parameters: &[free("power", "W", "power more")],
     coordinates: &[],
     published: None,

@@ -11,7 +11,7 @@ pub(super) const COPPER_LOSS: Effect = Effect {
     of: Of::Joint,
     title: "Loss in the windings",
     law: "P = loss·τ²",
-    source: "EFFECTS of energy: docs/energy.md",
+    source: "docs/energy.md",
     parameters: &[free("loss", "W/(Nm)2", "change of the loss per squared torque")],
     coordinates: &[],
     published: None,

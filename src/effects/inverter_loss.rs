@@ -9,7 +9,7 @@ pub(super) const INVERTER_LOSS: Effect = Effect {
     of: Of::Robot,
     title: "Loss of inverter and cables",
     law: "P = per_current·Σ|τ|/(n k_t)",
-    source: "EFFECTS of energy: docs/energy.md",
+    source: "docs/energy.md",
     parameters: &[free("per_current", "W/A", "loss per current")],
     coordinates: &[],
     published: None,

@@ -9,7 +9,7 @@ pub(super) const IRON_LOSS: Effect = Effect {
     of: Of::Joint,
     title: "Loss in the iron",
     law: "P = loss·q̇²",
-    source: "EFFECTS of energy: docs/energy.md",
+    source: "docs/energy.md",
     parameters: &[free("loss", "W s2/rad2", "loss per squared rate")],
     coordinates: &[],
     published: None,

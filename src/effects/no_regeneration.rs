@@ -9,7 +9,7 @@ pub(super) const NO_REGENERATION: Effect = Effect {
     of: Of::Robot,
     title: "Braking energy that is lost",
     law: "P = max(P, 0)",
-    source: "EFFECTS of energy: docs/energy.md",
+    source: "docs/energy.md",
     parameters: &[],
     coordinates: &[],
     published: None,

@@ -261,25 +261,33 @@ fn condition(
 ) -> Result<String, String> {
     let name = &local.name;
     match (&*local.type_key, &local.datum) {
-        ("robtarget", datum) => {
+        ("robtarget", datum) if is_target(datum) => {
             let value = aggregate(datum).ok_or_else(|| name.to_string())?;
             targets.push(TargetText { r#type: "robtarget", name: constant.to_owned(), value });
             Ok(format!("{same_target}({name},{constant})"))
         }
-        ("jointtarget", datum) => {
+        ("jointtarget", datum) if is_target(datum) => {
             let value = aggregate(datum).ok_or_else(|| name.to_string())?;
             targets.push(TargetText { r#type: "jointtarget", name: constant.to_owned(), value });
             Ok(format!("@joints({name},{constant}) AND {name}.extax={constant}.extax"))
         }
-        (_, Datum::Num(x)) if x.is_finite() => {
+        ("num", Datum::Num(x)) if x.is_finite() => {
             Ok(format!("Abs({name}-({}))<{}", number(*x, 6), number(NUMBER_TOLERANCE, 6)))
         }
         (_, Datum::Bool(b)) => Ok(format!("{name}={}", if *b { "TRUE" } else { "FALSE" })),
+        ("robtarget" | "jointtarget", _) => Err(name.to_string()),
         _ => match &local.alias {
             Some(alias) => Ok(format!("{name}={alias}")),
             None => Err(name.to_string()),
         },
     }
+}
+
+/// Whether a value is one target: an array of targets is of their type, too.
+fn is_target(datum: &Datum) -> bool {
+    let Datum::List(parts) = datum else { return false };
+    let Some(Datum::List(place)) = parts.first() else { return false };
+    place.iter().all(|x| matches!(x, Datum::Num(_)))
 }
 
 /// A value from here on is RAPID's 9E9, no axis.

@@ -13,6 +13,7 @@ pub mod number;
 pub mod predefined;
 pub mod program;
 pub mod signals;
+mod user;
 pub mod value;
 
 pub use instructions::is_movement;

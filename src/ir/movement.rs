@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Isometry3;
 
 use super::instructions::MoveForm;
-use super::value::{Datum, Origin};
+use super::value::{Datum, Dependence, Origin};
 use crate::text::Span;
 
 /// Where a movement goes.
@@ -167,7 +167,7 @@ impl Default for Settings {
     }
 }
 
-/// A loop variable or parameter that a movement depends on, and its value.
+/// Data with a name of the routine or its module that a movement depends on, and their value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalValue {
     /// Its name as written.
@@ -178,6 +178,8 @@ pub struct LocalValue {
     pub datum: Datum,
     /// Constant data, by a name valid in every module, that it was passed from.
     pub alias: Option<Arc<str>>,
+    /// What depends on it.
+    pub of: Dependence,
 }
 
 /// A movement as it is executed.
@@ -250,6 +252,8 @@ pub struct Wait {
     pub routine: Arc<str>,
     /// Length in s where the program states it.
     pub duration: Option<f64>,
+    /// Whether that is the same at each run: it depends on literals and constants alone.
+    pub constant: bool,
     /// `\MaxTime`: longest that it lasts, s.
     pub max_time: Option<f64>,
     /// The input that it waits for.

@@ -8,7 +8,7 @@ use super::hir::{
     ArgKind, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode,
     Routine, RoutineKind, Scope, StmtKind, TypeDefKind,
 };
-use super::{instructions, layout};
+use super::{instructions, layout, user};
 use crate::text::Span;
 
 /// A data object at module level.
@@ -77,7 +77,8 @@ type Declarations<'a> = BTreeMap<(Option<usize>, &'a str), Vec<(Symbol, &'a Iden
 
 impl Program {
     /// Builds the symbol tables; a name that is declared twice stands for nothing.
-    pub fn new(modules: Vec<Module>) -> Program {
+    pub fn new(mut modules: Vec<Module>) -> Program {
+        modules.extend(user::missing(&modules));
         let mut declared = Declarations::new();
         for (m, module) in modules.iter().enumerate() {
             let data = module.data.iter().enumerate().map(|(index, data)| {

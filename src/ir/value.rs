@@ -57,8 +57,10 @@ impl Datum {
 /// What a value was computed from, besides constants.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// A loop variable or a parameter of the routine; its name as written.
+    /// A loop variable, a parameter or a variable of the routine; its name as written.
     Local(Arc<str>),
+    /// A variable of a function, which its callers can't name.
+    Inner(Arc<str>),
     /// A variable that the program writes.
     Variable(Arc<str>),
     /// A `PERS` whose stored value may differ from the source.
@@ -72,6 +74,18 @@ pub enum Dependence {
     Input(Arc<str>),
     /// The robot's position at the moment of execution.
     RobotState,
+    /// One element, from 1 in each dimension, of an array on which it would depend.
+    Element(Box<Dependence>, Vec<u32>),
+}
+
+impl Dependence {
+    /// What it depends on, of which one element may be enough.
+    pub fn base(&self) -> &Dependence {
+        match self {
+            Dependence::Element(base, _) => base,
+            other => other,
+        }
+    }
 }
 
 /// The dependences of a value, sorted, each once.
@@ -132,7 +146,7 @@ impl Value {
         if let Some(unknown) = self.datum.first_unknown() {
             return Knowledge::Unknown(unknown);
         }
-        let stored = self.origin.iter().find_map(|dependence| match dependence {
+        let stored = self.origin.iter().find_map(|dependence| match dependence.base() {
             Dependence::Persistent(name) | Dependence::TrustedPersistent(name) => Some(name),
             _ => None,
         });

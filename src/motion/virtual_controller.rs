@@ -489,7 +489,9 @@ impl<'a> VirtualController<'a> {
         };
         // An output between fly-by movements was noted when the run was not planned yet: it
         // keeps its place in the order before the run's event.
-        self.certain = run.problem.is_none();
+        // Wherever the first movement comes from, it ends where it is told to.
+        let first = !self.events.iter().any(|event| matches!(event.what, What::Run(_)));
+        self.certain = run.problem.is_none() || (first && self.options.start.is_none());
         if t > 0.0 {
             self.settle();
         }

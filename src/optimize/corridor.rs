@@ -62,7 +62,6 @@ impl Corridor {
         let robot = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
         for piece in path.pieces() {
             let movement = &run.moves[piece.leg].movement;
-            let next = run.moves.get(piece.leg + 1).map(|record| &record.movement);
             let zone = &run.legs[piece.leg].zone;
             let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
             let ceilings = freedom.ceilings;
@@ -70,18 +69,12 @@ impl Corridor {
                 PieceKind::Joint => (robot, JOINT_TOLERANCE),
                 PieceKind::Cartesian => (ceilings.of(movement).min(robot), LINE_TOLERANCE),
                 PieceKind::CartesianZone | PieceKind::JointZone => {
-                    // A piece of a zone belongs to the leg before or after its corner.
+                    // A piece of a zone belongs to the leg before or after its corner: so does its
+                    // ceiling.
                     let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
                     let size = if after { before.map_or(0.0, |z| z.tcp) } else { zone.tcp };
-                    let neighbour = if after {
-                        piece.leg.checked_sub(1).map(|leg| &run.moves[leg].movement)
-                    } else {
-                        next
-                    };
-                    let ceiling = neighbour
-                        .map_or(0.0, |movement| ceilings.of(movement))
-                        .max(ceilings.of(movement));
-                    (ceiling.min(robot), LINE_TOLERANCE.max(ZONE_TOLERANCE * size))
+                    let ceiling = ceilings.of(movement).min(robot);
+                    (ceiling, LINE_TOLERANCE.max(ZONE_TOLERANCE * size))
                 }
             };
             // A corner is free where both of its movements are.

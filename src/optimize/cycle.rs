@@ -127,88 +127,102 @@ const UNIT: f64 = 10.0;
 /// Share of the takt that rounding may take.
 const ROUNDING: f64 = 1e-9;
 
-/// The time of each run, s, with least energy in all, so that the cycle takes no longer than
-/// `takt` (s). `None` if that is not possible.
-pub fn share(curves: &[TradeOff], parts: &[Part], takt: f64) -> Option<Vec<f64>> {
-    let arrivals = parts.iter().filter(|part| matches!(part, Part::Arrival { .. })).count();
-    let runs = curves.len();
-    let (time, energy) = (|run: usize| Some(run), |run: usize| Some(runs + run));
-    let wait = |index: usize| Some(2 * runs + index);
-    let mut program = ConeProgram::new(2 * runs + arrivals);
+/// A cycle whose time is shared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// What happens, in its order.
+    pub parts: Vec<Part>,
+    /// Longest time that it may take, s.
+    pub takt: f64,
+    /// What standing takes for the rest of the takt, W.
+    pub resting_w: f64,
+}
 
-    // The time at the end of each part, as it is written down.
-    let mut ends: Vec<Affine> = Vec::with_capacity(parts.len());
-    let mut now = Affine::constant(0.0);
-    let mut arrival = 0;
-    for part in parts {
-        match part {
-            Part::Run(run) => {
-                now.add(time(*run), 1.0);
-                program.minimize(&Affine::constant(0.0).plus(energy(*run), 1.0));
+impl Cycle {
+    /// The time of each run, s, with least energy in all. `None` if the takt is not possible.
+    pub fn share(&self, curves: &[TradeOff]) -> Option<Vec<f64>> {
+        let arrivals =
+            self.parts.iter().filter(|part| matches!(part, Part::Arrival { .. })).count();
+        let runs = curves.len();
+        let (time, energy) = (|run: usize| Some(run), |run: usize| Some(runs + run));
+        let wait = |index: usize| Some(2 * runs + index);
+        let mut program = ConeProgram::new(2 * runs + arrivals);
+
+        // The time at the end of each part, as it is written down.
+        let mut ends: Vec<Affine> = Vec::with_capacity(self.parts.len());
+        let mut now = Affine::constant(0.0);
+        let mut arrival = 0;
+        for part in &self.parts {
+            match part {
+                Part::Run(run) => {
+                    now.add(time(*run), 1.0);
+                    program.minimize(&Affine::constant(0.0).plus(energy(*run), 1.0));
+                }
+                Part::Fixed(seconds) => now = now.shift(*seconds),
+                Part::Arrival { since, delay, holding_w } => {
+                    let from = since.map_or(Affine::constant(0.0), |part| ends[part].clone());
+                    let late = from.shift(*delay).sum(&now.clone().times(-1.0));
+                    // wait ≥ what is left of the delay, wait ≥ 0
+                    program.at_most_zero(late.plus(wait(arrival), -1.0));
+                    program.at_most_zero(Affine::constant(0.0).plus(wait(arrival), -1.0));
+                    let holding = Affine::constant(0.0).plus(wait(arrival), holding_w / UNIT);
+                    program.minimize(&holding);
+                    now.add(wait(arrival), 1.0);
+                    arrival += 1;
+                }
             }
-            Part::Fixed(seconds) => now = now.shift(*seconds),
-            Part::Arrival { since, delay, holding_w } => {
-                let from = since.map_or(Affine::constant(0.0), |part| ends[part].clone());
-                let late = from.shift(*delay).sum(&now.clone().times(-1.0));
-                // wait ≥ what is left of the delay, wait ≥ 0
-                program.at_most_zero(late.plus(wait(arrival), -1.0));
-                program.at_most_zero(Affine::constant(0.0).plus(wait(arrival), -1.0));
-                let holding = Affine::constant(0.0).plus(wait(arrival), holding_w / UNIT);
-                program.minimize(&holding);
-                now.add(wait(arrival), 1.0);
-                arrival += 1;
+            ends.push(now.clone());
+        }
+        program.minimize(&now.clone().times(-self.resting_w / UNIT));
+        program.at_most_zero(now.shift(-self.takt * (1.0 + ROUNDING)));
+        for (run, curve) in curves.iter().enumerate() {
+            let (shortest, longest) = curve.range();
+            program.at_most_zero(Affine::constant(shortest).plus(time(run), -1.0));
+            program.at_most_zero(Affine::constant(-longest).plus(time(run), 1.0));
+            for (slope, offset) in curve.lines() {
+                let line = Affine::constant(offset / UNIT).plus(time(run), slope / UNIT);
+                program.at_most_zero(line.plus(energy(run), -1.0));
             }
         }
-        ends.push(now.clone());
-    }
-    program.at_most_zero(now.shift(-takt * (1.0 + ROUNDING)));
-    for (run, curve) in curves.iter().enumerate() {
-        let (shortest, longest) = curve.range();
-        program.at_most_zero(Affine::constant(shortest).plus(time(run), -1.0));
-        program.at_most_zero(Affine::constant(-longest).plus(time(run), 1.0));
-        for (slope, offset) in curve.lines() {
-            let line = Affine::constant(offset / UNIT).plus(time(run), slope / UNIT);
-            program.at_most_zero(line.plus(energy(run), -1.0));
+        let solution = program.solve();
+        match solution.status {
+            ConeStatus::Solved | ConeStatus::AlmostSolved => {
+                let within = |(t, curve): (&f64, &TradeOff)| {
+                    let (shortest, longest) = curve.range();
+                    t.clamp(shortest, longest)
+                };
+                Some(solution.x.iter().zip(curves).map(within).collect())
+            }
+            ConeStatus::Infeasible | ConeStatus::Failed => None,
         }
     }
-    let solution = program.solve();
-    match solution.status {
-        ConeStatus::Solved | ConeStatus::AlmostSolved => {
-            let within = |(t, curve): (&f64, &TradeOff)| {
-                let (shortest, longest) = curve.range();
-                t.clamp(shortest, longest)
+
+    /// Its time, s, without the rest of the takt, where its runs take `times` (s).
+    pub fn time(&self, times: &[f64]) -> f64 {
+        let now = |ends: &[f64]| ends.last().copied().unwrap_or(0.0);
+        let mut ends: Vec<f64> = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            ends.push(now(&ends) + part_time(part, times, &ends));
+        }
+        now(&ends)
+    }
+
+    /// The energy of its runs, J, and of standing where signals and the takt are waited for, where
+    /// its runs take `times` (s) and `energies` (J).
+    pub fn energy(&self, times: &[f64], energies: &[f64]) -> f64 {
+        let mut ends: Vec<f64> = Vec::with_capacity(self.parts.len());
+        let mut energy = 0.0;
+        for part in &self.parts {
+            let time = part_time(part, times, &ends);
+            energy += match part {
+                Part::Run(run) => energies[*run],
+                Part::Fixed(_) => 0.0,
+                Part::Arrival { holding_w, .. } => holding_w * time,
             };
-            Some(solution.x.iter().zip(curves).map(within).collect())
+            ends.push(ends.last().copied().unwrap_or(0.0) + time);
         }
-        ConeStatus::Infeasible | ConeStatus::Failed => None,
+        energy + self.resting_w * (self.takt - self.time(times)).max(0.0)
     }
-}
-
-/// The time of a cycle, s, whose runs take `times` (s).
-pub fn cycle_time(parts: &[Part], times: &[f64]) -> f64 {
-    let now = |ends: &[f64]| ends.last().copied().unwrap_or(0.0);
-    let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
-    for part in parts {
-        ends.push(now(&ends) + part_time(part, times, &ends));
-    }
-    now(&ends)
-}
-
-/// The energy of a cycle's runs, J, and of standing where signals are waited for, whose runs take
-/// `times` (s) and `energies` (J).
-pub fn cycle_energy(parts: &[Part], times: &[f64], energies: &[f64]) -> f64 {
-    let mut ends: Vec<f64> = Vec::with_capacity(parts.len());
-    let mut energy = 0.0;
-    for part in parts {
-        let time = part_time(part, times, &ends);
-        energy += match part {
-            Part::Run(run) => energies[*run],
-            Part::Fixed(_) => 0.0,
-            Part::Arrival { holding_w, .. } => holding_w * time,
-        };
-        ends.push(ends.last().copied().unwrap_or(0.0) + time);
-    }
-    energy
 }
 
 /// How long a part takes, s, where those before it end at `ends` (s).
@@ -229,6 +243,13 @@ mod tests {
 
     const TOLERANCE: f64 = 1e-3;
 
+    /// Points of the bowl are so far apart, s.
+    const BOWL: f64 = 0.11;
+
+    fn cycle(parts: &[Part], takt: f64) -> Cycle {
+        Cycle { parts: parts.to_vec(), takt, resting_w: 0.0 }
+    }
+
     /// a / t: quick ones cost more.
     fn curve(a: f64) -> TradeOff {
         let times = (0..=400).map(|i| 1.0 + 0.01 * f64::from(i));
@@ -238,11 +259,11 @@ mod tests {
     #[test]
     fn one_more_second_saves_the_same_everywhere() {
         let curves = [curve(100.0), curve(400.0)];
-        let parts = [Part::Run(0), Part::Fixed(2.0), Part::Run(1)];
-        let times = share(&curves, &parts, 8.0).expect("possible");
+        let cycle = cycle(&[Part::Run(0), Part::Fixed(2.0), Part::Run(1)], 8.0);
+        let times = cycle.share(&curves).expect("possible");
         // a / t² is the same for both: t goes with √a.
         assert!((times[0] - 2.0).abs() < 0.02 && (times[1] - 4.0).abs() < 0.02, "{times:?}");
-        assert!((cycle_time(&parts, &times) - 8.0).abs() < TOLERANCE);
+        assert!((cycle.time(&times) - 8.0).abs() < TOLERANCE);
     }
 
     #[test]
@@ -268,20 +289,20 @@ mod tests {
     fn a_known_wait_is_used_up() {
         let curves = [curve(100.0), curve(100.0)];
         let wait = Part::Arrival { since: None, delay: 3.0, holding_w: 1.0 };
-        let parts = [Part::Run(0), wait, Part::Run(1)];
-        let times = share(&curves, &parts, 4.5).expect("possible");
+        let waiting = cycle(&[Part::Run(0), wait, Part::Run(1)], 4.5);
+        let times = waiting.share(&curves).expect("possible");
         assert!(
             (times[0] - 3.0).abs() < TOLERANCE && (times[1] - 1.5).abs() < TOLERANCE,
             "{times:?}"
         );
-        assert!((cycle_time(&parts, &times) - 4.5).abs() < TOLERANCE);
+        assert!((waiting.time(&times) - 4.5).abs() < TOLERANCE);
         // Quicker runs wait for the signal: two seconds at 1 W.
-        let waiting = cycle_energy(&parts, &[1.0, 1.0], &[7.0, 5.0]);
-        assert!((waiting - (7.0 + 5.0 + 2.0)).abs() < TOLERANCE, "{waiting}");
+        let energy = waiting.energy(&[1.0, 1.0], &[7.0, 5.0]);
+        assert!((energy - (7.0 + 5.0 + 2.0)).abs() < TOLERANCE, "{energy}");
         // The second signal counts from the first one: only the way between has to wait for it.
         let again = Part::Arrival { since: Some(1), delay: 2.5, holding_w: 1.0 };
-        let parts = [Part::Run(0), wait, Part::Run(1), again];
-        let times = share(&curves, &parts, 5.5).expect("possible");
+        let twice = cycle(&[Part::Run(0), wait, Part::Run(1), again], 5.5);
+        let times = twice.share(&curves).expect("possible");
         assert!(
             (times[0] - 3.0).abs() < TOLERANCE && (times[1] - 2.5).abs() < TOLERANCE,
             "{times:?}"
@@ -289,8 +310,26 @@ mod tests {
     }
 
     #[test]
+    fn the_rest_of_the_takt_is_paid_for() {
+        let parts = [Part::Run(0)];
+        let free = Cycle { resting_w: 0.0, ..cycle(&parts, 4.0) };
+        // Beyond 2 s the run takes more power by being slower than it saves.
+        let bowl = TradeOff::new(
+            (10..=50).map(f64::from).map(|t| (t / 10.0, (t / 10.0 - 2.0).powi(2))).collect(),
+        );
+        let bowl = [bowl.expect("points")];
+        let times = free.share(&bowl).expect("possible");
+        assert!((times[0] - 2.0).abs() < BOWL, "{times:?}");
+        // Standing takes 2 W: the run uses a second more, where it takes as much.
+        let paid = Cycle { resting_w: 2.0, ..free };
+        let times = paid.share(&bowl).expect("possible");
+        assert!((times[0] - 3.0).abs() < BOWL, "{times:?}");
+        assert!((paid.energy(&[3.0], &[1.0]) - 3.0).abs() < TOLERANCE);
+    }
+
+    #[test]
     fn a_takt_below_the_possible_has_no_answer() {
-        assert_eq!(share(&[curve(1.0)], &[Part::Run(0), Part::Fixed(1.0)], 1.9), None);
+        assert_eq!(cycle(&[Part::Run(0), Part::Fixed(1.0)], 1.9).share(&[curve(1.0)]), None);
     }
 
     #[test]

@@ -12,10 +12,15 @@ use super::corridor::Freedom;
 /// which is the program's own choice, or where nothing is to be kept free.
 pub fn body<'a>(model: &'a Model, run: &Run, freedom: &Freedom) -> Option<Body<'a>> {
     let free = run.moves.iter().any(|record| freedom.of(&record.movement) > 0.0);
-    if !free || freedom.keep_out.is_empty() {
+    if free { around(model, &run.legs.first()?.tool, freedom) } else { None }
+}
+
+/// Arm and tool among what the cell keeps free; `None` where nothing is to be kept free.
+pub fn around<'a>(model: &'a Model, tool: &Tcp, freedom: &Freedom) -> Option<Body<'a>> {
+    if freedom.keep_out.is_empty() {
         return None;
     }
-    let tool = match &run.legs.first()?.tool {
+    let tool = match tool {
         Tcp::Held(tool) => tool.translation.vector,
         Tcp::Stationary(_) => nalgebra::Vector3::zeros(),
     };

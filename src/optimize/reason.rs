@@ -33,6 +33,8 @@ pub enum Reason {
     ExternalAxes,
     /// Other statements between fly-by movements.
     LogicBetween,
+    /// An output that is set while its last movement, which flies on, is under way.
+    EarlyOutput,
     /// Fly-by movements that go on in another routine or branch.
     Scattered,
     /// Runs that begin or end at different statements at different times.
@@ -90,6 +92,7 @@ impl Reason {
             Reason::Interrupt(_) => "interrupt",
             Reason::ExternalAxes => "external-axes",
             Reason::LogicBetween => "logic-between",
+            Reason::EarlyOutput => "early-output",
             Reason::Scattered => "scattered",
             Reason::Overlapping => "overlapping",
             Reason::FliesOn => "flies-on",
@@ -157,6 +160,9 @@ impl std::fmt::Display for Reason {
                 f.write_str("its targets move external axes, or where they stood is not known")
             }
             Reason::LogicBetween => f.write_str("other statements stand between fly-by movements"),
+            Reason::EarlyOutput => f.write_str(
+                "an output is set while its last movement, which does not stop, is under way",
+            ),
             Reason::Scattered => {
                 f.write_str("its fly-by movements go on in another routine or branch")
             }

@@ -43,6 +43,13 @@ pub struct Variant {
     pub reason: Option<Reason>,
 }
 
+impl Variant {
+    /// What it depends on of its module, which may be something else whenever it runs.
+    pub fn changing(&self) -> Option<&LocalValue> {
+        self.locals.iter().find(|local| !matches!(local.of.base(), Dependence::Local(_)))
+    }
+}
+
 /// Ways of one site beyond which none is rewritten.
 const MAX_VARIANTS: usize = 64;
 /// Joints closer than this are the same start, rad.
@@ -61,6 +68,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
             .or_else(|| places.neighbours(run).err())
+            .or_else(|| sets_on_the_way(simulation, index).then_some(Reason::EarlyOutput))
             .or_else(|| joined.contains(&index).then_some(Reason::FliesOn));
         let same_file = head.file == tail.file;
         let span = if same_file { head.to(tail) } else { head };
@@ -95,6 +103,17 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         }
     }
     sites
+}
+
+/// Whether an output is set while the movements of a run are under way.
+fn sets_on_the_way(simulation: &Simulation, run: usize) -> bool {
+    let before = simulation.events[..run].iter().rev();
+    before
+        .map_while(|event| match &event.what {
+            What::Output(_, under_way) => Some(*under_way),
+            _ => None,
+        })
+        .any(|under_way| under_way > 0)
 }
 
 /// The runs that are one run where the program begins again: its last movement flies on into the
@@ -202,8 +221,14 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
         return Err(Reason::Instruction(movement.instruction.to_string()));
     }
     for dependence in movement.origin.iter() {
-        let what = match dependence {
+        if movement.locals.iter().any(|local| local.of == *dependence) {
+            continue;
+        }
+        let what = match dependence.base() {
             Dependence::Local(_) | Dependence::TrustedPersistent(_) => continue,
+            Dependence::Inner(name) => {
+                format!("it is computed from {name}, which only its function can name")
+            }
             Dependence::Variable(name) => {
                 format!("it is computed from the variable {name}, which the program changes")
             }
@@ -214,7 +239,9 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
                 format!("it uses {name}, which {call} may change: {call} is in no file given")
             }
             Dependence::Input(name) => format!("it is computed from the signal {name}"),
-            Dependence::RobotState => "it is computed from where the robot stands".to_owned(),
+            Dependence::RobotState | Dependence::Element(..) => {
+                "it is computed from where the robot stands".to_owned()
+            }
         };
         return Err(Reason::NotConstant(what));
     }

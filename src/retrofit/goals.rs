@@ -2,14 +2,17 @@
 
 use rayon::prelude::*;
 
+use super::notes::end;
 use super::work::{Budget, Objective, RetrofitError, Settings, Way, rounded_up};
+use crate::dynamics::Load;
 use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{Event, WaitBasis, What};
-use crate::optimize::cycle::{Part, TradeOff, cycle_energy, cycle_time, share};
+use crate::optimize::cycle::{Cycle, Part, TradeOff};
 use crate::optimize::energy_curve::Curve;
 use crate::optimize::retime::{Goal, SLOWEST, Task, fastest};
 use crate::optimize::site::Site;
+use crate::path::joint_path::Joints;
 use crate::robot::Model;
 
 /// Where the cycle may stay as it is, a run is not asked for more than this many times its time.
@@ -32,9 +35,7 @@ pub(super) struct Plan {
 /// A cycle whose time is shared among its runs.
 struct Shared {
     curves: Vec<TradeOff>,
-    parts: Vec<Part>,
-    /// s.
-    takt: f64,
+    cycle: Cycle,
 }
 
 /// The goal of each task: its share of the time.
@@ -68,7 +69,7 @@ pub(super) fn goals(
         }
         Budget::Takt(takt) => (takt, possible(simulation, sites, ways, tasks, takt)?),
     };
-    let mut parts = parts(model, settings, simulation, sites, ways, tasks);
+    let mut cycle = cycle(model, settings, simulation, sites, ways, tasks, takt);
     let mut curves: Vec<Option<Curve<'_>>> = tasks
         .par_iter()
         .zip(&bounds)
@@ -84,7 +85,7 @@ pub(super) fn goals(
                 curve.as_ref().and_then(Curve::trade_off).or_else(|| TradeOff::new(kept()))
             })
             .collect();
-        let mut shared = Shared { curves: known.unwrap_or_default(), parts, takt };
+        let shared = Shared { curves: known.unwrap_or_default(), cycle };
         let Some(times) = shared.times() else {
             return Ok(each(&|task| Goal::Within(before(task))));
         };
@@ -97,13 +98,13 @@ pub(super) fn goals(
             let goals = times.into_iter().map(Goal::Exactly).collect();
             return Ok(Plan { goals, shared: Some(shared) });
         }
-        parts = std::mem::take(&mut shared.parts);
+        cycle = shared.cycle;
     }
 }
 
 impl Shared {
     fn times(&self) -> Option<Vec<f64>> {
-        share(&self.curves, &self.parts, self.takt)
+        self.cycle.share(&self.curves)
     }
 }
 
@@ -111,7 +112,7 @@ impl Plan {
     /// Whether the cycle takes no longer than it may where the tasks take `times` (s).
     pub(super) fn holds(&self, times: &[f64]) -> bool {
         let shared = self.shared.as_ref();
-        shared.is_none_or(|s| cycle_time(&s.parts, times) <= s.takt + TIME_TOLERANCE)
+        shared.is_none_or(|s| s.cycle.time(times) <= s.cycle.takt + TIME_TOLERANCE)
     }
 
     /// Energy of motions and known waits of the cycle where the tasks take these times (s) and
@@ -120,7 +121,7 @@ impl Plan {
         let (times, energies): (Vec<f64>, Vec<f64>) = taken.iter().copied().unzip();
         match &self.shared {
             Some(_) if !self.holds(&times) => f64::INFINITY,
-            Some(shared) => cycle_energy(&shared.parts, &times, &energies),
+            Some(shared) => shared.cycle.energy(&times, &energies),
             None => energies.iter().sum(),
         }
     }
@@ -175,15 +176,16 @@ fn possible(
     Ok(tasks.iter().zip(&least).map(bounds).collect())
 }
 
-/// The cycle as the tasks see it.
-pub(super) fn parts(
+/// The cycle as the tasks see it. What is left of the takt (s) is spent at its end.
+pub(super) fn cycle(
     model: &Model,
     settings: &Settings,
     simulation: &Simulation,
     sites: &[Site],
     ways: &[Way],
     tasks: &[(usize, Task<'_>)],
-) -> Vec<Part> {
+    takt: f64,
+) -> Cycle {
     let mut parts: Vec<Part> =
         simulation.events.iter().map(|event| Part::Fixed(event.duration)).collect();
     for (task, (way, _)) in tasks.iter().enumerate() {
@@ -211,5 +213,6 @@ pub(super) fn parts(
             };
         }
     }
-    parts
+    let holding = |(load, q): (&Load, &Joints)| holding_w(model, load, q).iter().sum();
+    Cycle { parts, takt, resting_w: end(simulation).map_or(0.0, holding) }
 }

@@ -4,10 +4,12 @@ use std::fmt::Write;
 
 use super::figures::{Figures, Segment, SegmentKind};
 use super::work::{Budget, Objective, Settings, Source};
+use crate::dynamics::Load;
 use crate::energy::account::at_rest;
 use crate::motion::Simulation;
 use crate::motion::timeline::What;
 use crate::optimize::reason::Reason;
+use crate::path::joint_path::Joints;
 use crate::robot::Model;
 
 /// Differences of energy below this are rounding, J.
@@ -116,10 +118,14 @@ fn unchanged(segments: &[Segment]) -> Option<String> {
 
 /// Energy of standing at the end of the cycle for some time, J.
 fn resting_j(model: &Model, simulation: &Simulation, duration: f64) -> f64 {
-    let end = simulation.events.iter().rev().find_map(|event| match &event.what {
+    end(simulation).map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
+}
+
+/// Load and place of the robot at the end of the cycle.
+pub(super) fn end(simulation: &Simulation) -> Option<(&Load, &Joints)> {
+    simulation.events.iter().rev().find_map(|event| match &event.what {
         What::Run(run) => Some((&run.load, &run.end)),
         What::Wait(wait) => Some((&wait.load, &wait.q)),
         What::Output(..) | What::Left(_) => None,
-    });
-    end.map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
+    })
 }

@@ -8,11 +8,11 @@ use crate::emit::{EmittedStream, Pause};
 use crate::energy::account::{at_rest, run_energy};
 use crate::energy::{Account, EnergyParts};
 use crate::ir::number::number;
-use crate::kinematics::{Body, Tcp};
 use crate::motion::Simulation;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, WaitBasis, WaitRecord, What};
 use crate::optimize::check::check;
+use crate::optimize::keep_out::around;
 use crate::optimize::reason::Reason;
 use crate::optimize::rest::{Rest, Standstill, rest};
 use crate::optimize::site::Site;
@@ -39,7 +39,7 @@ pub(super) struct Resting {
     pub(super) rest: Rest,
 }
 
-/// The waits of a program that may be spent elsewhere, as far as it pays: their length is stated,
+/// The waits of a program that may be spent elsewhere, as far as it pays: their length is constant,
 /// they are always the same, and the run before each of them can be a stream itself. An output
 /// that is set where the robot stands may start a process there: such a wait has to be made free
 /// by a comment.
@@ -79,12 +79,7 @@ pub(super) fn restings(
             return None;
         }
         let tool = &first.leading.legs.last()?.tool;
-        let held = match tool {
-            Tcp::Held(tool) => tool.translation.vector,
-            Tcp::Stationary(_) => return None,
-        };
-        let keep_out = &settings.freedom.keep_out;
-        let body = (!keep_out.is_empty()).then(|| Body::new(model, held, keep_out));
+        let body = around(model, tool, &settings.freedom);
         let standstill = Standstill {
             model,
             load: &first.record.load,
@@ -117,10 +112,11 @@ impl Standing<'_> {
     }
 }
 
-/// A wait of stated length where a run of the same routine has led to.
+/// A wait of constant length where a run of the same routine has led to.
 fn standing(simulation: &Simulation, event: usize) -> Option<Standing<'_>> {
     let What::Wait(record) = &simulation.events[event].what else { return None };
     let stated = record.basis == WaitBasis::Stated
+        && record.wait.constant
         && record.position_known
         && record.wait.signal.is_none()
         && record.wait.instruction.eq_ignore_ascii_case("WaitTime");
@@ -290,13 +286,10 @@ fn lateness(model: &Model, settings: &Settings, parts: &[Event], resting: &Resti
         return None;
     };
     let Rest { out: there, back: again, .. } = &resting.rest;
-    let keep_out = &settings.freedom.keep_out;
     let ways_hold = [(out, there), (back, again)].into_iter().all(|(run, intended)| {
         let [(_, TimedMotion::Stream(stream))] = run.motions.as_slice() else { return false };
         let tool = &run.legs[0].tool;
-        let Tcp::Held(held) = tool else { return false };
-        let body =
-            (!keep_out.is_empty()).then(|| Body::new(model, held.translation.vector, keep_out));
+        let body = around(model, tool, &settings.freedom);
         let seen = check(model, &run.load, tool, stream, None, intended.end(), body.as_ref());
         seen.holds()
             && run.load == wait.load

@@ -8,12 +8,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{Figures, OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
-use super::goals::parts;
+use super::goals::cycle;
 use super::outputs::{read_again, unchanged};
 use super::verify::same_order;
 use super::work::{
     Budget, Objective, RetrofitError, Settings, Source, TIME_TOLERANCE, Way, figures,
-    nothing_to_verify, read_program,
+    nothing_to_verify, read_program, unguided,
 };
 use super::{notes, segments, signals};
 use crate::dynamics::Data;
@@ -28,10 +28,10 @@ use crate::motion::timeline::{Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::Check;
 use crate::optimize::corridor::Ceilings;
-use crate::optimize::cycle::{Part, TradeOff, share};
+use crate::optimize::cycle::{Part, TradeOff};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::site::{Site, not_reached};
+use crate::optimize::site::{Site, Variant, not_reached};
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
 use crate::syntax;
@@ -48,7 +48,8 @@ const UNCHANGED: f64 = 2e-3;
 const FASTEST: f64 = 7.0;
 /// Decimals of a speed in mm/s and degrees/s.
 const DECIMALS: usize = 1;
-/// Smallest saving that is worth a change, share of the motion energy.
+/// Smallest saving that is worth a change, share of all energy: what is searched on a grid of
+/// factors ends elsewhere by about so much when it is searched again.
 const WORTHWHILE: f64 = 1e-3;
 /// Step of the samples of the verified motions, s.
 const STEP: f64 = 0.002;
@@ -100,7 +101,7 @@ pub(super) fn retrofit(
     let mut kept = None;
     if let Some((factors, tried)) = found {
         let mut verification = verify(&before, model, settings, &slots, &factors, &tried);
-        let least = WORTHWHILE * original.motion_energy_j;
+        let least = WORTHWHILE * original.energy_j;
         let saves = settings.objective == Objective::Time
             || !matches!(settings.budget, Budget::AsBefore)
             || tried.account.total.energy_j() + least < original.energy_j;
@@ -161,13 +162,18 @@ pub(super) fn retrofit(
 fn ways(sites: &[Site]) -> Vec<Way> {
     let variants = |(site, s): (usize, &Site)| {
         let reasons: Vec<Option<Reason>> =
-            s.variants.iter().map(|v| s.reason.clone().or_else(|| v.reason.clone())).collect();
+            s.variants.iter().map(|v| s.reason.clone().or_else(|| stays(v))).collect();
         let way = move |(variant, reason): (usize, Option<Reason>)| {
             Way::new(site, variant, Err(reason.unwrap_or(Reason::NoSaving)))
         };
         reasons.into_iter().enumerate().map(way).collect::<Vec<Way>>()
     };
     sites.iter().enumerate().flat_map(variants).collect()
+}
+
+fn stays(variant: &Variant) -> Option<Reason> {
+    let changing = || variant.changing().map(|local| Reason::NotConstant(unguided(&local.name)));
+    variant.reason.clone().or_else(changing)
 }
 
 /// The sites whose speeds can be written in their place; the ways of others get their reason.
@@ -336,17 +342,17 @@ fn times(
         Budget::AsBefore => before.simulation.cycle_s,
         Budget::Takt(takt) => takt,
     };
-    let mut parts = parts(model, settings, &before.simulation, before.sites, ways, &[]);
+    let mut cycle = cycle(model, settings, &before.simulation, before.sites, ways, &[], takt);
     for (i, slot) in slots.iter().enumerate() {
         for event in before.sites[slot.site].variants.iter().flat_map(|v| &v.events) {
-            parts[*event] = Part::Run(i);
+            cycle.parts[*event] = Part::Run(i);
         }
     }
     let curves: Option<Vec<TradeOff>> = known
         .iter()
         .map(|list| TradeOff::new(list.iter().map(|(_, time, energy)| (*time, *energy)).collect()))
         .collect();
-    share(&curves?, &parts, takt)
+    cycle.share(&curves?)
 }
 
 /// Time (s) and motion energy (J) of an execution of a slot's site in the mean.

@@ -414,6 +414,11 @@ pub(super) fn run_of<'a>(simulation: &'a Simulation, sites: &[Site], way: &Way) 
     }
 }
 
+/// Why no form of a retrofit but a stream behind a guard can stand for a way.
+pub(super) fn unguided(name: &str) -> String {
+    format!("{name} may have another value when it runs, and only streams have a guard for that")
+}
+
 fn retime_all(
     model: &Model,
     settings: &Settings,
@@ -427,6 +432,10 @@ fn retime_all(
         for (v, variant) in site.variants.iter().enumerate() {
             let reason = site.reason.clone().or_else(|| variant.reason.clone());
             let unguarded = variant.locals.iter().find(|local| !emit::can_guard(local));
+            let reason = reason.or_else(|| {
+                let changing = || variant.changing().filter(|_| settings.form == Form::Guided);
+                changing().map(|local| Reason::NotConstant(unguided(&local.name)))
+            });
             let reason = reason.or_else(|| {
                 unguarded.map(|local| {
                     Reason::NotConstant(format!(

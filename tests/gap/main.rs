@@ -2,13 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+#[path = "../support/excited.rs"]
+mod excited;
 mod simulated;
 
 use joulepath::effects::{ALL, Motion, find as effect};
 use joulepath::gap::{Diagnosis, Record, Settings, Trust, Verdict, diagnose};
 use joulepath::robot::Model;
 
-use simulated::{Robot, irb1600, spread};
+use excited::irb1600;
+use simulated::{Robot, spread};
 
 /// Deviations by which a parameter may be off.
 const WITHIN: f64 = 4.0;

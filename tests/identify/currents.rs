@@ -9,7 +9,8 @@ use joulepath::identify::{
 use joulepath::log::{Aligned, Channel, Log};
 use joulepath::robot::Model;
 
-use crate::simulated::{With, irb1600, log, normal, series};
+use crate::excited::{irb1600, normal, series};
+use crate::simulated::{With, log};
 
 /// Share of a torque that is noise.
 const NOISE: f64 = 0.01;

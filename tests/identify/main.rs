@@ -4,6 +4,8 @@
 #![expect(clippy::print_stderr, reason = "tests report figures")]
 
 mod currents;
+#[path = "../support/excited.rs"]
+mod excited;
 mod simulated;
 
 use joulepath::dynamics::{
@@ -18,7 +20,8 @@ use joulepath::log::{Channel, Log};
 use joulepath::robot::{Model, to_toml};
 use nalgebra::{DMatrix, DVector};
 
-use simulated::{With, irb1600, log, series};
+use excited::{irb1600, series};
+use simulated::{With, log};
 
 /// Relative, of data without noise and of two solvers.
 const EXACT: f64 = 1e-8;
@@ -182,7 +185,7 @@ fn a_joint_that_rests_is_not_determined() {
     let mut log = log(&model, &motion, [10.0, 0.02], With::Rates, [1.0, 0.0], &mut random);
     // An encoder's noise is no motion.
     for value in &mut log.values[4] {
-        *value += 1e-5 * simulated::normal(&mut random);
+        *value += 1e-5 * crate::excited::normal(&mut random);
     }
     let samples = samples(&log, &model);
     assert_eq!(samples.resting, [3]);

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::super::hir::{Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, Stmt};
+use super::super::hir::{
+    Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, RoutineKind, Stmt,
+};
 use super::super::predefined;
 use super::super::program::{RoutineId, Symbol};
 use super::super::value::{Datum, Dependence, Origin, Value};
@@ -172,6 +174,12 @@ impl Executor<'_> {
             }
             other => other,
         }
+    }
+
+    /// Whether what runs is a function: its callers can't name its data.
+    pub(super) fn is_in_function(&self) -> bool {
+        let routine = self.frame().id.map(|id| self.program.routine(id));
+        routine.is_some_and(|routine| matches!(routine.kind, RoutineKind::Func(_)))
     }
 
     /// Something that may move the robot or take time in a way that is not known.

@@ -32,15 +32,19 @@ pub fn value_of(program: &Program, id: DataId) -> Value {
 
 /// Why a value that depends on this may be another one each time.
 fn changes(dependence: &Dependence) -> Option<String> {
-    match dependence {
+    match dependence.base() {
         // Local data are those of functions that were called with values of the expression.
         Dependence::Persistent(_) | Dependence::TrustedPersistent(_) | Dependence::Local(_) => None,
-        Dependence::Variable(name) => Some(format!("'{name}' is written by the program")),
+        Dependence::Inner(name) | Dependence::Variable(name) => {
+            Some(format!("'{name}' is written by the program"))
+        }
         Dependence::Exposed(name, call) => {
             Some(format!("'{name}' may be written by '{call}', which is not in the files given"))
         }
         Dependence::Input(name) => Some(format!("'{name}' is not declared in the files given")),
-        Dependence::RobotState => Some("it depends on where the robot is".to_owned()),
+        Dependence::RobotState | Dependence::Element(..) => {
+            Some("it depends on where the robot is".to_owned())
+        }
     }
 }
 

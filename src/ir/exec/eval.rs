@@ -23,9 +23,15 @@ impl Executor<'_> {
             }
             ExprKind::Index(base, indices) => {
                 let mut value = self.eval(base);
+                let whole = std::mem::take(&mut value.origin);
+                let mut at = Vec::with_capacity(indices.len());
                 for index in indices {
-                    value = self.element(value, index);
+                    let number;
+                    (value, number) = self.element(value, index);
+                    at.extend(number);
                 }
+                let at = (at.len() == indices.len()).then_some(at);
+                value.origin.join(&of_element(&whole, base, at));
                 value
             }
             ExprKind::Call(name, args) => self.function(expr, name, args),
@@ -255,14 +261,17 @@ impl Executor<'_> {
         }
     }
 
-    fn element(&mut self, base: Value, index: &Expr) -> Value {
+    /// The element of an array, and its number.
+    fn element(&mut self, base: Value, index: &Expr) -> (Value, Option<u32>) {
         let at = self.eval(index);
         let mut origin = base.origin;
         origin.join(&at.origin);
+        let mut number = None;
         let datum = match (base.datum, at.datum) {
             (Datum::List(items), Datum::Num(x)) => {
                 let i = x.round();
                 if i >= 1.0 && (i as usize) <= items.len() {
+                    number = Some(i as u32);
                     items[i as usize - 1].clone()
                 } else {
                     Datum::unknown(format!("index {i} is outside 1..{}", items.len()), index.span)
@@ -271,7 +280,7 @@ impl Executor<'_> {
             (unknown @ Datum::Unknown(_), _) | (_, unknown @ Datum::Unknown(_)) => unknown,
             _ => Datum::unknown("the index does not fit", index.span),
         };
-        Value { datum, type_key: base.type_key, origin }
+        (Value { datum, type_key: base.type_key, origin }, number)
     }
 
     /// `target := value`; what can't be written is left with a note.
@@ -484,5 +493,26 @@ fn arithmetic(op: BinaryOp, a: f64, b: f64, expr: &Expr) -> Datum {
         BinaryOp::Gt => Datum::Bool(a > b),
         BinaryOp::Ge => Datum::Bool(a >= b),
         _ => Datum::unknown("the operator does not fit numbers", expr.span),
+    }
+}
+
+/// What an element depends on: where a name stands for the whole, on that element alone.
+fn of_element(whole: &Origin, base: &Expr, at: Option<Vec<u32>>) -> Origin {
+    let mut all = whole.iter();
+    let told = match (all.next(), all.next()) {
+        (
+            Some(
+                one @ (Dependence::Local(_)
+                | Dependence::Variable(_)
+                | Dependence::Persistent(_)
+                | Dependence::Exposed(..)),
+            ),
+            None,
+        ) => one,
+        _ => return whole.clone(),
+    };
+    match (&base.kind, at) {
+        (ExprKind::Ref(_), Some(at)) => Origin::of(Dependence::Element(Box::new(told.clone()), at)),
+        _ => whole.clone(),
     }
 }

@@ -240,9 +240,11 @@ impl Executor<'_> {
     /// Routine data get a new value at each call.
     pub(super) fn declare_local(&mut self, data: &Data) {
         let value = self.initial_value(data);
+        let name = data.name.text.as_str().into();
         let reading = match data.kind {
             super::super::hir::DataKind::Const => Origin::default(),
-            _ => Origin::of(Dependence::Variable(data.name.text.as_str().into())),
+            _ if self.is_in_function() => Origin::of(Dependence::Inner(name)),
+            _ => Origin::of(Dependence::Local(name)),
         };
         let read_only = data.kind == super::super::hir::DataKind::Const;
         self.cells.push(Cell { value, reading, read_only, alias: None, input: None });

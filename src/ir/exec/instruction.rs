@@ -55,6 +55,8 @@ const MOST_OVERRIDE: f64 = 200.0;
 
 /// How long a wait lasts.
 pub(super) enum Length {
+    /// s, by literals and constants: the same whenever it runs.
+    Constant(f64),
     /// s.
     Stated(f64),
     /// Until an input comes, or a condition holds that names none.
@@ -158,7 +160,9 @@ impl Executor<'_> {
     }
 
     fn wait_time(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
-        let datum = arguments.positional.first().map(|expr| self.eval(expr).datum);
+        let value = arguments.positional.first().map(|expr| self.eval(expr));
+        let constant = value.as_ref().is_some_and(|value| value.origin.iter().next().is_none());
+        let datum = value.map(|value| value.datum);
         // `WaitTime 0` and `WaitTime \InPos, 0` only wait for standstill.
         let length = match datum {
             Some(Datum::Num(time)) if time < 0.0 => {
@@ -168,6 +172,7 @@ impl Executor<'_> {
                 );
                 Length::Stated(0.0)
             }
+            Some(Datum::Num(time)) if time.is_finite() && constant => Length::Constant(time),
             Some(Datum::Num(time)) if time.is_finite() => Length::Stated(time),
             Some(Datum::Num(_)) => Length::Unknown("a time that is out of range".into()),
             Some(Datum::Unknown(why)) => {
@@ -278,8 +283,9 @@ impl Executor<'_> {
         max_time: Option<f64>,
     ) -> Waited {
         let routine = self.frame().routine.clone();
+        let constant = matches!(length, Length::Constant(_));
         let (duration, signal, other) = match length {
-            Length::Stated(duration) => {
+            Length::Constant(duration) | Length::Stated(duration) => {
                 self.waited_s += duration;
                 (Some(duration), None, None)
             }
@@ -295,6 +301,7 @@ impl Executor<'_> {
             span: stmt.span,
             routine,
             duration,
+            constant,
             max_time,
             signal,
             other,

@@ -6,8 +6,9 @@ use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{LocalValue, Movement, Stop, Target, Unresolved, Zone};
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
-use super::Executor;
 use super::instruction::Arguments;
+use super::{Cell, Executor};
+use std::fmt::Write;
 use std::sync::Arc;
 
 /// Options that a movement may have without changing where or how fast it goes.
@@ -213,25 +214,61 @@ impl Executor<'_> {
         })
     }
 
-    /// What the loop variables and parameters in an origin are at this moment.
+    /// What the data in an origin that have a name here are at this moment.
     fn locals(&self, origin: &Origin) -> Vec<LocalValue> {
-        let names = &self.frame().names;
-        let value = |name: &Arc<str>| {
-            let key = name.to_lowercase();
-            let (_, cell) = names.iter().rev().find(|(known, _)| *known == key)?;
-            let cell = &self.cells[*cell];
-            Some(LocalValue {
-                name: name.clone(),
-                type_key: cell.value.type_key.clone(),
-                datum: cell.value.datum.clone(),
-                alias: cell.alias.clone(),
-            })
+        origin.iter().filter_map(|dependence| self.local(dependence)).collect()
+    }
+
+    fn local(&self, dependence: &Dependence) -> Option<LocalValue> {
+        let base = dependence.base();
+        let (name, cell) = match base {
+            Dependence::Local(name) => {
+                let key = name.to_lowercase();
+                let names = &self.frame().names;
+                let (_, cell) = names.iter().rev().find(|(known, _)| *known == key)?;
+                (name, &self.cells[*cell])
+            }
+            Dependence::Variable(name)
+            | Dependence::Persistent(name)
+            | Dependence::Exposed(name, _) => {
+                (name, self.module_data(name, base, dependence != base)?)
+            }
+            _ => return None,
         };
-        let local = |dependence: &Dependence| match dependence {
-            Dependence::Local(name) => value(name),
-            _ => None,
-        };
-        origin.iter().filter_map(local).collect()
+        let (mut datum, mut text) = (&cell.value.datum, name.to_string());
+        if let Dependence::Element(_, at) = dependence {
+            for index in at {
+                let Datum::List(items) = datum else { return None };
+                datum = items.get(*index as usize - 1)?;
+            }
+            let at: Vec<String> = at.iter().map(u32::to_string).collect();
+            let _ = write!(text, "{{{}}}", at.join(","));
+        }
+        Some(LocalValue {
+            name: text.into(),
+            type_key: cell.value.type_key.clone(),
+            datum: datum.clone(),
+            alias: if dependence == base { cell.alias.clone() } else { None },
+            of: dependence.clone(),
+        })
+    }
+
+    /// The cell of module data on which something depends, if its name means it and nothing else
+    /// here, and a condition can tell its value, or that of an `element`.
+    fn module_data(&self, name: &str, dependence: &Dependence, element: bool) -> Option<&Cell> {
+        let key = name.to_lowercase();
+        let frame = self.frame();
+        if frame.names.iter().any(|(known, _)| *known == key) {
+            return None;
+        }
+        let Some(Symbol::Data(id)) = self.program.resolve(frame.module, &key) else { return None };
+        let data = self.program.modules.iter().flat_map(|module| &module.data);
+        let is_alone = data.filter(|data| data.name.key == key).count() == 1;
+        let whole = self.program.data(id).dims.is_empty() != element;
+        let cell = &self.cells[*self.globals.get(&id)?];
+        let told = matches!(&*cell.value.type_key, "num" | "bool" | "robtarget" | "jointtarget");
+        let is_it = cell.reading == Origin::of(dependence.clone());
+        (is_alone && whole && told && is_it).then_some(cell)
     }
 
     /// Adds the parameters in an expression that stand for module data themselves: at another call
@@ -251,11 +288,13 @@ impl Executor<'_> {
                 let declared = &self.program.data(*id).name;
                 let global = self.program.resolve_global(&declared.key) == Some(Symbol::Data(*id));
                 let value = &self.cells[*cell].value;
+                let own: Arc<str> = name.text.as_str().into();
                 locals.push(LocalValue {
-                    name: name.text.as_str().into(),
+                    name: own.clone(),
                     type_key: value.type_key.clone(),
                     datum: value.datum.clone(),
                     alias: global.then(|| declared.text.as_str().into()),
+                    of: Dependence::Local(own),
                 });
             }
             ExprKind::Field(base, _) => self.references(base, locals),

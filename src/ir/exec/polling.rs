@@ -152,6 +152,7 @@ impl Executor<'_> {
             span: condition.span,
             routine: self.frame().routine.clone(),
             duration: None,
+            constant: false,
             max_time,
             signal,
             other: None,

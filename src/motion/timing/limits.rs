@@ -83,11 +83,11 @@ impl Row {
         }
     }
 
-    /// Bound on the absolute value while |u| and b are at most these.
-    pub(crate) fn largest(&self, u: f64, b: f64) -> f64 {
+    /// Bound on the absolute value while |u| and b are at most these; `root` is √b.
+    fn largest(&self, u: f64, b: f64, root: f64) -> f64 {
         // Without inertia the acceleration does not matter, however large it may be.
         let inertial = if self.u == 0.0 { 0.0 } else { self.u.abs() * u };
-        inertial + self.b.abs() * b + self.root.abs() * b.sqrt() + self.constant.abs()
+        inertial + self.b.abs() * b + self.root.abs() * root + self.constant.abs()
     }
 
     /// The left side without the absolute value.
@@ -96,15 +96,9 @@ impl Row {
     }
 }
 
-/// Largest |u| that the acceleration limits of the joints allow at a place where b is at most
-/// `b_max`.
-pub(crate) fn largest_acceleration(point: &PathPoint, limits: &PathLimits, b_max: f64) -> f64 {
-    let bound = |j: usize| {
-        let row = acceleration_row(point, limits, j);
-        (1.0 + row.constant.abs() + row.b.abs() * b_max) / row.u.abs()
-    };
-    // Rows are left out by this: a hair of room for the tolerance on the others.
-    (0..DOF).map(bound).fold(f64::INFINITY, f64::min) * 1.001
+/// Bound on |u| that a row of the acceleration of a joint is, where b is at most `b_max`.
+fn acceleration_bound(row: &Row, b_max: f64) -> f64 {
+    (1.0 + row.constant.abs() + row.b.abs() * b_max) / row.u.abs()
 }
 
 fn acceleration_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
@@ -127,6 +121,22 @@ pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item
     let joints = (0..DOF)
         .flat_map(move |j| [acceleration_row(point, limits, j), torque_row(point, limits, j)]);
     joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
+}
+
+/// The rows of one place that a profile within the others can reach, where b is at most `b_max`.
+pub(crate) fn binding_rows(
+    point: &PathPoint,
+    limits: &PathLimits,
+    b_max: f64,
+) -> impl Iterator<Item = Row> {
+    let accelerations: [Row; DOF] = std::array::from_fn(|j| acceleration_row(point, limits, j));
+    let torques: [Row; DOF] = std::array::from_fn(|j| torque_row(point, limits, j));
+    let bounds = accelerations.iter().map(|row| acceleration_bound(row, b_max));
+    // A hair of room for the tolerance on the others.
+    let u_max = bounds.fold(f64::INFINITY, f64::min) * 1.001;
+    let root = b_max.sqrt();
+    let all = accelerations.into_iter().chain(torques).chain(point.tcp_rows);
+    all.filter(move |row| row.largest(u_max, b_max, root) > 1.0)
 }
 
 /// What a row limits.
@@ -176,10 +186,23 @@ pub fn worst_ratio(grid: &PathGrid, limits: &PathLimits, b: &[f64]) -> f64 {
     for (k, pair) in grid.ends().iter().enumerate() {
         let u = (b[k + 1] - b[k]) / (2.0 * grid.delta(k));
         for (point, b) in pair.iter().zip(&b[k..k + 2]) {
-            for row in rows(point, limits) {
-                worst = worst.max(row.value(u, *b).abs());
-            }
+            worst = worst.max(ratio(point, limits, u, *b));
         }
     }
     worst
+}
+
+/// The largest share of a limit on accelerations and torques that u and b use at a place.
+fn ratio(point: &PathPoint, limits: &PathLimits, u: f64, b: f64) -> f64 {
+    let v = b.sqrt();
+    let joints = (0..DOF).map(|j| {
+        let acceleration = (point.q1[j] * u + point.q2[j] * b)
+            / (limits.acceleration[j] * point.capability[j])
+            + point.bias[j];
+        let load = point.m[j] * u + point.c[j] * b + point.g[j];
+        let friction = point.coulomb[j] + point.viscous[j] * v;
+        acceleration.abs().max((load + friction).abs() / limits.torque[j])
+    });
+    let tcp = point.tcp_rows.iter().map(|row| row.value(u, b).abs());
+    joints.chain(tcp).fold(0.0, f64::max)
 }

@@ -11,7 +11,7 @@
 //! are repeated until the profile stays.
 
 use super::grid::PathGrid;
-use super::limits::{PathLimits, Row, largest_acceleration, rows, worst_ratio};
+use super::limits::{PathLimits, Row, binding_rows, worst_ratio};
 use super::profile::Profile;
 
 /// How the search for the fastest profile ended.
@@ -41,8 +41,9 @@ const RATIO_TOLERANCE: f64 = 1e-6;
 /// Room in a row on the way forward: where a row has no inertia, its slope is rounding, and a b
 /// that lies on it would be tied to that.
 const STAGE_SLACK: f64 = 1e-8;
-/// Relative change of the duration at which the passes stop.
-const TIME_TOLERANCE: f64 = 1e-6;
+/// Relative change of the duration at which the passes stop: the next one would change by far less,
+/// as in Newton's method.
+const TIME_TOLERANCE: f64 = 1e-5;
 /// Passes before the help of friction in braking is given up.
 const MAX_PASSES: usize = 25;
 /// Factor on the tangent points while they leave no profile at all.
@@ -77,10 +78,10 @@ pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
     let frictionless = stages.solve(Root::Absent);
     let Ok(mut b) = frictionless else {
         // Friction can only relieve where the rest of the load is too high to begin with.
-        return finish(grid, limits, frictionless);
+        return verified(grid, limits, frictionless);
     };
     if !stages.viscous {
-        return finish(grid, limits, Ok(b));
+        return verified(grid, limits, Ok(b));
     }
     let mut duration = f64::INFINITY;
     let mut retreats = 0;
@@ -91,7 +92,7 @@ pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
                 let now = duration_of(grid, &b);
                 let settled = (now - duration).abs() <= TIME_TOLERANCE * now;
                 if settled && worst_ratio(grid, limits, &b) <= 1.0 + RATIO_TOLERANCE {
-                    return finish(grid, limits, Ok(b));
+                    return outcome(grid, b, true);
                 }
                 duration = now;
             }
@@ -108,7 +109,7 @@ pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
         retreat(&mut b);
         pessimistic = stages.solve(Root::Pessimistic(&b));
     }
-    finish(grid, limits, pessimistic)
+    verified(grid, limits, pessimistic)
 }
 
 /// Room in the bounds of [`speed_range`]: that of the stages, over all of them.
@@ -160,13 +161,19 @@ fn retreat(b: &mut [f64]) {
     }
 }
 
-/// The verified outcome of the passes.
-fn finish(grid: &PathGrid, limits: &PathLimits, b: Result<Vec<f64>, usize>) -> Reachability {
-    let b = match b {
-        Ok(b) => b,
-        Err(interval) => return Reachability::Infeasible { interval },
-    };
-    let kept = worst_ratio(grid, limits, &b) <= 1.0 + RATIO_TOLERANCE;
+/// The outcome of passes, once it is verified.
+fn verified(grid: &PathGrid, limits: &PathLimits, b: Result<Vec<f64>, usize>) -> Reachability {
+    match b {
+        Ok(b) => {
+            let kept = worst_ratio(grid, limits, &b) <= 1.0 + RATIO_TOLERANCE;
+            outcome(grid, b, kept)
+        }
+        Err(interval) => Reachability::Infeasible { interval },
+    }
+}
+
+/// The outcome of a profile that keeps the limits or not.
+fn outcome(grid: &PathGrid, b: Vec<f64>, kept: bool) -> Reachability {
     let slowest = b[1..b.len() - 1].iter().enumerate().min_by(|x, y| x.1.total_cmp(y.1));
     let interval = slowest.map_or(0, |(node, _)| node);
     match Profile::new(grid.s().to_vec(), b) {
@@ -212,10 +219,7 @@ impl Stages {
             let per_u = 0.5 / grid.delta(k);
             for (end, point) in pair.iter().enumerate() {
                 let b_max = stages.b_max[k + end];
-                let u_max = largest_acceleration(point, limits, b_max);
-                // A row that no profile within the other limits can reach is left out.
-                let binding = rows(point, limits).filter(|row| row.largest(u_max, b_max) > 1.0);
-                for Row { u, b, root, constant } in binding {
+                for Row { u, b, root, constant } in binding_rows(point, limits, b_max) {
                     let (mut x, mut y) = (-per_u * u, per_u * u);
                     *(if end == 0 { &mut x } else { &mut y }) += b;
                     stages.viscous |= root != 0.0;
@@ -229,19 +233,20 @@ impl Stages {
 
     /// Hands each strip of interval k to `take`.
     fn strips(&self, k: usize, root: Root<'_>, mut take: impl FnMut(Strip)) {
+        let speeds = match root {
+            Root::Absent => [0.0; 2],
+            Root::Tangent(at) | Root::Pessimistic(at) => [at[k].sqrt(), at[k + 1].sqrt()],
+        };
+        let halves = speeds.map(|speed| 0.5 / speed);
         for row in &self.rows[self.first[k]..self.first[k + 1]] {
             let (lo, hi) = (-1.0 - row.constant, 1.0 - row.constant);
             let plain = Strip { x: row.x, y: row.y, lo, hi };
-            let b = match root {
-                Root::Absent => 0.0,
-                Root::Tangent(at) | Root::Pessimistic(at) => at[k + row.end],
-            };
-            if row.root == 0.0 || b <= 0.0 {
+            let speed = speeds[row.end];
+            if row.root == 0.0 || speed <= 0.0 {
                 take(plain);
                 continue;
             }
-            let speed = b.sqrt();
-            let (slope, base) = (0.5 * row.root / speed, 0.5 * row.root * speed);
+            let (slope, base) = (row.root * halves[row.end], 0.5 * row.root * speed);
             let mut tangent = Strip { lo: lo - base, hi: hi - base, ..plain };
             *(if row.end == 0 { &mut tangent.x } else { &mut tangent.y }) += slope;
             if matches!(root, Root::Tangent(_)) {
@@ -335,7 +340,6 @@ impl Stages {
 #[derive(Default)]
 struct Polygon {
     vertices: Vec<(f64, f64)>,
-    values: Vec<f64>,
     spare: Vec<(f64, f64)>,
 }
 
@@ -348,34 +352,33 @@ impl Polygon {
 
     /// Keeps the part inside the strip.
     fn clip(&mut self, strip: Strip) {
-        self.values.clear();
-        let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+        // Most strips hold the whole polygon.
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for (x, y) in &self.vertices {
             let value = strip.x * x + strip.y * y;
-            range = (range.0.min(value), range.1.max(value));
-            self.values.push(value);
+            least = if value < least { value } else { least };
+            most = if value > most { value } else { most };
         }
-        if range.1 > strip.hi {
-            self.cut(|value| strip.hi - value);
-            if range.0 < strip.lo {
-                let values = self.vertices.iter().map(|(x, y)| strip.x * x + strip.y * y);
-                self.values.clear();
-                self.values.extend(values);
-            }
+        if most > strip.hi {
+            self.cut(|x, y| strip.hi - (strip.x * x + strip.y * y));
         }
-        if range.0 < strip.lo {
-            self.cut(|value| value - strip.lo);
+        if least < strip.lo {
+            self.cut(|x, y| strip.x * x + strip.y * y - strip.lo);
         }
     }
 
-    /// Keeps the part where `margin` of the value is not negative (Sutherland–Hodgman).
-    fn cut(&mut self, margin: impl Fn(f64) -> f64) {
+    /// Keeps the part where `margin` is not negative (Sutherland–Hodgman).
+    fn cut(&mut self, margin: impl Fn(f64, f64) -> f64) {
         self.spare.clear();
-        let count = self.vertices.len();
-        for i in 0..count {
-            let next = if i + 1 == count { 0 } else { i + 1 };
-            let (a, b) = (margin(self.values[i]), margin(self.values[next]));
-            let (from, to) = (self.vertices[i], self.vertices[next]);
+        let Some(mut to) = self.vertices.first().copied() else { return };
+        let first = (to, margin(to.0, to.1));
+        let mut b = first.1;
+        for i in 1..=self.vertices.len() {
+            let (from, a) = (to, b);
+            (to, b) = match self.vertices.get(i) {
+                Some(next) => (*next, margin(next.0, next.1)),
+                None => first,
+            };
             if a >= 0.0 {
                 self.spare.push(from);
             }
