@@ -1,7 +1,5 @@
 //! Applies fixes, and takes them back where the cycle does not get better by them.
 
-use std::collections::BTreeSet;
-
 use super::engine::{Job, cycles, lint};
 use super::finding::{Applicability, Finding};
 use super::rule::Family;
@@ -14,7 +12,7 @@ use crate::syntax;
 use crate::text::{Edit, FileId, SourceFile, apply};
 
 /// Rounds of fixing what was found after the last one.
-const MOST_ROUNDS: usize = 12;
+const MOST_ROUNDS: usize = 40;
 /// Distance of two places that count as one, rad.
 const SAME: f64 = 1e-4;
 /// Rounding of an energy, J.
@@ -33,64 +31,53 @@ pub struct Fixed {
     pub report: Report,
 }
 
-/// Applies the fixes up to an applicability until nothing is left to fix. Each is simulated
+/// Applies the fixes up to an applicability until nothing is left that holds. Each is simulated
 /// before and after, and stays only where the cycle takes less energy with the same waits and
 /// outputs in the same order at the same places.
 #[must_use]
 pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let mut files = job.files.to_vec();
-    let mut refused: BTreeSet<(u32, &'static str, Vec<u8>)> = BTreeSet::new();
-    let mut applied = 0;
+    let (mut applied, mut withdrawn) = (0, 0);
     for _ in 0..MOST_ROUNDS {
-        let now =
-            Job { files: &files, groups: job.groups.clone(), options: job.options.clone(), ..*job };
+        let now = with_files(job, &files);
         let report = lint(&now);
-        let mut chosen = candidates(&report, &files, most);
-        chosen.retain(|finding| !refused.contains(&key(finding, &files)));
-        if chosen.is_empty() {
-            break;
-        }
-        let before = cycles(&now);
+        let chosen = candidates(&report, most);
+        let mut before = cycles(&now);
         // All at once if they go together, else one after the other.
-        if let Some(after) = attempt(job, &files, &before, &chosen) {
-            applied += chosen.len();
-            files = after;
-            continue;
-        }
-        let mut any = false;
-        for finding in &chosen {
-            if let Some(after) = attempt(job, &files, &before, &[finding]) {
-                applied += 1;
-                files = after;
-                any = true;
-                // What else was found may stand elsewhere now.
-                break;
+        let mut kept: Vec<&Finding> = Vec::new();
+        let mut result = attempt(job, &files, &before, &chosen).map(|(after, _)| after);
+        if result.is_some() {
+            kept.clone_from(&chosen);
+        } else {
+            for finding in &chosen {
+                kept.push(finding);
+                match attempt(job, &files, &before, &kept) {
+                    Some((after, cycles)) => {
+                        before = cycles;
+                        result = Some(after);
+                    }
+                    None => {
+                        kept.pop();
+                    }
+                }
             }
-            refused.insert(key(finding, &files));
         }
-        if !any {
-            break;
-        }
+        applied += kept.len();
+        withdrawn = chosen.len() - kept.len();
+        let Some(after) = result else { break };
+        files = after;
     }
-    let now =
-        Job { files: &files, groups: job.groups.clone(), options: job.options.clone(), ..*job };
-    let report = lint(&now);
-    Fixed { applied, withdrawn: refused.len(), report, files }
+    let report = lint(&with_files(job, &files));
+    Fixed { files, applied, withdrawn, report }
 }
 
-/// What tells a fix from others while other places change: file, rule and text.
-fn key(finding: &Finding, files: &[SourceFile]) -> (u32, &'static str, Vec<u8>) {
-    let file = &files[finding.span.file.0 as usize];
-    (finding.span.file.0, finding.rule.code, file.slice(finding.span).to_vec())
+fn with_files<'j>(job: &Job<'j>, files: &'j [SourceFile]) -> Job<'j> {
+    Job { files, groups: job.groups.clone(), options: job.options.clone(), ..*job }
 }
 
 /// Fixes that can be tried together: the largest savings first, none of them about a statement
 /// or a text that another one changes.
-fn candidates<'r>(
-    report: &'r Report,
-    files: &[SourceFile],
-    most: Applicability,
-) -> Vec<&'r Finding> {
+fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
     let simulated = |finding: &&Finding| {
         let comment = finding.rule.family == Family::Comments;
         let fix = finding.fix.as_ref();
@@ -106,7 +93,6 @@ fn candidates<'r>(
         places.extend(edits.map(|edit| (edit.span.file, edit.span.start, edit.span.end)));
         let free = places.iter().all(|(file, start, end)| {
             !taken.iter().any(|(f, s, e)| f == file && start < e && s < end)
-                && file.0 < files.len() as u32
         });
         if free {
             taken.extend(places);
@@ -116,13 +102,17 @@ fn candidates<'r>(
     list
 }
 
-/// The files with the fixes, if they hold.
+/// The files with the fixes and their cycles, if they hold: the energy is compared with that of
+/// the cycles before, the process too.
 fn attempt(
     job: &Job<'_>,
     files: &[SourceFile],
     before: &[Option<Cycle>],
     findings: &[&Finding],
-) -> Option<Vec<SourceFile>> {
+) -> Option<(Vec<SourceFile>, Vec<Option<Cycle>>)> {
+    if findings.is_empty() {
+        return None;
+    }
     let mut changed = files.to_vec();
     for (index, file) in files.iter().enumerate() {
         let edits: Vec<Edit> = findings
@@ -142,9 +132,7 @@ fn attempt(
         changed[index] = SourceFile::new(file.id, file.path.clone(), stored);
     }
     let comments = findings.iter().all(|finding| finding.rule.family == Family::Comments);
-    let now =
-        Job { files: &changed, groups: job.groups.clone(), options: job.options.clone(), ..*job };
-    let after = cycles(&now);
+    let after = cycles(&with_files(job, &changed));
     let mut better = comments;
     for (before, after) in before.iter().zip(&after) {
         match (before, after) {
@@ -159,7 +147,7 @@ fn attempt(
             _ => return None,
         }
     }
-    (better && before.len() == after.len()).then_some(changed)
+    (better && before.len() == after.len()).then_some((changed, after))
 }
 
 /// Whether two cycles wait for the same and set the same outputs, in the same order and at the
