@@ -499,17 +499,17 @@ fn arithmetic(op: BinaryOp, a: f64, b: f64, expr: &Expr) -> Datum {
 /// What an element depends on: where a name stands for the whole, on that element alone.
 fn of_element(whole: &Origin, base: &Expr, at: Option<Vec<u32>>) -> Origin {
     let mut all = whole.iter();
-    let told = match (all.next(), all.next()) {
-        (
-            Some(
-                one @ (Dependence::Local(_)
-                | Dependence::Variable(_)
-                | Dependence::Persistent(_)
-                | Dependence::Exposed(..)),
-            ),
-            None,
-        ) => one,
-        _ => return whole.clone(),
+    let (
+        Some(
+            told @ (Dependence::Local(_)
+            | Dependence::Variable(_)
+            | Dependence::Persistent(_)
+            | Dependence::Exposed(..)),
+        ),
+        None,
+    ) = (all.next(), all.next())
+    else {
+        return whole.clone();
     };
     match (&base.kind, at) {
         (ExprKind::Ref(_), Some(at)) => Origin::of(Dependence::Element(Box::new(told.clone()), at)),
