@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::lint::Settings;
 
-/// What a cell asks of the linter. Selectors are codes (`EW101`), starts of codes (`EW1`), names
+/// What a cell asks of the linter; `_` in a key is as good as `-`. Selectors are codes (`EW101`), starts of codes (`EW1`), names
 /// or families.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -17,14 +17,16 @@ pub struct Lint {
     #[serde(default)]
     pub ignore: Vec<String>,
     /// Rules that are not told in files that fit a pattern.
-    #[serde(default)]
+    #[serde(default, alias = "per_file_ignores")]
     pub per_file_ignores: BTreeMap<String, Vec<String>>,
     /// Least saving that is told, J.
+    #[serde(alias = "threshold_j")]
     pub threshold_j: Option<f64>,
     /// The same by rule or family, J.
-    #[serde(default)]
+    #[serde(default, alias = "thresholds_j")]
     pub thresholds_j: BTreeMap<String, f64>,
     /// What may be wasted, such as `500J` or `3%`.
+    #[serde(alias = "max_waste")]
     pub max_waste: Option<String>,
     /// File of findings that are known and not told, beside the configuration.
     pub baseline: Option<String>,

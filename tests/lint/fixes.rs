@@ -46,13 +46,3 @@ fn every_other_byte_stays() {
     assert_eq!(before.replace("v500,fine", "v500,z20"), *after);
     assert_eq!(old.len() - "fine".len() + "z20".len(), new.len());
 }
-
-/// A fix that makes another one worthless is not a reason to take both back.
-#[test]
-fn fixes_that_do_not_go_together_are_tried_alone() {
-    let all = fixtures();
-    let fixture = all.iter().find(|it| it.path.ends_with("EW402_there_and_back.mod")).unwrap();
-    let fixed = fix(&fixture.job(), Applicability::Unsafe);
-    let left: Vec<&str> = fixed.report.findings.iter().map(|finding| finding.rule.code).collect();
-    assert!(fixed.applied >= 2 && !left.contains(&"EW402"), "{} {left:?}", fixed.applied);
-}
