@@ -494,13 +494,14 @@ fn a_test_on_an_input_tells_its_other_ways() {
 }
 
 /// Loops that only ask for an input; all go on once it is there.
-const POLLING: [&str; 7] = [
+const POLLING: [&str; 8] = [
     "again:\nIF diPart=0 THEN\nWaitTime 0.1;\nGOTO again;\nENDIF",
     "again:\nIF diPart=0 GOTO again;",
     "again:\nWaitTime 0.1;\nIF diPart=1 GOTO done;\nGOTO again;\ndone:",
     "again:\nn:=n+1;\nIF diPart=0 THEN\nGOTO again;\nELSE\nENDIF",
     "WHILE diPart=0 DO\nWaitTime 0.1;\nENDWHILE",
     "WHILE TRUE DO\nIF diPart=1 GOTO done;\nWaitTime 0.1;\nENDWHILE\ndone:",
+    "WHILE late=FALSE DO\nWaitTime 0.1;\nIF diPart=1 THEN\nlate:=TRUE;\nENDIF\nENDWHILE",
     "FOR i FROM 1 TO 90000 DO\nIF diPart=1 GOTO done;\nWaitTime 0.1;\nENDFOR\ndone:",
 ];
 

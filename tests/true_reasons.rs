@@ -144,9 +144,8 @@ fn what_changes_is_told_by_a_condition() {
         ("", "VAR num h:=60;", "h"),
         ("", "VAR num h;\nh:=3*20;", "h"),
         ("", "VAR num h{2}:=[60,0];\nh{2}:=h{1};", "h{2}"),
-        // Of the module, written by the program, or stored by the controller.
+        // Of the module, and written by the program.
         ("VAR num h:=10;\n", "h:=h+50;", "h"),
-        ("PERS num h:=60;\n", "", "h"),
         ("VAR num h{2,2};\n", "h{1,2}:=60;", "h{1,2}"),
     ] {
         let all = [vec![first.to_owned(), start.clone()], ways(offset)].concat();
@@ -163,6 +162,16 @@ fn what_changes_is_told_by_a_condition() {
     let all = ["p1:=Offs(pHere,0,20,0);", &start, "MoveL p1,v500,fine,tool0;", "go both;"];
     let found = segments(&targets, &all.map(str::to_owned));
     assert_eq!(reasons(&found), none, "{found:?}");
+    // What an input, a stored value or the robot's place was before is no constant.
+    for (declared, first) in [
+        ("PERS num h:=60;\n", ""),
+        ("PERS num g:=60;\n", "VAR num h;\nVAR num k;\nk:=g;\nh:=k;"),
+        ("VAR num h;\n", "h:=60*diPart;"),
+    ] {
+        let all = [vec![first.to_owned(), start.clone()], ways("h")].concat();
+        let found = reasons(&segments(&format!("{here}{declared}"), &all));
+        assert!(found.contains(&"not-constant".to_owned()), "{declared}{first}: {found:?}");
+    }
     // A variable of a function has no name where the guard stands.
     let function =
         format!("{here}VAR num g:=60;\nFUNC num f()\nVAR num x;\nx:=g;\nRETURN x;\nENDFUNC\n");
@@ -181,8 +190,8 @@ fn the_original_runs_where_a_variable_has_another_value() {
     let program = |shift: &str| {
         let here = target(50.0);
         format!(
-            "MODULE M\nCONST robtarget pHere:={here};\nPERS num h:={shift};\nPROC main()\n\
-             MoveJ pHere,v1000,fine,tool0;\n{}\nMoveJ pHere,v1000,fine,tool0;\nENDPROC\n\
+            "MODULE M\nCONST robtarget pHere:={here};\nVAR num h:={shift};\nPROC main()\n\
+             h:=h+0;\n             MoveJ pHere,v1000,fine,tool0;\n{}\nMoveJ pHere,v1000,fine,tool0;\nENDPROC\n\
              ENDMODULE\n",
             shifted("h", "v500,fine")
         )
@@ -191,7 +200,7 @@ fn the_original_runs_where_a_variable_has_another_value() {
     let out = folder.path().join("out");
     let result = optimize(&path, &out);
     assert_eq!(reasons(result["segments"].as_array().unwrap()), ["first-movement"], "{result}");
-    // On the controller the PERS holds another number.
+    // On the controller the variable holds another number.
     let written = fs::read_to_string(out.join("m.mod")).unwrap();
     fs::write(out.join("m.mod"), written.replace("h:=60;", "h:=200;")).unwrap();
     fs::write(&path, program("200")).unwrap();

@@ -45,7 +45,11 @@ pub enum IkError {
     #[error(transparent)]
     OutsideLimits(#[from] LimitViolation),
     /// No solution has the configuration.
-    #[error("no solution has the configuration {asked}; the pose has {}", list(found))]
+    #[error(
+        "no solution has the configuration {asked}; the pose has {}; ConfJ\\Off and ConfL\\Off take \
+         the nearest",
+        list(found)
+    )]
     ConfigurationNotFound {
         /// The configuration asked for.
         asked: Conf,

@@ -1,5 +1,7 @@
 //! From a joint path to the grid that the timing solvers see.
 
+use rayon::prelude::*;
+
 use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
 use super::timing::limits::Row;
@@ -170,8 +172,29 @@ pub fn grid(
     nodes: &[f64],
     caps: &[SpeedCap],
 ) -> Result<PathGrid, GridError> {
+    let zones = zones(path);
+    let last = nodes.len().saturating_sub(1);
+    let stretches: Vec<Vec<[PathPoint; 2]>> = (0..last)
+        .into_par_iter()
+        .step_by(TOGETHER)
+        .map(|from| ends(loaded, path, &zones, &nodes[from..=(from + TOGETHER).min(last)], caps))
+        .collect();
+    PathGrid::new(nodes.to_vec(), stretches.concat())
+}
+
+/// Intervals that are worked out one after the other: fewer are not worth another thread.
+const TOGETHER: usize = 128;
+
+/// Begin and end of each interval between some nodes.
+fn ends(
+    loaded: Loaded<'_>,
+    path: &JointPath,
+    zones: &[(f64, f64)],
+    nodes: &[f64],
+    caps: &[SpeedCap],
+) -> Vec<[PathPoint; 2]> {
     let mut data = Data::new();
-    let mut zones = zones(path).into_iter().peekable();
+    let mut zones = zones.iter().peekable();
     let mut ends = Vec::with_capacity(nodes.len());
     let mut last = None;
     for pair in nodes.windows(2) {
@@ -196,7 +219,7 @@ pub fn grid(
         last = Some((stretch, end));
         ends.push([begin, end]);
     }
-    PathGrid::new(nodes.to_vec(), ends)
+    ends
 }
 
 /// What bounds the speed on an interval besides the joints.

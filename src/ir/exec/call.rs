@@ -114,7 +114,14 @@ impl Executor<'_> {
             value.type_key = param.type_name.key.as_str().into();
         }
         let reading = Origin::of(Dependence::Local(param.name.text.as_str().into()));
-        self.cells.push(Cell { value, reading, read_only: false, alias, input });
+        self.cells.push(Cell {
+            value,
+            reading,
+            history: Origin::default(),
+            read_only: false,
+            alias,
+            input,
+        });
         self.cells.len() - 1
     }
 

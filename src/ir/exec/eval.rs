@@ -159,6 +159,7 @@ impl Executor<'_> {
         self.cells.push(Cell {
             value: Value::unknown("its value refers to itself", self.program.data(id).span),
             reading: Origin::default(),
+            history: Origin::default(),
             read_only: true,
             alias: None,
             input: None,
@@ -192,6 +193,7 @@ impl Executor<'_> {
         self.cells[cell] = Cell {
             value,
             reading,
+            history: Origin::default(),
             read_only: data.kind == DataKind::Const,
             alias: None,
             input: None,
@@ -286,6 +288,7 @@ impl Executor<'_> {
     /// `target := value`; what can't be written is left with a note.
     pub(super) fn assign(&mut self, target: &Expr, value: Value) {
         let value = self.level(value);
+        let history = self.history(&value.origin);
         let input = self.seen_input.take();
         let mut path = Vec::new();
         let mut base = target;
@@ -318,6 +321,12 @@ impl Executor<'_> {
                         true
                     };
                     self.cells[cell].input = input;
+                    let kept = &mut self.cells[cell].history;
+                    if path.is_empty() {
+                        *kept = history;
+                    } else {
+                        kept.join(&history);
+                    }
                     if changed {
                         self.changes(Some(cell));
                     }
@@ -337,6 +346,38 @@ impl Executor<'_> {
                 }
             }
         }
+    }
+
+    /// The inputs, stored values and places of the robot from which a value was worked out, through
+    /// the data that it depends on.
+    pub(super) fn history(&self, origin: &Origin) -> Origin {
+        let mut history = Origin::default();
+        for dependence in origin.iter() {
+            match dependence.base() {
+                Dependence::Local(name) | Dependence::Variable(name) => {
+                    let key = name.to_lowercase();
+                    let names = &self.frame().names;
+                    let own = names.iter().rev().find(|(known, _)| *known == key);
+                    let cell = own.map(|(_, cell)| *cell).or_else(|| {
+                        match self.program.resolve(self.frame().module, &key) {
+                            Some(Symbol::Data(id)) => self.globals.get(&id).copied(),
+                            _ => None,
+                        }
+                    });
+                    if let Some(cell) = cell {
+                        history.join(&self.cells[cell].history);
+                    }
+                }
+                Dependence::Input(_)
+                | Dependence::RobotState
+                | Dependence::Persistent(_)
+                | Dependence::Exposed(..) => history.join(&Origin::of(dependence.clone())),
+                Dependence::Inner(_)
+                | Dependence::TrustedPersistent(_)
+                | Dependence::Element(..) => {}
+            }
+        }
+        history
     }
 
     /// The component numbers of a path, from the outside in.
@@ -499,15 +540,8 @@ fn arithmetic(op: BinaryOp, a: f64, b: f64, expr: &Expr) -> Datum {
 /// What an element depends on: where a name stands for the whole, on that element alone.
 fn of_element(whole: &Origin, base: &Expr, at: Option<Vec<u32>>) -> Origin {
     let mut all = whole.iter();
-    let (
-        Some(
-            told @ (Dependence::Local(_)
-            | Dependence::Variable(_)
-            | Dependence::Persistent(_)
-            | Dependence::Exposed(..)),
-        ),
-        None,
-    ) = (all.next(), all.next())
+    let (Some(told @ (Dependence::Local(_) | Dependence::Variable(_))), None) =
+        (all.next(), all.next())
     else {
         return whole.clone();
     };

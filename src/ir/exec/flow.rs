@@ -240,6 +240,7 @@ impl Executor<'_> {
     /// Routine data get a new value at each call.
     pub(super) fn declare_local(&mut self, data: &Data) {
         let value = self.initial_value(data);
+        let history = self.history(&value.origin);
         let name = data.name.text.as_str().into();
         let reading = match data.kind {
             super::super::hir::DataKind::Const => Origin::default(),
@@ -247,7 +248,7 @@ impl Executor<'_> {
             _ => Origin::of(Dependence::Local(name)),
         };
         let read_only = data.kind == super::super::hir::DataKind::Const;
-        self.cells.push(Cell { value, reading, read_only, alias: None, input: None });
+        self.cells.push(Cell { value, reading, history, read_only, alias: None, input: None });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((data.name.key.clone(), cell));
     }

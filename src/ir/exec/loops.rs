@@ -33,6 +33,7 @@ impl Executor<'_> {
         self.cells.push(Cell {
             value: Value::constant(Datum::Num(from), "num"),
             reading: Origin::of(Dependence::Local(var.text.as_str().into())),
+            history: Origin::default(),
             read_only: true,
             alias: None,
             input: None,
@@ -181,14 +182,18 @@ impl Executor<'_> {
             if !matches!(flow, Flow::Next) {
                 return flow;
             }
+            // Where data lead back, an input may set them in the body: the pass after it has come
+            // is the last.
+            let at_rest = decided.is_none().then(|| self.pass_at_rest(&mut mark));
             if decided.is_some()
                 && !matches!(self.pass(&mut mark, "WHILE", decided, None), Pass::Waiting)
             {
                 self.forced = None;
                 return Flow::Next;
             }
-            if pass + 1 == MAX_PASSES {
+            if matches!(at_rest, Some(Pass::Endless)) || pass + 1 == MAX_PASSES {
                 self.unresolved(stmt.span, "the loop does not end; it was left here");
+                return Flow::Next;
             }
         }
         Flow::Next

@@ -112,6 +112,8 @@ struct Cell {
     value: Value,
     /// What reading it adds to the origin.
     reading: Origin,
+    /// Inputs, stored values and places of the robot from which what it holds was worked out.
+    history: Origin,
     read_only: bool,
     /// A name, valid in every module, of data that the value was passed from.
     alias: Option<Arc<str>>,

@@ -178,6 +178,8 @@ impl Executor<'_> {
                 }
             }
         }
+        let history = self.history(&origin);
+        origin.join(&history);
         let mut locals = self.locals(&origin);
         let options = arguments.optional.iter().filter_map(|(_, _, expr)| *expr);
         for expr in arguments.positional.iter().copied().chain(options) {
@@ -228,11 +230,7 @@ impl Executor<'_> {
                 let (_, cell) = names.iter().rev().find(|(known, _)| *known == key)?;
                 (name, &self.cells[*cell])
             }
-            Dependence::Variable(name)
-            | Dependence::Persistent(name)
-            | Dependence::Exposed(name, _) => {
-                (name, self.module_data(name, base, dependence != base)?)
-            }
+            Dependence::Variable(name) => (name, self.module_data(name, base, dependence != base)?),
             _ => return None,
         };
         let (mut datum, mut text) = (&cell.value.datum, name.to_string());
