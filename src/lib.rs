@@ -16,7 +16,10 @@ pub mod generate;
 pub mod identify;
 pub mod ir;
 pub mod kinematics;
+pub mod lint;
 pub mod log;
+#[cfg(feature = "lsp")]
+pub mod lsp;
 pub mod motion;
 pub mod optimize;
 pub mod path;

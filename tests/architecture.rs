@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Pages that people are sent to.
-const PAGES: [&str; 13] = [
+const PAGES: [&str; 15] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -16,9 +16,11 @@ const PAGES: [&str; 13] = [
     "docs/energy.md",
     "docs/gap.md",
     "docs/identification.md",
+    "docs/lints.md",
     "docs/reasons.md",
     "docs/robots.md",
     "docs/trajectories.md",
+    "editors/vscode/README.md",
     "fixtures/README.md",
 ];
 
@@ -39,8 +41,18 @@ fn named(text: &str) -> Vec<&str> {
 
 /// Whether text between backticks is meant as a file or folder of the crate.
 fn is_path(text: &str) -> bool {
-    const FOLDERS: [&str; 9] =
-        ["src", "tests", "docs", "fixtures", "templates", "grammar", "benches", "examples", ".ci"];
+    const FOLDERS: [&str; 10] = [
+        "src",
+        "tests",
+        "docs",
+        "fixtures",
+        "templates",
+        "grammar",
+        "benches",
+        "examples",
+        "editors",
+        ".ci",
+    ];
     let first = text.split('/').next().unwrap_or_default();
     FOLDERS.contains(&first) && text.contains('/') && !text.contains(['…', '*', ' ', '<'])
 }

@@ -63,7 +63,8 @@ const FILES_AND_TERMINALS: &[&str] = &["src/cli/", "src/lsp/", "src/main.rs"];
 const LOADERS: &[&str] = &["src/cli/", "src/lsp/", "src/main.rs", "src/robot/load.rs"];
 const PURE: &str = "the core is made of pure functions: files, clocks and terminals stay outside";
 
-const RESERVED: [Reserved; 13] = [
+const RESERVED: [Reserved; 14] = [
+    Reserved { path: &["lsp_server"], places: &["src/lsp/"], why: "only the server knows it" },
     Reserved { path: &["nom"], places: &["src/syntax/"], why: "only the lexer and parser know it" },
     Reserved {
         path: &["clarabel"],

@@ -164,6 +164,28 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     let of_task = choice.task.and_then(|task| task.entry.clone());
     let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
     let entry = entry.unwrap_or_else(|| "main".into());
+    let (options, inputs) = simulation_options(args, &config, Some(&model))?;
+    let files: Vec<Source> = choice
+        .files
+        .iter()
+        .enumerate()
+        .map(|(i, file)| Source {
+            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
+            relative: file.relative.clone(),
+        })
+        .collect();
+    Ok(Job { input, files, model, config, entry, options, inputs })
+}
+
+/// How a program is simulated, and the inputs whose time is stated, as the user writes them.
+///
+/// # Errors
+/// An option is wrong.
+pub fn simulation_options(
+    args: &ProgramArgs,
+    config: &Config,
+    model: Option<&Model>,
+) -> anyhow::Result<(Options, Vec<String>)> {
     let mut times: Vec<(String, f64)> =
         config.inputs.iter().map(|(name, t)| (name.clone(), *t)).collect();
     for text in &args.inputs {
@@ -196,24 +218,15 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
         speed_override: args.speed_override.map(|percent| percent / 100.0),
         passes: args.passes,
         max_time: args.max_time,
-        start: args.start.as_deref().map(|text| start(&model, text)).transpose()?,
+        start: args.start.as_deref().map(|text| start(model, text)).transpose()?,
         inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
     };
-    let files: Vec<Source> = choice
-        .files
-        .iter()
-        .enumerate()
-        .map(|(i, file)| Source {
-            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
-            relative: file.relative.clone(),
-        })
-        .collect();
     let inputs = times.into_iter().map(|(name, _)| name).collect();
-    Ok(Job { input, files, model, config, entry, options, inputs })
+    Ok((options, inputs))
 }
 
 /// The robot with what its backup says of it: ranges, base frame, loads of the arm.
-fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
+pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
     let Some(path) = motion_configuration(backup) else { return model };
     let shown = path.display().to_string();
     let configured =
@@ -237,7 +250,8 @@ pub fn robot(args: &ProgramArgs) -> anyhow::Result<Model> {
     Ok(effects::load(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
 }
 
-fn robot_name(args: &ProgramArgs, config: &Config, folder: &Path) -> Option<String> {
+/// The robot that options or configuration name.
+pub fn robot_name(args: &ProgramArgs, config: &Config, folder: &Path) -> Option<String> {
     let configured = || {
         let name = config.robot.as_ref()?;
         let beside = folder.join(name);
@@ -254,7 +268,11 @@ fn which_robot() -> String {
     )
 }
 
-fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
+/// The configuration, and the folder that it lies in.
+///
+/// # Errors
+/// It can't be read.
+pub fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
     let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
         path: path.to_string_lossy().into_owned(),
         reason: error.to_string(),
@@ -277,9 +295,11 @@ fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
 }
 
 /// Where the robot stands at first \[rad\].
-fn start(model: &Model, text: &str) -> anyhow::Result<[f64; 6]> {
+fn start(model: Option<&Model>, text: &str) -> anyhow::Result<[f64; 6]> {
     let q = six_degrees("--start", text)?;
-    if let Err(error) = limits_ok(model, &q) {
+    if let Some(model) = model
+        && let Err(error) = limits_ok(model, &q)
+    {
         bail!("--start {text}: {error}; give a position that {} can have", model.name);
     }
     Ok(q)

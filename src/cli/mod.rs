@@ -9,14 +9,18 @@ pub mod excite;
 pub mod generate;
 pub mod identify;
 pub mod input;
+pub mod lint;
 pub mod listing;
 pub mod load;
 pub mod logs;
+#[cfg(feature = "lsp")]
+pub mod lsp;
 pub mod optimize;
 pub mod output;
 pub mod parse;
 pub mod predict;
 pub mod robots;
+pub mod rule;
 pub mod signals;
 pub mod simulate;
 pub mod standstill;
@@ -36,6 +40,8 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Parse(parse::ParseArgs),
+    Lint(Box<lint::LintArgs>),
+    Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
@@ -47,6 +53,8 @@ enum Command {
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
+    #[cfg(feature = "lsp")]
+    Lsp(lsp::LspArgs),
 }
 
 /// Runs the command that the arguments ask for.
@@ -54,6 +62,8 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Parse(args) => parse::run(&args),
+        Command::Lint(args) => lint::run(&args),
+        Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
         Command::Generate(args) => generate::run(&args),
@@ -64,6 +74,8 @@ pub fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),
+        #[cfg(feature = "lsp")]
+        Command::Lsp(args) => lsp::run(&args),
     };
     result.unwrap_or_else(|error| {
         report(&error);

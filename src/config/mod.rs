@@ -1,5 +1,9 @@
 //! `joulepath.toml`: what a cell needs to be told once.
 
+mod lint;
+
+pub use lint::Lint;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +33,9 @@ pub struct Config {
     /// What arm and tool keep out of where a movement may leave its path.
     #[serde(default)]
     pub keep_out: Vec<KeepOut>,
+    /// The linter.
+    #[serde(default)]
+    pub lint: Lint,
 }
 
 /// A part of the cell, in the robot's base frame, m.
@@ -56,8 +63,8 @@ pub enum ConfigError {
     },
     /// It is wrong.
     #[error(
-        "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs], [assume] and \
-         [[keep_out]] with box or plane"
+        "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs], [assume], \
+         [[keep_out]] with box or plane, and [lint]"
     )]
     Wrong {
         /// Its path.

@@ -1,6 +1,7 @@
 //! The virtual controller: executes a program and lays its movements on a time line.
 
 mod load;
+mod replay;
 mod time_limit;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,6 +11,7 @@ use nalgebra::Isometry3;
 use rayon::prelude::*;
 
 use load::{effective_load, gripped, gripping};
+pub use replay::{Step, replay};
 
 use super::controller::assumed;
 use super::run_plan::{Planned, plan_run};
@@ -55,29 +57,7 @@ pub fn simulate(
     model: &Model,
     options: &Options,
 ) -> Simulation {
-    let mut machine = VirtualController {
-        model,
-        options,
-        q: options.start.unwrap_or([0.0; DOF]),
-        certain: true,
-        settling: 0.0,
-        late: false,
-        moved: false,
-        tool: None,
-        time: 0.0,
-        events: Vec::new(),
-        pending: Vec::new(),
-        pending_s: 0.0,
-        ahead: 0.0,
-        waited_last: Waited::Ended,
-        assumed: Vec::new(),
-        drafts: Vec::new(),
-        notes: Vec::new(),
-        repeats_from: None,
-        waited: BTreeMap::new(),
-        asked: BTreeSet::new(),
-        moves: 0,
-    };
+    let mut machine = VirtualController::new(model, options);
     let execution = execute(program, entry, &mut machine);
     machine.flush();
     machine.lay_out();
@@ -307,7 +287,33 @@ impl Machine for VirtualController<'_> {
     }
 }
 
-impl VirtualController<'_> {
+impl<'a> VirtualController<'a> {
+    fn new(model: &'a Model, options: &'a Options) -> VirtualController<'a> {
+        VirtualController {
+            model,
+            options,
+            q: options.start.unwrap_or([0.0; DOF]),
+            certain: true,
+            settling: 0.0,
+            late: false,
+            moved: false,
+            tool: None,
+            time: 0.0,
+            events: Vec::new(),
+            pending: Vec::new(),
+            pending_s: 0.0,
+            ahead: 0.0,
+            waited_last: Waited::Ended,
+            assumed: Vec::new(),
+            drafts: Vec::new(),
+            notes: Vec::new(),
+            repeats_from: None,
+            waited: BTreeMap::new(),
+            asked: BTreeSet::new(),
+            moves: 0,
+        }
+    }
+
     /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
     fn speed_override(&self, movement: &Movement) -> f64 {
         let settings = &movement.settings;

@@ -4,6 +4,7 @@ pub mod diagnose;
 pub mod html;
 pub mod identify;
 pub mod json;
+pub mod lint;
 mod mark;
 pub mod place;
 pub mod standstill;

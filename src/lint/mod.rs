@@ -1,0 +1,33 @@
+//! Finds wasted energy in programs. One rule is one file of `rules`, whose doc comment is its
+//! manual; `register` lists them.
+//!
+//! Rules look at a [`context::Context`]: the control flow of a program, what it does in order,
+//! and, where the robot is known, a simulated cycle with its joules. What a rule proposes is
+//! weighed by laying the part of the cycle around it on a time line again.
+
+pub mod context;
+mod edits;
+pub mod engine;
+pub mod finding;
+pub mod fix;
+pub mod flow;
+mod page;
+mod quiet;
+mod register;
+pub mod rule;
+mod rules;
+pub mod settings;
+pub mod site;
+pub mod suppress;
+pub mod system;
+pub mod trace;
+pub mod weigh;
+
+pub use engine::{Group, Job, Report, lint};
+pub use finding::{Applicability, Finding, Fix, Per, Saving};
+pub use fix::{Fixed, fix};
+pub use page::page;
+pub use register::{ALL, find};
+pub use rule::{Family, HEADINGS, Needs, Rule};
+pub use settings::Settings;
+pub use system::System;

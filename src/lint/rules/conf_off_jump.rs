@@ -1,0 +1,71 @@
+//! Under `ConfL \Off` the robot arrives a whole turn of an axis away from what the target says.
+//!
+//! ## What it does
+//! Finds lines under `ConfL \Off` that end with axis 4 or 6 half a turn and more from where the
+//! target's configuration has it.
+//!
+//! ## Why it wastes energy
+//! The next movement that keeps configurations has to turn the axis all the way back, and so may
+//! the next cycle.
+//!
+//! ## How the saving is computed
+//! Nothing is told: what the right configuration is, the program does not say.
+//!
+//! ## Example
+//! ```text
+//! ConfL \Off;
+//! MoveL pTurned, v500, fine, tGrip;
+//! ConfL \On;
+//! MoveJ pHome, v1000, fine, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! Teach the target in the configuration in which the line arrives, and leave `ConfL \On`.
+//!
+//! ## Safety
+//! Without a fix.
+//!
+//! ## Assumptions
+//! The robot starts where the simulation does.
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use crate::ir::instructions::MoveForm;
+use crate::ir::movement::Target;
+use crate::kinematics::{Conf, ik_conf};
+
+rule!("EW604", "conf-off-jump", Settings, Robot, Warning, "conf_off_jump.rs");
+
+/// Axes that can turn on: 4 and 6.
+const AXES: [usize; 2] = [3, 5];
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let Some(model) = context.model else { return };
+    for site in &context.sites {
+        let jump = site.executions.iter().find_map(|step| {
+            let (run, record, leg) = context.record(*step)?;
+            let movement = &record.movement;
+            let Target::Pose(target) = &movement.target else { return None };
+            if movement.form != MoveForm::Linear
+                || movement.settings.conf_linear
+                || run.problem.is_some()
+                || !run.start_known
+            {
+                return None;
+            }
+            let [cf1, cf4, cf6, cfx] = target.conf;
+            let conf = Conf { cf1, cf4, cf6, cfx };
+            let stated = ik_conf(model, &leg.tool.flange(&leg.target), conf).ok()?;
+            let far = |axis: &usize| (leg.end[*axis] - stated[*axis]).abs() > std::f64::consts::PI;
+            AXES.into_iter().find(far).map(|axis| (axis, leg.end[axis] - stated[axis]))
+        });
+        let Some((axis, off)) = jump else { continue };
+        let message = format!(
+            "{} arrives with axis {} {:.0}° from where the target's configuration has it",
+            site.name,
+            axis + 1,
+            off.to_degrees().abs()
+        );
+        findings.push(Finding::new(&RULE, site.stmt.span, message));
+    }
+}

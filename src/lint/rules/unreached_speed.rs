@@ -1,0 +1,92 @@
+//! The programmed speed is never reached: the robot accelerates and brakes all the way.
+//!
+//! ## What it does
+//! Finds movements whose programmed TCP speed is more than half again the largest speed that the
+//! tool gets to.
+//!
+//! ## Why it wastes energy
+//! All of the way is acceleration and braking. A speed a little below the one that is reached
+//! takes the peaks of torque and speed away and costs almost no time.
+//!
+//! ## How the saving is computed
+//! The movement is laid on a time line with the largest predefined speed below the one that is
+//! reached; the joules count the base load of the longer time.
+//!
+//! ## Example
+//! ```text
+//! MoveL pNear, v5000, fine, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveL pNear, v800, fine, tGrip;
+//! ```
+//!
+//! ## Safety
+//! Unsafe: same path and same order, but the cycle may take some hundredths of a second more.
+//!
+//! ## Assumptions
+//! At most 0.1 s more are taken for joules in one cycle.
+
+use super::super::context::Context;
+use super::super::edits::{fix, replace, slower};
+use super::super::finding::{Applicability, Finding};
+use super::super::weigh::Weighed;
+use super::racing_to_wait::{waits_behind, with_speed};
+
+rule!("EW202", "unreached-speed", Speed, Robot, Info, "unreached_speed.rs");
+
+/// Share of the reached speed from which a programmed speed is never reached.
+const BEYOND: f64 = 1.5;
+/// Share of the reached speed that is looked for.
+const BELOW: f64 = 0.9;
+/// Longest time that is given for it, s.
+const LONGER: f64 = 0.1;
+/// Looks at a movement.
+const LOOKS: usize = 16;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    for (index, site) in context.sites.iter().enumerate() {
+        let Some(speed) = site.facts.speed else { continue };
+        if !site.is_plain() || waits_behind(context, index).is_some() {
+            continue;
+        }
+        let peaks = site.executions.iter().map(|step| peak(context, *step));
+        let Some(peaks) = peaks.collect::<Option<Vec<f64>>>() else { continue };
+        let reached = peaks.into_iter().fold(0.0, f64::max);
+        if reached <= 0.0 || speed.tcp <= BEYOND * reached {
+            continue;
+        }
+        let Some((name, below)) = slower(BELOW * reached).next() else { continue };
+        let weighed = context.weigh(&[site.stmt.span], &|step| with_speed(step, below));
+        let Weighed::Saves(saving) = weighed else { continue };
+        // So small a gain has to be sure.
+        if saving.time_s < -LONGER || saving.low_j <= 0.0 {
+            continue;
+        }
+        let written = context.text(site.speed.span);
+        let message = format!(
+            "{} with {written} gets to {:.0} mm/s and is braked again",
+            site.name,
+            reached * 1e3
+        );
+        let mut finding = Finding::new(&RULE, site.stmt.span, message);
+        finding.change = format!("{name} in place of {written}");
+        finding.saving = Some(saving);
+        finding.fix = Some(fix(Applicability::Unsafe, replace(site.speed.span, &name)));
+        findings.push(finding);
+    }
+}
+
+/// Largest speed of the tool in one execution, m/s.
+fn peak(context: &Context<'_>, step: usize) -> Option<f64> {
+    let (run, record, leg) = context.record(step)?;
+    let model = context.model?;
+    let speed = |i: usize| {
+        let t = record.t_start + record.duration * (i as f64 + 0.5) / LOOKS as f64;
+        let state = run.at(t);
+        let rate = leg.tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+        rate.fixed_rows::<3>(0).norm()
+    };
+    (run.problem.is_none()).then(|| (0..LOOKS).map(speed).fold(0.0, f64::max))
+}

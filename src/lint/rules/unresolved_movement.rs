@@ -1,0 +1,52 @@
+//! A movement can't be worked out from the program, and hides what it costs.
+//!
+//! ## What it does
+//! Finds movements that run, but whose target, speed or zone is not in the files or not known.
+//!
+//! ## Why it wastes energy
+//! What can't be worked out is in no figure, and whatever it wastes is not found.
+//!
+//! ## How the saving is computed
+//! There is none.
+//!
+//! ## Example
+//! ```text
+//! MoveL pNotDeclared, v500, fine, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! Give the module that declares the target, or state the value of the data that it depends on.
+//!
+//! ## Safety
+//! Without a fix.
+//!
+//! ## Assumptions
+//! Out of reach is another matter: the robot may be another one.
+
+use std::collections::BTreeSet;
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use super::super::trace::Deed;
+use crate::ir::instructions::MoveForm;
+
+rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.rs");
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let mut told: BTreeSet<&str> = BTreeSet::new();
+    for done in &context.trace {
+        let Deed::Left(span) = done.what else { continue };
+        let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else { continue };
+        let facts = &site.facts;
+        let open = facts.goal.is_none() || facts.speed.is_none() || facts.zone.is_none();
+        if !open || site.signature.form == MoveForm::ExternalJoint {
+            continue;
+        }
+        let Some(note) = context.unresolved.iter().find(|note| note.span == span) else { continue };
+        // One remark for one cause.
+        if told.insert(&note.reason) {
+            let message = format!("{} can't be worked out: {}", site.name, note.reason);
+            findings.push(Finding::new(&RULE, span, message));
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! A comment takes back a finding that is not there.
+//!
+//! ## What it does
+//! Finds `! joulepath: ignore CODE reason` where no such finding is on the line it is about.
+//!
+//! ## Why it wastes energy
+//! It does not, but it hides the next finding of that kind.
+//!
+//! ## How the saving is computed
+//! There is none.
+//!
+//! ## Example
+//! ```text
+//! ! joulepath: ignore EW999 no such rule
+//! WaitTime 1;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! WaitTime 1;
+//! ```
+//!
+//! ## Safety
+//! Taking the comment out changes no statement.
+//!
+//! ## Assumptions
+//! A rule that needs a robot or a backup is not judged without one.
+
+use super::super::edits::{fix, replace};
+use super::super::engine::Job;
+use super::super::finding::{Applicability, Finding};
+use super::super::register::ALL;
+use super::super::rule::{Family, Needs, Rule};
+use super::super::suppress::Suppression;
+use crate::diagnostics::Severity;
+
+/// A comment takes back a finding that is not there.
+pub(in crate::lint) static RULE: Rule = Rule {
+    code: "EW001",
+    name: "unused-suppression",
+    family: Family::Comments,
+    needs: Needs::Text,
+    severity: Severity::Warning,
+    source: include_str!("unused_suppression.rs"),
+    // The engine knows what was suppressed, and asks `judge`.
+    check: |_, _| {},
+};
+
+/// Adds a finding for a comment that took nothing back, unless its rules could not run.
+pub(in crate::lint) fn judge(
+    job: &Job<'_>,
+    suppression: &Suppression,
+    findings: &mut Vec<Finding>,
+) {
+    let meant = || ALL.iter().filter(|rule| suppression.names(rule));
+    let idle = |rule: &Rule| {
+        !job.settings.selects(rule)
+            || rule.needs == Needs::Robot && job.model.is_none()
+            || rule.needs == Needs::Backup
+    };
+    if meant().next().is_some() && meant().any(|rule| idle(rule)) {
+        return;
+    }
+    let codes = suppression.codes.join(", ");
+    let message = match (suppression.codes.is_empty(), meant().next().is_some()) {
+        (true, _) => "the comment names no rule: write ! joulepath: ignore CODE reason".to_owned(),
+        (false, false) => format!("there is no rule {codes}: joulepath rule lists them"),
+        (false, true) => {
+            format!("nothing here is found by {codes}: the comment takes nothing back")
+        }
+    };
+    let mut finding = Finding::new(&RULE, suppression.span, message);
+    finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
+    findings.push(finding);
+}

@@ -1,0 +1,368 @@
+//! What a change of some movements or waits would save: the part of the cycle around them is
+//! laid on a time line again, and the difference is taken.
+
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use super::finding::{Per, Saving};
+use crate::energy::account::at_rest;
+use crate::energy::{Account, EnergyParts, account};
+use crate::ir::movement::Wait;
+use crate::motion::timeline::{Run, Simulation, WaitBasis, What};
+use crate::motion::{Options, Step, replay};
+use crate::path::joint_path::{DOF, Joints};
+use crate::robot::Model;
+use crate::text::Span;
+
+/// Share by which a part of the energy may be off, without a calibration: rigid body, friction,
+/// copper, drive, idle, brakes. Chosen; docs/lints.md tells them.
+const DOUBT: [f64; 6] = [0.1, 0.25, 0.25, 0.5, 0.3, 0.5];
+/// Largest distance between two places that count as one, rad.
+const SAME: f64 = 1e-4;
+/// Runs behind a change that may begin elsewhere because of it.
+const MOST_BEHIND: usize = 3;
+/// Executions of one statement beyond which no saving is told.
+const MOST_EXECUTIONS: usize = 2_000;
+
+/// One simulated cycle of a program.
+pub struct Cycle {
+    /// What happened.
+    pub simulation: Simulation,
+    /// The joules of it.
+    pub account: Account,
+    /// How it was simulated.
+    pub options: Options,
+}
+
+/// A change saves nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it saves nothing; leave it as it is")]
+pub struct Worthless;
+
+/// What came out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Weighed {
+    /// Nothing can be said.
+    Unknown,
+    /// It saves nothing.
+    Nothing,
+    /// It saves this.
+    Saves(Saving),
+}
+
+impl Weighed {
+    /// The saving, if there is one.
+    ///
+    /// # Errors
+    /// The change saves nothing.
+    pub fn saving(self) -> Result<Option<Saving>, Worthless> {
+        match self {
+            Weighed::Unknown => Ok(None),
+            Weighed::Nothing => Err(Worthless),
+            Weighed::Saves(saving) => Ok(Some(saving)),
+        }
+    }
+}
+
+/// What becomes of a step whose statement was asked for.
+pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
+
+/// Weighs a change of every execution of the statements at `spans`.
+pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Weighed {
+    if !model.has_dynamics() {
+        return Weighed::Unknown;
+    }
+    difference(model, cycle, spans, change).map_or(Weighed::Unknown, |(parts, time_s)| {
+        let energy_j = parts.energy_j();
+        if energy_j <= 0.0 {
+            return Weighed::Nothing;
+        }
+        let list = [
+            parts.mechanical_j,
+            parts.friction_j,
+            parts.copper_j,
+            parts.drive_j,
+            parts.idle_j,
+            parts.brake_j,
+        ];
+        let off: f64 = list.iter().zip(DOUBT).map(|(part, share)| part.abs() * share).sum();
+        let (low_j, high_j) = (energy_j - off, energy_j + off);
+        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s, per: Per::Cycle })
+    })
+}
+
+/// Energy and time that a change saves in the cycle; `None` where it can't be told.
+pub fn difference(
+    model: &Model,
+    cycle: &Cycle,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(EnergyParts, f64)> {
+    let (saved, replayed) = replayed(model, cycle, spans, change)?;
+    let (more, time_s) = laid_out(model, cycle, &cycle.options.inputs, &replayed);
+    Some((saved - more, time_s))
+}
+
+/// Time that a change takes more, without any wait that takes it up, s; `None` where it can't be
+/// told.
+pub fn longer(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Option<f64> {
+    let (_, replayed) = replayed(model, cycle, spans, change)?;
+    let (_, time_s) = laid_out(model, cycle, &BTreeMap::new(), &replayed);
+    Some(-time_s)
+}
+
+/// A part of the cycle, as events, with what it is after a change and the rest behind it, s.
+type Replayed = (RangeInclusive<usize>, Simulation, f64);
+
+/// The parts of the cycle that a change touches, and the energy that is saved in them.
+fn replayed(
+    model: &Model,
+    cycle: &Cycle,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(EnergyParts, Vec<Replayed>)> {
+    let simulation = &cycle.simulation;
+    let touched = touched(simulation, spans);
+    if touched.is_empty() || touched.len() > MOST_EXECUTIONS || has_concurrent(simulation) {
+        return None;
+    }
+    let mut saved = EnergyParts::default();
+    let mut replayed: Vec<Replayed> = Vec::new();
+    let mut next = 0;
+    while next < touched.len() {
+        let mut window = window(simulation, touched[next]);
+        next += 1;
+        while next < touched.len() && touched[next] <= *window.end() {
+            window = *window.start()..=*self::window(simulation, touched[next]).end();
+            next += 1;
+        }
+        let (range, after) = settle_window(model, cycle, window, spans, change)?;
+        while next < touched.len() && touched[next] <= *range.end() {
+            next += 1;
+        }
+        let (more, longer) = rest_behind(model, simulation, &range, &after);
+        let parts = &cycle.account.events[range.clone()];
+        let mut before = EnergyParts::default();
+        for part in parts.iter().flatten() {
+            before += *part;
+        }
+        saved += before - account(model, &after).total - more;
+        replayed.push((range, after, longer));
+    }
+    Some((saved, replayed))
+}
+
+/// Events that hold a statement.
+fn touched(simulation: &Simulation, spans: &[Span]) -> Vec<usize> {
+    let holds = |what: &What| match what {
+        What::Run(run) => run.moves.iter().any(|record| spans.contains(&record.movement.span)),
+        What::Wait(wait) => spans.contains(&wait.wait.span),
+        What::Output(..) | What::Left(_) => false,
+    };
+    let events = simulation.events.iter().enumerate();
+    events.filter(|(_, event)| holds(&event.what)).map(|(index, _)| index).collect()
+}
+
+fn has_concurrent(simulation: &Simulation) -> bool {
+    simulation.events.iter().any(|event| match &event.what {
+        What::Run(run) => run.moves.iter().any(|record| record.movement.concurrent),
+        _ => false,
+    })
+}
+
+/// From the run at or before an event to the next run.
+fn window(simulation: &Simulation, event: usize) -> RangeInclusive<usize> {
+    let is_run = |index: &usize| matches!(simulation.events[*index].what, What::Run(_));
+    let first = (0..=event).rev().find(is_run).unwrap_or(event);
+    first..=next_run(simulation, event)
+}
+
+/// The next run behind an event, or the last event.
+fn next_run(simulation: &Simulation, event: usize) -> usize {
+    let last = simulation.events.len() - 1;
+    let mut behind = event + 1..=last;
+    behind.find(|i| matches!(simulation.events[*i].what, What::Run(_))).unwrap_or(last)
+}
+
+/// The window with its replay, made longer until the robot stands where it stood.
+fn settle_window(
+    model: &Model,
+    cycle: &Cycle,
+    window: RangeInclusive<usize>,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(RangeInclusive<usize>, Simulation)> {
+    let simulation = &cycle.simulation;
+    let (first, mut last) = window.into_inner();
+    for _ in 0..=MOST_BEHIND {
+        let (start, steps) = steps(cycle, first..=last, spans, change)?;
+        let after = replay(model, &cycle.options, start, steps);
+        let sound = after.events.iter().all(|event| match &event.what {
+            What::Run(run) => run.problem.is_none(),
+            What::Left(_) => false,
+            _ => true,
+        });
+        if !sound {
+            return None;
+        }
+        let ends = |simulation: &Simulation, upto: usize| {
+            simulation.events[..upto].iter().rev().find_map(|event| match &event.what {
+                What::Run(run) => Some(run.end),
+                _ => None,
+            })
+        };
+        let was = ends(simulation, last + 1)?;
+        let is = ends(&after, after.events.len()).unwrap_or(start);
+        if apart(&was, &is) <= SAME || last + 1 == simulation.events.len() {
+            return Some((first..=last, after));
+        }
+        last = next_run(simulation, last);
+    }
+    None
+}
+
+fn apart(a: &Joints, b: &Joints) -> f64 {
+    (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
+}
+
+/// What was done in a window, with the change, and where the robot stood at first.
+fn steps(
+    cycle: &Cycle,
+    window: RangeInclusive<usize>,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(Joints, Vec<Step>)> {
+    let mut start = None;
+    let mut steps = Vec::new();
+    for event in &cycle.simulation.events[window] {
+        match &event.what {
+            What::Run(run) => {
+                if !run.start_known || run.problem.is_some() {
+                    return None;
+                }
+                start.get_or_insert(run.start);
+                for record in &run.moves {
+                    let step = Step::Move(Box::new(record.movement.clone()));
+                    if spans.contains(&record.movement.span) {
+                        steps.extend(change(&step));
+                    } else {
+                        steps.push(step);
+                    }
+                }
+            }
+            What::Wait(wait) => {
+                start.get_or_insert(wait.q);
+                let comes = wait.basis == WaitBasis::Input;
+                let wait = Wait {
+                    duration: Some(event.duration),
+                    max_time: None,
+                    // Only a wait for an input whose time is stated gets shorter or longer.
+                    signal: wait.wait.signal.clone().filter(|_| comes),
+                    ..wait.wait.clone()
+                };
+                let span = wait.span;
+                let step = Step::Wait(Box::new(wait));
+                if spans.contains(&span) {
+                    steps.extend(change(&step));
+                } else {
+                    steps.push(step);
+                }
+            }
+            What::Output(..) => {}
+            What::Left(_) => return None,
+        }
+    }
+    Some((start?, steps))
+}
+
+/// The rest between the last run of a window and a run right behind it, which a replay does not
+/// know: what it costs, and its time.
+fn rest_behind(
+    model: &Model,
+    simulation: &Simulation,
+    window: &RangeInclusive<usize>,
+    after: &Simulation,
+) -> (EnergyParts, f64) {
+    let last_run = |events: &[crate::motion::timeline::Event]| -> Option<f64> {
+        match &events.last()?.what {
+            What::Run(run) => Some(run.settling),
+            _ => None,
+        }
+    };
+    let was = last_run(&simulation.events[..=*window.end()]);
+    let (Some(was), Some(is)) = (was, last_run(&after.events)) else {
+        return (EnergyParts::default(), 0.0);
+    };
+    let longer = (was - is).max(0.0);
+    match after.events.last().map(|event| &event.what) {
+        Some(What::Run(run)) => (at_rest_behind(model, run, longer), longer),
+        _ => (EnergyParts::default(), 0.0),
+    }
+}
+
+fn at_rest_behind(model: &Model, run: &Run, longer: f64) -> EnergyParts {
+    at_rest(model, &run.load, &run.end, longer)
+}
+
+/// The time that the whole cycle saves; waits for inputs whose time is stated take up what
+/// comes before them. Also what these waits take more.
+fn laid_out(
+    model: &Model,
+    cycle: &Cycle,
+    inputs: &BTreeMap<String, f64>,
+    replayed: &[Replayed],
+) -> (EnergyParts, f64) {
+    let simulation = &cycle.simulation;
+    let mut clock = Clock { inputs, waited: BTreeMap::new(), time: 0.0 };
+    let mut more = EnergyParts::default();
+    let mut index = 0;
+    let mut windows = replayed.iter().peekable();
+    while index < simulation.events.len() {
+        if let Some((range, after, longer)) = windows.next_if(|(range, ..)| *range.start() == index)
+        {
+            for event in &after.events {
+                more += clock.passes(model, event, true);
+            }
+            clock.time += longer;
+            index = range.end() + 1;
+        } else {
+            more += clock.passes(model, &simulation.events[index], false);
+            index += 1;
+        }
+    }
+    (more, simulation.cycle_s - clock.time)
+}
+
+struct Clock<'c> {
+    inputs: &'c BTreeMap<String, f64>,
+    waited: BTreeMap<String, f64>,
+    time: f64,
+}
+
+impl Clock<'_> {
+    /// Lets an event pass; what it takes more than its own time says.
+    fn passes(
+        &mut self,
+        model: &Model,
+        event: &crate::motion::timeline::Event,
+        replayed: bool,
+    ) -> EnergyParts {
+        let mut duration = event.duration;
+        let mut more = EnergyParts::default();
+        if let What::Wait(wait) = &event.what
+            && (replayed || wait.basis == WaitBasis::Input)
+            && let Some(signal) = &wait.wait.signal
+            && let Some(delay) = self.inputs.get(&signal.to_lowercase())
+        {
+            let key = signal.to_lowercase();
+            let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
+            duration = (at - self.time).max(0.0);
+            let longer = duration - event.duration;
+            let sign = longer.signum();
+            more = at_rest(model, &wait.load, &wait.q, longer.abs()) * sign;
+            self.waited.insert(key, self.time + duration);
+        }
+        self.time += duration;
+        more
+    }
+}

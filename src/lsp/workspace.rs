@@ -1,0 +1,195 @@
+//! Open documents over the files of their folders, and what is found in them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::Options;
+use super::position::offset_of;
+use crate::cli::lint::{LintArgs, Setup};
+use crate::energy::EnergyParts;
+use crate::lint::engine::cycles;
+use crate::lint::weigh::Cycle;
+use crate::lint::{Finding, Report, lint};
+use crate::motion::timeline::What;
+use crate::text::{FileId, SourceFile, Span};
+
+/// Open documents, by their names.
+pub(super) struct Workspace {
+    options: Options,
+    open: BTreeMap<String, SourceFile>,
+}
+
+/// What was found in a document.
+pub(super) struct Analysis {
+    file: SourceFile,
+    report: Report,
+    cycles: Vec<Option<Cycle>>,
+    dynamics: bool,
+}
+
+/// What a statement costs in a cycle.
+pub(super) struct Costs {
+    pub(super) span: Span,
+    pub(super) what: String,
+    pub(super) times: usize,
+    pub(super) time_s: f64,
+    /// `None` for robots without dynamics.
+    pub(super) energy_j: Option<f64>,
+}
+
+impl Workspace {
+    pub(super) fn new(options: Options) -> Workspace {
+        Workspace { options, open: BTreeMap::new() }
+    }
+
+    pub(super) fn open(&mut self, uri: &str, text: String) {
+        let file = SourceFile::new(FileId(0), shown(&path_of(uri)), text.into_bytes());
+        self.open.insert(uri.to_owned(), file);
+    }
+
+    /// A change of a range, or of the whole text.
+    pub(super) fn change(&mut self, uri: &str, change: &Value) {
+        let Some(file) = self.open.get(uri) else { return };
+        let text = change["text"].as_str().unwrap_or_default();
+        let range = &change["range"];
+        let bytes = match (offset_of(file, &range["start"]), offset_of(file, &range["end"])) {
+            (Some(start), Some(end)) if start <= end => {
+                let (before, after) = (&file.bytes[..start as usize], &file.bytes[end as usize..]);
+                [before, text.as_bytes(), after].concat()
+            }
+            _ => text.as_bytes().to_vec(),
+        };
+        let file = SourceFile::new(FileId(0), file.path.clone(), bytes);
+        self.open.insert(uri.to_owned(), file);
+    }
+
+    pub(super) fn close(&mut self, uri: &str) {
+        self.open.remove(uri);
+    }
+
+    /// Lints a document with the files of its folder.
+    pub(super) fn analyse(&self, uri: &str) -> Analysis {
+        let path = path_of(uri);
+        let folder = path.parent().filter(|folder| folder.is_dir());
+        let folder = folder.map(Path::to_path_buf).into_iter();
+        let args = LintArgs {
+            robot: self.options.robot.clone(),
+            entry: self.options.entry.clone(),
+            inputs: self.options.inputs.clone(),
+            ..LintArgs::of_paths(folder.collect())
+        };
+        // A folder that can't be read, or a robot that is not known: the document stands alone.
+        let mut setup = Setup::new(&args).unwrap_or_default();
+        let mut own = 0;
+        for (uri, file) in &self.open {
+            let path = shown(&path_of(uri));
+            let known = setup.files.iter().position(|file| file.path == path);
+            let index = match known {
+                Some(index) => index,
+                None if is_beside(&path, &args) => setup.add(file.clone()),
+                None => continue,
+            };
+            setup.files[index] = SourceFile { id: FileId(index as u32), ..file.clone() };
+        }
+        let wanted = shown(&path);
+        if let Some(index) = setup.files.iter().position(|file| file.path == wanted) {
+            own = index;
+        } else if let Some(file) = self.open.get(uri) {
+            own = setup.add(file.clone());
+        }
+        let job = setup.job();
+        let report = lint(&job);
+        let cycles = cycles(&job);
+        let dynamics = setup.model.as_ref().is_some_and(crate::robot::Model::has_dynamics);
+        let file = setup
+            .files
+            .get(own)
+            .cloned()
+            .unwrap_or_else(|| SourceFile::new(FileId(0), wanted, Vec::new()));
+        Analysis { file, report, cycles, dynamics }
+    }
+}
+
+/// Whether a document that is not saved yet lies in the folder that is read.
+fn is_beside(path: &str, args: &LintArgs) -> bool {
+    Path::new(path).parent().is_some_and(|folder| args.paths.iter().any(|p| p == folder))
+}
+
+impl Analysis {
+    /// The document.
+    pub(super) fn file(&self) -> &SourceFile {
+        &self.file
+    }
+
+    /// What was found in the document itself.
+    pub(super) fn own(&self) -> impl Iterator<Item = &Finding> {
+        self.report.findings.iter().filter(|finding| finding.span.file == self.file.id)
+    }
+
+    /// What the movement or wait at a byte costs.
+    pub(super) fn costs_at(&self, at: u32) -> Option<Costs> {
+        let mut found: Option<Costs> = None;
+        for cycle in self.cycles.iter().flatten() {
+            for (event, parts) in cycle.simulation.events.iter().zip(&cycle.account.events) {
+                let mut add = |span: Span, what: &str, time_s: f64, joules: f64| {
+                    let here = span.file == self.file.id && span.start <= at && at <= span.end;
+                    if !here {
+                        return;
+                    }
+                    let energy_j = self.dynamics.then_some(0.0);
+                    let what = what.to_owned();
+                    let costs =
+                        found.get_or_insert(Costs { span, what, times: 0, time_s: 0.0, energy_j });
+                    costs.times += 1;
+                    costs.time_s += time_s;
+                    costs.energy_j = costs.energy_j.map(|sum| sum + joules);
+                };
+                match &event.what {
+                    What::Run(run) => {
+                        for (record, part) in run.moves.iter().zip(parts) {
+                            let movement = &record.movement;
+                            let joules = part.energy_j();
+                            add(movement.span, &movement.instruction, record.duration, joules);
+                        }
+                    }
+                    What::Wait(wait) => {
+                        let joules = parts.iter().map(EnergyParts::energy_j).sum();
+                        add(wait.wait.span, &wait.wait.instruction, event.duration, joules);
+                    }
+                    What::Output(..) | What::Left(_) => {}
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The path of a `file:` URI, `%XX` decoded.
+fn path_of(uri: &str) -> PathBuf {
+    let rest = uri.strip_prefix("file://").unwrap_or(uri);
+    let mut bytes = Vec::with_capacity(rest.len());
+    let mut signs = rest.bytes();
+    while let Some(byte) = signs.next() {
+        let digits = || {
+            let text: String = signs.clone().take(2).map(char::from).collect();
+            u8::from_str_radix(&text, 16).ok()
+        };
+        match (byte, digits()) {
+            (b'%', Some(decoded)) => {
+                bytes.push(decoded);
+                signs.nth(1);
+            }
+            _ => bytes.push(byte),
+        }
+    }
+    let path = String::from_utf8_lossy(&bytes).into_owned();
+    // A drive's letter has a slash before it.
+    let drive = path.get(2..3) == Some(":");
+    PathBuf::from(if drive { path[1..].to_owned() } else { path })
+}
+
+fn shown(path: &Path) -> String {
+    path.to_string_lossy().replace('\\', "/")
+}

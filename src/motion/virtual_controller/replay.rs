@@ -1,0 +1,45 @@
+//! Movements and waits that were executed before, laid on a time line again: what another
+//! zone, speed or order of some of them would change, without running the program.
+
+use std::collections::BTreeMap;
+
+use super::{Options, VirtualController};
+use crate::ir::exec::Machine;
+use crate::ir::movement::{Movement, Wait};
+use crate::motion::timeline::Simulation;
+use crate::path::joint_path::Joints;
+use crate::robot::Model;
+
+/// Something that the robot did.
+#[derive(Clone, Debug)]
+pub enum Step {
+    /// It moved.
+    Move(Box<Movement>),
+    /// It waited for as long as the wait states.
+    Wait(Box<Wait>),
+}
+
+/// Lays steps on a time line from the joints at which the robot stands at first, rad. Inputs
+/// come at no time of their own: a wait without a stated length takes none.
+pub fn replay(model: &Model, options: &Options, start: Joints, steps: Vec<Step>) -> Simulation {
+    let options = Options { start: Some(start), inputs: BTreeMap::new(), ..options.clone() };
+    let mut machine = VirtualController::new(model, &options);
+    for step in steps {
+        match step {
+            Step::Move(movement) => machine.moves(Ok(*movement)),
+            Step::Wait(wait) => {
+                machine.waits(*wait);
+            }
+        }
+    }
+    machine.flush();
+    machine.lay_out();
+    Simulation {
+        events: machine.events,
+        cycle_s: machine.time,
+        repeats_from: None,
+        unresolved: machine.notes,
+        assumed: machine.assumed,
+        inputs_asked: machine.asked,
+    }
+}

@@ -1,0 +1,133 @@
+//! Lints: what fires, what does not, what a saving is worth, what fixes leave behind.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+mod fixes;
+mod formats;
+mod manuals;
+mod savings;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
+
+use joulepath::effects;
+use joulepath::lint::{ALL, Finding, Group, Job, Needs, Report, Settings, lint};
+use joulepath::motion::Options;
+use joulepath::robot::Model;
+use joulepath::text::{FileId, SourceFile};
+
+/// A program with what its first comments say of it.
+pub(crate) struct Fixture {
+    pub(crate) path: PathBuf,
+    pub(crate) files: Vec<SourceFile>,
+    pub(crate) model: Option<Model>,
+    pub(crate) options: Options,
+    pub(crate) settings: Settings,
+}
+
+impl Fixture {
+    /// Of a file's name and text: `! robot: NAME`, `! inputs: diA=1 diB=2`.
+    pub(crate) fn new(path: PathBuf, text: &str) -> Fixture {
+        let said =
+            |key: &str| text.lines().find_map(|line| line.trim().strip_prefix(key)).map(str::trim);
+        let model = said("! robot:").map(|name| effects::load(name).unwrap());
+        let inputs = said("! inputs:").unwrap_or_default().split_whitespace().map(|pair| {
+            let (name, seconds) = pair.split_once('=').unwrap();
+            (name.to_lowercase(), seconds.parse().unwrap())
+        });
+        let options = Options { inputs: inputs.collect(), ..Options::default() };
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        let files = vec![SourceFile::new(FileId(0), name, text.as_bytes().to_vec())];
+        Fixture { path, files, model, options, settings: Settings::default() }
+    }
+
+    pub(crate) fn job(&self) -> Job<'_> {
+        let files = (0..self.files.len()).collect();
+        Job {
+            files: &self.files,
+            groups: vec![Group { files, entry: "main".to_owned(), system: None }],
+            model: self.model.as_ref(),
+            options: self.options.clone(),
+            settings: &self.settings,
+        }
+    }
+
+    pub(crate) fn report(&self) -> Report {
+        lint(&self.job())
+    }
+
+    fn line(&self, finding: &Finding) -> u32 {
+        self.files[0].position(finding.span.start).line
+    }
+}
+
+/// All programs of `fixtures/lint`.
+pub(crate) fn fixtures() -> Vec<Fixture> {
+    let entries = fs::read_dir("fixtures/lint").unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> =
+        entries.filter(|path| path.extension().is_some_and(|e| e == "mod")).collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(&path).unwrap();
+        Fixture::new(path, &text)
+    };
+    paths.into_iter().map(read).collect()
+}
+
+/// Each rule has a program in which it fires on the lines with `!~ CODE` and on no other.
+#[test]
+fn rules_fire_where_marked_and_nowhere_else() {
+    let fixtures = fixtures();
+    let mut wrong = Vec::new();
+    for rule in ALL.iter().filter(|rule| rule.needs != Needs::Backup) {
+        let stem = format!("{}_{}", rule.code, rule.name.replace('-', "_"));
+        let fixture = fixtures.iter().find(|it| it.path.file_stem().unwrap() == stem.as_str());
+        let fixture = fixture.unwrap_or_else(|| panic!("fixtures/lint/{stem}.mod is not there"));
+        let text = String::from_utf8(fixture.files[0].bytes.clone()).unwrap();
+        let mark = format!("!~ {}", rule.code);
+        let marked: BTreeSet<u32> =
+            (1..).zip(text.lines()).filter(|(_, l)| l.contains(&mark)).map(|(n, _)| n).collect();
+        let report = fixture.report();
+        let own = report.findings.iter().filter(|finding| finding.rule.code == rule.code);
+        let found: BTreeSet<u32> = own.map(|finding| fixture.line(finding)).collect();
+        assert!(!marked.is_empty(), "{stem}: nothing is marked");
+        if marked != found {
+            wrong.push(format!("{stem}: marked {marked:?}, found {found:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A marked line of a rule that is not registered would never be found.
+#[test]
+fn marks_name_rules() {
+    for fixture in fixtures() {
+        let stem = fixture.path.file_stem().unwrap().to_str().unwrap();
+        let code = stem.split('_').next().unwrap();
+        assert!(joulepath::lint::find(code).is_some(), "{stem}: no rule {code}");
+    }
+}
+
+/// What is told without a robot has no joules, and no rule that needs one speaks.
+#[test]
+fn without_a_robot_nothing_is_weighed() {
+    for mut fixture in fixtures() {
+        fixture.model = None;
+        for finding in fixture.report().findings {
+            assert!(finding.saving.is_none(), "{:?} {}", fixture.path, finding.told());
+            assert!(finding.rule.needs != Needs::Robot, "{:?} {:?}", fixture.path, finding.rule);
+        }
+    }
+}
+
+/// With a robot nothing is told whose saving is below the threshold.
+#[test]
+fn small_savings_are_not_told() {
+    for mut fixture in fixtures() {
+        fixture.settings.threshold_j = 30.0;
+        for finding in fixture.report().findings {
+            assert!(finding.saving.is_none_or(|saving| saving.energy_j >= 30.0));
+        }
+    }
+}

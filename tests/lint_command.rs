@@ -1,0 +1,180 @@
+//! `lint` and `rule` as commands: exit codes, configuration, baselines, fixes, backups.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
+
+fn joulepath(args: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// A folder with one of the programs of `fixtures/lint`.
+fn folder(name: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let from = Path::new("fixtures/lint").join(name);
+    fs::copy(from, folder.path().join("Cell.mod")).unwrap();
+    folder
+}
+
+fn codes(args: &[&str], folder: &Path) -> Vec<String> {
+    let args = [&["lint", ".", "--format", "json", "--quiet"], args].concat();
+    let output = joulepath(&args, folder);
+    assert!(output.status.code() < Some(2), "{}", text(&output.stderr));
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let findings = value["findings"].as_array().unwrap();
+    findings.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn exit_codes_are_those_of_the_contract() {
+    let folder = folder("EW102_stop_in_line.mod");
+    let code = |args: &[&str]| {
+        let args = [&["lint", "."], args].concat();
+        joulepath(&args, folder.path()).status.code().unwrap()
+    };
+    assert_eq!(code(&ROBOT), 0);
+    assert_eq!(code(&[&ROBOT[..], &["--max-waste", "100000J"]].concat()), 0);
+    assert_eq!(code(&[&ROBOT[..], &["--max-waste", "1J"]].concat()), 1);
+    assert_eq!(code(&[&ROBOT[..], &["--max-waste", "0.1%"]].concat()), 1);
+    assert_eq!(code(&[&ROBOT[..], &["--max-waste", "much"]].concat()), 2);
+    assert_eq!(code(&["--max-waste", "1J"]), 2);
+    assert_eq!(code(&["--select", "EW999"]), 2);
+    assert_eq!(joulepath(&["lint", "gone.mod"], folder.path()).status.code(), Some(2));
+}
+
+#[test]
+fn rules_are_selected() {
+    let folder = folder("EW101_unneeded_stop_point.mod");
+    let only = codes(&["--select", "stops"], folder.path());
+    assert!(!only.is_empty() && only.iter().all(|code| code.starts_with("EW1")), "{only:?}");
+    let none = codes(&["--select", "EW1", "--ignore", "unneeded-stop-point"], folder.path());
+    assert!(!none.iter().any(|code| code == "EW101"), "{none:?}");
+    let config = "[lint]\nselect = [\"EW101\"]\nthreshold-j = 0.5\n";
+    fs::write(folder.path().join("joulepath.toml"), config).unwrap();
+    let found = codes(&ROBOT, folder.path());
+    assert!(!found.is_empty() && found.iter().all(|code| code == "EW101"), "{found:?}");
+    let more = format!("{config}[lint.thresholds-j]\nEW101 = 1e6\n");
+    fs::write(folder.path().join("joulepath.toml"), more).unwrap();
+    assert!(codes(&ROBOT, folder.path()).is_empty());
+    let more = format!("{config}[lint.per-file-ignores]\n\"C*.mod\" = [\"stops\"]\n");
+    fs::write(folder.path().join("joulepath.toml"), more).unwrap();
+    assert!(codes(&ROBOT, folder.path()).is_empty());
+}
+
+#[test]
+fn a_baseline_takes_back_what_is_known() {
+    let folder = folder("EW101_unneeded_stop_point.mod");
+    let before = codes(&["--write-baseline", "known.json"], folder.path());
+    assert!(!before.is_empty());
+    assert!(codes(&["--baseline", "known.json"], folder.path()).is_empty());
+    // What moves is known, what is new is not.
+    let path = folder.path().join("Cell.mod");
+    let moved = fs::read_to_string(&path).unwrap().replacen("    VAR", "\n\n    VAR", 1);
+    let new = moved.replacen(
+        "        rThrough;",
+        "        MoveJ Offs(pAUp,-100,100,50),v800,fine,tGripper;\n        rThrough;",
+        1,
+    );
+    fs::write(&path, &moved).unwrap();
+    assert!(codes(&["--baseline", "known.json"], folder.path()).is_empty());
+    fs::write(&path, &new).unwrap();
+    assert_eq!(codes(&["--baseline", "known.json"], folder.path()), ["EW101"]);
+    assert_eq!(joulepath(&["lint", ".", "--baseline", "x"], folder.path()).status.code(), Some(2));
+}
+
+#[test]
+fn fixes_are_shown_and_written() {
+    let folder = folder("EW102_stop_in_line.mod");
+    let path = folder.path().join("Cell.mod");
+    let before = fs::read(&path).unwrap();
+    let output = joulepath(&[&["lint", ".", "--diff"], &ROBOT[..]].concat(), folder.path());
+    let diff = text(&output.stdout);
+    assert_eq!(diff.lines().filter(|line| line.starts_with("-  ")).count(), 1, "{diff}");
+    assert!(diff.contains("v500,z20,tGripper"), "{diff}");
+    assert_eq!(fs::read(&path).unwrap(), before);
+    let output = joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    assert!(text(&output.stderr).contains("1 fixes applied"), "{}", text(&output.stderr));
+    let after = fs::read(&path).unwrap();
+    assert_ne!(after, before);
+    joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    assert_eq!(fs::read(&path).unwrap(), after);
+    // Without a robot nothing can be tried.
+    fs::write(&path, &before).unwrap();
+    joulepath(&["lint", ".", "--fix", "--unsafe-fixes"], folder.path());
+    assert_eq!(fs::read(&path).unwrap(), before);
+}
+
+/// A backup with a signal for energy saving, used or not, and a brake timeout or none.
+fn backup(io: &str, motion: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let modules = folder.path().join("RAPID/TASK1/PROGMOD");
+    fs::create_dir_all(&modules).unwrap();
+    fs::create_dir_all(folder.path().join("SYSPAR")).unwrap();
+    let program = "MODULE M\n    PROC main()\n        WaitTime 60;\n        WaitTime 5;\n    \
+                   ENDPROC\nENDMODULE\n";
+    fs::write(modules.join("M.mod"), program).unwrap();
+    fs::write(folder.path().join("SYSPAR/EIO.cfg"), io).unwrap();
+    fs::write(folder.path().join("SYSPAR/MOC.cfg"), motion).unwrap();
+    folder
+}
+
+#[test]
+fn backups_are_asked_for_settings_that_save() {
+    let signal = "EIO:CFG_1.0:6:1::\n#\nEIO_SIGNAL:\n\n      -Name \"diSyEnEnSav\" -SignalType \
+                  \"DI\" -Label \"System Enable Energy Saving\"\n";
+    let unused = backup(signal, "MOC:CFG_1.0:6:0::\n");
+    assert_eq!(codes(&["--select", "system"], unused.path()), ["EW801", "EW802"]);
+    let used = format!("{signal}#\nSYSSIG_IN:\n\n      -Signal \"diSyEnEnSav\" -Action \"X\"\n");
+    let motion = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
+    let used = backup(&used, motion);
+    assert!(codes(&["--select", "system"], used.path()).is_empty());
+}
+
+#[test]
+fn manuals_are_shown() {
+    let here = Path::new(".");
+    let output = text(&joulepath(&["rule", "EW101"], here).stdout);
+    assert!(output.starts_with("# EW101 unneeded-stop-point"), "{output}");
+    assert!(output.contains("## Why it wastes energy"));
+    let list = text(&joulepath(&["rule"], here).stdout);
+    assert!(list.lines().count() > 30 && list.contains("EW802"), "{list}");
+    let wrong = joulepath(&["rule", "EW1011"], here);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(text(&wrong.stderr).contains("did you mean EW101"), "{}", text(&wrong.stderr));
+}
+
+/// A folder of unrelated programs, each with its own entry, is linted file by file.
+#[test]
+fn unrelated_programs_stand_alone() {
+    let output = joulepath(
+        &[&["lint", "fixtures/lint", "--format", "json", "--quiet"], &ROBOT[..]].concat(),
+        Path::new("."),
+    );
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let findings = value["findings"].as_array().unwrap();
+    let has = |code: &str| findings.iter().any(|finding| finding["code"] == code);
+    assert!(has("EW101") && has("EW405") && has("EW703"));
+}
+
+/// Nothing that is on disk makes it stop.
+#[test]
+fn broken_programs_are_linted_too() {
+    for folder in ["fixtures/syntax/err", "fixtures/syntax/ok", "fixtures/hard", "fixtures/backup"]
+    {
+        for robot in [&ROBOT[..], &[]] {
+            let args = [&["lint", folder, "--format", "concise", "--quiet"], robot].concat();
+            let output = joulepath(&args, Path::new("."));
+            assert_eq!(output.status.code(), Some(0), "{folder}: {}", text(&output.stderr));
+        }
+    }
+}
