@@ -18,9 +18,9 @@ use crate::retrofit::Source;
 use crate::robot::{self, Model};
 use crate::text::{self, FileId, SourceFile, is_encoded_module};
 
-/// Options of commands that run a program.
-#[derive(Debug, Args)]
-pub struct ProgramArgs {
+/// A program, its robot, and what is known of its cell.
+#[derive(Debug, Default, Args)]
+pub struct CellArgs {
     /// Module files, folders, .pgf programs or controller backups.
     #[arg(required = true)]
     pub paths: Vec<PathBuf>,
@@ -49,6 +49,18 @@ pub struct ProgramArgs {
     #[arg(long = "assume", value_name = "SIGNAL=LEVEL")]
     pub levels: Vec<String>,
 
+    /// No notes on standard error.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Options of commands that run a program.
+#[derive(Debug, Default, Args)]
+pub struct ProgramArgs {
+    /// What is run, and where.
+    #[command(flatten)]
+    pub cell: CellArgs,
+
     /// Override of all speeds in %, as on the operator's panel.
     #[arg(long = "speed-override", value_name = "PERCENT", allow_negative_numbers = true)]
     pub speed_override: Option<f64>,
@@ -64,16 +76,13 @@ pub struct ProgramArgs {
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
-
-    /// No notes on standard error.
-    #[arg(long, short)]
-    pub quiet: bool,
 }
 
 /// Forms of a result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// For people.
+    #[default]
     Text,
     /// For programs.
     Json,
@@ -122,7 +131,8 @@ impl Job {
 ///
 /// # Errors
 /// Whatever is missing or wrong, with the way out.
-pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
+pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
+    let args = &program.cell;
     let input = input::read(&args.paths)?;
     for unreadable in &input.unreadable {
         note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
@@ -165,6 +175,7 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
     let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
     let entry = entry.unwrap_or_else(|| "main".into());
     let (options, inputs) = simulation_options(args, &config, Some(&model))?;
+    let options = in_force(program, options)?;
     let files: Vec<Source> = choice
         .files
         .iter()
@@ -182,7 +193,7 @@ pub fn prepare(args: &ProgramArgs) -> anyhow::Result<Job> {
 /// # Errors
 /// An option is wrong.
 pub fn simulation_options(
-    args: &ProgramArgs,
+    args: &CellArgs,
     config: &Config,
     model: Option<&Model>,
 ) -> anyhow::Result<(Options, Vec<String>)> {
@@ -207,22 +218,30 @@ pub fn simulation_options(
         levels.retain(|known, _| known.to_lowercase() != key);
         levels.insert(name, level);
     }
+    let options = Options {
+        levels: levels.iter().map(|(name, level)| (name.to_lowercase(), *level)).collect(),
+        start: args.start.as_deref().map(|text| start(model, text)).transpose()?,
+        inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
+        ..Options::default()
+    };
+    let inputs = times.into_iter().map(|(name, _)| name).collect();
+    Ok((options, inputs))
+}
+
+/// The options with what is said of the run itself.
+fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
     if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
         bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
     }
     if let Some(limit) = args.max_time.filter(|t| !(t.is_finite() && *t > 0.0)) {
         bail!("--max-time {limit}: give a time in seconds above 0");
     }
-    let options = Options {
-        levels: levels.iter().map(|(name, level)| (name.to_lowercase(), *level)).collect(),
+    Ok(Options {
         speed_override: args.speed_override.map(|percent| percent / 100.0),
         passes: args.passes,
         max_time: args.max_time,
-        start: args.start.as_deref().map(|text| start(model, text)).transpose()?,
-        inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
-    };
-    let inputs = times.into_iter().map(|(name, _)| name).collect();
-    Ok((options, inputs))
+        ..options
+    })
 }
 
 /// The robot with what its backup says of it: ranges, base frame, loads of the arm.
@@ -245,13 +264,13 @@ pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
 ///
 /// # Errors
 /// None is named, or it can't be read.
-pub fn robot(args: &ProgramArgs) -> anyhow::Result<Model> {
+pub fn robot(args: &CellArgs) -> anyhow::Result<Model> {
     let (config, folder) = configuration(args)?;
     Ok(effects::load(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
 }
 
 /// The robot that options or configuration name.
-pub fn robot_name(args: &ProgramArgs, config: &Config, folder: &Path) -> Option<String> {
+pub fn robot_name(args: &CellArgs, config: &Config, folder: &Path) -> Option<String> {
     let configured = || {
         let name = config.robot.as_ref()?;
         let beside = folder.join(name);
@@ -272,7 +291,7 @@ fn which_robot() -> String {
 ///
 /// # Errors
 /// It can't be read.
-pub fn configuration(args: &ProgramArgs) -> anyhow::Result<(Config, PathBuf)> {
+pub fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
     let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
         path: path.to_string_lossy().into_owned(),
         reason: error.to_string(),

@@ -63,11 +63,11 @@ enum FormArg {
 /// # Errors
 /// Unusable input, a motion that the robot can't do, or output that can't be written.
 pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
-    let [path] = args.program.paths.as_slice() else { bail!("give one CSV file") };
+    let [path] = args.program.cell.paths.as_slice() else { bail!("give one CSV file") };
     let bytes = std::fs::read(path)
         .with_context(|| format!("cannot read '{}'; check the path", path.display()))?;
     let points = table::read(&bytes).with_context(|| path.display().to_string())?;
-    let model = common::robot(&args.program)?;
+    let model = common::robot(&args.program.cell)?;
     let settings = Settings {
         form: match args.form {
             FormArg::Absj => Form::AbsJ,
@@ -81,7 +81,7 @@ pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let generated =
         generate(&model, &points, &settings).with_context(|| path.display().to_string())?;
     for text in generated.notes.iter().chain(&model.assumed()) {
-        common::note(args.program.quiet, text);
+        common::note(args.program.cell.quiet, text);
     }
     let files: Vec<(PathBuf, &[u8])> = generated
         .outputs

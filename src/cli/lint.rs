@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use similar::TextDiff;
 
 use super::backup::{self, is_shared};
-use super::common::{self, Format, ProgramArgs, note};
+use super::common::{self, CellArgs, note};
 use super::input::{self, Input};
 use super::output;
 use crate::config::Config;
@@ -23,7 +23,7 @@ use crate::text::{FileId, SourceFile};
 
 /// Find wasted energy in RAPID programs.
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[command(
     after_help = "Without --robot only what needs no robot is found, and nothing has joules. \
     joulepath rule CODE explains a finding; a comment `! joulepath: ignore CODE reason` takes one \
@@ -31,33 +31,9 @@ use crate::text::{FileId, SourceFile};
     be read.\n\nExample: joulepath lint fixtures/pick_place --robot IRB1600-10/1.45"
 )]
 pub struct LintArgs {
-    /// Module files, folders, .pgf programs or controller backups.
-    #[arg(required = true)]
-    pub paths: Vec<PathBuf>,
-
-    /// The robot: a name (joulepath robots list) or a robot file.
-    #[arg(long, value_name = "NAME|FILE")]
-    pub robot: Option<String>,
-
-    /// Configuration; otherwise the nearest joulepath.toml above the program.
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
-
-    /// The procedure that starts the program.
-    #[arg(long)]
-    pub entry: Option<String>,
-
-    /// Where the robot stands at first, axes in degrees.
-    #[arg(long, value_name = "DEG,…", allow_hyphen_values = true)]
-    pub start: Option<String>,
-
-    /// When an input comes, such as diPart=2.5 (s after the start or the last wait for it).
-    #[arg(long = "input", value_name = "SIGNAL=SECONDS")]
-    pub inputs: Vec<String>,
-
-    /// The level of an input that the program asks for, such as di1=1; otherwise 0.
-    #[arg(long = "assume", value_name = "SIGNAL=LEVEL")]
-    pub levels: Vec<String>,
+    /// What is run, and where.
+    #[command(flatten)]
+    pub cell: CellArgs,
 
     /// Only these rules: codes, starts of codes, names or families.
     #[arg(long, value_name = "RULES", value_delimiter = ',')]
@@ -102,16 +78,13 @@ pub struct LintArgs {
     /// Write all findings into a baseline.
     #[arg(long, value_name = "FILE")]
     pub write_baseline: Option<PathBuf>,
-
-    /// No notes on standard error.
-    #[arg(long, short)]
-    pub quiet: bool,
 }
 
 /// Forms of the result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum LintFormat {
     /// With the source.
+    #[default]
     Full,
     /// One line each.
     Concise,
@@ -157,7 +130,7 @@ pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
 /// Applies fixes; what is left to find.
 fn fix(args: &LintArgs, setup: &mut Setup) -> anyhow::Result<Report> {
     if setup.model.is_none() {
-        note(args.quiet, "without a robot no fix can be tried: only comments are fixed");
+        note(args.cell.quiet, "without a robot no fix can be tried: only comments are fixed");
     }
     let most = if args.unsafe_fixes { Applicability::Unsafe } else { Applicability::Safe };
     let Fixed { files, applied, withdrawn, report } = lint::fix(&setup.job(), most);
@@ -179,7 +152,7 @@ fn fix(args: &LintArgs, setup: &mut Setup) -> anyhow::Result<Report> {
     for file in staged? {
         file.put()?;
     }
-    note(args.quiet, &format!("{applied} fixes applied, {withdrawn} taken back"));
+    note(args.cell.quiet, &format!("{applied} fixes applied, {withdrawn} taken back"));
     setup.files = files;
     Ok(report)
 }
@@ -198,48 +171,20 @@ pub struct Setup {
     max_waste: Option<Limit>,
 }
 
-impl LintArgs {
-    /// The options as they are where nothing is said.
-    #[must_use]
-    pub fn of_paths(paths: Vec<PathBuf>) -> LintArgs {
-        LintArgs {
-            paths,
-            robot: None,
-            config: None,
-            entry: None,
-            start: None,
-            inputs: Vec::new(),
-            levels: Vec::new(),
-            select: Vec::new(),
-            ignore: Vec::new(),
-            threshold: None,
-            format: LintFormat::Full,
-            fix: false,
-            unsafe_fixes: false,
-            diff: false,
-            statistics: false,
-            max_waste: None,
-            baseline: None,
-            write_baseline: None,
-            quiet: true,
-        }
-    }
-}
-
 impl Setup {
     /// Reads files, configuration and robot.
     ///
     /// # Errors
     /// Nothing can be read, or an option is wrong.
     pub fn new(args: &LintArgs) -> anyhow::Result<Setup> {
-        let input = input::read(&args.paths)?;
+        let input = input::read(&args.cell.paths)?;
         for unreadable in &input.unreadable {
-            note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
+            note(args.cell.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
         }
-        let program = program_args(args);
-        let (config, folder) = common::configuration(&program)?;
-        let model = robot(&program, &config, &folder, &input)?;
-        let (options, _) = common::simulation_options(&program, &config, model.as_ref())?;
+        let cell = &args.cell;
+        let (config, folder) = common::configuration(cell)?;
+        let model = robot(cell, &config, &folder, &input)?;
+        let (options, _) = common::simulation_options(cell, &config, model.as_ref())?;
         let mut files: Vec<SourceFile> =
             input.files.iter().map(|file| file.source.clone()).collect();
         let groups = groups(args, &config, &input, &mut files);
@@ -276,23 +221,6 @@ impl Setup {
     }
 }
 
-fn program_args(args: &LintArgs) -> ProgramArgs {
-    ProgramArgs {
-        paths: args.paths.clone(),
-        robot: args.robot.clone(),
-        config: args.config.clone(),
-        entry: args.entry.clone(),
-        start: args.start.clone(),
-        inputs: args.inputs.clone(),
-        levels: args.levels.clone(),
-        speed_override: None,
-        passes: None,
-        max_time: None,
-        format: Format::Text,
-        quiet: args.quiet,
-    }
-}
-
 fn settings(args: &LintArgs, config: &Config) -> anyhow::Result<Settings> {
     let mut settings = config.lint.settings();
     if !args.select.is_empty() {
@@ -316,7 +244,7 @@ fn settings(args: &LintArgs, config: &Config) -> anyhow::Result<Settings> {
 
 /// The robot, if one is named; a backup's own robot only if it is known.
 fn robot(
-    args: &ProgramArgs,
+    args: &CellArgs,
     config: &Config,
     folder: &Path,
     input: &Input,
@@ -348,7 +276,7 @@ fn groups(
     input: &Input,
     files: &mut Vec<SourceFile>,
 ) -> Vec<Group> {
-    let stated = args.entry.clone().or_else(|| config.entry.clone());
+    let stated = args.cell.entry.clone().or_else(|| config.entry.clone());
     let entry_of =
         |of_task: Option<String>| stated.clone().or(of_task).unwrap_or_else(|| "main".to_owned());
     let places =
@@ -491,7 +419,7 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
         write!(std::io::stderr().lock(), "{}", report::lint::text::statistics(report, files))?;
     }
     if setup.model.is_none() {
-        note(args.quiet, "no robot is named: nothing has joules (--robot NAME)");
+        note(args.cell.quiet, "no robot is named: nothing has joules (--robot NAME)");
     }
     Ok(())
 }

@@ -191,7 +191,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let job = common::prepare(&args.program)?;
     let settings = settings_of(&job)?;
     let result = {
-        let bar = progress(args.program.quiet);
+        let bar = progress(args.program.cell.quiet);
         let result = retrofit(&job.files, &job.model, &settings, &|done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -203,7 +203,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         result
     };
     for text in &result.notes {
-        common::note(args.program.quiet, text);
+        common::note(args.program.cell.quiet, text);
     }
     let sources = job.sources();
     let places = Places::new(&sources);
@@ -228,10 +228,10 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         }
         Format::Text => {
             for text in report::text::notes(&job.model, places, &result.before.0) {
-                common::note(args.program.quiet, &text);
+                common::note(args.program.cell.quiet, &text);
             }
             for path in &written {
-                common::note(args.program.quiet, &format!("wrote {path}"));
+                common::note(args.program.cell.quiet, &format!("wrote {path}"));
             }
             if args.diff {
                 write!(out, "{}", diff(&job, &result))?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::bail;
 
-use super::common::ProgramArgs;
+use super::common::CellArgs;
 use crate::ir::program::Program;
 use crate::ir::signals::{Signal, SignalKind, signals};
 use crate::motion::Simulation;
@@ -15,7 +15,7 @@ use crate::robot::nearest;
 /// # Errors
 /// A signal that the program does not name, or a level that it can't have.
 pub fn check(
-    args: &ProgramArgs,
+    args: &CellArgs,
     levels: &BTreeMap<String, f64>,
     program: &Program,
 ) -> anyhow::Result<()> {
@@ -53,7 +53,7 @@ pub fn check(
 }
 
 /// Notes on levels that the simulated cycle did not ask for.
-pub fn unused_levels(args: &ProgramArgs, simulation: &Simulation) -> Vec<String> {
+pub fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     for text in &args.levels {
         let name = text.split('=').next().unwrap_or_default().trim();

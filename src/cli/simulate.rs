@@ -45,7 +45,7 @@ const MAX_ROWS: f64 = 5e6;
 pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let job = common::prepare(&args.program)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
-    signals::check(&args.program, &job.options.levels, &program)?;
+    signals::check(&args.program.cell, &job.options.levels, &program)?;
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);
     let account = account(&job.model, &simulation);
     let sources = job.sources();
@@ -70,9 +70,9 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
         }
     }
     let mut notes = job.unused_inputs(&simulation);
-    notes.extend(signals::unused_levels(&args.program, &simulation));
+    notes.extend(signals::unused_levels(&args.program.cell, &simulation));
     for text in &notes {
-        common::note(args.program.quiet, text);
+        common::note(args.program.cell.quiet, text);
     }
     let mut out = std::io::stdout().lock();
     match args.program.format {
@@ -85,7 +85,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
         }
         Format::Text => {
             for text in report::text::notes(&job.model, places, &simulation) {
-                common::note(args.program.quiet, &text);
+                common::note(args.program.cell.quiet, &text);
             }
             write!(out, "{}", report::text::simulation(&job.model, places, &simulation, &account))?;
         }

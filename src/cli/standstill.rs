@@ -51,7 +51,7 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
     if !(args.within.is_finite() && args.within >= 0.0) {
         bail!("--within {}: give a distance of 0 degrees or more", args.within);
     }
-    if args.pose.is_empty() && args.program.paths.is_empty() {
+    if args.pose.is_empty() && args.program.cell.paths.is_empty() {
         bail!("nothing to look at: give poses with --pose DEG,…, or the PATH of a program");
     }
     let distance = args.within.to_radians();
@@ -59,7 +59,7 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         if args.pose.is_empty() { of_program(args, distance)? } else { of_poses(args, distance)? };
     if model.brakes.is_none() {
         let text = format!("{} has no [brakes]: nothing is said of when they pay", model.name);
-        common::note(args.program.quiet, &text);
+        common::note(args.program.cell.quiet, &text);
     }
     let mut out = std::io::stdout().lock();
     match args.program.format {
@@ -70,7 +70,7 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         }
         Format::Text => {
             for text in assumed {
-                common::note(args.program.quiet, &text);
+                common::note(args.program.cell.quiet, &text);
             }
             write!(out, "{}", standstill::text(&poses))?;
         }
@@ -82,7 +82,7 @@ fn of_poses(
     args: &StandstillArgs,
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
-    let model = common::robot(&args.program)?;
+    let model = common::robot(&args.program.cell)?;
     ready(&model, Use::Standstill)?;
     let load = load::of_option(args.load.as_deref())?;
     let mut poses = Vec::new();
@@ -109,7 +109,7 @@ fn of_program(
     let sources = job.sources();
     let places = Places::new(&sources);
     for text in text::notes(&job.model, places, &simulation) {
-        common::note(args.program.quiet, &text);
+        common::note(args.program.cell.quiet, &text);
     }
     let poses = dwells(&job.model, &simulation)
         .iter()

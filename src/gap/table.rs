@@ -143,7 +143,20 @@ impl Table {
 
     /// All that is computed goes through the channel of its joint before it is compared.
     pub(super) fn through_all(&mut self, records: &[Record<'_>], channels: &[Response]) {
-        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, |_| true));
+        self.through_where(records, channels, |_| true);
+    }
+
+    /// The same of the model, its parameters and some columns, whose numbers rise.
+    pub(super) fn through(
+        &mut self,
+        records: &[Record<'_>],
+        channels: &[Response],
+        columns: &[usize],
+    ) {
+        let first = 1 + self.parameters.len();
+        self.through_where(records, channels, |number| {
+            number < first || columns.binary_search(&(number - first)).is_ok()
+        });
     }
 
     /// The same of some columns alone.
@@ -154,22 +167,18 @@ impl Table {
         columns: &[usize],
     ) {
         let first = 1 + self.parameters.len();
-        let is_used =
-            |number: usize| number >= first && columns.binary_search(&(number - first)).is_ok();
-        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, is_used));
+        self.through_where(records, channels, |number| {
+            number >= first && columns.binary_search(&(number - first)).is_ok()
+        });
     }
 
-    /// The same of the model, its parameters and some columns.
-    pub(super) fn through(
+    fn through_where(
         &mut self,
         records: &[Record<'_>],
         channels: &[Response],
-        columns: &[usize],
+        is_used: impl Fn(usize) -> bool + Sync,
     ) {
-        let first = 1 + self.parameters.len();
-        let is_used =
-            |number: usize| number < first || columns.binary_search(&(number - first)).is_ok();
-        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, is_used));
+        self.joints.par_iter_mut().for_each(|rows| rows.through(records, channels, &is_used));
     }
 
     /// How well everything explains the difference if the model's torques are known to the

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::Options;
 use super::position::offset_of;
+use crate::cli::common::CellArgs;
 use crate::cli::lint::{LintArgs, Setup};
 use crate::energy::EnergyParts;
 use crate::lint::engine::cycles;
@@ -74,12 +75,15 @@ impl Workspace {
         let path = path_of(uri);
         let folder = path.parent().filter(|folder| folder.is_dir());
         let folder = folder.map(Path::to_path_buf).into_iter();
-        let args = LintArgs {
+        let cell = CellArgs {
+            paths: folder.collect(),
             robot: self.options.robot.clone(),
             entry: self.options.entry.clone(),
             inputs: self.options.inputs.clone(),
-            ..LintArgs::of_paths(folder.collect())
+            quiet: true,
+            ..CellArgs::default()
         };
+        let args = LintArgs { cell, ..LintArgs::default() };
         // A folder that can't be read, or a robot that is not known: the document stands alone.
         let mut setup = Setup::new(&args).unwrap_or_default();
         let mut own = 0;
@@ -114,7 +118,7 @@ impl Workspace {
 
 /// Whether a document that is not saved yet lies in the folder that is read.
 fn is_beside(path: &str, args: &LintArgs) -> bool {
-    Path::new(path).parent().is_some_and(|folder| args.paths.iter().any(|p| p == folder))
+    Path::new(path).parent().is_some_and(|folder| args.cell.paths.iter().any(|p| p == folder))
 }
 
 impl Analysis {

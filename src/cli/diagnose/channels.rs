@@ -2,16 +2,13 @@
 
 use std::path::Path;
 
-use serde_json::Value;
-
-use super::super::common::{self, Format, ProgramArgs};
+use super::super::common::{self, CellArgs, ProgramArgs};
 use super::super::logs::Ready;
-use crate::energy::account;
 use crate::gap::{Powers, Run};
 use crate::identify::Source;
 use crate::log::Channel;
-use crate::motion;
-use crate::report;
+use crate::motion::simulate;
+use crate::motion::timeline::{MoveRecord, What};
 use crate::report::place::Places;
 use crate::retrofit::read_program;
 
@@ -66,33 +63,25 @@ pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
 /// # Errors
 /// The program can't be run.
 pub(super) fn lines(program: &Path, robot: &str) -> anyhow::Result<Vec<(String, usize)>> {
-    let args = ProgramArgs {
+    let cell = CellArgs {
         paths: vec![program.to_path_buf()],
         robot: Some(robot.to_owned()),
-        config: None,
-        entry: None,
-        start: None,
-        inputs: Vec::new(),
-        levels: Vec::new(),
-        speed_override: None,
-        passes: None,
-        max_time: None,
-        format: Format::Json,
         quiet: true,
+        ..CellArgs::default()
     };
+    let args = ProgramArgs { cell, ..ProgramArgs::default() };
     let job = common::prepare(&args)?;
     let (read, entry) = read_program(&job.files, &job.entry)?;
-    let simulation = motion::simulate(&read, entry, &job.model, &job.options);
-    let account = account(&job.model, &simulation);
+    let simulation = simulate(&read, entry, &job.model, &job.options);
     let sources = job.sources();
     let places = Places::new(&sources);
-    let value =
-        report::json::simulation(&job.model, &job.entry, places, &simulation, &account, &[]);
-    let moves = serde_json::to_value(value)?;
-    let moves = moves.get("moves").and_then(Value::as_array).cloned().unwrap_or_default();
-    let of = |of: &Value| {
-        let file = of.get("file")?.as_str()?.to_owned();
-        Some((file, of.get("line")?.as_u64()? as usize))
+    let runs = simulation.events.iter().filter_map(|event| match &event.what {
+        What::Run(run) => Some(&run.moves),
+        What::Wait(_) | What::Output(..) | What::Left(_) => None,
+    });
+    let place = |record: &MoveRecord| {
+        let place = places.of(record.movement.span);
+        (place.file, place.first as usize)
     };
-    Ok(moves.iter().filter_map(of).collect())
+    Ok(runs.flatten().map(place).collect())
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::lint::{Finding, Report};
+use crate::report::svg::escape;
 use crate::text::SourceFile;
 
 /// The report; a file without findings is a test that passed.
@@ -47,19 +48,12 @@ pub fn junit(report: &Report, files: &[SourceFile]) -> String {
     )
 }
 
-/// Text without what XML has a meaning for; characters that XML can't hold become U+FFFD.
+/// Text for an attribute in one line; characters that XML can't hold become U+FFFD.
 fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
+    let held = |c: char| match c {
+        '\t' | '\n' | '\r' => ' ',
+        c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => '\u{fffd}',
+        c => c,
+    };
+    escape(&text.chars().map(held).collect::<String>())
 }
