@@ -29,7 +29,7 @@ fn the_json_has_what_is_promised() {
     let folder = tempfile::tempdir().unwrap();
     case(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let out = at("model.toml");
+    let (out, page) = (at("model.toml"), at("page.html"));
     let (robot, logs, held) =
         (at("nominal.toml"), [at("log-1.csv"), at("log-2.csv")], at("heldout.csv"));
     let output = joulepath(&[
@@ -49,6 +49,8 @@ fn the_json_has_what_is_promised() {
         "json",
         "--effects",
         "torque_offset,friction_level",
+        "--report",
+        &page,
     ]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(matches!(output.status.code(), Some(0 | 1)), "{message}");
@@ -62,6 +64,10 @@ fn the_json_has_what_is_promised() {
     assert_eq!(gap["per_joint"].as_array().unwrap().len(), 6);
     for key in ["noise", "model", "refit", "refit_plus_effect"] {
         assert!(gap["per_joint"][0][key].is_number(), "no {key}");
+    }
+    let page = fs::read_to_string(page).unwrap();
+    for text in ["How far the gap shrinks", "joint 6, over time", "<polyline", "</html>"] {
+        assert!(page.contains(text), "no {text}");
     }
     // The model predicts by itself.
     let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);

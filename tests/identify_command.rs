@@ -208,10 +208,22 @@ fn what_can_not_be_used_ends_with_the_way_out() {
         row.push("1".into());
     }
     let torques = ["tau1", "tau2", "tau3", "tau4", "tau5", "tau6"];
+    let (mut in_degrees, radians) = without(&[
+        "qd1", "qd2", "qd3", "qd4", "qd5", "qd6", "qdd1", "qdd2", "qdd3", "qdd4", "qdd5", "qdd6",
+    ]);
+    for name in &mut in_degrees[1..7] {
+        name.push_str("_deg");
+    }
+    let mut swapped = header();
+    swapped.swap(8, 11);
     for ((header, rows), message) in [
         (scaled(1..7, &degrees), "name the column q1_deg"),
         (scaled(7..13, &degrees), "name the column qd1_deg"),
         (scaled(19..25, &|joint| 1.0 / ratio[joint]), "those of the motors"),
+        (scaled(22..23, &|_| 1.0 / ratio[3]), "tau4 seems to be that of the motor"),
+        ((in_degrees, radians), "they seem to be in radians"),
+        ((swapped, cells(&rows())), "qd2 has little to do with"),
+        (scaled(16..17, &|_| 0.0), "qdd4 is 0.000 times"),
         (scaled(7..13, &|_| -1.0), "other sense"),
         (scaled(17..18, &degrees), "name the column qdd5_deg"),
         (scaled(0..1, &|_| 1000.0), "in ms"),
@@ -421,6 +433,7 @@ fn options_that_do_not_fit_the_logs_are_said() {
     for (option, value, text) in [
         ("--date", "2026-02-29", "2026-11-30"),
         ("--date", "1.2.2026", "2026-11-30"),
+        ("--map", "tau1=x,tau2=x", "column x is given for tau1 and for tau2"),
         ("--period", "-1", "more than 0"),
         ("--period", "1e300", "at most 100000"),
     ] {

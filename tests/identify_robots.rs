@@ -36,6 +36,7 @@ fn rows(log: &Log, range: std::ops::Range<usize>) -> Log {
         values: log.values.iter().map(|x| x[range.clone()].to_vec()).collect(),
         rows: log.rows[range].to_vec(),
         rejected: Vec::new(),
+        degrees: log.degrees.clone(),
     }
 }
 

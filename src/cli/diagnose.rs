@@ -1,6 +1,7 @@
 //! `joulepath diagnose`: which effect separates a model from its robot.
 
 mod channels;
+mod pictures;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,7 @@ use crate::gap::{
 use crate::identify::Hints;
 use crate::log::{Channel, ColumnMap};
 use crate::report::diagnose as report;
+use crate::report::html::diagnose_report;
 use crate::robot::{Model, Use, nearest, ready, to_toml};
 
 /// Where a model and logs of its robot part, which effect it is, and how far the gap shrinks.
@@ -71,6 +73,10 @@ pub struct DiagnoseArgs {
     /// Where the improved model goes, Robot TOML.
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
+
+    /// A page with residuals, shapes of the effects and shares of the gap.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -127,6 +133,7 @@ pub fn of_case(case: &Path, options: &Value) -> anyhow::Result<Value> {
         map: String::new(),
         period: options.get("period").and_then(Value::as_f64),
         out: Some(case.join("improved.toml")),
+        report: None,
         format: Format::Json,
         quiet: true,
     };
@@ -219,6 +226,12 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         output::write(path, to_toml(&found.improved.written).as_bytes())
             .with_context(|| path.display().to_string())?;
         basis.model = path.display().to_string();
+    }
+    if let Some(path) = &args.report {
+        let graded = records(if held.is_empty() { &train } else { &held });
+        let pictures = pictures::pictures(&model, &graded, &found);
+        let page = diagnose_report(&model.name, &found, &basis, &pictures)?;
+        output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
     }
     for text in &basis.notes {
         common::note(args.quiet, text);

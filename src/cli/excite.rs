@@ -559,10 +559,14 @@ fn text(motion: &Motion, outputs: &[String]) -> String {
         );
     }
     let r = &motion.checked.ratios;
+    let torque = match r.torque {
+        0.0 => "not known (no dynamics or no limits)".to_owned(),
+        torque => format!("{torque:.2}"),
+    };
     let _ = writeln!(
         text,
-        "largest share of the limits: position {:.2}, speed {:.2}, acceleration {:.2}, torque {:.2}",
-        r.position, r.velocity, r.acceleration, r.torque
+        "largest share of the limits: position {:.2}, speed {:.2}, acceleration {:.2}, torque {torque}",
+        r.position, r.velocity, r.acceleration
     );
     let _ = writeln!(
         text,

@@ -9,8 +9,8 @@ use sha2::{Digest, Sha256};
 
 use super::common;
 use crate::identify::{
-    Hints, Samples, Source, check_angles, check_torques, cleaned, prepare, synchronised, torques,
-    weight_factor,
+    Hints, Samples, Source, beyond_range, check_angles, check_torques, cleaned, prepare,
+    synchronised, torques, weight_factor,
 };
 use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
 use crate::robot::Model;
@@ -94,6 +94,16 @@ impl Reader<'_> {
             bail!("{shown}: {left_out} rows can't be used and {usable} can{why}");
         }
         check_angles(model, &log).with_context(|| shown.clone())?;
+        for (joint, q) in beyond_range(model, &log) {
+            let [low, high] = model.limits.position[joint].map(f64::to_degrees);
+            self.tell(format!(
+                "{shown}: q{} goes to {:.1} deg, beyond the range of {} ({low:.1} to {high:.1}): is it \
+                 the log of another robot?",
+                joint + 1,
+                q.to_degrees(),
+                model.name
+            ));
+        }
         let torque = torques(model, &log).with_context(|| shown.clone())?;
         check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
         let weight = weight_factor(model, &log, &torque.tau);

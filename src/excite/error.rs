@@ -15,7 +15,7 @@ pub enum ExciteError {
     },
     /// No motion keeps all limits.
     #[error(
-        "no motion was found that keeps clear of itself and of the planes and boxes: move these, or give a smaller --speed-share"
+        "no motion was found that keeps all limits and clear of itself, of planes and boxes: move these, or give a smaller --speed-share or --load"
     )]
     Nowhere,
 }

@@ -9,7 +9,8 @@ use crate::robot::{EffectParameters, Given, Link, Model};
 use super::polish::Fitted;
 
 /// Effects of the log, which robot files keep as numbers of their own.
-const OF_LOG: [&str; 4] = ["apparent_torque", "encoder_offset", "torque_offset", "torque_constant"];
+pub(super) const OF_LOG: [&str; 4] =
+    ["apparent_torque", "encoder_offset", "torque_offset", "torque_constant"];
 /// Least spread of a body's mass along an axis, of the largest.
 const LEAST_SPREAD: f64 = 1e-4;
 
@@ -29,6 +30,12 @@ impl Improved {
         Improved { written: model.clone(), applied: model.clone() }
     }
 
+    /// A model that lists its effects.
+    #[must_use]
+    pub fn of(written: Model) -> Improved {
+        Improved { applied: reapplied(&written), written }
+    }
+
     /// A model with changes `parameters` (in deviations, which `mixing` turns into standard
     /// parameters) and with effects. Effects that no robot file can have are left out.
     #[must_use]
@@ -41,7 +48,7 @@ impl Improved {
         let mut written = model.clone();
         let count = mixing.ncols().min(parameters.len());
         refit(&mut written, &(mixing.columns(0, count) * parameters.rows(0, count)));
-        let mut result = Improved { applied: reapplied(&written), written };
+        let mut result = Improved::of(written);
         for fitted in effects {
             let mut next = result.written.clone();
             add(&mut next, fitted);

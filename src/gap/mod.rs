@@ -3,6 +3,8 @@
 //! [`Record`] is a log ready to be compared, [`Table`] all that may explain the difference,
 //! [`Evidence`] how well some of it does.
 
+mod attribution;
+mod bins;
 mod channel;
 mod column;
 mod diagnose;
@@ -25,8 +27,11 @@ mod runs;
 mod search;
 mod spectrum;
 mod table;
+mod traces;
 mod units;
 
+pub use attribution::{Attribution, Cell, PARAMETERS, attribution};
+pub use bins::Quantity;
 pub use channel::Late;
 pub use column::{Column, Owner, Piece};
 pub use diagnose::{Settings, diagnose};
@@ -42,4 +47,5 @@ pub use record::{Record, RecordKind};
 pub use runs::{Run, RunEffect, RunFound, diagnose_runs};
 pub use search::{Chosen, Found, Search};
 pub use table::{Placed, Table};
+pub use traces::{Profile, Shape, Trace, profile, shapes, trace};
 pub use units::common_factor;

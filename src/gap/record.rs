@@ -86,6 +86,12 @@ impl<'a> Record<'a> {
         records
     }
 
+    /// Whether a joint moves at an instant, so that its torque counts.
+    #[must_use]
+    pub fn moves(&self, joint: usize, row: usize) -> bool {
+        self.window[joint][row] != 0.0
+    }
+
     /// Rows of a series of a joint.
     pub(super) fn rows_of(&self, joint: usize, x: &[f64]) -> Vec<f64> {
         self.spectrum.of(x.iter().zip(&self.window[joint]).map(|(x, w)| x * w))

@@ -59,6 +59,7 @@ pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
         values: log.values.iter().map(of).collect(),
         rows: kept.iter().map(|i| log.rows[*i]).collect(),
         rejected: log.rejected.clone(),
+        degrees: log.degrees.clone(),
     };
     (log, rejected)
 }

@@ -162,6 +162,7 @@ fn shifted(log: &Log, shift: &dyn Fn(f64) -> f64) -> Log {
         values: values.collect(),
         rows: kept.iter().map(|i| log.rows[*i]).collect(),
         rejected: log.rejected.clone(),
+        degrees: log.degrees.clone(),
     }
 }
 

@@ -37,6 +37,12 @@ const SETTLED: f64 = 1e-9;
 /// How much the root mean square of the residuals may grow for the sake of the prior, over the
 /// least of a model that can be.
 const GROWTH: f64 = 1.003;
+/// The same of the sum of squares in units of the noise, for each parameter: more than the data
+/// allow would make an estimate that its own intervals do not hold.
+const ALLOWED: f64 = 1.0;
+
+/// Least [`margin`] of a body: below it, it is flat or a point as far as numbers go.
+pub(super) const BODY: f64 = 1e-9;
 
 /// What may be changed, each with its prior.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,7 +103,7 @@ pub(super) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVecto
     // Where no robot that can be misses as little as the free fit, the least that one misses
     // counts: with the prior off, what the data hardly tell would be anything.
     let least = found.iter().map(|(squares, _)| *squares).fold(f64::INFINITY, f64::min);
-    let allowed = GROWTH * GROWTH * least;
+    let allowed = (GROWTH * GROWTH * least).min(least + ALLOWED * target.beta.len() as f64);
     found.into_iter().find(|(squares, _)| *squares <= allowed).map(|(_, point)| point)
 }
 

@@ -54,6 +54,25 @@ pub enum IdentifyError {
         /// Nearly the largest rate.
         fast: f64,
     },
+    /// Radians where degrees are said.
+    #[error(
+        "the columns q1_deg… change by {reach:.2} at most, which as degrees is hardly a motion: they seem to be in radians; name them q1…"
+    )]
+    Radians {
+        /// What the joint that moves most turns, in the unit of its column.
+        reach: f64,
+    },
+    /// Rates of something else.
+    #[error(
+        "qd{joint} has little to do with the motion of q{joint} ({:.0} % of it): is it another joint's? map the right column, or leave it out and it is differentiated",
+        100.0 * share
+    )]
+    Unrelated {
+        /// From 1.
+        joint: usize,
+        /// Squared correlation.
+        share: f64,
+    },
     /// Rates that are not those of the positions.
     #[error(
         "qd{joint} is {factor:.3} times the rate of q{joint}{}",
@@ -103,6 +122,16 @@ pub enum IdentifyError {
         reach: f64,
         /// Limit \[Nm\].
         limit: f64,
+    },
+    /// A torque of one motor among torques of joints.
+    #[error(
+        "tau{joint} seems to be that of the motor, smaller by the gear ratio {ratio} than those of the other joints: multiply it by the ratio"
+    )]
+    OneMotorSide {
+        /// From 1.
+        joint: usize,
+        /// Its gear ratio.
+        ratio: f64,
     },
     /// Torques of the motors.
     #[error(

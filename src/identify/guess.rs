@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
-use super::consistent::{link, margin, parameters, pseudo_inertia};
-use crate::dynamics::link_parameters;
+use super::consistent::{BODY, link, margin, parameters, pseudo_inertia};
+use crate::dynamics::{Load, link_parameters};
 use crate::robot::{Link, Model};
 
 /// Density of an arm, with what is hollow in it \[kg/m³\].
@@ -18,7 +18,7 @@ const SHORTEST: f64 = 0.1;
 pub(super) fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
     if let Some(link) = model.links.get(joint) {
         let values = link_parameters(link);
-        if margin(&values) > 1e-9 {
+        if margin(&values) > BODY {
             return pseudo_inertia(&values);
         }
     }
@@ -48,4 +48,15 @@ fn bar(to: Vector3<f64>) -> Link {
 pub(super) fn small_body(model: &Model) -> Link {
     let com = model.kinematics.flange.translation.vector;
     Link { mass: 1.0, com, inertia: Matrix3::identity() * 1e-3 }
+}
+
+/// A body in the last link's frame, seen from the flange.
+pub(super) fn at_flange(model: &Model, body: &Link) -> Load {
+    let to = model.kinematics.flange.inverse();
+    let rotation = to.rotation.to_rotation_matrix();
+    Load {
+        mass: body.mass,
+        com: to.transform_point(&body.com.into()).coords,
+        inertia: rotation.matrix() * body.inertia * rotation.matrix().transpose(),
+    }
 }

@@ -31,6 +31,24 @@ impl Solution {
         &inverse * inverse.transpose()
     }
 
+    /// How long a determined column is in the combination `parts` of them, over the whole \[1\].
+    #[must_use]
+    pub fn share(&self, parts: &[(usize, f64)], of: usize) -> f64 {
+        let mut whole = DVector::zeros(self.factor.nrows());
+        let mut own = 0.0;
+        for (column, factor) in parts {
+            let Some(k) = self.determined.iter().position(|known| known == column) else {
+                continue;
+            };
+            let part = self.factor.column(k) * *factor;
+            if *column == of {
+                own = part.norm();
+            }
+            whole += part;
+        }
+        own / whole.norm().max(f64::MIN_POSITIVE)
+    }
+
     /// Condition numbers of the equations as they are, and with columns of one length.
     #[must_use]
     pub fn condition(&self) -> Condition {

@@ -14,8 +14,15 @@ use super::whiteness::Whiteness;
 /// Mean share of the torques' variance that a good model explains, and a fair one.
 const GOOD: f64 = 0.9;
 const FAIR: f64 = 0.7;
+/// The same of the joint that is explained least.
+const GOOD_WORST: f64 = 0.87;
+/// How many times the residuals of the free fit those of a model that can be have where signs or
+/// columns may be wrong, and where they are.
+const ASTRAY: [f64; 2] = [1.5, 3.0];
 /// A model that explains less is none.
 const NONE: f64 = 0.25;
+/// Of a joint that is explained so well nothing is missed.
+const EXACT: f64 = 0.999;
 /// A friction below zero by so many deviations is none.
 const SURE: f64 = 5.0;
 /// Largest shift in time that is tried, and the steps it is tried in, first and then \[s\].
@@ -65,6 +72,9 @@ pub struct Quality {
     pub predicted: Option<Vec<f64>>,
     /// Joints whose Coulomb friction in the free fit surely gives power, from 0.
     pub giving_power: Vec<usize>,
+    /// The joint, from 0, at which the model misses the most times what the free fit does, where
+    /// that is strange.
+    pub astray: Option<(usize, f64)>,
     /// By how much the torques fit the motion better if they are taken from later, \[s\].
     pub late: Option<f64>,
     /// How many times the weight of the robot file's masses the torques carry, where that is
@@ -103,7 +113,7 @@ impl Quality {
         let named = |joints: Vec<usize>| -> String {
             joints.iter().map(|joint| (joint + 1).to_string()).collect::<Vec<_>>().join(", ")
         };
-        let weak = |joint: &usize| self.explained[*joint] < FAIR;
+        let weak = |joint: &usize| self.explained[*joint] < GOOD_WORST;
         let weak: Vec<usize> = (0..self.explained.len()).filter(weak).collect();
         if !weak.is_empty() {
             let shares: Vec<String> =
@@ -113,6 +123,14 @@ impl Quality {
         if !self.giving_power.is_empty() {
             let joints = named(self.giving_power.clone());
             let _ = write!(text, ", friction of joints {joints} would give power");
+        }
+        if let Some((joint, times)) = self.astray {
+            let _ = write!(
+                text,
+                ", joint {} misses {times:.1} times what any masses would: has a column the wrong \
+                 sign or place?",
+                joint + 1
+            );
         }
         if let Some(factor) = self.weight {
             let _ = write!(
@@ -133,13 +151,14 @@ impl Quality {
 }
 
 /// What is said of a model that explains these `shares` of the torques, of those that it was fitted
-/// to and of those that took no part, and misses `rms` \[Nm\] of `samples`; `giving_power` are the
+/// to and of those that took no part, and misses `rms` \[Nm\] of `samples`, of
+/// which the free fit misses `free`; `giving_power` are the
 /// joints whose friction surely does, `whiteness` is that of the free fit.
 #[must_use]
 pub(super) fn quality(
     equations: &Equations<'_>,
     samples: &Samples,
-    rms: &[f64],
+    [rms, free]: [&[f64]; 2],
     (explained, predicted): (Vec<f64>, Option<Vec<f64>>),
     giving_power: Vec<usize>,
     whiteness: &[Option<Whiteness>],
@@ -151,17 +170,23 @@ pub(super) fn quality(
     // A joint that is not explained is not made good by the others.
     let worst = shares().flatten().copied().fold(1.0, f64::min);
     let reversed = 2 * giving_power.len() > moving;
+    // Residuals of some size: what data without noise leave is rounding.
+    let times =
+        |joint: usize| (explained[joint] < EXACT).then(|| (joint, rms[joint] / free[joint]));
+    let astray = (0..rms.len()).filter_map(times).max_by(|a, b| a.1.total_cmp(&b.1));
+    let times = astray.map_or(1.0, |(_, times)| times);
     let grade = if mean_of_fitted < NONE || reversed {
         Grade::None
-    } else if mean < FAIR || worst < NONE {
+    } else if mean < FAIR || worst < NONE || times > ASTRAY[1] {
         Grade::Poor
-    } else if mean < GOOD || worst < FAIR {
+    } else if mean < GOOD || worst < GOOD_WORST || times > ASTRAY[0] {
         Grade::Fair
     } else {
         Grade::Good
     };
+    let astray = astray.filter(|(_, times)| *times > ASTRAY[0]);
     let mut quality =
-        Quality { grade, explained, predicted, giving_power, late: None, weight: None };
+        Quality { grade, explained, predicted, giving_power, astray, late: None, weight: None };
     if quality.grade != Grade::Good {
         quality.late = late(equations, samples);
     }

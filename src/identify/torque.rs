@@ -18,6 +18,8 @@ const ROWS: usize = 3000;
 const DECIDES: f64 = 0.3;
 /// Deviation of the logarithm of a factor against gravity.
 const DEVIATION: f64 = 0.02;
+/// By how much the torques of a robot differ from those of its file.
+const ALIKE: f64 = 3.0;
 /// A factor further than this from all that are known is none of them.
 const UNKNOWN: f64 = 0.12;
 
@@ -160,6 +162,33 @@ pub(super) fn motor_angle(model: &Model, log: &Log, joint: usize, ratio: f64) ->
     column(5).iter().zip(column(4)).map(|(q6, q5)| ratio * (q6 + coupling * q5)).collect()
 }
 
+/// Joints, from 0, whose torques are smaller than those of the others by their gear ratios: those
+/// of their motors.
+#[must_use]
+pub(super) fn motor_side(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<usize> {
+    let (Some(motors), true) = (&model.motors, model.has_dynamics()) else { return Vec::new() };
+    let rough = Rough::new(model, log);
+    let Some(whole) = &rough.whole else { return Vec::new() };
+    let share = |joint: usize| {
+        let measured = rough.at(&tau[joint]);
+        let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
+        let (own, both) =
+            (product(&whole[joint], &whole[joint]), product(&whole[joint], &measured));
+        let related = both * both > DECIDES * own * product(&measured, &measured);
+        (own > 0.0 && related).then(|| both / own)
+    };
+    let shares: Vec<Option<f64>> = (0..model.dof).map(share).collect();
+    let near = |share: f64| (1.0 / ALIKE..ALIKE).contains(&share);
+    if 2 * shares.iter().flatten().filter(|share| near(**share)).count() < model.dof {
+        return Vec::new();
+    }
+    let is_motor = |joint: &usize| {
+        let ratio = motors.ratio[*joint];
+        ratio > ALIKE * ALIKE && shares[*joint].is_some_and(|share| near(share * ratio))
+    };
+    (0..model.dof).filter(is_motor).collect()
+}
+
 /// What a robot like the model would need, at some of the rows.
 struct Rough {
     rows: Vec<usize>,
@@ -291,12 +320,31 @@ impl Rough {
                 ),
             );
         }
+        // What other factor the masses of a robot file that are a little off would ask for.
+        let known = clarke.iter().chain(&of_root).map(|(other, ..)| *other);
+        let others: Vec<String> = known
+            .filter(|other| (other / factor).ln().abs() > f64::EPSILON)
+            .filter(|other| (needed / other).ln().abs() < UNKNOWN)
+            .map(|other| {
+                let masses = 100.0 * ((needed / other).ln().abs()).exp_m1();
+                format!("{other:.4} with masses {masses:.0} % off")
+            })
+            .collect();
+        let doubt = if others.is_empty() {
+            String::new()
+        } else {
+            format!(
+                "; not surely: it would be {}; a known payload, or the factor of the recorder, \
+                 tells",
+                others.join(", ")
+            )
+        };
         let per = if peak { ", torque constant per A of amplitude" } else { "" };
         (
             *factor,
             format!(
                 "scale of the currents: gravity asks for {needed:.3}; taken as {factor:.4} \
-                 (factor of the space vector: {what}{per})"
+                 (factor of the space vector: {what}{per}){doubt}"
             ),
         )
     }

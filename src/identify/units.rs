@@ -5,13 +5,24 @@ use crate::log::{Channel, Log, derivatives, median_step};
 use crate::robot::Model;
 
 use super::error::IdentifyError;
+use super::torque::motor_side;
 
 /// The share of the rates that counts for the largest.
 const FAST: f64 = 0.99;
 /// Largest rate of a joint whose limit is not known \[rad/s\].
 const LARGEST: f64 = 15.0;
-/// Over a limit by this factor is no overshoot.
+/// Over the range of a joint by this factor is no overshoot.
 const FAR: f64 = 2.0;
+/// The same of its rate: robot files have round numbers for limits.
+const FAST_BEYOND: f64 = 8.0;
+/// Degrees within which no joint of a motion stays that was made to tell anything.
+const TINY: f64 = 6.3;
+/// Least angle that a joint turns, in the unit of its column, if it is taken to move.
+const TURNS: f64 = 0.3;
+/// Time over which rates and positions are compared \[s\].
+const WINDOW: f64 = 0.1;
+/// Changes smaller than this share of what they should be are none.
+const STILL: f64 = 1e-3;
 /// By how much a factor may miss what it is taken for.
 const NEAR: f64 = 1.3;
 /// The same of a torque on the motor's side, as the model is only roughly known.
@@ -42,6 +53,9 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
     if differentiated && step > SLOWEST {
         return Err(IdentifyError::Slow { step });
     }
+    if let Some(reach) = radians_in_degrees(model, log) {
+        return Err(IdentifyError::Radians { reach });
+    }
     for joint in 0..log.joints() {
         let Some(q) = log.column(Channel::Position(joint)) else { continue };
         let mut rates: Vec<f64> = q
@@ -56,7 +70,7 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
         let [low, high] = model.limits.position[joint];
         let range = low.abs().max(high.abs());
         let beyond =
-            |scale: f64| reach * scale > FAR * range.max(1.0) || fast * scale > FAR * limit;
+            |scale: f64| reach * scale > FAR * range.max(1.0) || fast * scale > FAST_BEYOND * limit;
         if beyond(1.0) && !beyond(1.0 / DEGREES) {
             return Err(IdentifyError::Degrees { joint: joint + 1, reach, fast });
         }
@@ -65,6 +79,14 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
             factor(&t[..window], &of[..window], rates)
                 .filter(|factor| !(1.0 / NEAR..NEAR).contains(factor))
         };
+        let turned = |q: &[f64]| {
+            q.iter().fold(f64::MIN, |m, q| m.max(*q)) - q.iter().fold(f64::MAX, |m, q| m.min(*q))
+        };
+        if let Some(qd) = qd.filter(|_| turned(q) > TURNS)
+            && let Some(share) = unrelated(t, q, qd)
+        {
+            return Err(IdentifyError::Unrelated { joint: joint + 1, share });
+        }
         if let Some(factor) = qd.and_then(|qd| wrong(q, qd)) {
             return Err(IdentifyError::Rates { joint: joint + 1, factor });
         }
@@ -72,9 +94,69 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
         if let Some(factor) = qd.zip(qdd).and_then(|(qd, qdd)| wrong(qd, qdd)) {
             return Err(IdentifyError::Accelerations { joint: joint + 1, factor });
         }
+        if qdd.is_some_and(|qdd| turned(q) > TURNS && turned(qdd) == 0.0) {
+            return Err(IdentifyError::Accelerations { joint: joint + 1, factor: 0.0 });
+        }
     }
     Ok(())
 }
+
+/// How far the joint that moves most reaches \[rad\], where all angles were given in degrees,
+/// no joint turns as if they were, and all of them could be radians.
+fn radians_in_degrees(model: &Model, log: &Log) -> Option<f64> {
+    let mut most = 0.0_f64;
+    for joint in 0..log.joints() {
+        let channel = Channel::Position(joint);
+        let q = log.column(channel).filter(|_| log.degrees.contains(&channel))?;
+        let of = |pick: fn(f64, f64) -> f64| q.iter().copied().reduce(pick).unwrap_or(0.0);
+        let ends = [of(f64::min), of(f64::max)].map(|q| q * DEGREES);
+        let [low, high] = model.limits.position[joint];
+        if ends[1] - ends[0] > TINY
+            || ends[0] < FAR * low.min(-1.0)
+            || ends[1] > FAR * high.max(1.0)
+        {
+            return None;
+        }
+        most = most.max(ends[1] - ends[0]);
+    }
+    (most > TURNS).then_some(most)
+}
+
+/// The share of a joint's turning that its logged rates have to do with, where it is little:
+/// squared correlation over pieces long enough for the steps of an encoder.
+fn unrelated(t: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
+    let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
+    let mut from = 0;
+    for to in 1..t.len() {
+        if t[to] - t[from] < WINDOW {
+            continue;
+        }
+        let pieces = (from..to).map(|k| 0.5 * (qd[k] + qd[k + 1]) * (t[k + 1] - t[k]));
+        let (turned, said) = (q[to] - q[from], pieces.sum::<f64>());
+        both += turned * said;
+        own += turned * turned;
+        theirs += said * said;
+        from = to;
+    }
+    let share = if theirs > STILL * STILL * own { both * both / (own * theirs) } else { 0.0 };
+    (own > 0.0 && share < RELATED).then_some(share)
+}
+
+/// Joints that go far beyond the robot's range, from 0, with how far \[rad\].
+#[must_use]
+pub fn beyond_range(model: &Model, log: &Log) -> Vec<(usize, f64)> {
+    let furthest = |joint: usize| {
+        let q = log.column(Channel::Position(joint))?;
+        let [low, high] = model.limits.position[joint];
+        let over = q.iter().map(|q| (q - high).max(low - q)).enumerate();
+        let (row, over) = over.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (over > OVERSHOT).then_some((joint, q[row]))
+    };
+    (0..log.joints()).filter_map(furthest).collect()
+}
+
+/// Beyond a limit by this angle no joint comes to stand \[rad\].
+const OVERSHOT: f64 = 0.1;
 
 /// How many times the rates of `x` the logged ones are; `None` where they have little to do
 /// with each other.
@@ -124,6 +206,10 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
         let factor = factor * motors.ratio[*joint];
         motors.ratio[*joint] > ROUGHLY * ROUGHLY && factor > 1.0 / ROUGHLY && factor < ROUGHLY
     };
+    if let Some(joint) = motor_side(model, log, tau).first() {
+        let ratio = motors.ratio[*joint];
+        return Err(IdentifyError::OneMotorSide { joint: joint + 1, ratio });
+    }
     if !carried.is_empty() && carried.iter().all(on_motor_side) {
         let joint = carried[0].0;
         return Err(IdentifyError::MotorSide { joint: joint + 1, ratio: motors.ratio[joint] });

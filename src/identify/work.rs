@@ -6,14 +6,14 @@ use crate::dynamics::{
     BaseParameters, JOINT, Load, Parameters, RIGID, base_parameters_among, link_parameters,
     parameters,
 };
-use crate::robot::{Link, Model, Motors, Origin, Provenance};
+use crate::robot::{Model, Motors, Origin, Provenance};
 
-use super::consistent::{Piece, Target, consistent, link, margin, pseudo_inertia};
+use super::consistent::{BODY, Piece, Target, consistent, link, margin, pseudo_inertia};
 use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
 use super::fit::{Fit, Weighting, fit, reweighted};
-use super::guess::{prior, small_body};
+use super::guess::{at_flange, prior, small_body};
 use super::least_squares::{Solution, solve};
 use super::misses::Misses;
 use super::quality::{Quality, explained, quality, surely_negative};
@@ -138,8 +138,7 @@ pub fn identify(
     let training_misses = Misses::of(&of_model, std::slice::from_ref(&fit.factors));
     let on_held_out =
         |beta: &DVector<f64>| (!held_out.is_empty()).then(|| Misses::of(beta, &held_out));
-    let (validation_misses, unconstrained_validation) =
-        (on_held_out(&of_model), on_held_out(&fit.solution.beta));
+    let validation_misses = on_held_out(&of_model);
 
     let giving = |joint: &usize| {
         let name = format!("fc{}", joint + 1);
@@ -160,7 +159,7 @@ pub fn identify(
     let quality = quality(
         &equations,
         training,
-        &training_misses.rms,
+        [&training_misses.rms, &fit.rms],
         (fitted, predicted),
         giving_power,
         &fit.whiteness,
@@ -175,7 +174,7 @@ pub fn identify(
     // They are in the numbers now.
     identified.effects.clear();
     let physically_consistent =
-        identified.links.iter().all(|link| margin(&link_parameters(link)) > 0.0);
+        identified.links.iter().all(|link| margin(&link_parameters(link)) > BODY);
     Ok(Identified {
         model: identified,
         parameters: values,
@@ -183,7 +182,7 @@ pub fn identify(
         coupling,
         training: training_misses,
         validation: validation_misses,
-        unconstrained_validation,
+        unconstrained_validation: on_held_out(&fit.solution.beta),
         cross_rms,
         physically_consistent,
         undetermined,
@@ -348,8 +347,8 @@ fn pieces(
     pieces
 }
 
-/// Where a rotor or a viscous friction that can't be below 0 costs the fit much, the sum of
-/// both as the log shows them: a delay, a filter or elasticity looks like less than nothing.
+/// Where a rotor or a viscous friction that can't be below 0 costs the fit much, both as the log
+/// shows them: a delay, a filter or elasticity looks like less than nothing.
 fn with_apparent(
     pieces: &[Piece],
     target: &Target<'_>,
@@ -406,6 +405,7 @@ const WORTH: f64 = 0.005;
 const DIGITS: f64 = 1e-4;
 /// Size of a parameter of which nothing is known, in its SI unit.
 const SMALL: f64 = 1e-3;
+
 /// The model with the free parameters put in.
 fn assembled(
     nominal: &Model,
@@ -430,11 +430,11 @@ fn assembled(
     }
     let joints = match settings.free {
         Free::All => {
-            // A link of which the motion says nothing stays as it was.
+            // A link of which the motion says nothing stays as it was, where it was a body.
             let found = values[..RIGID * n].chunks(RIGID).map(link).enumerate();
             model.links = found
                 .map(|(k, new)| match nominal.links.get(k) {
-                    Some(old) if !told[k] => old.clone(),
+                    Some(old) if !told[k] && margin(&link_parameters(old)) > BODY => old.clone(),
                     _ => new,
                 })
                 .collect();
@@ -588,15 +588,4 @@ fn with_rotors(nominal: &Model, inertia: &[f64]) -> Motors {
     motors.rotor_inertia =
         inertia.iter().zip(&motors.ratio).map(|(at_joint, n)| at_joint / (n * n)).collect();
     motors
-}
-
-/// A body in the last link's frame, seen from the flange.
-fn at_flange(model: &Model, body: &Link) -> Load {
-    let to = model.kinematics.flange.inverse();
-    let rotation = to.rotation.to_rotation_matrix();
-    Load {
-        mass: body.mass,
-        com: to.transform_point(&body.com.into()).coords,
-        inertia: rotation.matrix() * body.inertia * rotation.matrix().transpose(),
-    }
 }

@@ -9,13 +9,13 @@ use super::fit::without_errors;
 use super::samples::{Block, Samples, Source};
 
 /// Couplings that are tried first.
-const TRIED: [f64; 4] = [1.0, -1.0, 0.5, -0.5];
+const TRIED: [f64; 8] = [1.0, -1.0, 0.5, -0.5, 1.5, -1.5, 2.0, -2.0];
 /// Least change of the logarithms of both residuals that tells a coupling.
 const TOLD: f64 = 0.4;
 /// How far from a tried coupling it is sought.
 const AROUND: f64 = 0.3;
 /// Steps of the search.
-const STEPS: usize = 8;
+const STEPS: usize = 16;
 /// A coupling as near to a tried one as this is that one.
 const ROUND: f64 = 0.03;
 /// Instants that are enough.

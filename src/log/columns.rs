@@ -31,6 +31,9 @@ impl ColumnMap {
             if pairs.iter().any(|(known, _)| known.eq_ignore_ascii_case(&channel)) {
                 return Err(LogError::MappedTwice { name: channel });
             }
+            if let Some((other, _)) = pairs.iter().find(|(_, known)| *known == column) {
+                return Err(LogError::ColumnTwice { column, other: other.clone(), name: channel });
+            }
             pairs.push((channel, column));
         }
         Ok(ColumnMap { pairs })

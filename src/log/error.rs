@@ -5,9 +5,20 @@ use thiserror::Error;
 /// A log that can't be read.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum LogError {
+    /// One column for two channels.
+    #[error("--map: column {column} is given for {other} and for {name}: leave one out")]
+    ColumnTwice {
+        /// The column.
+        column: String,
+        /// The channel that it is already.
+        other: String,
+        /// The channel that it is to be too.
+        name: String,
+    },
     /// No header, or none that is understood.
     #[error(
-        "no column t in the header '{header}': the first row names the columns, such as t,q1,q2,tau1,tau2, or --map says which is which"
+        "no column t in the header{}: the first row names the columns, such as t,q1,q2,tau1,tau2, or --map says which is which",
+        if header.trim().is_empty() { " (the file is empty)".to_owned() } else { format!(" '{header}'") }
     )]
     NoTime {
         /// The first row.

@@ -73,6 +73,7 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
         values: other.values.iter().map(|x| kept.iter().map(|i| x[*i]).collect()).collect(),
         rows: kept.iter().map(|i| other.rows[*i]).collect(),
         rejected: positions.rejected.iter().chain(&other.rejected).cloned().collect(),
+        degrees: positions.degrees.clone(),
     };
     for (channel, values) in log.channels.iter().zip(&mut log.values) {
         if *channel == Channel::Time {

@@ -48,6 +48,8 @@ pub struct Log {
     pub rows: Vec<u64>,
     /// Rows that were left out.
     pub rejected: Vec<Rejected>,
+    /// Angles that the file had in degrees.
+    pub degrees: Vec<Channel>,
 }
 
 /// A row that can't be used.

@@ -24,6 +24,11 @@ impl Rows {
             values: vec![Vec::new(); columns.len()],
             rows: Vec::new(),
             rejected: Vec::new(),
+            degrees: columns
+                .iter()
+                .filter(|column| column.named.unit != 1.0)
+                .map(|column| column.named.channel)
+                .collect(),
         };
         let time = log.channels.iter().position(|channel| *channel == Channel::Time).unwrap_or(0);
         Rows { log, time }

@@ -129,7 +129,7 @@ fn said(of: &Said) -> Value {
 }
 
 /// What to measure next, and why.
-fn next(found: &Diagnosis) -> Value {
+pub(super) fn next(found: &Diagnosis) -> Value {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
         of.class.len() > 1
             || found.verdict != Verdict::Effect && !of.effect.experiment[1].is_empty()
@@ -144,11 +144,9 @@ fn next(found: &Diagnosis) -> Value {
     }
 }
 
-/// For people.
-#[must_use]
-pub fn text(found: &Diagnosis, basis: &Basis) -> String {
-    let mut out = String::new();
-    let sentence = match found.verdict {
+/// A verdict in words.
+pub(super) fn sentence(verdict: Verdict) -> &'static str {
+    match verdict {
         Verdict::NoGap => "no gap: model and robot are the same as far as the logs show",
         Verdict::ParametersOnly => "parameters only: no effect, the model's numbers are others",
         Verdict::Effect => "an effect that the model has not",
@@ -156,8 +154,14 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         Verdict::Unknown => "a gap that no known law explains",
         Verdict::NotSeparable => "a gap that more laws explain than these logs can tell apart",
         Verdict::NotExcited => "the motion shows too little",
-    };
-    let _ = writeln!(out, "{sentence}");
+    }
+}
+
+/// For people.
+#[must_use]
+pub fn text(found: &Diagnosis, basis: &Basis) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "{}", sentence(found.verdict));
     for (title, all) in [("found", &found.effects), ("considered", &found.candidates)] {
         for of in all {
             let joints: Vec<String> =

@@ -41,14 +41,14 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
         .enumerate()
         .map(|(k, row)| {
             json!({
-                "name": found.base.name(*row),
+                "name": found.name(*row),
                 "value": fit.solution.beta[*row],
                 "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
             })
         })
         .collect();
     let held_out = found.validation.as_ref();
-    let names = |rows: &[usize]| rows.iter().map(|row| found.base.name(*row)).collect::<Vec<_>>();
+    let names = |rows: &[usize]| rows.iter().map(|row| found.name(*row)).collect::<Vec<_>>();
     let logs = |logs: &[(String, String, usize, usize)]| -> Vec<Value> {
         let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| json!({"path": path, "sha256": hash, "rows": rows, "left_out": left_out});
         logs.iter().map(log).collect()
@@ -181,7 +181,12 @@ fn joints(found: &Identified) -> Vec<Value> {
             entry.insert("excited".into(), json!(!found.resting.contains(&joint)));
             for (kind, key) in JOINT_KEYS.iter().enumerate() {
                 let index = rigid + JOINT * joint + kind;
-                let row = found.base.independent.iter().position(|known| *known == index);
+                let row = found
+                    .base
+                    .independent
+                    .iter()
+                    .position(|known| *known == index)
+                    .filter(|row| found.name(*row) == found.base.name(*row));
                 let place = row.and_then(|row| {
                     let k = fit.solution.determined.iter().position(|known| *known == row)?;
                     Some((row, k))
@@ -249,7 +254,7 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
         let _ = write!(
             text,
             "\n[[identification.base_parameter]]\nname = {}\nvalue = {:?}\nsd = {:?}\n",
-            quoted(&found.base.name(*row)),
+            quoted(&found.name(*row)),
             found.fit.solution.beta[*row],
             found.fit.covariance[(k, k)].max(0.0).sqrt()
         );
@@ -307,6 +312,7 @@ pub fn text(found: &Identified, basis: &Basis) -> String {
             white(fit.whiteness[joint].as_ref())
         );
     }
+    text.push_str("RMS over the instants at which the joint moves; standing still tells nothing of friction\n");
     if let Some(of) = &basis.descent {
         let each: Vec<String> = of.rms.iter().map(|rms| shown(*rms, 3)).collect();
         let _ = writeln!(
@@ -325,7 +331,7 @@ pub fn text(found: &Identified, basis: &Basis) -> String {
             "{:>12.5} {:>12.5}  {}",
             fit.solution.beta[*row],
             fit.covariance[(k, k)].max(0.0).sqrt(),
-            found.base.name(*row)
+            found.name(*row)
         );
     }
     let missing = undetermined(found);

@@ -7,7 +7,10 @@ mod excited;
 mod simulated;
 
 use joulepath::effects::{ALL, Motion, find as effect};
-use joulepath::gap::{Diagnosis, Record, Settings, Trust, Verdict, common_factor, diagnose};
+use joulepath::gap::{
+    Diagnosis, PARAMETERS, Quantity, Record, Settings, Trust, Verdict, attribution, common_factor,
+    diagnose, predicted, shapes,
+};
 use joulepath::identify::Samples;
 use joulepath::robot::Model;
 
@@ -62,6 +65,63 @@ fn offsets_are_found_with_their_size() {
     let believed = 0.002 * record[0].motion.scale(4).torque[1];
     assert!((of.value - expected).abs() < WITHIN * of.sd.hypot(believed), "{of:?} {expected}");
     assert!(found.shrink.by_effect.value > SHRINKS, "{:?}", found.shrink);
+}
+
+/// What all take away together is what the models miss less, and the effect has its own joint's part.
+#[test]
+fn shares_of_the_gap_add_up() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 3);
+    let stribeck = effect("stribeck").unwrap();
+    let size = |_: &Motion<'_>| vec![4.0, 0.15];
+    let robot = Robot { model: &truth, effect: Some((stribeck, 1, &size)), noise: 0.005 };
+    let found = diagnosed(&nominal, &robot);
+    let ids: Vec<&'static str> = found.effects.iter().map(|said| said.effect.id).collect();
+    assert_eq!(ids, ["stribeck"]);
+    let samples = robot.samples(3);
+    let records = Record::all(&nominal, &samples);
+    let shared = attribution(&records, &nominal, [&found.refit, &found.improved], &ids);
+    assert_eq!(shared.players, ["stribeck", PARAMETERS]);
+    // Squares of both models, joint by joint, where the joint moves.
+    let squares = |model: &Model| -> Vec<f64> {
+        let said = predicted(&records[0], model);
+        let of = |joint: usize| {
+            let (mut missed, mut size) = (0.0, 0.0);
+            for (row, said) in said[joint].iter().enumerate() {
+                if records[0].moves(joint, row) {
+                    let measured = records[0].measured[joint][row];
+                    missed += (measured - said).powi(2);
+                    size += measured * measured;
+                }
+            }
+            missed / size
+        };
+        (0..nominal.dof).map(of).collect()
+    };
+    let [before, after] = [&nominal, &found.improved.applied].map(squares);
+    for joint in 0..nominal.dof {
+        let (gap, taken) = shared.of_joint(joint);
+        let (gap_of_pieces, sum) = shared
+            .cells
+            .iter()
+            .filter(|cell| cell.joint == joint && cell.quantity == Quantity::Speed)
+            .fold((0.0, 0.0), |(a, b), of| (a + of.gap, b + of.taken.iter().sum::<f64>()));
+        assert!((gap - gap_of_pieces).abs() < 1e-9);
+        assert!((taken.iter().sum::<f64>() - sum).abs() < 1e-9);
+        let share = gap / shared.of_joint(0).0 * before[0];
+        assert!((share / before[joint] - 1.0).abs() < 1e-6, "{share} {}", before[joint]);
+        let left = (gap - sum) / gap * before[joint];
+        assert!((left / after[joint] - 1.0).abs() < 1e-3, "{left} {}", after[joint]);
+    }
+    let most = |player: usize| -> usize {
+        let taken = |joint: &usize| shared.of_joint(*joint).1[player];
+        (0..nominal.dof).max_by(|a, b| taken(a).total_cmp(&taken(b))).unwrap()
+    };
+    assert_eq!(most(0), 1);
+    let shapes = shapes(&records, &found.improved, &found.effects[0]);
+    assert_eq!(shapes.len(), 1);
+    assert_eq!((shapes[0].joint, shapes[0].profile.quantity), (1, Quantity::Speed));
+    assert!(shapes[0].profile.points.iter().all(|[_, _, half]| half.is_finite()));
 }
 
 #[test]

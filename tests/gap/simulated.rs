@@ -71,7 +71,7 @@ impl Robot<'_> {
         channels.extend((0..n).map(Channel::Torque));
         let tau = values[1 + n..].to_vec();
         let rows = (2..values[0].len() as u64 + 2).collect();
-        let log = Log { channels, values, rows, rejected: Vec::new() };
+        let log = Log { channels, values, rows, rejected: Vec::new(), degrees: Vec::new() };
         prepare(&log, &tau, Hints { period: Some(10.0), cutoff: None }).unwrap()
     }
 }

@@ -199,6 +199,40 @@ fn a_joint_that_rests_is_not_determined() {
     assert_eq!(found.model.friction.coulomb[3], model.friction.coulomb[3]);
 }
 
+/// With the arm at rest, inertias and rotors of the wrist are not told apart: values are of sums, and
+/// their names say so.
+#[test]
+fn a_value_is_of_what_its_name_says() {
+    let model = irb1600();
+    let mut motion = series(7);
+    for joint in &mut motion.amplitude[..4] {
+        joint.fill([0.0; 2]);
+    }
+    let mut random = fastrand::Rng::with_seed(10);
+    let log = log(&model, &motion, [20.0, 0.01], With::Rates, [0.1, 0.0], &mut random);
+    let samples = samples(&log, &model);
+    let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
+    let (solution, truth) = (&found.fit.solution, truth(&model, &found.base));
+    let mut sums = 0;
+    for (k, row) in solution.determined.iter().enumerate() {
+        let mut expected = truth[*row];
+        for (column, parts) in &solution.dependent {
+            for (_, factor) in parts.iter().filter(|(of, _)| of == row) {
+                expected += factor * truth[*column];
+            }
+        }
+        let sd = found.fit.covariance[(k, k)].sqrt();
+        let off = (solution.beta[*row] - expected) / sd;
+        assert!(off.abs() < SD_OF_ALL, "{}: {off}", found.name(*row));
+        let alone = (solution.beta[*row] - truth[*row]) / sd;
+        if alone.abs() > SD_OF_ALL {
+            assert_ne!(found.name(*row), found.base.name(*row));
+            sums += 1;
+        }
+    }
+    assert!(sums > 0);
+}
+
 #[test]
 fn friction_alone_and_a_payload_are_found() {
     let model = irb1600();

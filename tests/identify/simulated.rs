@@ -53,5 +53,11 @@ pub(crate) fn log(
         values.drain(1 + n..=3 * n);
         channels.drain(1 + n..=3 * n);
     }
-    Log { channels, values, rows: (2..count as u64 + 2).collect(), rejected: Vec::new() }
+    Log {
+        channels,
+        values,
+        rows: (2..count as u64 + 2).collect(),
+        rejected: Vec::new(),
+        degrees: Vec::new(),
+    }
 }

@@ -32,6 +32,7 @@ struct JointRow {
     joint: usize,
     train: String,
     held_out: String,
+    free: String,
     relative: String,
     memory: String,
     white: String,
@@ -45,6 +46,17 @@ struct ParameterRow {
     high: String,
     essential: bool,
 }
+
+#[derive(Serialize)]
+struct LogRow {
+    path: String,
+    hash: String,
+    rows: usize,
+    left_out: usize,
+}
+
+/// Digits of a hash that tell logs apart.
+const SHOWN: usize = 12;
 
 #[derive(Serialize)]
 struct Missing {
@@ -63,11 +75,13 @@ pub fn identify_report(
 ) -> Result<String, ReportError> {
     let fit = &found.fit;
     let held_out = found.validation.as_ref().map_or(&found.cross_rms, |misses| &misses.rms);
+    let free = found.unconstrained_validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms);
     let joints: Vec<JointRow> = (0..found.base.dof)
         .map(|joint| JointRow {
             joint: joint + 1,
             train: fixed(found.training.rms[joint], 3),
             held_out: fixed(held_out[joint], 3),
+            free: fixed(free[joint], 3),
             relative: fixed(100.0 * found.training.relative[joint], 1),
             memory: fixed(fit.memory[joint], 2),
             white: white(fit.whiteness[joint].as_ref()),
@@ -82,7 +96,7 @@ pub fn identify_report(
         .map(|(k, row)| {
             let (value, sd) = (fit.solution.beta[*row], fit.covariance[(k, k)].max(0.0).sqrt());
             ParameterRow {
-                name: found.base.name(*row),
+                name: found.name(*row),
                 value: fixed(value, 5),
                 low: fixed(value - INTERVAL * sd, 5),
                 high: fixed(value + INTERVAL * sd, 5),
@@ -100,8 +114,7 @@ pub fn identify_report(
     let alike: Vec<String> = collinear(fit)
         .iter()
         .map(|group| {
-            let names: Vec<String> =
-                group.parameters.iter().map(|row| found.base.name(*row)).collect();
+            let names: Vec<String> = group.parameters.iter().map(|row| found.name(*row)).collect();
             format!("{} (condition index {:.0})", names.join(" · "), group.index)
         })
         .collect();
@@ -123,7 +136,15 @@ pub fn identify_report(
     context.insert("alike", &alike);
     context.insert("notes", &basis.notes);
     context.insert("quality", &found.quality.sentence());
-    context.insert("logs", &basis.logs.iter().map(|log| &log.0).collect::<Vec<_>>());
+    let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| LogRow {
+        path: path.clone(),
+        hash: hash.chars().take(SHOWN).collect(),
+        rows: *rows,
+        left_out: *left_out,
+    };
+    context.insert("logs", &basis.logs.iter().map(log).collect::<Vec<_>>());
+    context.insert("date", &basis.date);
+    context.insert("coupling", &found.coupling.map(|coupling| fixed(coupling, 3)));
     context.insert("title", &traces.title);
     context.insert("plots", &plots(traces));
     let mut tera = Tera::default();

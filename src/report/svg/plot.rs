@@ -58,10 +58,11 @@ impl Plot<'_> {
         };
         let rules: Vec<&Rule> = self.rules.iter().filter(|rule| reached(rule)).collect();
         let levels = rules.iter().map(|rule| rule.value);
-        let end = all().map(|p| p[0]).filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let abscissas = || all().map(|p| p[0]).filter(|x| x.is_finite());
+        let (start, end) = (abscissas().fold(0.0, f64::min), abscissas().fold(0.0, f64::max));
         let frame = Frame::new(
             size,
-            Scale::exact(0.0, end, X_TICKS),
+            Scale::exact(start, end, X_TICKS),
             Scale::with_zero(ordinates().chain(levels), Y_TICKS),
         );
         let mut content = String::new();
