@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Isometry3, Vector3};
 
-use super::flow::{Flow, Next, Place, Through};
+use super::flow::{Class, Flow, Next, Place, Through};
 use super::quiet::Quiet;
 use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
@@ -153,6 +153,19 @@ impl<'c> Context<'c> {
     /// The constant that an expression of a routine has.
     pub fn constant(&self, routine: RoutineId, expr: &Expr) -> Option<Datum> {
         constant(self.program, &self.quiet, routine, expr)
+    }
+
+    /// Whether the program has a purpose besides its movements: it waits, sets an output, or does
+    /// something else that a robot may do where it stands.
+    pub fn works(&self) -> bool {
+        self.flow.graphs().any(|(routine, graph, reachable)| {
+            graph.nodes.iter().zip(reachable).any(|(node, reachable)| match node.step {
+                GraphStep::Statement(stmt) if *reachable => {
+                    matches!(self.flow.class(routine, stmt), Class::Output | Class::Wait)
+                }
+                _ => false,
+            })
+        })
     }
 
     /// The calls of instructions with this name (lower case), where control can get.

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use super::finding::{Per, Saving};
 use crate::energy::account::at_rest;
 use crate::energy::{Account, EnergyParts, account};
-use crate::ir::movement::Wait;
+use crate::ir::movement::{Movement, Wait};
 use crate::motion::timeline::{Run, Simulation, WaitBasis, What};
 use crate::motion::{Options, Step, replay};
 use crate::path::joint_path::{DOF, Joints};
@@ -177,6 +177,14 @@ fn window(simulation: &Simulation, event: usize) -> RangeInclusive<usize> {
     first..=next_run(simulation, event)
 }
 
+/// The last movement before an event.
+fn movement_before(simulation: &Simulation, event: usize) -> Option<&Movement> {
+    simulation.events[..event].iter().rev().find_map(|event| match &event.what {
+        What::Run(run) => run.moves.last().map(|record| &record.movement),
+        _ => None,
+    })
+}
+
 /// The next run behind an event, or the last event.
 fn next_run(simulation: &Simulation, event: usize) -> usize {
     let last = simulation.events.len() - 1;
@@ -194,9 +202,10 @@ fn settle_window(
 ) -> Option<(RangeInclusive<usize>, Simulation)> {
     let simulation = &cycle.simulation;
     let (first, mut last) = window.into_inner();
+    let before = movement_before(simulation, first);
     for _ in 0..=MOST_BEHIND {
         let (start, steps) = steps(cycle, first..=last, spans, change)?;
-        let after = replay(model, &cycle.options, start, steps);
+        let after = replay(model, &cycle.options, start, before, steps);
         let sound = after.events.iter().all(|event| match &event.what {
             What::Run(run) => run.problem.is_none(),
             What::Left(_) => false,

@@ -47,15 +47,15 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let is_move = |step: usize| matches!(context.trace[step].what, Deed::Move(_));
     let moves: Vec<usize> = (0..context.trace.len()).filter(|step| is_move(*step)).collect();
     let Some(home) = moves.first().and_then(|step| goal(context, *step)) else { return };
+    // What is done before it goes home is done elsewhere.
     let idle = |step: usize| {
-        let between = step > 0 && step + 1 < context.trace.len();
-        between
-            && is_move(step - 1)
+        let away = |step: usize| goal(context, step).is_none_or(|goal| !goal.is_same(&home));
+        let before = context.trace[..step].iter().rposition(|done| moves_or_leaves(&done.what));
+        goal(context, step).is_some_and(|goal| goal.is_same(&home))
+            && before.is_some_and(|before| is_move(before) && away(before))
+            && step + 1 < context.trace.len()
             && is_move(step + 1)
-            && goal(context, step).is_some_and(|goal| goal.is_same(&home))
-            && [step - 1, step + 1]
-                .iter()
-                .all(|other| goal(context, *other).is_none_or(|goal| !goal.is_same(&home)))
+            && away(step + 1)
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for site in &context.sites {
@@ -78,6 +78,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         finding.fix = remove(context, site).map(|edit| fix(Applicability::Unsafe, edit));
         findings.push(finding);
     }
+}
+
+fn moves_or_leaves(deed: &Deed<'_>) -> bool {
+    matches!(deed, Deed::Move(_) | Deed::Left(_))
 }
 
 fn goal(context: &Context<'_>, step: usize) -> Option<super::super::site::Goal> {
