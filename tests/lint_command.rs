@@ -134,6 +134,15 @@ fn backups_are_asked_for_settings_that_save() {
                   \"DI\" -Label \"System Enable Energy Saving\"\n";
     let unused = backup(signal, "MOC:CFG_1.0:6:0::\n");
     assert_eq!(codes(&["--select", "system"], unused.path()), ["EW801", "EW802"]);
+    // A label that repeats the name ties nothing; a statement of another task does.
+    let labelled = signal.replace("System Enable Energy Saving", "diSyEnEnSav");
+    let labelled = backup(&labelled, "MOC:CFG_1.0:6:0::\n");
+    assert_eq!(codes(&["--select", "EW802"], labelled.path()), ["EW802"]);
+    let other = labelled.path().join("RAPID/TASK2/PROGMOD");
+    fs::create_dir_all(&other).unwrap();
+    let text = "MODULE N\n    PROC main()\n        WaitDI diSyEnEnSav,1;\n    ENDPROC\nENDMODULE\n";
+    fs::write(other.join("N.mod"), text).unwrap();
+    assert!(codes(&["--select", "EW802"], labelled.path()).is_empty());
     let used = format!("{signal}#\nSYSSIG_IN:\n\n      -Signal \"diSyEnEnSav\" -Action \"X\"\n");
     let motion = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
     let used = backup(&used, motion);

@@ -9,7 +9,7 @@ use super::quiet::Quiet;
 use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
 use super::trace::{Deed, Done, executions};
-use super::weigh::{Change, Cycle, Weighed, longer, weigh};
+use super::weigh::{Change, Cycle, Difference, Weighed, difference, weigh};
 use crate::ir::exec::Note;
 use crate::ir::graph::Step as GraphStep;
 use crate::ir::hir::{Call, Callee, Expr, Stmt, StmtKind};
@@ -222,6 +222,11 @@ impl<'c> Context<'c> {
         self.files[span.file.0 as usize].text(span)
     }
 
+    /// The line that a span begins in, from 1.
+    pub fn line(&self, span: Span) -> u32 {
+        self.files[span.file.0 as usize].position(span.start).line
+    }
+
     /// Name of the file of a span.
     pub fn path(&self, span: Span) -> &'c str {
         &self.files[span.file.0 as usize].path
@@ -298,9 +303,9 @@ impl<'c> Context<'c> {
         worst(corners)
     }
 
-    /// Time that a change takes more where no wait takes it up, s.
-    pub fn longer(&self, spans: &[Span], change: &Change<'_>) -> Option<f64> {
-        longer(self.model?, self.cycle?, spans, change)
+    /// What a change of movements or waits does to the cycle, if that can be told.
+    pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference> {
+        difference(self.model?, self.cycle?, spans, change)
     }
 
     /// What a change of movements or waits would save in a cycle.

@@ -6,6 +6,7 @@ mod fixes;
 mod formats;
 mod manuals;
 mod savings;
+mod schema;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -130,4 +131,53 @@ fn small_savings_are_not_told() {
             assert!(finding.saving.is_none_or(|saving| saving.energy_j >= 30.0));
         }
     }
+}
+
+/// A comment about something that only a robot shows is no waste without one.
+#[test]
+fn comments_are_judged_with_what_the_rules_need() {
+    let all = fixtures();
+    let path = all.iter().position(|it| it.path.ends_with("EW001_unused_suppression.mod"));
+    let mut fixture = all.into_iter().nth(path.unwrap()).unwrap();
+    fixture.model = None;
+    let findings = fixture.report().findings;
+    let told: Vec<&str> = findings
+        .iter()
+        .filter(|finding| finding.rule.code == "EW001")
+        .map(|finding| finding.message.as_str())
+        .collect();
+    assert_eq!(told, ["there is no rule EW999: joulepath rule lists them"]);
+}
+
+/// A program that does nothing but move has no movement that is for nothing.
+#[test]
+fn movements_alone_are_a_purpose() {
+    let program = |wait: &str| {
+        format!(
+            "MODULE M
+                CONST robtarget p1:=[[600,0,400],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p2:=[[600,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p3:=[[700,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                PROC main()
+                    MoveJ p3,v1000,fine,tool0;
+                    {wait}
+                    MoveJ p1,v1000,fine,tool0;
+                    MoveJ p2,v1000,z50,tool0;
+                    MoveJ p1,v1000,fine,tool0;
+                    {wait}
+                    MoveJ p2,v1000,z50,tool0;
+                    MoveJ p3,v1000,z50,tool0;
+                    MoveJ p1,v1000,z50,tool0;
+                    MoveJ p2,v1000,fine,tool0;
+                ENDPROC
+            ENDMODULE"
+        )
+    };
+    let codes = |text: &str| -> Vec<&'static str> {
+        let report = Fixture::new("M.mod".into(), text).report();
+        let codes = report.findings.iter().map(|finding| finding.rule.code);
+        codes.filter(|code| ["EW402", "EW403"].contains(code)).collect()
+    };
+    assert_eq!(codes(&program("WaitTime 1;")), ["EW402", "EW403"]);
+    assert!(codes(&program("")).is_empty());
 }

@@ -9,7 +9,8 @@
 //! the next cycle.
 //!
 //! ## How the saving is computed
-//! Nothing is told: what the right configuration is, the program does not say.
+//! None is told: what the right configuration is the program does not say, and with `ConfL \\On`
+//! it would stop here; there is no second text to simulate.
 //!
 //! ## Example
 //! ```text

@@ -37,18 +37,24 @@
 //! Without a fix: only a scale or a load identification knows the mass.
 //!
 //! ## Assumptions
-//! An output that is set where the tool goes in and comes out the way it went, and reset at
-//! another such place, with a wait at one of them, holds a part on the way between. What is set
-//! along a path (a weld, a bead of glue) or at places that are passed by is none.
+//! An output that is set at one stop and reset at another, where the tool comes out the way it
+//! went in, with a wait at one of them and a joint movement or a fast line between, holds a part.
+//! What is set along a path (a weld, a bead of glue) or in passing is none. Names of outputs say
+//! nothing.
 
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::{Deed, Done};
+use crate::ir::instructions::MoveForm;
 
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
 
 /// The tool comes out the way it went in where its direction changes by more, rad.
-const OUT: f64 = 2.0;
+const OUT: f64 = 1.65;
+/// It goes on along a path where its direction changes by less, rad.
+const ON: f64 = 0.9;
+/// A movement with a part is a joint movement or faster than a process, m/s.
+const FAST: f64 = 0.25;
 /// Fewest movements with a part.
 const MOVES: usize = 2;
 
@@ -82,21 +88,29 @@ fn carries(context: &Context<'_>, step: usize) -> bool {
         _ => false,
     });
     let Some(off) = off.map(|off| step + 1 + off) else { return false };
-    let moves = context.trace[step..off].iter().filter(|d| matches!(d.what, Deed::Move(_))).count();
-    let Some(ends) = [step, off].map(|step| end(context, step)).into_iter().collect() else {
-        return false;
-    };
-    let ends: Vec<End> = ends;
+    let mut moves = 0;
+    let mut carried = false;
+    for done in &context.trace[step..off] {
+        let Deed::Move(movement) = &done.what else { continue };
+        moves += 1;
+        let joint = matches!(movement.form, MoveForm::Joint | MoveForm::AbsJ);
+        carried |= joint || movement.speed.tcp >= FAST;
+    }
+    let (Some(on), Some(off)) = (end(context, step), end(context, off)) else { return false };
+    let goes_on = |end: &End| end.turn.is_some_and(|turn| turn < ON);
+    let comes_out = |end: &End| end.turn.is_some_and(|turn| turn > OUT);
+    let ends = [on, off];
     moves >= MOVES
-        && ends.iter().all(|end| end.in_and_out != Some(false))
-        && ends.iter().any(|end| end.in_and_out == Some(true))
+        && carried
+        && !ends.iter().any(goes_on)
+        && ends.iter().any(comes_out)
         && ends.iter().any(|end| end.waits)
 }
 
 /// Where an output is set or reset.
 struct End {
-    /// Whether the tool comes out the way it went in, if that is known.
-    in_and_out: Option<bool>,
+    /// The change of the tool's direction there, rad, if it is known.
+    turn: Option<f64>,
     /// Whether the robot waits there.
     waits: bool,
 }
@@ -117,5 +131,5 @@ fn end(context: &Context<'_>, step: usize) -> Option<End> {
         Some((b - a).angle(&(c - b)))
     };
     let waits = context.trace[here..out].iter().any(|d| matches!(d.what, Deed::Wait(..)));
-    Some(End { in_and_out: turn().map(|turn| turn > OUT), waits })
+    Some(End { turn: turn(), waits })
 }

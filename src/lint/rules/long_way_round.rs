@@ -35,6 +35,7 @@ use super::super::edits::{fix, replace};
 use super::super::finding::{Applicability, Finding};
 use super::super::site::Site;
 use super::super::weigh::Weighed;
+use super::super::words;
 use crate::ir::hir::{ArgKind, Expr, ExprKind};
 use crate::ir::movement::{Movement, RobTarget, Target};
 use crate::ir::program::Symbol;
@@ -133,8 +134,10 @@ fn literal<'c>(
             }
             let uses: Vec<&Site<'c>> =
                 context.sites.iter().filter(|other| mentions(other.target, &name.key)).collect();
-            let all: usize =
-                uses.iter().map(|other| words(&context.text(other.stmt.span), &name.key)).sum();
+            let all: usize = uses
+                .iter()
+                .map(|other| words::count(&context.text(other.stmt.span), &name.key))
+                .sum();
             if words_of_program(context, &name.key) != all + 1 {
                 return None;
             }
@@ -148,22 +151,11 @@ fn literal<'c>(
     Some((conf.get(part)?, spans))
 }
 
-/// How often the files of the program name something, comments left out.
+/// How often the files of the program name something.
 fn words_of_program(context: &Context<'_>, key: &str) -> usize {
     let files: BTreeSet<FileId> =
         context.program.modules.iter().map(|module| module.name.span.file).collect();
-    let count = |file: &FileId| {
-        let source = &context.files[file.0 as usize];
-        let text = source.text(Span { file: *file, start: 0, end: source.bytes.len() as u32 });
-        text.lines().map(|line| words(line.split('!').next().unwrap_or(line), key)).sum::<usize>()
-    };
-    files.iter().map(count).sum()
-}
-
-/// How often a text holds a word, whatever its case.
-fn words(text: &str, key: &str) -> usize {
-    let apart = |c: char| !c.is_alphanumeric() && c != '_';
-    text.split(apart).filter(|word| word.to_lowercase() == key).count()
+    files.iter().map(|file| words::in_file(&context.files[file.0 as usize], key)).sum()
 }
 
 fn mentions(expr: &Expr, key: &str) -> bool {

@@ -7,7 +7,7 @@
 //! What can't be worked out is in no figure, and whatever it wastes is not found.
 //!
 //! ## How the saving is computed
-//! There is none.
+//! There is none: the movement is in no simulated cycle.
 //!
 //! ## Example
 //! ```text
