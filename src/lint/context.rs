@@ -63,6 +63,8 @@ pub struct Corner {
     pub turn: f64,
     /// Largest turn of the tool on the way to it or from it, rad.
     pub turned: f64,
+    /// How far the ways lie along the tool's axis, 0 across it to 1 along it: the larger of both.
+    pub along: f64,
 }
 
 impl Corner {
@@ -370,7 +372,15 @@ fn corner(a: &Isometry3<f64>, b: &Isometry3<f64>, c: &Isometry3<f64>) -> Corner 
     let [a_at, b_at, c_at]: [Vector3<f64>; 3] = [a, b, c].map(|pose| pose.translation.vector);
     let (to, from) = (b_at - a_at, c_at - b_at);
     let turned = a.rotation.angle_to(&b.rotation).max(b.rotation.angle_to(&c.rotation));
-    Corner { before: to.norm(), after: from.norm(), turn: to.angle(&from), turned }
+    let axis = b.rotation * Vector3::z();
+    let along = [to, from].map(|way| axis.dot(&way).abs() / way.norm().max(f64::MIN_POSITIVE));
+    Corner {
+        before: to.norm(),
+        after: from.norm(),
+        turn: to.angle(&from),
+        turned,
+        along: along[0].max(along[1]),
+    }
 }
 
 fn worst(corners: Vec<Corner>) -> Option<Corner> {
@@ -379,5 +389,6 @@ fn worst(corners: Vec<Corner>) -> Option<Corner> {
         after: a.after.min(b.after),
         turn: a.turn.max(b.turn),
         turned: a.turned.max(b.turned),
+        along: a.along.min(b.along),
     })
 }

@@ -36,7 +36,7 @@ use super::super::finding::{Applicability, Finding};
 use super::super::site::Site;
 use super::super::weigh::Weighed;
 use super::super::words;
-use crate::ir::hir::{ArgKind, Expr, ExprKind};
+use crate::ir::hir::{ArgKind, Expr, ExprKind, Ident};
 use crate::ir::movement::{Movement, RobTarget, Target};
 use crate::ir::program::Symbol;
 use crate::motion::Step;
@@ -124,27 +124,23 @@ fn literal<'c>(
     part: usize,
 ) -> Option<(&'c Expr, Vec<Span>)> {
     let mut spans = vec![site.stmt.span];
-    let aggregate = match &site.target.kind {
-        ExprKind::Aggregate(_) => site.target,
-        ExprKind::Ref(name) => {
-            let symbol = context.program.resolve(site.place.0.module, &name.key)?;
-            let Symbol::Data(id) = symbol else { return None };
-            if context.program.is_written(id) || context.quiet.is_local(site.place.0, &name.key) {
-                return None;
-            }
-            let uses: Vec<&Site<'c>> =
-                context.sites.iter().filter(|other| mentions(other.target, &name.key)).collect();
-            let all: usize = uses
-                .iter()
-                .map(|other| words::count(&context.text(other.stmt.span), &name.key))
-                .sum();
-            if words_of_program(context, &name.key) != all + 1 {
-                return None;
-            }
-            spans = uses.iter().map(|other| other.stmt.span).collect();
-            context.program.data(id).init.as_ref()?
+    let aggregate = if let Some(name) = named(site.target) {
+        let symbol = context.program.resolve(site.place.0.module, &name.key)?;
+        let Symbol::Data(id) = symbol else { return None };
+        if context.program.is_written(id) || context.quiet.is_local(site.place.0, &name.key) {
+            return None;
         }
-        _ => return None,
+        let is_use = |other: &&Site<'c>| named(other.target).is_some_and(|it| it.key == name.key);
+        let uses: Vec<&Site<'c>> = context.sites.iter().filter(is_use).collect();
+        let all: usize =
+            uses.iter().map(|other| words::count(&context.text(other.stmt.span), &name.key)).sum();
+        if words_of_program(context, &name.key) != all + 1 {
+            return None;
+        }
+        spans = uses.iter().map(|other| other.stmt.span).collect();
+        context.program.data(id).init.as_ref()?
+    } else {
+        site.target
     };
     let ExprKind::Aggregate(parts) = &aggregate.kind else { return None };
     let ExprKind::Aggregate(conf) = &parts.get(2)?.kind else { return None };
@@ -158,13 +154,16 @@ fn words_of_program(context: &Context<'_>, key: &str) -> usize {
     files.iter().map(|file| words::in_file(&context.files[file.0 as usize], key)).sum()
 }
 
-fn mentions(expr: &Expr, key: &str) -> bool {
-    match &expr.kind {
-        ExprKind::Ref(name) => name.key == key,
-        ExprKind::Call(_, args) => args.iter().any(|arg| match &arg.kind {
-            ArgKind::Positional(expr) => mentions(expr, key),
-            _ => false,
-        }),
-        _ => false,
+/// The data that a target is, or that it is a place beside of.
+fn named(target: &Expr) -> Option<&Ident> {
+    match &target.kind {
+        ExprKind::Ref(name) => Some(name),
+        ExprKind::Call(function, args) if ["offs", "reltool"].contains(&function.key.as_str()) => {
+            match args.first().map(|arg| &arg.kind) {
+                Some(ArgKind::Positional(expr)) => named(expr),
+                _ => None,
+            }
+        }
+        _ => None,
     }
 }

@@ -28,7 +28,8 @@
 //! Unsafe: home may be the only free way between both. Check that there is room.
 //!
 //! ## Assumptions
-//! Home is where the first movement of the program goes, if that is a `MoveAbsJ` or `MoveJ`.
+//! Home is where the first movement of the program goes, if that is a `MoveAbsJ`, or a pose at which
+//! the program also ends and the robot stops.
 
 use super::super::context::Context;
 use super::super::edits::{fix, remove};
@@ -47,6 +48,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let is_move = |step: usize| matches!(context.trace[step].what, Deed::Move(_));
     let moves: Vec<usize> = (0..context.trace.len()).filter(|step| is_move(*step)).collect();
     let Some(home) = moves.first().and_then(|step| goal(context, *step)) else { return };
+    // A program that begins at a pose begins at home if it ends there too.
+    let ends = moves.last().and_then(|step| goal(context, *step));
+    if home.pose().is_some() && ends.is_none_or(|ends| !ends.is_same(&home)) {
+        return;
+    }
     // What is done before it goes home is done elsewhere.
     let idle = |step: usize| {
         let away = |step: usize| goal(context, step).is_none_or(|goal| !goal.is_same(&home));
@@ -59,7 +65,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for site in &context.sites {
-        let joint = matches!(site.signature.form, MoveForm::AbsJ | MoveForm::Joint);
+        // A pose that is passed is a point on the way.
+        let joint = match site.signature.form {
+            MoveForm::AbsJ => true,
+            MoveForm::Joint => site.is_stop(),
+            _ => false,
+        };
         let all = !site.executions.is_empty() && site.executions.iter().all(|step| idle(*step));
         if !joint || !all || !site.is_plain() {
             continue;

@@ -32,8 +32,8 @@
 //!
 //! ## Assumptions
 //! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
-//! the tool turns back, points nearer than 20 mm to the next one, interrupt routines, first
-//! movements.
+//! the tool turns back, points nearer than 20 mm to the next one, corners between lines across the
+//! tool's axis of less than 150 mm (a contour), interrupt routines, first movements.
 
 use super::super::context::Context;
 use super::super::edits::{NamedZone, fix, replace, zone_within};
@@ -49,6 +49,12 @@ rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point
 const PROCESS: f64 = 0.2;
 /// A larger change of direction is a way back, rad.
 const BACK: f64 = 2.36;
+/// Points nearer than this to the next one are left alone, m.
+const NEAR: f64 = 0.02;
+/// Short lines across the tool's axis are a contour that the tool draws, cuts or glues: share of
+/// the way that lies along the axis, and longest way, m.
+const ACROSS: f64 = 0.3;
+const CONTOUR: f64 = 0.15;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone between two lines, m: their corner is meant to be near.
@@ -84,10 +90,13 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         return None;
     }
     let corner = context.corner(index)?;
-    if corner.turn > BACK {
+    if corner.turn > BACK || corner.room() < NEAR {
         return None;
     }
     let lines = site.is_linear() && next.iter().any(|next| context.sites[*next].is_linear());
+    if lines && corner.along < ACROSS && corner.room() < CONTOUR {
+        return None;
+    }
     let most = if lines { BETWEEN_LINES } else { MOST };
     let zone = zone_within((SHARE * corner.room()).min(most))?;
     Some((zone, super::stop_in_line::is_in_line(context, index, &next, &corner)))
