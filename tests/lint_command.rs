@@ -47,6 +47,8 @@ fn exit_codes_are_those_of_the_contract() {
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "1J"]].concat()), 1);
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "0.1%"]].concat()), 1);
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "much"]].concat()), 2);
+    assert_eq!(code(&[&ROBOT[..], &["--max-waste", "-1J"]].concat()), 2);
+    assert_eq!(code(&[&ROBOT[..], &["--threshold", "nan"]].concat()), 2);
     assert_eq!(code(&["--max-waste", "1J"]), 2);
     assert_eq!(code(&["--select", "EW999"]), 2);
     assert_eq!(joulepath(&["lint", "gone.mod"], folder.path()).status.code(), Some(2));
@@ -66,6 +68,11 @@ fn rules_are_selected() {
     let more = format!("{config}[lint.thresholds-j]\nEW101 = 1e6\n");
     fs::write(folder.path().join("joulepath.toml"), more).unwrap();
     assert!(codes(&ROBOT, folder.path()).is_empty());
+    let wrong = format!("{config}[lint.thresholds-j]\nEW999 = 1.0\n");
+    fs::write(folder.path().join("joulepath.toml"), wrong).unwrap();
+    let output = joulepath(&["lint", "."], folder.path());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("'EW999'"), "{}", text(&output.stderr));
     let more = format!("{config}[lint.per-file-ignores]\n\"C*.mod\" = [\"stops\"]\n");
     fs::write(folder.path().join("joulepath.toml"), more).unwrap();
     assert!(codes(&ROBOT, folder.path()).is_empty());

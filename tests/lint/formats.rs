@@ -145,7 +145,7 @@ fn gitlab_is_a_code_quality_report() {
     }
 }
 
-/// The elements and attributes that readers of JUnit's reports ask for, and counts that agree.
+/// The elements and attributes that readers of `JUnit`'s reports ask for, and counts that agree.
 #[test]
 fn junit_is_a_test_report() {
     for fixture in fixtures() {

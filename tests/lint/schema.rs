@@ -125,7 +125,7 @@ pub(crate) fn assert_known(schema: &Value) {
         );
         match (keyword.as_str(), inner) {
             ("properties" | "definitions", Value::Object(map)) => {
-                map.values().for_each(assert_known)
+                map.values().for_each(assert_known);
             }
             ("items" | "additionalProperties", Value::Object(_)) => assert_known(inner),
             ("anyOf" | "oneOf", Value::Array(list)) => list.iter().for_each(assert_known),

@@ -26,7 +26,7 @@
 //! tool or another place of the work may do.
 //!
 //! ## Assumptions
-//! The robot has a spherical wrist.
+//! The robot has a spherical wrist. First movements are not judged: where they begin is assumed.
 
 use super::super::context::Context;
 use super::super::finding::Finding;

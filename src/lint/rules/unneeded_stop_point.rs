@@ -32,14 +32,18 @@
 //!
 //! ## Assumptions
 //! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
-//! the tool turns back, points nearer than 20 mm to the next one, corners between lines across the
-//! tool's axis of less than 150 mm (a contour), interrupt routines, first movements.
+//! the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
+//! than 150 mm across the tool's axis, before an arc, or four and more in a row), interrupt
+//! routines, first movements.
 
-use super::super::context::Context;
+use std::collections::BTreeSet;
+
+use super::super::context::{Context, Corner};
 use super::super::edits::{NamedZone, fix, replace, zone_within};
 use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
 use crate::ir::hir::RoutineKind;
+use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Movement;
 use crate::motion::Step;
 
@@ -51,10 +55,12 @@ const PROCESS: f64 = 0.2;
 const BACK: f64 = 2.36;
 /// Points nearer than this to the next one are left alone, m.
 const NEAR: f64 = 0.02;
-/// Short lines across the tool's axis are a contour that the tool draws, cuts or glues: share of
-/// the way that lies along the axis, and longest way, m.
-const ACROSS: f64 = 0.3;
+/// Longest way on a contour, m.
 const CONTOUR: f64 = 0.15;
+/// Share of a way across the tool's axis that lies along it.
+const ACROSS: f64 = 0.3;
+/// Lines in a row that are many: with a part the robot goes up, over and down.
+const MANY: usize = 4;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone between two lines, m: their corner is meant to be near.
@@ -94,13 +100,35 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         return None;
     }
     let lines = site.is_linear() && next.iter().any(|next| context.sites[*next].is_linear());
-    if lines && corner.along < ACROSS && corner.room() < CONTOUR {
+    if lines && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
         return None;
     }
     let most = if lines { BETWEEN_LINES } else { MOST };
     let zone = zone_within((SHARE * corner.room()).min(most))?;
     Some((zone, super::stop_in_line::is_in_line(context, index, &next, &corner)))
         .filter(|(_, in_line)| !in_line)
+}
+
+/// Whether a stop point between short lines lies on a contour that the tool draws, cuts or glues:
+/// an arc behind it, lines across the tool's axis, or many in a row.
+fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corner) -> bool {
+    let is_arc = |site: &usize| context.sites[*site].signature.form == MoveForm::Circular;
+    if corner.along < ACROSS || next.iter().any(is_arc) || next.contains(&index) {
+        return true;
+    }
+    let mut row = BTreeSet::from([index]);
+    let mut open = vec![index];
+    while let Some(site) = open.pop().filter(|_| row.len() < MANY) {
+        let behind = context.next_moves(site, Through::Quiet).unwrap_or_default();
+        let before = context.before(site).iter().copied();
+        let before = before.filter(|it| context.next_moves(*it, Through::Quiet).is_some());
+        for other in behind.into_iter().chain(before) {
+            if context.sites[other].is_linear() && row.insert(other) {
+                open.push(other);
+            }
+        }
+    }
+    row.len() >= MANY
 }
 
 /// The movements behind a stop point that stops for nothing else.
