@@ -33,7 +33,7 @@
 //! ## Assumptions
 //! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
 //! the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
-//! than 150 mm across the tool's axis, before an arc, or four and more in a row), interrupt
+//! than 150 mm across the tool's axis, next to an arc, or four and more in a row), interrupt
 //! routines, first movements.
 
 use std::collections::BTreeSet;
@@ -100,7 +100,7 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         return None;
     }
     let lines = site.is_linear() && next.iter().any(|next| context.sites[*next].is_linear());
-    if lines && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
+    if site.is_linear() && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
         return None;
     }
     let most = if lines { BETWEEN_LINES } else { MOST };
@@ -109,11 +109,12 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         .filter(|(_, in_line)| !in_line)
 }
 
-/// Whether a stop point between short lines lies on a contour that the tool draws, cuts or glues:
-/// an arc behind it, lines across the tool's axis, or many in a row.
+/// Whether a stop point lies on or ends a contour that the tool draws, cuts or glues: there is an
+/// arc, the lines are across the tool's axis, or many in a row.
 fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corner) -> bool {
     let is_arc = |site: &usize| context.sites[*site].signature.form == MoveForm::Circular;
-    if corner.along < ACROSS || next.iter().any(is_arc) || next.contains(&index) {
+    let across = corner.along < ACROSS && next.iter().any(|it| context.sites[*it].is_linear());
+    if across || is_arc(&index) || next.iter().any(is_arc) || next.contains(&index) {
         return true;
     }
     let mut row = BTreeSet::from([index]);
