@@ -47,6 +47,8 @@ fn exit_codes_are_those_of_the_contract() {
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "1J"]].concat()), 1);
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "0.1%"]].concat()), 1);
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "much"]].concat()), 2);
+    assert_eq!(code(&[&ROBOT[..], &["--max-waste", "-1J"]].concat()), 2);
+    assert_eq!(code(&[&ROBOT[..], &["--threshold", "nan"]].concat()), 2);
     assert_eq!(code(&["--max-waste", "1J"]), 2);
     assert_eq!(code(&["--select", "EW999"]), 2);
     assert_eq!(joulepath(&["lint", "gone.mod"], folder.path()).status.code(), Some(2));
@@ -66,6 +68,11 @@ fn rules_are_selected() {
     let more = format!("{config}[lint.thresholds-j]\nEW101 = 1e6\n");
     fs::write(folder.path().join("joulepath.toml"), more).unwrap();
     assert!(codes(&ROBOT, folder.path()).is_empty());
+    let wrong = format!("{config}[lint.thresholds-j]\nEW999 = 1.0\n");
+    fs::write(folder.path().join("joulepath.toml"), wrong).unwrap();
+    let output = joulepath(&["lint", "."], folder.path());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("'EW999'"), "{}", text(&output.stderr));
     let more = format!("{config}[lint.per-file-ignores]\n\"C*.mod\" = [\"stops\"]\n");
     fs::write(folder.path().join("joulepath.toml"), more).unwrap();
     assert!(codes(&ROBOT, folder.path()).is_empty());
@@ -134,6 +141,15 @@ fn backups_are_asked_for_settings_that_save() {
                   \"DI\" -Label \"System Enable Energy Saving\"\n";
     let unused = backup(signal, "MOC:CFG_1.0:6:0::\n");
     assert_eq!(codes(&["--select", "system"], unused.path()), ["EW801", "EW802"]);
+    // A label that repeats the name ties nothing; a statement of another task does.
+    let labelled = signal.replace("System Enable Energy Saving", "diSyEnEnSav");
+    let labelled = backup(&labelled, "MOC:CFG_1.0:6:0::\n");
+    assert_eq!(codes(&["--select", "EW802"], labelled.path()), ["EW802"]);
+    let other = labelled.path().join("RAPID/TASK2/PROGMOD");
+    fs::create_dir_all(&other).unwrap();
+    let text = "MODULE N\n    PROC main()\n        WaitDI diSyEnEnSav,1;\n    ENDPROC\nENDMODULE\n";
+    fs::write(other.join("N.mod"), text).unwrap();
+    assert!(codes(&["--select", "EW802"], labelled.path()).is_empty());
     let used = format!("{signal}#\nSYSSIG_IN:\n\n      -Signal \"diSyEnEnSav\" -Action \"X\"\n");
     let motion = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
     let used = backup(&used, motion);

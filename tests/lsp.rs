@@ -78,9 +78,24 @@ impl Client {
 
     /// The diagnostics that come next.
     fn told(&mut self) -> Vec<Value> {
+        self.told_of().1
+    }
+
+    /// The name of a document and the diagnostics that come next, of it.
+    fn told_of(&mut self) -> (String, Vec<Value>) {
         let message = self.read();
         assert_eq!(message["method"], "textDocument/publishDiagnostics", "{message}");
-        message["params"]["diagnostics"].as_array().unwrap().clone()
+        let params = &message["params"];
+        let name = params["uri"].as_str().unwrap().rsplit('/').next().unwrap().to_owned();
+        (name, params["diagnostics"].as_array().unwrap().clone())
+    }
+
+    fn open(&mut self, path: &Path) -> String {
+        let uri = format!("file://{}", path.display());
+        let text = fs::read_to_string(path).unwrap();
+        let document = json!({ "uri": uri, "languageId": "rapid", "version": 1, "text": text });
+        self.tell("textDocument/didOpen", &json!({ "textDocument": document }));
+        uri
     }
 
     fn stop(mut self) {
@@ -147,5 +162,49 @@ fn a_robot_that_is_not_known_stops_nothing() {
     });
     client.tell("textDocument/didOpen", &opened);
     client.told();
+    client.stop();
+}
+
+/// A change is followed by what it means for the open documents of the same program, and for no
+/// other document of the folder.
+#[test]
+fn changes_are_told_where_they_matter() {
+    let folder = tempfile::tempdir().unwrap();
+    let work = "MODULE Work\nPROC rWork()\nMoveJ pOver,v1000,fine,tool0;\nENDPROC\nENDMODULE\n";
+    let cell = "MODULE Cell\nCONST robtarget pOver:=[[600,0,400],[0,0,1,0],[0,0,0,0],\
+                [9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\nrWork;\nENDPROC\nENDMODULE\n";
+    let other = "MODULE Other\nPROC main()\nWaitTime 1;\nENDPROC\nENDMODULE\n";
+    let other_folder = folder.path().join("other");
+    fs::create_dir(&other_folder).unwrap();
+    let paths = [
+        (folder.path().join("Work.mod"), work),
+        (folder.path().join("Cell.mod"), cell),
+        (other_folder.join("Other.mod"), other),
+    ];
+    for (path, text) in &paths {
+        fs::write(path, text).unwrap();
+    }
+    let codes = |found: &[Value]| -> Vec<String> {
+        found.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
+    };
+    let mut client = Client::start(&json!({}));
+    client.open(&paths[0].0);
+    assert_eq!(client.told_of().0, "Work.mod");
+    client.open(&paths[2].0);
+    assert_eq!(client.told_of().0, "Other.mod");
+    let cell = client.open(&paths[1].0);
+    let mut names = [client.told_of().0, client.told_of().0];
+    names.sort();
+    assert_eq!(names, ["Cell.mod", "Work.mod"]);
+    // Without its call the procedure is dead, and that is told in the other document.
+    let change = json!({
+        "textDocument": { "uri": cell, "version": 2 },
+        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nENDPROC\nENDMODULE\n" }],
+    });
+    client.tell("textDocument/didChange", &change);
+    let told: std::collections::BTreeMap<String, Vec<Value>> =
+        [client.told_of(), client.told_of()].into_iter().collect();
+    assert_eq!(codes(&told["Work.mod"]), ["EW702"]);
+    assert!(told["Cell.mod"].is_empty());
     client.stop();
 }

@@ -68,7 +68,7 @@ pub struct LintArgs {
     pub statistics: bool,
 
     /// Exit with 1 where the findings waste more: 500J, or 3% of the cycle.
-    #[arg(long, value_name = "500J|3%")]
+    #[arg(long, value_name = "500J|3%", allow_hyphen_values = true)]
     pub max_waste: Option<String>,
 
     /// Findings that are known: they are not told.
@@ -231,13 +231,18 @@ fn settings(args: &LintArgs, config: &Config) -> anyhow::Result<Settings> {
         settings.threshold_j = threshold;
     }
     let ignored = settings.per_file_ignores.values().flatten();
-    for selector in settings.select.iter().chain(&settings.ignore).chain(ignored) {
+    let weighed = settings.thresholds_j.keys();
+    for selector in settings.select.iter().chain(&settings.ignore).chain(ignored).chain(weighed) {
         if !lint::ALL.iter().any(|rule| rule.is_meant(selector)) {
             bail!(
                 "no lint is meant by '{selector}': give a code such as EW101, the start of one, a \
                  name or a family; joulepath rule lists them"
             );
         }
+    }
+    let thresholds = settings.thresholds_j.values().chain([&settings.threshold_j]);
+    if let Some(wrong) = thresholds.into_iter().find(|t| !(t.is_finite() && **t >= 0.0)) {
+        bail!("a threshold of {wrong} J: give joules from 0");
     }
     Ok(settings)
 }

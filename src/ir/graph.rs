@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::hir::{Block, Expr, Routine, Stmt, StmtKind};
+use super::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
 
 /// Index of a node in [`Graph::nodes`].
 pub type NodeId = usize;
@@ -155,7 +155,9 @@ impl<'h> Builder<'h> {
                 ends
             }
             StmtKind::While { condition, body } => {
-                self.repeat(Step::Condition(condition), body, &from)
+                let ends = self.repeat(Step::Condition(condition), body, &from);
+                // `WHILE TRUE` ends by a jump, a return or an error alone.
+                if matches!(condition.kind, ExprKind::Bool(true)) { Ends::new() } else { ends }
             }
             StmtKind::For { body, .. } => self.repeat(Step::Count(stmt), body, &from),
             StmtKind::Test { value, cases, default } => {
@@ -248,6 +250,15 @@ mod tests {
         let graph = shown("FOR i FROM 1 TO 3 DO x; ENDFOR WHILE a DO ENDWHILE");
         let expected = "0 entry Always>2\n1 exit\n2 FOR True>3 False>4\n3 x Always>2\n\
                         4 a True>4 False>1";
+        assert_eq!(graph, expected);
+    }
+
+    #[test]
+    fn endless_loops_are_left_by_jumps_alone() {
+        let graph = shown("WHILE TRUE DO IF a GOTO out; x; ENDWHILE y; out: z;");
+        let expected = "0 entry Always>2\n1 exit\n2 TRUE True>3\n3 a True>4 False>5\n\
+                        4 GOTO Always>7\n5 x Always>2\n6 y dead Always>7\n7 out Always>8\n\
+                        8 z Always>1";
         assert_eq!(graph, expected);
     }
 

@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Isometry3, Vector3};
 
-use super::flow::{Flow, Next, Place, Through};
+use super::flow::{Class, Flow, Next, Place, Through};
 use super::quiet::Quiet;
 use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
 use super::trace::{Deed, Done, executions};
-use super::weigh::{Change, Cycle, Weighed, longer, weigh};
+use super::weigh::{Change, Cycle, Difference, Weighed, difference, weigh};
 use crate::ir::exec::Note;
 use crate::ir::graph::Step as GraphStep;
 use crate::ir::hir::{Call, Callee, Expr, Stmt, StmtKind};
@@ -63,6 +63,8 @@ pub struct Corner {
     pub turn: f64,
     /// Largest turn of the tool on the way to it or from it, rad.
     pub turned: f64,
+    /// How far the ways lie along the tool's axis, 0 across it to 1 along it: the larger of both.
+    pub along: f64,
 }
 
 impl Corner {
@@ -155,6 +157,19 @@ impl<'c> Context<'c> {
         constant(self.program, &self.quiet, routine, expr)
     }
 
+    /// Whether the program has a purpose besides its movements: it waits, sets an output, or does
+    /// something else that a robot may do where it stands.
+    pub fn works(&self) -> bool {
+        self.flow.graphs().any(|(routine, graph, reachable)| {
+            graph.nodes.iter().zip(reachable).any(|(node, reachable)| match node.step {
+                GraphStep::Statement(stmt) if *reachable => {
+                    matches!(self.flow.class(routine, stmt), Class::Output | Class::Wait)
+                }
+                _ => false,
+            })
+        })
+    }
+
     /// The calls of instructions with this name (lower case), where control can get.
     pub fn calls(&self, key: &'static str) -> Vec<(Place, &'c Stmt, &'c Call)> {
         let mut found = Vec::new();
@@ -207,6 +222,11 @@ impl<'c> Context<'c> {
     /// The text of a span.
     pub fn text(&self, span: Span) -> std::borrow::Cow<'c, str> {
         self.files[span.file.0 as usize].text(span)
+    }
+
+    /// The line that a span begins in, from 1.
+    pub fn line(&self, span: Span) -> u32 {
+        self.files[span.file.0 as usize].position(span.start).line
     }
 
     /// Name of the file of a span.
@@ -285,9 +305,9 @@ impl<'c> Context<'c> {
         worst(corners)
     }
 
-    /// Time that a change takes more where no wait takes it up, s.
-    pub fn longer(&self, spans: &[Span], change: &Change<'_>) -> Option<f64> {
-        longer(self.model?, self.cycle?, spans, change)
+    /// What a change of movements or waits does to the cycle, if that can be told.
+    pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference> {
+        difference(self.model?, self.cycle?, spans, change)
     }
 
     /// What a change of movements or waits would save in a cycle.
@@ -352,7 +372,15 @@ fn corner(a: &Isometry3<f64>, b: &Isometry3<f64>, c: &Isometry3<f64>) -> Corner 
     let [a_at, b_at, c_at]: [Vector3<f64>; 3] = [a, b, c].map(|pose| pose.translation.vector);
     let (to, from) = (b_at - a_at, c_at - b_at);
     let turned = a.rotation.angle_to(&b.rotation).max(b.rotation.angle_to(&c.rotation));
-    Corner { before: to.norm(), after: from.norm(), turn: to.angle(&from), turned }
+    let axis = b.rotation * Vector3::z();
+    let along = [to, from].map(|way| axis.dot(&way).abs() / way.norm().max(f64::MIN_POSITIVE));
+    Corner {
+        before: to.norm(),
+        after: from.norm(),
+        turn: to.angle(&from),
+        turned,
+        along: along[0].max(along[1]),
+    }
 }
 
 fn worst(corners: Vec<Corner>) -> Option<Corner> {
@@ -361,5 +389,6 @@ fn worst(corners: Vec<Corner>) -> Option<Corner> {
         after: a.after.min(b.after),
         turn: a.turn.max(b.turn),
         turned: a.turned.max(b.turned),
+        along: a.along.min(b.along),
     })
 }

@@ -1,6 +1,7 @@
 //! All rules on all programs.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -81,32 +82,80 @@ struct Read {
     suppressions: Vec<Suppression>,
 }
 
+/// What was read of files, kept from one look at them to the next.
+#[derive(Default)]
+pub struct Kept {
+    files: Vec<(Vec<u8>, Arc<Read>)>,
+}
+
+/// What was found, and the simulated cycle of each program, in the order of the programs; none
+/// without a robot or an entry.
+pub struct Examined {
+    /// What was found.
+    pub report: Report,
+    /// The cycles.
+    pub cycles: Vec<Option<Cycle>>,
+    /// The files of each program.
+    pub programs: Vec<Vec<usize>>,
+}
+
 /// Looks at all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
-    let read = read(job);
+    examine(job).report
+}
+
+/// Looks at all programs, and gives their cycles too.
+#[must_use]
+pub fn examine(job: &Job<'_>) -> Examined {
+    let read = read(job, &Kept::default());
     let units = units(job, &read);
-    let results: Vec<Report> = units.par_iter().map(|unit| one(job, unit, &read)).collect();
+    examine_units(job, &units, &read)
+}
+
+/// Looks at the programs that hold a file; reads files anew only where they have changed.
+#[must_use]
+pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut Kept) -> Examined {
+    let read = read(job, kept);
+    let bytes = job.files.iter().map(|file| file.bytes.clone());
+    kept.files = bytes.zip(read.iter().cloned()).collect();
+    let mut units = units(job, &read);
+    units.retain(|unit| unit.files.contains(&file));
+    examine_units(job, &units, &read)
+}
+
+fn examine_units(job: &Job<'_>, units: &[Group], read: &[Arc<Read>]) -> Examined {
+    let results: Vec<(Report, Option<Cycle>)> =
+        units.par_iter().map(|unit| one(job, unit, read)).collect();
     let mut report = Report::default();
-    for result in results {
+    let mut cycles = Vec::with_capacity(results.len());
+    for (result, cycle) in results {
         report.findings.extend(result.findings);
         report.unresolved += result.unresolved;
         if let Some(energy) = result.cycle_energy_j {
             *report.cycle_energy_j.get_or_insert(0.0) += energy;
         }
+        cycles.push(cycle);
     }
     report.findings.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.rule.code));
     report.findings.dedup_by(|a, b| a.span == b.span && a.rule.code == b.rule.code);
-    report
+    let programs = units.iter().map(|unit| unit.files.clone()).collect();
+    Examined { report, cycles, programs }
 }
 
-fn read(job: &Job<'_>) -> Vec<Read> {
+fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
     job.files
         .par_iter()
-        .map(|file| {
+        .enumerate()
+        .map(|(index, file)| {
+            if let Some((bytes, read)) = kept.files.get(index)
+                && *bytes == file.bytes
+            {
+                return read.clone();
+            }
             let parse = syntax::parse(&file.bytes);
             let modules = lower(file.id, &parse, &file.bytes);
-            Read { modules, suppressions: suppressions(file, &parse) }
+            Arc::new(Read { modules, suppressions: suppressions(file, &parse) })
         })
         .collect()
 }
@@ -115,7 +164,7 @@ fn read(job: &Job<'_>) -> Vec<Read> {
 /// an entry.
 #[must_use]
 pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
-    let read = read(job);
+    let read = read(job, &Kept::default());
     let cycle = |unit: &Group| {
         let modules =
             unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
@@ -127,7 +176,7 @@ pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
 
 /// The programs of a job. Where the files of a group have several entries, each file with one
 /// is a program of its own, and so is each other file.
-fn units(job: &Job<'_>, read: &[Read]) -> Vec<Group> {
+fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
     let mut units = Vec::new();
     for group in &job.groups {
         let entry = group.entry.to_lowercase();
@@ -158,7 +207,7 @@ fn units(job: &Job<'_>, read: &[Read]) -> Vec<Group> {
 }
 
 /// One program.
-fn one(job: &Job<'_>, unit: &Group, read: &[Read]) -> Report {
+fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle>) {
     let modules = unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
     let program = Program::new(modules);
     let entry = program.entry(&unit.entry);
@@ -198,25 +247,20 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Read]) -> Report {
         worth && !settings.ignores_in(finding.rule, path)
     });
     let dynamics = job.model.is_some_and(Model::has_dynamics);
-    Report {
-        findings,
-        cycle_energy_j: cycle
-            .as_ref()
-            .filter(|_| dynamics)
-            .map(|cycle| cycle.account.total.energy_j()),
-        unresolved: unresolved.len(),
-    }
+    let energy = cycle.as_ref().filter(|_| dynamics).map(|cycle| cycle.account.total.energy_j());
+    let report = Report { findings, cycle_energy_j: energy, unresolved: unresolved.len() };
+    (report, cycle)
 }
 
 fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
     let model = job.model?;
     let simulation = simulate(program, entry, model, &job.options);
     let account = account(model, &simulation);
-    Some(Cycle { simulation, account, options: job.options.clone() })
+    Some(Cycle::new(simulation, account, job.options.clone()))
 }
 
 /// Drops what comments take back, and adds what comments take back in vain.
-fn suppress(job: &Job<'_>, unit: &Group, read: &[Read], findings: &mut Vec<Finding>) {
+fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
     let mut used: BTreeSet<(usize, usize)> = BTreeSet::new();
     findings.retain(|finding| {
         let file = finding.span.file.0 as usize;

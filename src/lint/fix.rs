@@ -1,6 +1,6 @@
 //! Applies fixes, and takes them back where the cycle does not get better by them.
 
-use super::engine::{Job, cycles, lint};
+use super::engine::{Examined, Job, cycles, examine, lint};
 use super::finding::{Applicability, Finding};
 use super::rule::Family;
 use super::weigh::Cycle;
@@ -40,9 +40,8 @@ pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let (mut applied, mut withdrawn) = (0, 0);
     for _ in 0..MOST_ROUNDS {
         let now = with_files(job, &files);
-        let report = lint(&now);
+        let Examined { report, cycles: mut before, .. } = examine(&now);
         let chosen = candidates(&report, most);
-        let mut before = cycles(&now);
         // All at once if they go together, else one after the other.
         let mut kept: Vec<&Finding> = Vec::new();
         let mut result = attempt(job, &files, &before, &chosen).map(|(after, _)| after);

@@ -22,6 +22,7 @@ pub mod suppress;
 pub mod system;
 pub mod trace;
 pub mod weigh;
+mod words;
 
 pub use engine::{Group, Job, Report, lint};
 pub use finding::{Applicability, Finding, Fix, Per, Saving};

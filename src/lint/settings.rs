@@ -48,14 +48,20 @@ impl Settings {
         })
     }
 
-    /// Least saving of a rule that is told, J: the closest of code, name and family counts.
+    /// Least saving of a rule that is told, J: the closest of code, name, start of a code and
+    /// family counts.
     pub fn threshold_j(&self, rule: &Rule) -> f64 {
-        let by = |name: &str| {
-            let found = self.thresholds_j.iter().find(|(key, _)| key.eq_ignore_ascii_case(name));
-            found.map(|(_, threshold)| *threshold)
+        let closeness = |key: &str| {
+            if key.eq_ignore_ascii_case(rule.name) || key.eq_ignore_ascii_case(rule.code) {
+                usize::MAX
+            } else if rule.code.to_lowercase().starts_with(&key.to_lowercase()) {
+                key.len()
+            } else {
+                usize::from(key.eq_ignore_ascii_case(rule.family.name()))
+            }
         };
-        let own = by(rule.code).or_else(|| by(rule.name)).or_else(|| by(rule.family.name()));
-        own.unwrap_or(self.threshold_j)
+        let meant = self.thresholds_j.iter().filter(|(key, _)| rule.is_meant(key));
+        meant.max_by_key(|(key, _)| closeness(key)).map_or(self.threshold_j, |(_, joules)| *joules)
     }
 }
 
@@ -100,6 +106,21 @@ fn fits(pattern: &[u8], text: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_closest_threshold_counts() {
+        let thresholds = [("all", 1.0), ("stops", 2.0), ("EW1", 3.0), ("ew10", 4.0)];
+        let mut settings = Settings::default();
+        let threshold = |settings: &Settings| settings.threshold_j(crate::lint::ALL[1]);
+        assert_eq!(threshold(&settings), THRESHOLD_J);
+        for (key, joules) in thresholds {
+            settings.thresholds_j.insert(key.to_owned(), joules);
+            assert_eq!(threshold(&settings), joules, "{key}");
+        }
+        settings.thresholds_j.insert("EW101".to_owned(), 5.0);
+        settings.thresholds_j.insert("EW2".to_owned(), 6.0);
+        assert_eq!(threshold(&settings), 5.0);
+    }
 
     #[test]
     fn patterns_fit_ends_of_paths() {

@@ -32,17 +32,27 @@ impl System {
         let signal = |entry: &crate::robot::system_parameters::Entry| {
             let name = entry.get("name")?.clone();
             let label = entry.get("label").cloned().unwrap_or_default();
-            let at = file.bytes.windows(name.len()).position(|w| w == name.as_bytes())?;
+            let quoted = format!("\"{name}\"");
+            let at = file.bytes.windows(quoted.len()).position(|w| w == quoted.as_bytes())? + 1;
             let span = Span { file: file.id, start: at as u32, end: (at + name.len()) as u32 };
             Some(ConfiguredSignal { name, label, span })
         };
         entries.iter().filter_map(signal).collect()
     }
 
-    /// How often the configuration names a signal.
-    pub fn mentions(&self, files: &[SourceFile], name: &str) -> usize {
-        let Some(file) = self.io.map(|id| &files[id.0 as usize]) else { return 0 };
-        let quoted = format!("\"{name}\"");
-        file.bytes.windows(quoted.len()).filter(|w| *w == quoted.as_bytes()).count()
+    /// Whether the configuration names a signal anywhere but where it declares signals.
+    pub fn is_tied(&self, files: &[SourceFile], name: &str) -> bool {
+        let Some(file) = self.io.map(|id| &files[id.0 as usize]) else { return false };
+        let quoted = format!("\"{}\"", name.to_lowercase());
+        let text = file.charset.decode(&file.bytes).to_lowercase();
+        let mut declares = false;
+        text.lines().map(str::trim).any(|line| {
+            if line.starts_with('#') {
+                declares = false;
+            } else if line == "eio_signal:" {
+                declares = true;
+            }
+            !declares && line.contains(&quoted)
+        })
     }
 }

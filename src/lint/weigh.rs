@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use super::finding::{Per, Saving};
 use crate::energy::account::at_rest;
 use crate::energy::{Account, EnergyParts, account};
-use crate::ir::movement::Wait;
+use crate::ir::movement::{Movement, Wait};
 use crate::motion::timeline::{Run, Simulation, WaitBasis, What};
 use crate::motion::{Options, Step, replay};
 use crate::path::joint_path::{DOF, Joints};
@@ -32,6 +32,46 @@ pub struct Cycle {
     pub account: Account,
     /// How it was simulated.
     pub options: Options,
+    /// The events that hold each statement, in order.
+    events: BTreeMap<Span, Vec<usize>>,
+    /// Whether the program goes on beside a movement.
+    concurrent: bool,
+}
+
+impl Cycle {
+    /// Of a simulation and its energy.
+    pub fn new(simulation: Simulation, account: Account, options: Options) -> Cycle {
+        let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
+        let mut concurrent = false;
+        for (index, event) in simulation.events.iter().enumerate() {
+            let mut add = |span: Span| {
+                let places = events.entry(span).or_default();
+                if places.last() != Some(&index) {
+                    places.push(index);
+                }
+            };
+            match &event.what {
+                What::Run(run) => {
+                    for record in &run.moves {
+                        add(record.movement.span);
+                        concurrent |= record.movement.concurrent;
+                    }
+                }
+                What::Wait(wait) => add(wait.wait.span),
+                What::Output(..) | What::Left(_) => {}
+            }
+        }
+        Cycle { simulation, account, options, events, concurrent }
+    }
+
+    /// Events that hold one of some statements, in order.
+    fn touched(&self, spans: &[Span]) -> Vec<usize> {
+        let places = spans.iter().filter_map(|span| self.events.get(span));
+        let mut touched: Vec<usize> = places.flatten().copied().collect();
+        touched.sort_unstable();
+        touched.dedup();
+        touched
+    }
 }
 
 /// A change saves nothing.
@@ -67,12 +107,21 @@ impl Weighed {
 /// What becomes of a step whose statement was asked for.
 pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 
-/// Weighs a change of every execution of the statements at `spans`.
-pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Weighed {
-    if !model.has_dynamics() {
-        return Weighed::Unknown;
-    }
-    difference(model, cycle, spans, change).map_or(Weighed::Unknown, |(parts, time_s)| {
+/// What a change does to the cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Difference {
+    /// Energy that it saves.
+    pub saved: EnergyParts,
+    /// Time that it saves, s.
+    pub time_s: f64,
+    /// Time that it would take more without any wait that takes it up, s.
+    pub longer_s: f64,
+}
+
+impl Difference {
+    /// What it is worth.
+    pub fn weighed(&self) -> Weighed {
+        let parts = &self.saved;
         let energy_j = parts.energy_j();
         if energy_j <= 0.0 {
             return Weighed::Nothing;
@@ -87,28 +136,30 @@ pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) 
         ];
         let off: f64 = list.iter().zip(DOUBT).map(|(part, share)| part.abs() * share).sum();
         let (low_j, high_j) = (energy_j - off, energy_j + off);
-        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s, per: Per::Cycle })
-    })
+        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s, per: Per::Cycle })
+    }
 }
 
-/// Energy and time that a change saves in the cycle; `None` where it can't be told.
+/// Weighs a change of every execution of the statements at `spans`.
+pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Weighed {
+    difference(model, cycle, spans, change).map_or(Weighed::Unknown, |it| it.weighed())
+}
+
+/// What a change of every execution of the statements at `spans` does; `None` where it can't be
+/// told.
 pub fn difference(
     model: &Model,
     cycle: &Cycle,
     spans: &[Span],
     change: &Change<'_>,
-) -> Option<(EnergyParts, f64)> {
+) -> Option<Difference> {
+    if !model.has_dynamics() {
+        return None;
+    }
     let (saved, replayed) = replayed(model, cycle, spans, change)?;
     let (more, time_s) = laid_out(model, cycle, &cycle.options.inputs, &replayed);
-    Some((saved - more, time_s))
-}
-
-/// Time that a change takes more, without any wait that takes it up, s; `None` where it can't be
-/// told.
-pub fn longer(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Option<f64> {
-    let (_, replayed) = replayed(model, cycle, spans, change)?;
-    let (_, time_s) = laid_out(model, cycle, &BTreeMap::new(), &replayed);
-    Some(-time_s)
+    let (_, alone_s) = laid_out(model, cycle, &BTreeMap::new(), &replayed);
+    Some(Difference { saved: saved - more, time_s, longer_s: -alone_s })
 }
 
 /// A part of the cycle, as events, with what it is after a change and the rest behind it, s.
@@ -122,8 +173,8 @@ fn replayed(
     change: &Change<'_>,
 ) -> Option<(EnergyParts, Vec<Replayed>)> {
     let simulation = &cycle.simulation;
-    let touched = touched(simulation, spans);
-    if touched.is_empty() || touched.len() > MOST_EXECUTIONS || has_concurrent(simulation) {
+    let touched = cycle.touched(spans);
+    if touched.is_empty() || touched.len() > MOST_EXECUTIONS || cycle.concurrent {
         return None;
     }
     let mut saved = EnergyParts::default();
@@ -152,29 +203,19 @@ fn replayed(
     Some((saved, replayed))
 }
 
-/// Events that hold a statement.
-fn touched(simulation: &Simulation, spans: &[Span]) -> Vec<usize> {
-    let holds = |what: &What| match what {
-        What::Run(run) => run.moves.iter().any(|record| spans.contains(&record.movement.span)),
-        What::Wait(wait) => spans.contains(&wait.wait.span),
-        What::Output(..) | What::Left(_) => false,
-    };
-    let events = simulation.events.iter().enumerate();
-    events.filter(|(_, event)| holds(&event.what)).map(|(index, _)| index).collect()
-}
-
-fn has_concurrent(simulation: &Simulation) -> bool {
-    simulation.events.iter().any(|event| match &event.what {
-        What::Run(run) => run.moves.iter().any(|record| record.movement.concurrent),
-        _ => false,
-    })
-}
-
 /// From the run at or before an event to the next run.
 fn window(simulation: &Simulation, event: usize) -> RangeInclusive<usize> {
     let is_run = |index: &usize| matches!(simulation.events[*index].what, What::Run(_));
     let first = (0..=event).rev().find(is_run).unwrap_or(event);
     first..=next_run(simulation, event)
+}
+
+/// The last movement before an event.
+fn movement_before(simulation: &Simulation, event: usize) -> Option<&Movement> {
+    simulation.events[..event].iter().rev().find_map(|event| match &event.what {
+        What::Run(run) => run.moves.last().map(|record| &record.movement),
+        _ => None,
+    })
 }
 
 /// The next run behind an event, or the last event.
@@ -194,9 +235,10 @@ fn settle_window(
 ) -> Option<(RangeInclusive<usize>, Simulation)> {
     let simulation = &cycle.simulation;
     let (first, mut last) = window.into_inner();
+    let before = movement_before(simulation, first);
     for _ in 0..=MOST_BEHIND {
         let (start, steps) = steps(cycle, first..=last, spans, change)?;
-        let after = replay(model, &cycle.options, start, steps);
+        let after = replay(model, &cycle.options, start, before, steps);
         let sound = after.events.iter().all(|event| match &event.what {
             What::Run(run) => run.problem.is_none(),
             What::Left(_) => false,
@@ -313,6 +355,14 @@ fn laid_out(
     replayed: &[Replayed],
 ) -> (EnergyParts, f64) {
     let simulation = &cycle.simulation;
+    if inputs.is_empty() {
+        // No wait takes anything up: what is laid out again is all that changes.
+        let saved = replayed.iter().map(|(range, after, longer)| {
+            let before: f64 = simulation.events[range.clone()].iter().map(|it| it.duration).sum();
+            before - after.events.iter().map(|it| it.duration).sum::<f64>() - longer
+        });
+        return (EnergyParts::default(), saved.sum());
+    }
     let mut clock = Clock { inputs, waited: BTreeMap::new(), time: 0.0 };
     let mut more = EnergyParts::default();
     let mut index = 0;

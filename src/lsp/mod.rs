@@ -1,7 +1,8 @@
 //! The language server: findings with joules while one types.
 //!
 //! It speaks the Language Server Protocol over standard input and output. A document is linted
-//! with the files of its folder; what the editor holds stands for what is on disk.
+//! with the files of its folder; what the editor holds stands for what is on disk. A change is
+//! followed by a look at the programs that hold the document, and at no other of the folder.
 
 mod position;
 mod workspace;
@@ -111,7 +112,7 @@ impl Server {
                     self.workspace.change(&uri, change);
                 }
             }
-            "textDocument/didSave" => {}
+            "textDocument/didSave" => self.workspace.forget(&uri),
             "textDocument/didClose" => {
                 self.workspace.close(&uri);
                 self.told.remove(&uri);
@@ -119,11 +120,14 @@ impl Server {
             }
             _ => return Vec::new(),
         }
-        let analysis = self.workspace.analyse(&uri);
-        let shown: Vec<Value> =
-            analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
-        self.told.insert(uri.clone(), analysis);
-        vec![publish(&uri, &shown)]
+        let mut messages = Vec::new();
+        for (uri, analysis) in self.workspace.analyse(&uri) {
+            let shown: Vec<Value> =
+                analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
+            messages.push(publish(&uri, &shown));
+            self.told.insert(uri, analysis);
+        }
+        messages
     }
 
     fn answer(&self, request: Request) -> Response {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use serde_json::Value;
 
@@ -10,23 +11,28 @@ use super::position::offset_of;
 use crate::cli::common::CellArgs;
 use crate::cli::lint::{LintArgs, Setup};
 use crate::energy::EnergyParts;
-use crate::lint::engine::cycles;
-use crate::lint::weigh::Cycle;
-use crate::lint::{Finding, Report, lint};
+use crate::lint::Finding;
+use crate::lint::engine::{Examined, Kept, examine_file};
 use crate::motion::timeline::What;
 use crate::text::{FileId, SourceFile, Span};
 
-/// Open documents, by their names.
+/// Open documents, by their names, and the folders they lie in.
 pub(super) struct Workspace {
     options: Options,
     open: BTreeMap<String, SourceFile>,
+    folders: BTreeMap<PathBuf, Folder>,
+}
+
+/// A folder as it was read from disk when a document of it was last opened, saved or closed.
+struct Folder {
+    setup: Setup,
+    kept: Kept,
 }
 
 /// What was found in a document.
 pub(super) struct Analysis {
     file: SourceFile,
-    report: Report,
-    cycles: Vec<Option<Cycle>>,
+    examined: Rc<Examined>,
     dynamics: bool,
 }
 
@@ -42,12 +48,18 @@ pub(super) struct Costs {
 
 impl Workspace {
     pub(super) fn new(options: Options) -> Workspace {
-        Workspace { options, open: BTreeMap::new() }
+        Workspace { options, open: BTreeMap::new(), folders: BTreeMap::new() }
     }
 
     pub(super) fn open(&mut self, uri: &str, text: String) {
         let file = SourceFile::new(FileId(0), shown(&path_of(uri)), text.into_bytes());
         self.open.insert(uri.to_owned(), file);
+        self.forget(uri);
+    }
+
+    /// The folder of a document is read from disk at the next look.
+    pub(super) fn forget(&mut self, uri: &str) {
+        self.folders.remove(&folder_of(uri));
     }
 
     /// A change of a range, or of the whole text.
@@ -68,57 +80,56 @@ impl Workspace {
 
     pub(super) fn close(&mut self, uri: &str) {
         self.open.remove(uri);
+        self.forget(uri);
     }
 
-    /// Lints a document with the files of its folder.
-    pub(super) fn analyse(&self, uri: &str) -> Analysis {
-        let path = path_of(uri);
-        let folder = path.parent().filter(|folder| folder.is_dir());
-        let folder = folder.map(Path::to_path_buf).into_iter();
+    /// Looks at the programs that a document belongs to. What was found in it, and in the other
+    /// open documents of the same programs.
+    pub(super) fn analyse(&mut self, uri: &str) -> Vec<(String, Analysis)> {
+        let folder = folder_of(uri);
+        let options = &self.options;
+        let read = || Folder::read(options, &folder);
+        let Folder { setup, kept } = self.folders.entry(folder.clone()).or_insert_with(read);
+        let mut places: BTreeMap<usize, &str> = BTreeMap::new();
+        for (name, file) in
+            self.open.iter().filter(|(name, _)| *name == uri || folder_of(name) == folder)
+        {
+            let known = setup.files.iter().position(|known| known.path == file.path);
+            let index = known.unwrap_or_else(|| setup.add(file.clone()));
+            setup.files[index] = SourceFile { id: FileId(index as u32), ..file.clone() };
+            places.insert(index, name);
+        }
+        let Some(own) = places.iter().find(|(_, name)| **name == uri).map(|(index, _)| *index)
+        else {
+            return Vec::new();
+        };
+        let dynamics = setup.model.as_ref().is_some_and(crate::robot::Model::has_dynamics);
+        let examined = Rc::new(examine_file(&setup.job(), own, kept));
+        let together = |index: &usize| examined.programs.iter().all(|files| files.contains(index));
+        let shown = places.into_iter().filter(|(index, _)| *index == own || together(index));
+        let analysis = |(index, name): (usize, &str)| {
+            let file = setup.files[index].clone();
+            (name.to_owned(), Analysis { file, examined: Rc::clone(&examined), dynamics })
+        };
+        shown.map(analysis).collect()
+    }
+}
+
+impl Folder {
+    fn read(options: &Options, folder: &Path) -> Folder {
+        let folder = Some(folder.to_path_buf()).filter(|folder| folder.is_dir());
         let cell = CellArgs {
-            paths: folder.collect(),
-            robot: self.options.robot.clone(),
-            entry: self.options.entry.clone(),
-            inputs: self.options.inputs.clone(),
+            paths: folder.into_iter().collect(),
+            robot: options.robot.clone(),
+            entry: options.entry.clone(),
+            inputs: options.inputs.clone(),
             quiet: true,
             ..CellArgs::default()
         };
         let args = LintArgs { cell, ..LintArgs::default() };
-        // A folder that can't be read, or a robot that is not known: the document stands alone.
-        let mut setup = Setup::new(&args).unwrap_or_default();
-        let mut own = 0;
-        for (uri, file) in &self.open {
-            let path = shown(&path_of(uri));
-            let known = setup.files.iter().position(|file| file.path == path);
-            let index = match known {
-                Some(index) => index,
-                None if is_beside(&path, &args) => setup.add(file.clone()),
-                None => continue,
-            };
-            setup.files[index] = SourceFile { id: FileId(index as u32), ..file.clone() };
-        }
-        let wanted = shown(&path);
-        if let Some(index) = setup.files.iter().position(|file| file.path == wanted) {
-            own = index;
-        } else if let Some(file) = self.open.get(uri) {
-            own = setup.add(file.clone());
-        }
-        let job = setup.job();
-        let report = lint(&job);
-        let cycles = cycles(&job);
-        let dynamics = setup.model.as_ref().is_some_and(crate::robot::Model::has_dynamics);
-        let file = setup
-            .files
-            .get(own)
-            .cloned()
-            .unwrap_or_else(|| SourceFile::new(FileId(0), wanted, Vec::new()));
-        Analysis { file, report, cycles, dynamics }
+        // A folder that can't be read, or a robot that is not known: the documents stand alone.
+        Folder { setup: Setup::new(&args).unwrap_or_default(), kept: Kept::default() }
     }
-}
-
-/// Whether a document that is not saved yet lies in the folder that is read.
-fn is_beside(path: &str, args: &LintArgs) -> bool {
-    Path::new(path).parent().is_some_and(|folder| args.cell.paths.iter().any(|p| p == folder))
 }
 
 impl Analysis {
@@ -129,13 +140,13 @@ impl Analysis {
 
     /// What was found in the document itself.
     pub(super) fn own(&self) -> impl Iterator<Item = &Finding> {
-        self.report.findings.iter().filter(|finding| finding.span.file == self.file.id)
+        self.examined.report.findings.iter().filter(|finding| finding.span.file == self.file.id)
     }
 
     /// What the movement or wait at a byte costs.
     pub(super) fn costs_at(&self, at: u32) -> Option<Costs> {
         let mut found: Option<Costs> = None;
-        for cycle in self.cycles.iter().flatten() {
+        for cycle in self.examined.cycles.iter().flatten() {
             for (event, parts) in cycle.simulation.events.iter().zip(&cycle.account.events) {
                 let mut add = |span: Span, what: &str, time_s: f64, joules: f64| {
                     let here = span.file == self.file.id && span.start <= at && at <= span.end;
@@ -168,6 +179,11 @@ impl Analysis {
         }
         found
     }
+}
+
+/// The folder that a document lies in.
+fn folder_of(uri: &str) -> PathBuf {
+    path_of(uri).parent().map(Path::to_path_buf).unwrap_or_default()
 }
 
 /// The path of a `file:` URI, `%XX` decoded.

@@ -1,9 +1,14 @@
 //! Output in the forms that other programs read.
 
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
 use joulepath::report::lint::{github, gitlab, json, junit, sarif};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::fixtures;
+use crate::schema::{assert_known, errors};
 
 /// The JSON has the fields of the contract.
 #[test]
@@ -63,29 +68,110 @@ fn all_forms_name_all_findings() {
     }
 }
 
-/// The SARIF is what the official schema allows: types made of that schema read it, and what
-/// they write is what they read, so no property is unknown to it.
+/// The official schema of SARIF 2.1.0, as the package of its types has it among its sources: so it
+/// is neither copied here nor fetched.
+fn schema_of_sarif() -> Value {
+    let cargo = |args: &[&str]| {
+        let folder = env!("CARGO_MANIFEST_DIR");
+        Command::new(env!("CARGO")).args(args).current_dir(folder).output().unwrap()
+    };
+    // Packages of other platforms may not be here.
+    let about = String::from_utf8(cargo(&["-vV"]).stdout).unwrap();
+    let host = about.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
+    let form = ["metadata", "--format-version", "1", "--offline", "--locked"];
+    let output = cargo(&[&form[..], &["--filter-platform", host]].concat());
+    let told = String::from_utf8_lossy(&output.stderr);
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect(&told);
+    let packages = metadata["packages"].as_array().unwrap();
+    let types = packages.iter().find(|package| package["name"] == "serde-sarif").unwrap();
+    let manifest = Path::new(types["manifest_path"].as_str().unwrap());
+    let text = fs::read(manifest.with_file_name("src").join("schema.json")).unwrap();
+    serde_json::from_slice(&text).unwrap()
+}
+
 #[test]
-fn sarif_is_what_the_schema_allows() {
+fn sarif_is_valid_by_the_official_schema() {
+    let schema = schema_of_sarif();
+    assert!(schema["$id"].as_str().unwrap().ends_with("sarif-schema-2.1.0.json"));
+    assert_known(&schema);
     let mut results = 0;
     for fixture in fixtures() {
         let value = sarif::sarif(&fixture.report(), &fixture.files);
+        assert_eq!(errors(&schema, &value), [""; 0], "{:?}", fixture.path);
+        // Types that are made of the schema read it without loss.
         let read: serde_sarif::sarif::Sarif = serde_json::from_value(value.clone()).unwrap();
-        results += read.runs[0].results.as_ref().unwrap().len();
-        assert_eq!(sorted(serde_json::to_value(&read).unwrap()), sorted(value));
+        assert_eq!(serde_json::to_value(&read).unwrap(), value);
+        results += value["runs"][0]["results"].as_array().unwrap().len();
     }
     assert!(results > 30, "{results}");
+    // What is wrong is seen.
+    let all = fixtures();
+    let mut value = sarif::sarif(&all[0].report(), &all[0].files);
+    value["runs"][0]["results"][0]["level"] = "waste".into();
+    value["runs"][0]["joules"] = 1.into();
+    assert_eq!(errors(&schema, &value).len(), 2);
 }
 
-/// Objects with their keys in order.
-fn sorted(value: Value) -> Value {
-    match value {
-        Value::Object(map) => {
-            let map: std::collections::BTreeMap<String, Value> =
-                map.into_iter().map(|(key, value)| (key, sorted(value))).collect();
-            serde_json::to_value(map).unwrap()
+/// The fields that GitLab documents for a Code Quality report, with their types and values.
+#[test]
+fn gitlab_is_a_code_quality_report() {
+    let text = json!({ "type": "string", "minLength": 1 });
+    let line = json!({ "type": "integer", "minimum": 1 });
+    let lines = json!({ "type": "object", "required": ["begin"], "properties": { "begin": line } });
+    let schema = json!({
+        "type": "array",
+        "items": {
+            "type": "object",
+            "required": ["description", "check_name", "fingerprint", "severity", "location"],
+            "properties": {
+                "description": text,
+                "check_name": text,
+                "fingerprint": text,
+                "severity": { "enum": ["info", "minor", "major", "critical", "blocker"] },
+                "location": {
+                    "type": "object",
+                    "required": ["path", "lines"],
+                    "properties": { "path": text, "lines": lines },
+                },
+            },
+        },
+    });
+    for fixture in fixtures() {
+        let value = gitlab::gitlab(&fixture.report(), &fixture.files);
+        assert_eq!(errors(&schema, &value), [""; 0], "{:?}", fixture.path);
+        for entry in value.as_array().unwrap() {
+            assert!(!entry["location"]["path"].as_str().unwrap().starts_with("./"), "{entry}");
         }
-        Value::Array(list) => Value::Array(list.into_iter().map(sorted).collect()),
-        other => other,
+    }
+}
+
+/// The elements and attributes that readers of `JUnit`'s reports ask for, and counts that agree.
+#[test]
+fn junit_is_a_test_report() {
+    for fixture in fixtures() {
+        let text = junit::junit(&fixture.report(), &fixture.files);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let root = document.root_element();
+        assert!(root.has_tag_name("testsuites"), "{text}");
+        let count = |node: roxmltree::Node<'_, '_>, name: &str| {
+            node.descendants().filter(|node| node.has_tag_name(name)).count().to_string()
+        };
+        for suite in root.children().filter(roxmltree::Node::is_element) {
+            assert!(suite.has_tag_name("testsuite"), "{text}");
+            assert!(suite.attribute("name").is_some_and(|name| !name.is_empty()));
+            assert_eq!(suite.attribute("tests"), Some(count(suite, "testcase").as_str()), "{text}");
+            let failures = count(suite, "failure");
+            assert_eq!(suite.attribute("failures"), Some(failures.as_str()), "{text}");
+            for case in suite.children().filter(roxmltree::Node::is_element) {
+                assert!(case.has_tag_name("testcase"), "{text}");
+                for attribute in ["name", "classname"] {
+                    assert!(case.attribute(attribute).is_some(), "{attribute}: {text}");
+                }
+                let failures = case.children().filter(|node| node.has_tag_name("failure"));
+                for failure in failures {
+                    assert!(failure.attribute("message").is_some_and(|text| !text.is_empty()));
+                }
+            }
+        }
     }
 }

@@ -6,6 +6,7 @@ mod fixes;
 mod formats;
 mod manuals;
 mod savings;
+mod schema;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -130,4 +131,106 @@ fn small_savings_are_not_told() {
             assert!(finding.saving.is_none_or(|saving| saving.energy_j >= 30.0));
         }
     }
+}
+
+/// A comment about something that only a robot shows is no waste without one.
+#[test]
+fn comments_are_judged_with_what_the_rules_need() {
+    let all = fixtures();
+    let path = all.iter().position(|it| it.path.ends_with("EW001_unused_suppression.mod"));
+    let mut fixture = all.into_iter().nth(path.unwrap()).unwrap();
+    fixture.model = None;
+    let findings = fixture.report().findings;
+    let told: Vec<&str> = findings
+        .iter()
+        .filter(|finding| finding.rule.code == "EW001")
+        .map(|finding| finding.message.as_str())
+        .collect();
+    assert_eq!(told, ["there is no rule EW999: joulepath rule lists them"]);
+}
+
+/// A program that does nothing but move has no movement that is for nothing.
+#[test]
+fn movements_alone_are_a_purpose() {
+    let program = |wait: &str| {
+        format!(
+            "MODULE M
+                CONST robtarget p1:=[[600,0,400],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p2:=[[600,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p3:=[[700,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                PROC main()
+                    MoveJ p3,v1000,fine,tool0;
+                    {wait}
+                    MoveJ p1,v1000,fine,tool0;
+                    MoveJ p2,v1000,z50,tool0;
+                    MoveJ p1,v1000,fine,tool0;
+                    {wait}
+                    MoveJ p2,v1000,z50,tool0;
+                    MoveJ p3,v1000,z50,tool0;
+                    MoveJ p1,v1000,z50,tool0;
+                    MoveJ p2,v1000,fine,tool0;
+                ENDPROC
+            ENDMODULE"
+        )
+    };
+    let codes = |text: &str| -> Vec<&'static str> {
+        let report = Fixture::new("M.mod".into(), text).report();
+        let codes = report.findings.iter().map(|finding| finding.rule.code);
+        codes.filter(|code| ["EW402", "EW403"].contains(code)).collect()
+    };
+    assert_eq!(codes(&program("WaitTime 1;")), ["EW402", "EW403"]);
+    assert!(codes(&program("")).is_empty());
+}
+
+/// A pose to which the program comes back is home only if it also ends there, and what it passes
+/// is a point on the way.
+#[test]
+fn home_is_where_a_program_begins_and_ends() {
+    let program = |zone: &str, end: &str| {
+        format!(
+            "MODULE M
+                CONST robtarget p1:=[[600,0,400],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p2:=[[600,200,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p3:=[[700,-200,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                PROC main()
+                    MoveJ p1,v1000,fine,tool0;
+                    MoveJ p2,v1000,fine,tool0;
+                    WaitTime 1;
+                    MoveJ p1,v1000,{zone},tool0;
+                    MoveJ p3,v1000,fine,tool0;
+                    WaitTime 1;
+                    MoveJ p1,v1000,{zone},tool0;
+                    MoveJ p2,v1000,fine,tool0;
+                    WaitTime 1;
+                    MoveJ {end},v1000,fine,tool0;
+                ENDPROC
+            ENDMODULE"
+        )
+    };
+    let homes = |zone: &str, end: &str| {
+        let report = Fixture::new("M.mod".into(), &program(zone, end)).report();
+        report.findings.iter().filter(|finding| finding.rule.code == "EW406").count()
+    };
+    assert_eq!(homes("fine", "p1"), 2);
+    assert_eq!(homes("z50", "p1"), 0);
+    assert_eq!(homes("fine", "p3"), 0);
+}
+
+/// Where the robot stands before its first movement is assumed: nothing rests on it.
+#[test]
+fn first_movements_are_not_judged() {
+    let text = "MODULE M
+        ! robot: IRB1600-10/1.45
+        CONST robtarget p1:=[[900,0,1000],[0.5,0,0.866,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST robtarget p2:=[[800,300,700],[0.5,0.2,0.8,0],[0,0,-1,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        PROC main()
+            ConfL\\Off;
+            MoveL p1,v1000,fine,tool0;
+            MoveL p2,v1000,fine,tool0;
+        ENDPROC
+    ENDMODULE";
+    let report = Fixture::new("M.mod".into(), text).report();
+    let line = |finding: &Finding| finding.span.start as usize <= text.find("MoveL p2").unwrap();
+    let early = report.findings.iter().filter(|it| ["EW404", "EW604"].contains(&it.rule.code));
+    assert_eq!(early.filter(|finding| line(finding)).count(), 0);
 }

@@ -66,11 +66,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             let share = f64::from(percent) / 100.0;
             let change = |step: &Step| with_acceleration(step, share, None);
             let times = site.executions.len() as f64;
-            let longer = context.longer(&[site.stmt.span], &change);
-            if longer.is_none_or(|longer| longer > slack * times) {
+            let difference = context.difference(&[site.stmt.span], &change);
+            let Some(difference) = difference.filter(|it| it.longer_s <= slack * times) else {
                 continue;
-            }
-            let weighed = context.weigh(&[site.stmt.span], &change);
+            };
+            let weighed = difference.weighed();
             let Weighed::Saves(saving) = weighed else { continue };
             let more = best.as_ref().is_none_or(|(_, _, most)| saving.energy_j > *most);
             if saving.time_s >= -LATE && more {

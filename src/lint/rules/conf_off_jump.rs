@@ -1,15 +1,16 @@
 //! Under `ConfL \Off` the robot arrives a whole turn of an axis away from what the target says.
 //!
 //! ## What it does
-//! Finds lines under `ConfL \Off` that end with axis 4 or 6 half a turn and more from where the
-//! target's configuration has it.
+//! Finds lines under `ConfL \Off` that end with axis 4 or 6 a whole turn (225° and more) from where
+//! the target's configuration has it, behind a movement that kept its configuration.
 //!
 //! ## Why it wastes energy
 //! The next movement that keeps configurations has to turn the axis all the way back, and so may
 //! the next cycle.
 //!
 //! ## How the saving is computed
-//! Nothing is told: what the right configuration is, the program does not say.
+//! None is told: what the right configuration is the program does not say, and with `ConfL \\On`
+//! it would stop here; there is no second text to simulate.
 //!
 //! ## Example
 //! ```text
@@ -30,12 +31,15 @@
 
 use super::super::context::Context;
 use super::super::finding::Finding;
+use super::super::trace::{Deed, Done};
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Target;
 use crate::kinematics::{Conf, ik_conf};
 
 rule!("EW604", "conf-off-jump", Settings, Robot, Warning, "conf_off_jump.rs");
 
+/// Half a turn is the other solution of the wrist; this is more, rad.
+const TURN: f64 = 1.25 * std::f64::consts::PI;
 /// Axes that can turn on: 4 and 6.
 const AXES: [usize; 2] = [3, 5];
 
@@ -45,6 +49,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let jump = site.executions.iter().find_map(|step| {
             let (run, record, leg) = context.record(*step)?;
             let movement = &record.movement;
+            // Before it the configuration is one of the simulation's assumptions.
+            if !context.trace[..*step].iter().any(keeps) {
+                return None;
+            }
             let Target::Pose(target) = &movement.target else { return None };
             if movement.form != MoveForm::Linear
                 || movement.settings.conf_linear
@@ -56,7 +64,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             let [cf1, cf4, cf6, cfx] = target.conf;
             let conf = Conf { cf1, cf4, cf6, cfx };
             let stated = ik_conf(model, &leg.tool.flange(&leg.target), conf).ok()?;
-            let far = |axis: &usize| (leg.end[*axis] - stated[*axis]).abs() > std::f64::consts::PI;
+            let far = |axis: &usize| (leg.end[*axis] - stated[*axis]).abs() > TURN;
             AXES.into_iter().find(far).map(|axis| (axis, leg.end[axis] - stated[axis]))
         });
         let Some((axis, off)) = jump else { continue };
@@ -67,5 +75,17 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             off.to_degrees().abs()
         );
         findings.push(Finding::new(&RULE, site.stmt.span, message));
+    }
+}
+
+/// Whether a movement goes to the configuration that is stated for it.
+fn keeps(done: &Done<'_>) -> bool {
+    match &done.what {
+        Deed::Move(movement) => match movement.form {
+            MoveForm::AbsJ => true,
+            MoveForm::Joint => movement.settings.conf_joint,
+            _ => movement.settings.conf_linear,
+        },
+        _ => false,
     }
 }

@@ -29,7 +29,7 @@
 //! Without a fix: somebody has to say what the loop was for.
 //!
 //! ## Assumptions
-//! Joint movements alone have no purpose.
+//! Joint movements alone have no purpose, unless the program does nothing else.
 
 use super::super::context::Context;
 use super::super::finding::Finding;
@@ -43,6 +43,10 @@ rule!("EW403", "detour", Path, Text, Info, "detour.rs");
 const MOST_POINTS: usize = 6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    // Where all that a program does is to move, that is its purpose.
+    if !context.works() {
+        return;
+    }
     for first in 0..context.sites.len() {
         let mut chain = vec![first];
         while chain.len() <= MOST_POINTS + 1 {
@@ -52,7 +56,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
                 break;
             }
             if same_goal(context, first, next) {
-                if chain.len() > 2 {
+                if chain.len() > 2 && chain.len() + 1 < context.sites.len() {
                     findings.extend(told(context, &chain, next));
                 }
                 break;
@@ -65,6 +69,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn told(context: &Context<'_>, chain: &[usize], last: usize) -> Option<Finding> {
     let spans: Vec<Span> = chain.iter().map(|site| context.sites[*site].stmt.span).collect();
     let saving = context.weigh(&spans, &|_| Vec::new()).saving().ok()?;
+    // Nothing can be said of a way over points that are not known.
+    if chain.iter().any(|site| context.sites[*site].facts.goal.is_none()) {
+        return None;
+    }
     let points = chain.len() - 1;
     let message = format!("a loop over {points} points leads back to where it began, for nothing");
     let mut finding = Finding::new(&RULE, context.sites[last].stmt.span, message);

@@ -35,7 +35,7 @@
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::Deed;
-use super::super::weigh::{Weighed, difference};
+use super::super::weigh::Weighed;
 use crate::dynamics::Load;
 use crate::energy::power::holding_w;
 use crate::ir::instructions::MoveForm;
@@ -94,23 +94,25 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
                 other @ Step::Move(_) => vec![other.clone()],
             }
         };
-        let Some((_, longer)) = difference(model, cycle, &[wait.span], &way(0.0)) else { continue };
-        if -longer >= done.duration {
+        let Some(way_s) = context.difference(&[wait.span], &way(0.0)).map(|it| -it.time_s) else {
+            continue;
+        };
+        if way_s >= done.duration {
             continue;
         }
-        let Weighed::Saves(saving) = context.weigh(&[wait.span], &way(-longer)) else { continue };
+        let Weighed::Saves(saving) = context.weigh(&[wait.span], &way(way_s)) else { continue };
         let message = format!(
             "the robot waits {:.1} s in a pose that takes {here:.0} W to hold; one nearby takes \
              {there:.0} W",
             done.duration
         );
         let mut finding = Finding::new(&RULE, wait.span, message);
-        let degrees: Vec<String> = pose.iter().map(|q| format!("{:.3}", q.to_degrees())).collect();
         finding.change = format!(
-            "MoveAbsJ [[{}],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine before the wait, {:.3} s less of \
-             it, and MoveAbsJ back behind it",
-            degrees.join(","),
-            -longer
+            "MoveAbsJ {},v1000,fine before the wait, {:.3} s less of it, and MoveAbsJ {},v1000,fine \
+             behind it",
+            jointtarget(&pose),
+            way_s,
+            jointtarget(&record.q)
         );
         finding.saving = Some(saving);
         finding.assumptions.push("there is room for the way to the other pose".to_owned());
@@ -151,4 +153,10 @@ fn to(template: &Movement, q: Joints) -> Step {
         stop: Stop::Fine,
         ..template.clone()
     }))
+}
+
+/// Joints as they are written in a program.
+fn jointtarget(q: &Joints) -> String {
+    let degrees = q.map(|q| format!("{:.3}", q.to_degrees()));
+    format!("[[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]", degrees.join(","))
 }

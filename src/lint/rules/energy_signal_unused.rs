@@ -2,7 +2,8 @@
 //!
 //! ## What it does
 //! Finds signals in the `EIO.cfg` of a backup whose name or label speaks of energy saving, that
-//! are tied to no system input or output, no cross connection, and no statement of the program.
+//! are tied to no system input or output, no cross connection, and no statement of any task. What
+//! a signal is for is written nowhere else in a backup: so words have to tell it.
 //!
 //! ## Why it wastes energy
 //! Somebody meant the cell to save energy in breaks; it does not.
@@ -22,27 +23,30 @@
 //! Without a fix.
 //!
 //! ## Assumptions
-//! What the configuration names once is used by nothing in it.
+//! What the configuration names only where it declares signals is used by nothing in it.
 
 use super::super::context::Context;
 use super::super::finding::Finding;
-use crate::ir::signals::signals;
+use super::super::words;
 
 rule!("EW802", "energy-signal-unused", System, Backup, Info, "energy_signal_unused.rs");
 
-/// Parts of names and labels of such signals.
-const SAVING: [&str; 5] = ["energy sav", "energysav", "enensav", "energy_sav", "energiespar"];
+/// Saving, as names and labels that speak of energy say it.
+const SAVING: [&str; 4] = ["sav", "spar", "ahorr", "risparm"];
+/// Words for saving energy, also as in a controller's own signals.
+const SHORT: [&str; 4] = ["enensav", "powersav", "power sav", "profienergy"];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let Some(system) = context.system else { return };
-    let used = signals(context.program);
     for signal in system.signals(context.files) {
         let text = format!("{} {}", signal.name, signal.label).to_lowercase();
-        let saves = SAVING.iter().any(|part| text.contains(part));
-        if !saves
-            || used.contains_key(&signal.name.to_lowercase())
-            || system.mentions(context.files, &signal.name) > 1
-        {
+        let says = |words: &[&str]| words.iter().any(|word| text.contains(word));
+        let saves = text.contains("energ") && says(&SAVING) || says(&SHORT);
+        // Any task of the controller may use it.
+        let key = signal.name.to_lowercase();
+        let others = context.files.iter().filter(|file| Some(file.id) != system.io);
+        let used = || others.map(|file| words::in_file(file, &key)).sum::<usize>() > 0;
+        if !saves || system.is_tied(context.files, &signal.name) || used() {
             continue;
         }
         let message = format!("{} is there to save energy, and nothing uses it", signal.name);

@@ -37,21 +37,26 @@
 //! Without a fix: only a scale or a load identification knows the mass.
 //!
 //! ## Assumptions
-//! An output that is set and reset at stop points, with movements between, and whose name says
-//! gripper, vacuum or clamp, grips.
+//! An output that is set at one stop and reset at another, where the tool comes out the way it
+//! went in, with a wait at one of them and a joint movement or a fast line between, holds a part.
+//! What is set along a path (a weld, a bead of glue) or in passing is none. Names of outputs say
+//! nothing.
 
 use super::super::context::Context;
 use super::super::finding::Finding;
-use super::super::trace::Deed;
-use crate::ir::movement::Output;
+use super::super::trace::{Deed, Done};
+use crate::ir::instructions::MoveForm;
 
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
 
-/// Parts of names of outputs that hold something.
-const HOLDING: [&str; 11] =
-    ["grip", "grp", "vac", "suck", "suction", "greif", "saug", "pinza", "ventos", "clamp", "hand"];
-/// Parts of names of outputs of the robot's hands that are none of them.
-const OTHERWISE: [&str; 4] = ["handshake", "open", "handle", "blow"];
+/// The tool comes out the way it went in where its direction changes by more, rad.
+const OUT: f64 = 1.65;
+/// It goes on along a path where its direction changes by less, rad.
+const ON: f64 = 0.9;
+/// A movement with a part is a joint movement or faster than a process, m/s.
+const FAST: f64 = 0.25;
+/// Fewest movements with a part.
+const MOVES: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if !context.calls("gripload").is_empty()
@@ -59,46 +64,72 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     {
         return;
     }
-    let mut told: Vec<String> = Vec::new();
-    for (step, done) in context.trace.iter().enumerate() {
-        let Deed::Output(output) = &done.what else { continue };
-        let key = output.signal.to_lowercase();
-        if !closes(output) || told.contains(&key) || !carries(context, step, &key) {
-            continue;
-        }
-        let message = format!(
-            "{} grips, but no GripLoad says what is carried: energy and limits are computed \
-             without it",
-            output.signal
-        );
-        findings.push(Finding::new(&RULE, output.span, message));
-        told.push(key);
+    // The program lacks it as a whole: one remark is enough.
+    let carries = (0..context.trace.len()).find(|step| carries(context, *step));
+    let Some(Deed::Output(output)) = carries.map(|step| &context.trace[step].what) else { return };
+    let message = format!(
+        "{} is set where the tool goes in and out, and reset at another such place: a part is \
+         carried, but no GripLoad says what it weighs",
+        output.signal
+    );
+    findings.push(Finding::new(&RULE, output.span, message));
+}
+
+/// Whether what a step sets holds a part until it is reset.
+fn carries(context: &Context<'_>, step: usize) -> bool {
+    let Deed::Output(output) = &context.trace[step].what else { return false };
+    if output.value != "1" || output.instruction.eq_ignore_ascii_case("pulsedo") {
+        return false;
     }
-}
-
-fn closes(output: &Output) -> bool {
-    let key = output.signal.to_lowercase();
-    let named = HOLDING.iter().any(|part| key.contains(part));
-    let otherwise = OTHERWISE.iter().any(|part| key.contains(part));
-    named
-        && !otherwise
-        && output.value == "1"
-        && !output.instruction.eq_ignore_ascii_case("pulsedo")
-}
-
-/// Whether the robot moves between this output at a stop and its reset at another.
-fn carries(context: &Context<'_>, step: usize, key: &str) -> bool {
-    let stops = |upto: usize| {
-        context.trace[..upto].iter().rev().find_map(|done| match &done.what {
-            Deed::Move(movement) => Some(movement.zone.fine),
-            _ => None,
-        })
-    };
     let off = context.trace[step + 1..].iter().position(|done| match &done.what {
-        Deed::Output(output) => output.signal.to_lowercase() == key && output.value == "0",
+        Deed::Output(other) => {
+            other.signal.eq_ignore_ascii_case(&output.signal) && other.value == "0"
+        }
         _ => false,
     });
     let Some(off) = off.map(|off| step + 1 + off) else { return false };
-    let moves = context.trace[step..off].iter().filter(|d| matches!(d.what, Deed::Move(_))).count();
-    moves >= 2 && stops(step) == Some(true) && stops(off) == Some(true)
+    let mut moves = 0;
+    let mut carried = false;
+    for done in &context.trace[step..off] {
+        let Deed::Move(movement) = &done.what else { continue };
+        moves += 1;
+        let joint = matches!(movement.form, MoveForm::Joint | MoveForm::AbsJ);
+        carried |= joint || movement.speed.tcp >= FAST;
+    }
+    let (Some(on), Some(off)) = (end(context, step), end(context, off)) else { return false };
+    let goes_on = |end: &End| end.turn.is_some_and(|turn| turn < ON);
+    let comes_out = |end: &End| end.turn.is_some_and(|turn| turn > OUT);
+    let ends = [on, off];
+    moves >= MOVES
+        && carried
+        && !ends.iter().any(goes_on)
+        && ends.iter().any(comes_out)
+        && ends.iter().any(|end| end.waits)
+}
+
+/// Where an output is set or reset.
+struct End {
+    /// The change of the tool's direction there, rad, if it is known.
+    turn: Option<f64>,
+    /// Whether the robot waits there.
+    waits: bool,
+}
+
+/// The place at which the robot stands in a step; `None` if it passes.
+fn end(context: &Context<'_>, step: usize) -> Option<End> {
+    let moved = |done: &Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+    let here = context.trace[..step].iter().rposition(moved)?;
+    let out = step + context.trace[step..].iter().position(moved)?;
+    match &context.trace[here].what {
+        Deed::Move(movement) if movement.zone.fine => {}
+        _ => return None,
+    }
+    let into = context.trace[..here].iter().rposition(moved);
+    let pose = |step: usize| Some(context.pose(step)?.translation.vector);
+    let turn = || {
+        let [a, b, c] = [pose(into?)?, pose(here)?, pose(out)?];
+        Some((b - a).angle(&(c - b)))
+    };
+    let waits = context.trace[here..out].iter().any(|d| matches!(d.what, Deed::Wait(..)));
+    Some(End { turn: turn(), waits })
 }

@@ -9,8 +9,9 @@
 //! anew, so the motors hold the arm all the while.
 //!
 //! ## How the saving is computed
-//! Closing the brakes is a setting of the controller and not counted as saved; the message says
-//! what it could spare.
+//! The cycle is laid on a time line without the movement: that is what leaving it out saves by
+//! itself. Closing the brakes is a setting of the controller and not counted as saved; the message
+//! says what it could spare.
 //!
 //! ## Example
 //! ```text
@@ -33,6 +34,7 @@
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::Deed;
+use super::super::weigh::Weighed;
 use crate::energy::power::holding_w;
 use crate::motion::timeline::What;
 
@@ -64,7 +66,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             "a tiny {} breaks {total:.1} s of waiting in two: the brakes can't close{spared}",
             movement.instruction
         );
-        findings.push(Finding::new(&RULE, movement.span, message));
+        let mut finding = Finding::new(&RULE, movement.span, message);
+        if let Weighed::Saves(saving) = context.weigh(&[movement.span], &|_| Vec::new()) {
+            "leaving it out".clone_into(&mut finding.change);
+            finding.saving = Some(saving);
+        }
+        findings.push(finding);
     }
 }
 

@@ -26,10 +26,11 @@
 //! tool or another place of the work may do.
 //!
 //! ## Assumptions
-//! The robot has a spherical wrist.
+//! The robot has a spherical wrist. First movements are not judged: where they begin is assumed.
 
 use super::super::context::Context;
 use super::super::finding::Finding;
+use super::super::trace::Deed;
 use super::super::weigh::Weighed;
 use super::line_in_free_air::as_joint;
 use crate::ir::instructions::MoveForm;
@@ -49,20 +50,22 @@ const LOOKS: usize = 40;
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for site in &context.sites {
         let line = site.signature.form == MoveForm::Linear && site.is_plain();
-        if !line || !site.executions.iter().any(|step| is_near(context, *step)) {
+        // Where the robot stands before its first movement is assumed.
+        let first = site.executions.first().is_some_and(|step| is_first(context, *step));
+        if !line || first || !site.executions.iter().any(|step| is_near(context, *step)) {
             continue;
         }
-        let weighed = context.weigh(&[site.stmt.span], &as_joint);
-        let saving = match weighed {
-            Weighed::Nothing => continue,
-            other => other.saving().ok().flatten(),
-        };
+        let Weighed::Saves(saving) = context.weigh(&[site.stmt.span], &as_joint) else { continue };
         let message = format!("{} passes the singularity of the wrist", site.name);
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
         finding.change = format!("MoveJ in place of {}", site.name);
-        finding.saving = saving;
+        finding.saving = Some(saving);
         findings.push(finding);
     }
+}
+
+fn is_first(context: &Context<'_>, step: usize) -> bool {
+    !context.trace[..step].iter().any(|done| matches!(done.what, Deed::Move(_)))
 }
 
 fn is_near(context: &Context<'_>, step: usize) -> bool {

@@ -28,7 +28,8 @@
 //! Unsafe: home may be the only free way between both. Check that there is room.
 //!
 //! ## Assumptions
-//! Home is where the first movement of the program goes, if that is a `MoveAbsJ` or `MoveJ`.
+//! Home is where the first movement of the program goes, if that is a `MoveAbsJ`, or a pose at which
+//! the program also ends and the robot stops.
 
 use super::super::context::Context;
 use super::super::edits::{fix, remove};
@@ -47,19 +48,29 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let is_move = |step: usize| matches!(context.trace[step].what, Deed::Move(_));
     let moves: Vec<usize> = (0..context.trace.len()).filter(|step| is_move(*step)).collect();
     let Some(home) = moves.first().and_then(|step| goal(context, *step)) else { return };
+    // A program that begins at a pose begins at home if it ends there too.
+    let ends = moves.last().and_then(|step| goal(context, *step));
+    if home.pose().is_some() && ends.is_none_or(|ends| !ends.is_same(&home)) {
+        return;
+    }
+    // What is done before it goes home is done elsewhere.
     let idle = |step: usize| {
-        let between = step > 0 && step + 1 < context.trace.len();
-        between
-            && is_move(step - 1)
+        let away = |step: usize| goal(context, step).is_none_or(|goal| !goal.is_same(&home));
+        let before = context.trace[..step].iter().rposition(|done| moves_or_leaves(&done.what));
+        goal(context, step).is_some_and(|goal| goal.is_same(&home))
+            && before.is_some_and(|before| is_move(before) && away(before))
+            && step + 1 < context.trace.len()
             && is_move(step + 1)
-            && goal(context, step).is_some_and(|goal| goal.is_same(&home))
-            && [step - 1, step + 1]
-                .iter()
-                .all(|other| goal(context, *other).is_none_or(|goal| !goal.is_same(&home)))
+            && away(step + 1)
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for site in &context.sites {
-        let joint = matches!(site.signature.form, MoveForm::AbsJ | MoveForm::Joint);
+        // A pose that is passed is a point on the way.
+        let joint = match site.signature.form {
+            MoveForm::AbsJ => true,
+            MoveForm::Joint => site.is_stop(),
+            _ => false,
+        };
         let all = !site.executions.is_empty() && site.executions.iter().all(|step| idle(*step));
         if !joint || !all || !site.is_plain() {
             continue;
@@ -78,6 +89,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         finding.fix = remove(context, site).map(|edit| fix(Applicability::Unsafe, edit));
         findings.push(finding);
     }
+}
+
+fn moves_or_leaves(deed: &Deed<'_>) -> bool {
+    matches!(deed, Deed::Move(_) | Deed::Left(_))
 }
 
 fn goal(context: &Context<'_>, step: usize) -> Option<super::super::site::Goal> {

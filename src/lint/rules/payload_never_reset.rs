@@ -8,7 +8,8 @@
 //! less than it could, and every figure about energy is wrong.
 //!
 //! ## How the saving is computed
-//! There is none to tell: with a wrong payload no figure is right.
+//! There is none to tell: where the part is let go is not in the program, so there is no second
+//! text to simulate, and with a wrong payload no figure is right.
 //!
 //! ## Example
 //! ```text

@@ -1,7 +1,8 @@
 //! A loop asks an input again and again, with a `WaitTime` in it.
 //!
 //! ## What it does
-//! Finds `WHILE` loops whose condition reads an input and whose body does nothing but `WaitTime`.
+//! Finds `WHILE` loops whose condition reads an input and whose body does nothing but `WaitTime`,
+//! and the same loops made of a label, an `IF` and a `GOTO`.
 //!
 //! ## Why it wastes energy
 //! The wait is cut into pieces: the robot goes on a poll late, and neither a reader nor a tool
@@ -9,7 +10,9 @@
 //! pose for it.
 //!
 //! ## How the saving is computed
-//! Nothing is told: how long the loop runs is not in the program.
+//! None is told: `simulate` takes such a loop for a wait that ends with its input, so that two
+//! runs show no difference. On the controller the robot goes on up to one `WaitTime` late, each
+//! time at the base load; how late is chance.
 //!
 //! ## Example
 //! ```text
@@ -32,7 +35,7 @@
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::flow::Class;
-use crate::ir::hir::{Block, Callee, StmtKind};
+use crate::ir::hir::{Block, Callee, Expr, Stmt, StmtKind};
 use crate::ir::program::RoutineId;
 
 rule!("EW303", "polling-wait", Dwell, Text, Info, "polling_wait.rs");
@@ -49,8 +52,15 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 /// The depth of the recursion is limited by the parser.
 fn look(context: &Context<'_>, routine: RoutineId, block: &Block, findings: &mut Vec<Finding>) {
-    for stmt in block {
-        if let StmtKind::While { condition, body } = &stmt.kind
+    for (index, stmt) in block.iter().enumerate() {
+        let polled = match &stmt.kind {
+            StmtKind::While { condition, body } => Some((condition, body.as_slice())),
+            StmtKind::If { branches, otherwise: None } => {
+                jump_back(branches, index.checked_sub(1).map(|before| &block[before]))
+            }
+            _ => None,
+        };
+        if let Some((condition, body)) = polled
             && !context.quiet.expression(routine, condition)
             && only_waits(context, routine, body)
         {
@@ -64,7 +74,23 @@ fn look(context: &Context<'_>, routine: RoutineId, block: &Block, findings: &mut
     }
 }
 
-fn only_waits(context: &Context<'_>, routine: RoutineId, body: &Block) -> bool {
+/// The condition and the rest of the one branch of an `IF` that ends with a jump to the label
+/// right before it.
+fn jump_back<'h>(
+    branches: &'h [(Expr, Block)],
+    before: Option<&Stmt>,
+) -> Option<(&'h Expr, &'h [Stmt])> {
+    let [(condition, body)] = branches else { return None };
+    let (StmtKind::Label(label), (last, rest)) = (&before?.kind, body.split_last()?) else {
+        return None;
+    };
+    match &last.kind {
+        StmtKind::Goto(to) if to.key == label.key => Some((condition, rest)),
+        _ => None,
+    }
+}
+
+fn only_waits(context: &Context<'_>, routine: RoutineId, body: &[Stmt]) -> bool {
     let mut waits = false;
     for stmt in body {
         let is_wait = match &stmt.kind {

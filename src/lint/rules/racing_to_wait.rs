@@ -35,6 +35,7 @@ use super::super::context::Context;
 use super::super::edits::{replace, slower};
 use super::super::finding::{Applicability, Finding, Fix};
 use super::super::flow::{Next, Through};
+use super::super::site::Site;
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
 use crate::ir::hir::{Callee, StmtKind};
@@ -115,10 +116,11 @@ pub(super) fn slower_run(
     for (name, speed) in slower(fastest) {
         let times = context.sites[index].executions.len() as f64;
         let change = |step: &Step| with_speed(step, speed);
-        if context.longer(&spans, &change)? > slack * times {
+        let difference = context.difference(&spans, &change)?;
+        if difference.longer_s > slack * times {
             break;
         }
-        let weighed = context.weigh(&spans, &change);
+        let weighed = difference.weighed();
         let Weighed::Saves(saving) = weighed else { continue };
         if saving.time_s < -LATE {
             continue;
@@ -131,11 +133,14 @@ pub(super) fn slower_run(
     let site = &context.sites[index];
     let message = format!("the robot hurries to wait for {signal}");
     let mut finding = Finding::new(&RULE, site.stmt.span, message);
-    finding.change = format!("{name} in the movements to this point");
+    let faster = |site: &&&Site<'_>| site.facts.speed.is_some_and(|s| s.tcp > speed);
+    let lines: Vec<String> =
+        sites.iter().filter(faster).map(|site| context.line(site.stmt.span).to_string()).collect();
+    let plural = if lines.len() == 1 { "" } else { "s" };
+    finding.change = format!("{name} in line{plural} {}", lines.join(", "));
     finding.saving = weighed.saving().ok()?;
     finding.assumptions.push(format!("{signal} comes when --input says"));
-    let faster = sites.iter().filter(|site| site.facts.speed.is_some_and(|s| s.tcp > speed));
-    let edits = faster.map(|site| replace(site.speed.span, &name)).collect();
+    let edits = sites.iter().filter(faster).map(|site| replace(site.speed.span, &name)).collect();
     finding.fix = Some(Fix { applicability: Applicability::Unsafe, edits });
     Some(finding)
 }

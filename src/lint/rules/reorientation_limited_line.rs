@@ -82,7 +82,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         );
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
         finding.change = format!(
-            "a turning speed of 500 °/s in place of {:.0} °/s in the speed data",
+            "[{},500,5000,1000] in place of {}, which turns with {:.0} °/s,",
+            (speed.tcp * 1e6).round() / 1e3,
+            context.text(site.speed.span),
             speed.orientation.to_degrees()
         );
         finding.saving = saving;

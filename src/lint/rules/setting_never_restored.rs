@@ -9,7 +9,8 @@
 //! the base load runs for longer, and no cycle is as it was tried.
 //!
 //! ## How the saving is computed
-//! EW602 and EW603 weigh the setting itself; here nothing is told.
+//! None is told: what is lost, the next cycle loses, and one simulated cycle does not show it.
+//! EW602 and EW603 weigh the setting itself.
 //!
 //! ## Example
 //! ```text

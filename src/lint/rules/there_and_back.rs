@@ -28,7 +28,8 @@
 //! Unsafe: being there may have been the purpose (to shake something off, to be seen).
 //!
 //! ## Assumptions
-//! Movements alone have no purpose. Ways that are gone several times are left alone.
+//! Movements alone have no purpose, unless the program does nothing else. Ways that are gone
+//! several times are left alone.
 
 use super::super::context::Context;
 use super::super::edits::remove;
@@ -43,6 +44,10 @@ rule!("EW402", "there-and-back", Path, Text, Info, "there_and_back.rs");
 const FAST: f64 = 0.5;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    // Where all that a program does is to move, that is its purpose.
+    if !context.works() {
+        return;
+    }
     for first in 0..context.sites.len() {
         let Some(there) = only_next(context, first) else { continue };
         let Some(back) = only_next(context, there) else { continue };

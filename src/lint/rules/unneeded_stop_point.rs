@@ -32,14 +32,18 @@
 //!
 //! ## Assumptions
 //! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
-//! the tool turns back, points nearer than 20 mm to the next one, interrupt routines, first
-//! movements.
+//! the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
+//! than 150 mm across the tool's axis, next to an arc, or four and more in a row), interrupt
+//! routines, first movements.
 
-use super::super::context::Context;
+use std::collections::BTreeSet;
+
+use super::super::context::{Context, Corner};
 use super::super::edits::{NamedZone, fix, replace, zone_within};
 use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
 use crate::ir::hir::RoutineKind;
+use crate::ir::instructions::MoveForm;
 use crate::ir::movement::Movement;
 use crate::motion::Step;
 
@@ -49,6 +53,14 @@ rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point
 const PROCESS: f64 = 0.2;
 /// A larger change of direction is a way back, rad.
 const BACK: f64 = 2.36;
+/// Points nearer than this to the next one are left alone, m.
+const NEAR: f64 = 0.02;
+/// Longest way on a contour, m.
+const CONTOUR: f64 = 0.15;
+/// Share of a way across the tool's axis that lies along it.
+const ACROSS: f64 = 0.3;
+/// Lines in a row that are many: with a part the robot goes up, over and down.
+const MANY: usize = 4;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone between two lines, m: their corner is meant to be near.
@@ -84,14 +96,40 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         return None;
     }
     let corner = context.corner(index)?;
-    if corner.turn > BACK {
+    if corner.turn > BACK || corner.room() < NEAR {
         return None;
     }
     let lines = site.is_linear() && next.iter().any(|next| context.sites[*next].is_linear());
+    if site.is_linear() && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
+        return None;
+    }
     let most = if lines { BETWEEN_LINES } else { MOST };
     let zone = zone_within((SHARE * corner.room()).min(most))?;
     Some((zone, super::stop_in_line::is_in_line(context, index, &next, &corner)))
         .filter(|(_, in_line)| !in_line)
+}
+
+/// Whether a stop point lies on or ends a contour that the tool draws, cuts or glues: there is an
+/// arc, the lines are across the tool's axis, or many in a row.
+fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corner) -> bool {
+    let is_arc = |site: &usize| context.sites[*site].signature.form == MoveForm::Circular;
+    let across = corner.along < ACROSS && next.iter().any(|it| context.sites[*it].is_linear());
+    if across || is_arc(&index) || next.iter().any(is_arc) || next.contains(&index) {
+        return true;
+    }
+    let mut row = BTreeSet::from([index]);
+    let mut open = vec![index];
+    while let Some(site) = open.pop().filter(|_| row.len() < MANY) {
+        let behind = context.next_moves(site, Through::Quiet).unwrap_or_default();
+        let before = context.before(site).iter().copied();
+        let before = before.filter(|it| context.next_moves(*it, Through::Quiet).is_some());
+        for other in behind.into_iter().chain(before) {
+            if context.sites[other].is_linear() && row.insert(other) {
+                open.push(other);
+            }
+        }
+    }
+    row.len() >= MANY
 }
 
 /// The movements behind a stop point that stops for nothing else.

@@ -42,6 +42,8 @@ const BEYOND: f64 = 1.5;
 const BELOW: f64 = 0.9;
 /// Longest time that is given for it, s.
 const LONGER: f64 = 0.1;
+/// Name of the pace that the turning of the tool sets.
+const TURNING: &str = "reorientation";
 /// Looks at a movement.
 const LOOKS: usize = 16;
 
@@ -54,7 +56,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let peaks = site.executions.iter().map(|step| peak(context, *step));
         let Some(peaks) = peaks.collect::<Option<Vec<f64>>>() else { continue };
         let reached = peaks.into_iter().fold(0.0, f64::max);
-        if reached <= 0.0 || speed.tcp <= BEYOND * reached {
+        // What turns for longer than it moves is slow for that reason.
+        let turns = |step: &usize| {
+            context.record(*step).is_some_and(|(_, record, _)| record.pace.name() == TURNING)
+        };
+        if reached <= 0.0 || speed.tcp <= BEYOND * reached || site.executions.iter().any(turns) {
             continue;
         }
         let Some((name, below)) = slower(BELOW * reached).next() else { continue };

@@ -7,7 +7,7 @@
 //! What can't be worked out is in no figure, and whatever it wastes is not found.
 //!
 //! ## How the saving is computed
-//! There is none.
+//! There is none: the movement is in no simulated cycle.
 //!
 //! ## Example
 //! ```text
@@ -27,19 +27,30 @@ use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::finding::Finding;
-use super::super::trace::Deed;
+use super::super::trace::{Deed, record};
 use crate::ir::instructions::MoveForm;
+use crate::text::Span;
 
 rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let left = || context.trace.iter().any(|done| matches!(done.what, Deed::Left(_)));
+    let Some(entry) = context.entry.filter(|_| left()) else { return };
+    // What another robot could do the program says well enough.
+    let recording = record(context.program, entry);
+    let resolved: BTreeSet<Span> = recording
+        .trace()
+        .iter()
+        .filter(|done| matches!(done.what, Deed::Move(_)))
+        .map(|done| done.what.span())
+        .collect();
     let mut told: BTreeSet<&str> = BTreeSet::new();
     for done in &context.trace {
         let Deed::Left(span) = done.what else { continue };
         let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else { continue };
         let facts = &site.facts;
         let open = facts.goal.is_none() || facts.speed.is_none() || facts.zone.is_none();
-        if !open || site.signature.form == MoveForm::ExternalJoint {
+        if !open || resolved.contains(&span) || site.signature.form == MoveForm::ExternalJoint {
             continue;
         }
         let Some(note) = context.unresolved.iter().find(|note| note.span == span) else { continue };

@@ -24,7 +24,8 @@
 //! Taking the comment out changes no statement.
 //!
 //! ## Assumptions
-//! A rule that needs a robot or a backup is not judged without one.
+//! A rule that needs a backup is not judged without one, and without a robot no rule about where
+//! and how the robot moves: with one it may find what it does not find without.
 
 use super::super::edits::{fix, replace};
 use super::super::engine::Job;
@@ -55,10 +56,10 @@ pub(in crate::lint) fn judge(
     let meant = || ALL.iter().filter(|rule| suppression.names(rule));
     let idle = |rule: &Rule| {
         !job.settings.selects(rule)
-            || rule.needs == Needs::Robot && job.model.is_none()
             || rule.needs == Needs::Backup
+            || job.model.is_none() && depends_on_robot(rule)
     };
-    if meant().next().is_some() && meant().any(|rule| idle(rule)) {
+    if meant().any(|rule| idle(rule)) {
         return;
     }
     let codes = suppression.codes.join(", ");
@@ -72,4 +73,10 @@ pub(in crate::lint) fn judge(
     let mut finding = Finding::new(&RULE, suppression.span, message);
     finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
     findings.push(finding);
+}
+
+/// Whether a robot may find more: where it goes, what it gets to, whether a change saves.
+fn depends_on_robot(rule: &Rule) -> bool {
+    let moves = [Family::Stops, Family::Speed, Family::Dwell, Family::Path];
+    rule.needs == Needs::Robot || moves.contains(&rule.family)
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::load::gripping;
 use super::{Options, VirtualController};
 use crate::ir::exec::Machine;
 use crate::ir::movement::{Movement, Wait};
@@ -19,11 +20,19 @@ pub enum Step {
     Wait(Box<Wait>),
 }
 
-/// Lays steps on a time line from the joints at which the robot stands at first, rad. Inputs
-/// come at no time of their own: a wait without a stated length takes none.
-pub fn replay(model: &Model, options: &Options, start: Joints, steps: Vec<Step>) -> Simulation {
+/// Lays steps on a time line from the joints at which the robot stands at first, rad, with what
+/// the movement `before` had it carry. Inputs come at no time of their own: a wait without a
+/// stated length takes none.
+pub fn replay(
+    model: &Model,
+    options: &Options,
+    start: Joints,
+    before: Option<&Movement>,
+    steps: Vec<Step>,
+) -> Simulation {
     let options = Options { start: Some(start), inputs: BTreeMap::new(), ..options.clone() };
     let mut machine = VirtualController::new(model, &options);
+    machine.tool = before.map(gripping);
     for step in steps {
         match step {
             Step::Move(movement) => machine.moves(Ok(*movement)),
