@@ -143,9 +143,11 @@ impl Subsets<'_> {
                 model.effects.push(given.clone());
             }
         }
-        model.sensors = if chosen.iter().any(|id| OF_LOG.contains(id)) {
+        let of_log = |ids: &[&str]| ids.iter().any(|id| OF_LOG.contains(id));
+        let with_parameters = chosen.contains(&PARAMETERS);
+        model.sensors = if of_log(&chosen) || with_parameters && !of_log(self.players) {
             improved.sensors.clone()
-        } else if chosen.contains(&PARAMETERS) {
+        } else if with_parameters {
             self.refit.written.sensors.clone()
         } else {
             nominal.sensors.clone()
