@@ -21,6 +21,7 @@ use crate::gap::{
 use crate::identify::Hints;
 use crate::log::{Channel, ColumnMap};
 use crate::report::diagnose as report;
+use crate::report::html::diagnose_report;
 use crate::robot::{Model, Use, nearest, ready, to_toml};
 
 /// Where a model and logs of its robot part, which effect it is, and how far the gap shrinks.
@@ -72,6 +73,10 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
 
+    /// A page with what is missed before and after, and what was found.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -101,6 +106,10 @@ enum TrustArg {
 /// A log or a robot that can't be used, or output that can't be written.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = diagnosed(args)?;
+    if let Some(path) = &args.report {
+        output::write(path, diagnose_report(&found, &basis)?.as_bytes())
+            .with_context(|| path.display().to_string())?;
+    }
     let mut out = std::io::stdout().lock();
     match args.format {
         Format::Json => writeln!(out, "{:#}", report::json(&found, &basis))?,
@@ -127,6 +136,7 @@ pub fn of_case(case: &Path, options: &Value) -> anyhow::Result<Value> {
         map: String::new(),
         period: options.get("period").and_then(Value::as_f64),
         out: Some(case.join("improved.toml")),
+        report: None,
         format: Format::Json,
         quiet: true,
     };
@@ -161,7 +171,11 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     };
     let mut train = read(&args.log)?;
     let mut held = read(&args.heldout)?;
-    let mut basis = report::Basis { heldout: "file".to_owned(), ..report::Basis::default() };
+    let mut basis = report::Basis {
+        robot: args.robot.clone(),
+        heldout: "file".to_owned(),
+        ..report::Basis::default()
+    };
     if held.is_empty() {
         "trajectory".clone_into(&mut basis.heldout);
         held.extend(if train.len() > 1 { train.pop() } else { None });

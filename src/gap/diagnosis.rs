@@ -102,6 +102,23 @@ pub struct Place {
     pub line: Option<(String, usize)>,
 }
 
+/// Torques of a held-out motion, and what models say of them, by joint, then by row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// Times \[s\].
+    pub t: Vec<f64>,
+    /// Positions \[rad\].
+    pub q: Vec<Vec<f64>>,
+    /// Rates \[rad/s\].
+    pub qd: Vec<Vec<f64>>,
+    /// Measured \[Nm\].
+    pub measured: Vec<Vec<f64>>,
+    /// By the nominal model.
+    pub before: Vec<Vec<f64>>,
+    /// By the improved one.
+    pub after: Vec<Vec<f64>>,
+}
+
 /// A diagnosis of torques.
 #[derive(Clone)]
 pub struct Diagnosis {
@@ -123,6 +140,8 @@ pub struct Diagnosis {
     pub refit: Improved,
     /// That with the asserted effects.
     pub improved: Improved,
+    /// A held-out motion.
+    pub shown: Option<Shown>,
     /// Why the verdict is what it is.
     pub reasons: Vec<String>,
     /// Rms gaps of other channels: name, unit; noise, before, after.

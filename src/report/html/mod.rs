@@ -1,6 +1,7 @@
 //! Results as one self-contained page: HTML with its style sheet and its plots inside, without
 //! scripts and without anything that is loaded.
 
+mod diagnose;
 mod energy_time;
 mod format;
 mod identify;
@@ -14,6 +15,7 @@ mod standstill;
 mod summary;
 mod ways;
 
+pub use diagnose::diagnose_report;
 pub use identify::{Traces, identify_report};
 pub use simulation::simulate_report;
 
