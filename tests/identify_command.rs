@@ -265,6 +265,25 @@ fn torques_of_something_else_are_no_model() {
     assert!(text.contains("0.50 s later than the positions"), "{text}");
 }
 
+/// A torque that goes astray over three seconds is explained by the many parameters, not foretold.
+#[test]
+fn what_explains_only_its_own_data_is_not_good() {
+    let bench = Bench::new();
+    let mut all = rows();
+    all.truncate(120);
+    for row in &mut all {
+        let astray = 6.0 * (2.0 * row[0]).sin();
+        row[22] += astray;
+    }
+    let log = bench.write(&header(), &cells(&all), ",");
+    let output = identify(&log, &["--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let quality = &found["quality"];
+    let share = |key: &str| quality[key][3].as_f64().unwrap();
+    assert!(share("explained") > 0.7 && share("predicted") < 0.7, "{quality}");
+    assert_ne!(quality["grade"], "good", "{quality}");
+}
+
 #[test]
 fn a_constant_joint_is_named() {
     let bench = Bench::new();

@@ -225,23 +225,26 @@ fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
         let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
         reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
     };
-    let mut kinds: Vec<(String, usize)> = Vec::new();
+    let mut kinds: Vec<(String, u64, usize)> = Vec::new();
     let mut texts = Vec::new();
     for row in rejected {
         let text = format!("row {} left out: {}", row.row, row.reason);
         let kind = kind(&row.reason);
-        if let Some((_, count)) = kinds.iter_mut().find(|(known, _)| *known == kind) {
+        if let Some((.., count)) = kinds.iter_mut().find(|(known, ..)| *known == kind) {
             *count += 1;
             if *count <= TOLD {
                 texts.push(text);
             }
         } else {
-            kinds.push((kind, 1));
+            kinds.push((kind, row.row, 1));
             texts.push(text);
         }
     }
-    for (kind, count) in kinds.into_iter().filter(|(_, count)| *count > TOLD) {
-        texts.push(format!("{} more rows left out for the same reason ({kind})", count - TOLD));
+    for (_, first, count) in kinds.into_iter().filter(|(.., count)| *count > TOLD) {
+        texts.push(format!(
+            "{} more rows left out for the same reason as row {first}",
+            count - TOLD
+        ));
     }
     texts
 }

@@ -34,4 +34,13 @@ impl Misses {
             relative: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
         }
     }
+
+    /// The same torques with other residuals, `rms` \[Nm\].
+    pub(super) fn with_rms(&self, rms: &[f64]) -> Misses {
+        let relative = |(joint, relative): (usize, &f64)| relative * rms[joint] / self.rms[joint];
+        Misses {
+            rms: rms.to_vec(),
+            relative: self.relative.iter().enumerate().map(relative).collect(),
+        }
+    }
 }

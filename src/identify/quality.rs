@@ -60,6 +60,9 @@ pub struct Quality {
     /// Share of the variance of each joint's torque that the model explains; not a number
     /// where a joint rests. Less than 0: worse than a constant.
     pub explained: Vec<f64>,
+    /// The same of torques that took no part: of other logs, else of fifths of the time from the
+    /// other four. None where the motion repeats: a single repetition is mostly noise.
+    pub predicted: Option<Vec<f64>>,
     /// Joints whose Coulomb friction in the free fit surely gives power, from 0.
     pub giving_power: Vec<usize>,
     /// By how much the torques fit the motion better if they are taken from later, \[s\].
@@ -82,13 +85,6 @@ impl Quality {
         };
     }
 
-    /// The mean share of the moving joints.
-    #[must_use]
-    pub fn mean(&self) -> f64 {
-        let known = || self.explained.iter().filter(|share| share.is_finite());
-        known().map(|share| share.clamp(0.0, 1.0)).sum::<f64>() / known().count().max(1) as f64
-    }
-
     /// In a sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
@@ -98,7 +94,12 @@ impl Quality {
             Grade::Poor => "poor",
             Grade::None => "none",
         };
-        let mut text = format!("{word}: explains {:.1} % of the torques", 100.0 * self.mean());
+        let mut text =
+            format!("{word}: explains {:.1} % of the torques", 100.0 * mean(&self.explained));
+        if let Some(predicted) = &self.predicted {
+            let share = 100.0 * mean(predicted);
+            let _ = write!(text, ", {share:.1} % of those that it was not fitted to");
+        }
         let named = |joints: Vec<usize>| -> String {
             joints.iter().map(|joint| (joint + 1).to_string()).collect::<Vec<_>>().join(", ")
         };
@@ -131,30 +132,26 @@ impl Quality {
     }
 }
 
-/// What is said of a model with the residuals `misses` on `samples`; `giving_power` are the
+/// What is said of a model that explains these `shares` of the torques, of those that it was fitted
+/// to and of those that took no part, and misses `rms` \[Nm\] of `samples`; `giving_power` are the
 /// joints whose friction surely does, `whiteness` is that of the free fit.
 #[must_use]
 pub(super) fn quality(
     equations: &Equations<'_>,
     samples: &Samples,
-    misses: &Misses,
+    rms: &[f64],
+    (explained, predicted): (Vec<f64>, Option<Vec<f64>>),
     giving_power: Vec<usize>,
     whiteness: &[Option<Whiteness>],
 ) -> Quality {
-    let explained: Vec<f64> = (0..misses.rms.len())
-        .map(|joint| {
-            let moves = !samples.resting.contains(&joint);
-            if moves { explained(samples, misses, joint) } else { f64::NAN }
-        })
-        .collect();
-    let moving = misses.rms.len() - samples.resting.len();
-    let mut quality =
-        Quality { grade: Grade::Good, explained, giving_power, late: None, weight: None };
-    let mean = quality.mean();
+    let moving = rms.len() - samples.resting.len();
+    let shares = || [Some(&explained), predicted.as_ref()].into_iter().flatten();
+    let mean_of_fitted = mean(&explained);
+    let mean = shares().map(|of| mean(of)).fold(1.0, f64::min);
     // A joint that is not explained is not made good by the others.
-    let worst = quality.explained.iter().copied().fold(1.0, f64::min);
-    let reversed = 2 * quality.giving_power.len() > moving;
-    quality.grade = if mean < NONE || reversed {
+    let worst = shares().flatten().copied().fold(1.0, f64::min);
+    let reversed = 2 * giving_power.len() > moving;
+    let grade = if mean_of_fitted < NONE || reversed {
         Grade::None
     } else if mean < FAIR || worst < NONE {
         Grade::Poor
@@ -163,12 +160,14 @@ pub(super) fn quality(
     } else {
         Grade::Good
     };
+    let mut quality =
+        Quality { grade, explained, predicted, giving_power, late: None, weight: None };
     if quality.grade != Grade::Good {
         quality.late = late(equations, samples);
     }
     let white = whiteness.iter().flatten().all(|of| of.p_value > WHITE);
     if quality.late.is_none() && !white {
-        quality.late = slightly_late(equations, samples, &misses.rms);
+        quality.late = slightly_late(equations, samples, rms);
     }
     if quality.late.is_some() && quality.grade == Grade::Good {
         quality.grade = Grade::Fair;
@@ -182,16 +181,30 @@ pub(super) fn surely_negative(value: f64, sd: f64) -> bool {
     value < -SURE * sd
 }
 
-/// The share of the variance of a joint's torque, as the equations have it, behind a filter.
-fn explained(samples: &Samples, misses: &Misses, joint: usize) -> f64 {
-    let all = || samples.blocks.iter().flat_map(|block| &block.tau[joint]);
-    let mean = all().sum::<f64>() / samples.len().max(1) as f64;
-    let (rms, relative) = (misses.rms[joint], misses.relative[joint]);
-    if rms == 0.0 {
-        return 1.0;
-    }
-    let square = (rms / relative).powi(2);
-    1.0 - rms * rms / (square - mean * mean).max(LEAST * square)
+/// The mean share of the moving joints.
+fn mean(shares: &[f64]) -> f64 {
+    let known = || shares.iter().filter(|share| share.is_finite());
+    known().map(|share| share.clamp(0.0, 1.0)).sum::<f64>() / known().count().max(1) as f64
+}
+
+/// The share of the variance of each joint's torque, as the equations have it, behind a filter;
+/// not a number where a joint rests.
+#[must_use]
+pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
+    let count: usize = samples.iter().map(Samples::len).sum();
+    let share = |(joint, (rms, relative)): (usize, (&f64, &f64))| {
+        if samples.iter().all(|of| of.resting.contains(&joint)) {
+            return f64::NAN;
+        }
+        if *rms == 0.0 {
+            return 1.0;
+        }
+        let blocks = samples.iter().flat_map(|of| &of.blocks);
+        let mean = blocks.flat_map(|block| &block.tau[joint]).sum::<f64>() / count.max(1) as f64;
+        let square = (rms / relative).powi(2);
+        1.0 - rms * rms / (square - mean * mean).max(LEAST * square)
+    };
+    misses.rms.iter().zip(&misses.relative).enumerate().map(share).collect()
 }
 
 /// The shift in time with which torques fit the motion best, where that is far better \[s\].

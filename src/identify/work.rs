@@ -16,7 +16,7 @@ use super::fit::{Fit, Weighting, fit, reweighted};
 use super::guess::{prior, small_body};
 use super::least_squares::{Solution, solve};
 use super::misses::Misses;
-use super::quality::{Quality, quality, surely_negative};
+use super::quality::{Quality, explained, quality, surely_negative};
 use super::samples::{Samples, Source};
 use super::wrist::wrist_coupling;
 
@@ -138,7 +138,7 @@ pub fn identify(
     let training_misses = Misses::of(&of_model, std::slice::from_ref(&fit.factors));
     let on_held_out =
         |beta: &DVector<f64>| (!held_out.is_empty()).then(|| Misses::of(beta, &held_out));
-    let (validation, unconstrained_validation) =
+    let (validation_misses, unconstrained_validation) =
         (on_held_out(&of_model), on_held_out(&fit.solution.beta));
 
     let giving = |joint: &usize| {
@@ -148,7 +148,23 @@ pub fn identify(
             .any(|(k, row)| surely_negative(fit.solution.beta[*row], fit.covariance[(k, k)].sqrt()))
     };
     let giving_power = (0..n).filter(giving).collect();
-    let quality = quality(&equations, training, &training_misses, giving_power, &fit.whiteness);
+    let fitted = explained(std::slice::from_ref(training), &training_misses);
+    let predicted = match &validation_misses {
+        Some(misses) => Some(explained(validation, misses)),
+        None if fit.over_repetitions => None,
+        None => {
+            let misses = training_misses.with_rms(&cross_rms);
+            Some(explained(std::slice::from_ref(training), &misses))
+        }
+    };
+    let quality = quality(
+        &equations,
+        training,
+        &training_misses.rms,
+        (fitted, predicted),
+        giving_power,
+        &fit.whiteness,
+    );
     let (mut identified, payload) = assembled(
         &nominal,
         settings,
@@ -166,7 +182,7 @@ pub fn identify(
         among,
         coupling,
         training: training_misses,
-        validation,
+        validation: validation_misses,
         unconstrained_validation,
         cross_rms,
         physically_consistent,

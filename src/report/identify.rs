@@ -82,7 +82,7 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
         "whiteness": whiteness(found),
         "quality": {
             "grade": grade(found.quality.grade), "statement": found.quality.sentence(),
-            "explained": found.quality.explained,
+            "explained": found.quality.explained, "predicted": found.quality.predicted,
             "friction_gives_power": found.quality.giving_power.iter().map(|j| j + 1)
                 .collect::<Vec<_>>(),
             "torques_late_s": found.quality.late,
