@@ -116,34 +116,3 @@ fn nearest(x: &[f64]) -> [f64; RIGID] {
     let i = |row: usize, column: usize| about[(row, column)];
     [p(3), p(0), p(1), p(2), i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)]
 }
-
-#[cfg(test)]
-mod tests {
-    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
-
-    use super::*;
-    use crate::dynamics::link_parameters;
-    use crate::robot::find;
-
-    #[test]
-    fn bodies_that_cannot_be_keep_their_torques() {
-        let model = find("IRB1600-10/1.45").unwrap();
-        let n = model.dof;
-        let mut all = DVector::zeros((RIGID + JOINT) * n);
-        for (link, of) in model.links.iter().enumerate() {
-            all.rows_mut(RIGID * link, RIGID).copy_from_slice(&link_parameters(of));
-        }
-        let sizes = all.map(|x| 0.1 * x.abs() + 1e-3);
-        // A moment of link 5 below zero, as far as link 6 can make up for it.
-        all[RIGID * 4 + 4] *= -0.2;
-        let found = possible(&model, &all, &sizes);
-        let links = (0..n).map(|link| body(found.rows(RIGID * link, RIGID).as_slice()));
-        assert!(links.into_iter().all(|link| link.mass > 0.0 && link.is_consistent()));
-        let base = base_parameters(&model, Parameters::WithJoints);
-        let (wanted, kept) =
-            (base.of_parameters(all.as_slice()), base.of_parameters(found.as_slice()));
-        let size: f64 = wanted.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let off: f64 = wanted.iter().zip(&kept).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-        assert!(off < 1e-2 * size, "{off} of {size}");
-    }
-}

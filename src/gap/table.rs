@@ -55,6 +55,13 @@ impl Table {
         more: Vec<Piece>,
     ) -> Table {
         let n = records.first().map_or(0, |record| record.motion.model.dof);
+        // What the last link has more is what it carries, unless repetitions tell them apart by
+        // how well each fits.
+        let carries = records.iter().any(|record| record.repetitions < 2)
+            && effects.iter().any(|effect| effect.id == "payload");
+        let is_load = |effect: &Effect, joint: usize| {
+            carries && effect.id == "link_parameters" && joint + 1 == n
+        };
         let wanted: Vec<(Option<&'static Effect>, usize)> = effects
             .iter()
             .filter(|e| e.channel == effects::Channel::Torque && !matches!(e.form, Form::Elsewhere))
@@ -68,6 +75,7 @@ impl Table {
                 };
                 joints.into_iter().map(|joint| (Some(*effect), joint))
             })
+            .filter(|(effect, joint)| effect.is_none_or(|effect| !is_load(effect, *joint)))
             .chain((0..n).map(|joint| (None, joint)))
             .collect();
         let all: Vec<Piece> = wanted
