@@ -75,65 +75,6 @@ fn the_json_has_what_is_promised() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// What is asserted, and the verdict.
-fn said(robot: &str, log: &str) -> (Vec<String>, String) {
-    let args = ["--robot", robot, "--log", log, "--period", "4", "--format", "json"];
-    let output = joulepath(&[&["diagnose"], &args[..]].concat());
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    let Ok(value) = serde_json::from_slice::<Value>(&output.stdout) else {
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        return (Vec::new(), message);
-    };
-    let effects = value["effects"].as_array().unwrap();
-    let ids = effects.iter().map(|of| of["id"].as_str().unwrap().to_owned()).collect();
-    (ids, value["verdict"].as_str().unwrap().to_owned())
-}
-
-/// A log with other numbers in its cells, by column and row.
-fn changed(text: &str, of: impl Fn(&str, usize, f64) -> f64) -> String {
-    let mut lines = text.lines();
-    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let mut out = names.join(",");
-    for (row, line) in lines.enumerate() {
-        let cells = line.split(',').zip(&names);
-        let cells: Vec<String> =
-            cells.map(|(cell, name)| of(name, row, cell.parse().unwrap()).to_string()).collect();
-        out.push('\n');
-        out.push_str(&cells.join(","));
-    }
-    out
-}
-
-#[test]
-fn logs_of_something_else_have_no_effect() {
-    let folder = tempfile::tempdir().unwrap();
-    case(folder.path());
-    let at = |name: &str| folder.path().join(name).display().to_string();
-    let (robot, log) = (at("nominal.toml"), at("log-1.csv"));
-    let text = fs::read_to_string(&log).unwrap();
-    // Another robot's.
-    let (ids, verdict) = said("IRB1600-10/1.45", &log);
-    assert!(ids.is_empty() && verdict != "no_gap", "{ids:?} {verdict}");
-    // Joints hardly move.
-    let still = at("still.csv");
-    let slow = changed(&text, |name, _, x| if name.starts_with('q') { 0.3 + 0.002 * x } else { x });
-    fs::write(&still, slow).unwrap();
-    let (ids, verdict) = said(&robot, &still);
-    assert!(ids.is_empty(), "{ids:?} {verdict}");
-    assert!(verdict == "not_excited" || verdict.contains("error"), "{verdict}");
-    // All torques in another unit.
-    let unit = at("unit.csv");
-    let other = changed(&text, |name, _, x| if name.starts_with("tau") { 1e-2 * x } else { x });
-    fs::write(&unit, other).unwrap();
-    let (ids, verdict) = said(&robot, &unit);
-    assert!(ids.is_empty() && verdict != "no_gap", "{ids:?} {verdict}");
-    // Too little of it.
-    let short = at("short.csv");
-    fs::write(&short, text.lines().take(40).collect::<Vec<_>>().join("\n")).unwrap();
-    let (ids, verdict) = said(&robot, &short);
-    assert!(ids.is_empty(), "{ids:?} {verdict}");
-}
-
 #[test]
 fn wrong_input_is_refused() {
     let folder = tempfile::tempdir().unwrap();

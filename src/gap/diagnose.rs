@@ -114,6 +114,7 @@ pub fn diagnose(
     if let Some(late) = search.late {
         judged.assert_late(&late, polished.as_mut());
     }
+    let is_flipped = !flipped.is_empty();
     for joint in flipped {
         judged.assert_flipped(joint, polished.as_mut());
     }
@@ -126,7 +127,8 @@ pub fn diagnose(
     // What a robot can have may be far from what was fitted: nothing is written that misses more
     // than before of what it was fitted to.
     let refit = better(&train, Improved::same(model), refit);
-    let improved = better(&train, refit.clone(), improved);
+    // Flipped torques were turned round for the fit: they are no measure of a model that flips.
+    let improved = if is_flipped { improved } else { better(&train, refit.clone(), improved) };
     let mut graded = shrink(held, [model, &refit.applied, &improved.applied]);
     let mut improved = improved;
     if settings.trust != Trust::Unknown && is_hopeless(&graded) {

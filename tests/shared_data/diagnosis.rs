@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use joulepath::effects::{ALL, Motion, find as effect, from_toml};
+use joulepath::effects::{ALL, from_toml};
 use joulepath::gap::{Diagnosis, Record, Settings, Trust, diagnose};
 use joulepath::identify::{
     Free, Hints, Samples, Settings as Identify, Source, Weighting, identify, prepare, torques,
@@ -17,11 +17,6 @@ const STATED: f64 = 1e-12;
 /// Torques that the TX40's joints 5 and 6 may miss at most, held-out \[Nm\]; nothing but rounding may
 /// make it worse than it is.
 const TX40: [f64; 2] = [1.75, 0.65];
-/// Mass \[kg\] put on the flange of the UR10, its centre \[m\], and how well it has to be found.
-const MASS: f64 = 3.0;
-const CENTRE: [f64; 3] = [0.02, -0.03, 0.06];
-const FOUND: f64 = 0.05;
-
 /// Both parts of a log: what is fitted, what grades.
 fn parts(model: &Model, csv: &str, rates: bool) -> [Samples; 2] {
     let mut map = String::from("t=t_s");
@@ -105,35 +100,4 @@ fn a_panda_has_no_effect() {
     let parts = parts(&bare, &csv, true);
     let found = diagnosed(&nominal(&bare, &parts[0]), &parts);
     assert!(named(&found).is_empty(), "{:?}", named(&found));
-}
-
-#[test]
-fn a_load_of_a_ur10_is_told_and_no_other_effect() {
-    let (urdf, csv) =
-        ("ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf", "ur10_unisa/ur10_exciting_trajectory.csv");
-    let (Some(robot), Some(csv)) = (super::shared(urdf), super::shared(csv)) else { return };
-    let bare = from_toml(urdf, &import_urdf(urdf, &robot).unwrap()).unwrap();
-    let mut parts = parts(&bare, &csv, true);
-    let nominal = nominal(&bare, &parts[0]);
-    // Coulomb and viscous friction are in the model, what else rubs in joint 1 is not.
-    let found = diagnosed(&nominal, &parts);
-    let of_friction = ["stribeck", "nonlinear_viscous", "viscous_asymmetry"];
-    assert!(named(&found).iter().all(|id| of_friction.contains(id)), "{:?}", named(&found));
-    // The same log with what a load would add to it.
-    let payload = effect("payload").unwrap();
-    let load = payload.coordinates_of(&[&[MASS], &CENTRE[..], &[0.0; 6]].concat());
-    for samples in &mut parts {
-        let blocks = &mut samples.blocks;
-        for block in blocks {
-            let series = [block.q.clone(), block.qd.clone(), block.qdd.clone()];
-            let motion = Motion::new(&nominal, block.t.clone(), series, &[], false);
-            for (joint, added) in payload.added(&motion, 0, &load) {
-                block.tau[joint].iter_mut().zip(added).for_each(|(to, x)| *to += x);
-            }
-        }
-    }
-    let found = diagnosed(&nominal, &parts);
-    let said = found.effects.iter().find(|said| said.effect.id == "payload").unwrap();
-    let mass = said.parameters.iter().find(|of| of.name == "mass").unwrap();
-    assert!((mass.value / MASS - 1.0).abs() < FOUND, "{mass:?}");
 }

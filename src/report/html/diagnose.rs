@@ -140,10 +140,15 @@ fn plots(shown: &Shown) -> Vec<String> {
             };
             if x.is_empty() { String::new() } else { plot.svg(SIZE) }
         };
-        let of_time = |y: &Vec<f64>| shown.t.iter().zip(y).map(|(t, y)| [*t, *y]).collect();
+        // Plots begin at 0.
+        let first = shown.t.first().copied().unwrap_or(0.0);
+        let of_time = |y: &Vec<f64>| shown.t.iter().zip(y).map(|(t, y)| [*t - first, *y]).collect();
+        let least = shown.q[joint].iter().copied().fold(f64::INFINITY, f64::min);
+        let speed: Vec<f64> = shown.qd[joint].iter().map(|x| x.abs()).collect();
+        let position: Vec<f64> = shown.q[joint].iter().map(|x| x - least).collect();
         plots.push(over(&shown.t, "time (s)", [of_time(&missed[0]), of_time(&missed[1])]));
-        for (x, title) in [(&shown.qd[joint], "speed (rad/s)"), (&shown.q[joint], "position (rad)")]
-        {
+        let from = format!("position from {} rad on (rad)", fixed(least, 2));
+        for (x, title) in [(&speed, "speed, both senses (rad/s)"), (&position, from.as_str())] {
             plots.push(over(x, title, [binned(x, &missed[0]), binned(x, &missed[1])]));
         }
     }
