@@ -69,6 +69,13 @@ fn the_json_has_what_is_promised() {
     for text in ["How far the gap shrinks", "joint 6, over time", "<polyline", "</html>"] {
         assert!(page.contains(text), "no {text}");
     }
+    // What is to be measured next is a command that is understood.
+    if let Some(command) = value["next_experiment"]["command"].as_str() {
+        let words: Vec<&str> = command.split(' ').skip(1).collect();
+        let output = joulepath(&[&words[..], &["--seed", "none"]].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains("--seed"), "{command}: {message}");
+    }
     // The model predicts by itself.
     let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

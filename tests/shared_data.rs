@@ -6,6 +6,8 @@
 
 #[path = "shared_data/controller_runs.rs"]
 mod controller_runs;
+#[path = "shared_data/diagnosis.rs"]
+mod diagnosis;
 
 use std::fs;
 use std::path::Path;

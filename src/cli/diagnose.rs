@@ -168,7 +168,11 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     };
     let mut train = read(&args.log)?;
     let mut held = read(&args.heldout)?;
-    let mut basis = report::Basis { heldout: "file".to_owned(), ..report::Basis::default() };
+    let mut basis = report::Basis {
+        robot: args.robot.clone(),
+        heldout: "file".to_owned(),
+        ..report::Basis::default()
+    };
     if held.is_empty() {
         "trajectory".clone_into(&mut basis.heldout);
         held.extend(if train.len() > 1 { train.pop() } else { None });

@@ -41,6 +41,14 @@ pub struct Parameter {
     pub bounds: [f64; 2],
 }
 
+impl Parameter {
+    /// Whether some values of it cannot be.
+    #[must_use]
+    pub fn is_bounded(&self) -> bool {
+        self.bounds.iter().any(|bound| bound.is_finite())
+    }
+}
+
 /// What the torque depends on: a coordinate in which it is linear or one that shapes it.
 #[derive(Clone, Copy)]
 pub struct Coordinate {

@@ -17,6 +17,9 @@ const LAGS: [f64; 11] =
 const ROUNDS: usize = 7;
 /// What a delay or a lag has to bring before all else is looked at.
 const WORTH: f64 = 15.0;
+/// The same in a log that does not tell its noise, and how many steps it is late at least.
+const OPEN: f64 = 30.0;
+const STEPS: f64 = 1.0;
 /// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].
 const FORMS: f64 = 0.05;
 const TICKS: f64 = 1e-4;
@@ -67,6 +70,10 @@ impl Late {
         })
     }
 
+    fn is_longer(&self, step: f64) -> bool {
+        self.value.abs() > STEPS * step
+    }
+
     /// A filter has other forms than one pole, a clock is no better than it ticks.
     fn deviation(&self) -> f64 {
         self.sd.hypot(FORMS * self.value).hypot(TICKS)
@@ -110,12 +117,18 @@ impl Search<'_, '_> {
         };
         self.set_channels(&late.channels(dof));
         let behind = self.choose_error(errors);
-        if behind > plain + COST {
+        let clear = !self.is_open() || behind > plain + OPEN && late.is_longer(self.step());
+        if behind > plain + COST && clear {
             self.late = Some(Late { nats: behind - plain - COST, ..late });
         } else {
             self.error = error;
             self.set_channels(&vec![Response::default(); dof]);
         }
+    }
+
+    /// Interval of the rows \[s\].
+    fn step(&self) -> f64 {
+        self.records.first().map_or(0.0, |record| record.motion.step())
     }
 
     /// The best delay and lag of all joints and of each one that looks late, as the joints by

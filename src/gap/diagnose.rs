@@ -8,7 +8,7 @@ use crate::robot::Model;
 use super::column::Owner;
 use super::diagnosis::{Diagnosis, Place, Verdict};
 use super::gated::{OF_TIME, gated};
-use super::heldout::{predicted, shrink};
+use super::heldout::{Shrink, predicted, shrink};
 use super::improved::Improved;
 use super::judged::judged;
 use super::nuisance::Trust;
@@ -28,6 +28,12 @@ const OF_PARAMETERS: [&str; 4] = ["link_parameters", "friction_level", "rotor_in
 pub(super) const FLIP: f64 = 50.0;
 /// Correlation of a torque with the model's below which its sign may be the other one.
 const OPPOSITE: f64 = -0.3;
+
+/// Share of a joint's torque that no model of this robot misses.
+const HOPELESS: f64 = 0.4;
+/// Range \[rad\] and share of the rows in which a joint has to move.
+const FAR: f64 = 0.05;
+const OFTEN: f64 = 0.1;
 
 /// How a diagnosis is made.
 pub struct Settings {
@@ -53,7 +59,11 @@ pub fn diagnose(
         // Nothing is to be found, not even a function of anything.
         search.banned = search.families.iter().map(|family| family.owner.id()).collect();
     }
-    search.choose_channel(&ERRORS, &may);
+    // What a log that does not repeat misses is matched, not chosen.
+    search.match_excess(&[]);
+    let errors = if search.is_open() { &ERRORS[..1] } else { &ERRORS[..] };
+    search.choose_channel(errors, &may);
+    search.match_excess(&[]);
     let none = search.evidence.parameters(&[], &DVector::zeros(0));
     let refit = Improved::new(model, &search.table.mixing, &none, &[]);
     let mut found = search.run();
@@ -65,10 +75,12 @@ pub fn diagnose(
         search = Search::new(&train, table, settings.trust, error);
         search.late = late;
         search.set_channels(&channels);
+        search.match_excess(&[]);
         // First what has a window, then what that leaves.
-        search.banned = OF_TIME.to_vec();
+        let banned = search.banned.clone();
+        search.banned.extend(OF_TIME);
         found = search.run();
-        search.banned.clear();
+        search.banned = banned;
         found = search.run_from(found);
     }
     found = search.name_functions(found);
@@ -102,6 +114,7 @@ pub fn diagnose(
     if let Some(late) = search.late {
         judged.assert_late(&late, polished.as_mut());
     }
+    let is_flipped = !flipped.is_empty();
     for joint in flipped {
         judged.assert_flipped(joint, polished.as_mut());
     }
@@ -111,7 +124,24 @@ pub fn diagnose(
         }
         _ => refit.clone(),
     };
-    let graded = shrink(held, [model, &refit.applied, &improved.applied]);
+    // What a robot can have may be far from what was fitted: nothing is written that misses more
+    // than before of what it was fitted to.
+    let refit = better(&train, Improved::same(model), refit);
+    // Flipped torques were turned round for the fit: they are no measure of a model that flips.
+    let improved = if is_flipped { improved } else { better(&train, refit.clone(), improved) };
+    let mut graded = shrink(held, [model, &refit.applied, &improved.applied]);
+    let mut improved = improved;
+    if settings.trust != Trust::Unknown && is_hopeless(&graded) {
+        judged.withdraw(Verdict::Unknown, "the torques are hardly those of this robot: check --robot, the order of the joints and the units");
+        improved = refit.clone();
+        graded = shrink(held, [model, &refit.applied, &improved.applied]);
+    }
+    if judged.effects.is_empty() && 2 * excited(&train) < model.dof {
+        judged.withdraw(
+            Verdict::NotExcited,
+            "most joints hardly move: log a motion of joulepath excite",
+        );
+    }
     let mut verdict = judged.verdict;
     let missed = graded.joints.iter().filter(|joint| joint.torque > 0.0);
     let missed = missed.map(|joint| joint.model / joint.torque).fold(0.0, f64::max);
@@ -131,6 +161,51 @@ pub fn diagnose(
         reasons: judged.reasons,
         channels: Vec::new(),
     }
+}
+
+/// Whether most joints' torques are little like the best model's.
+fn is_hopeless(graded: &Shrink) -> bool {
+    let used = graded.joints.iter().filter(|joint| joint.torque > 0.0);
+    let hopeless =
+        used.clone().filter(|joint| joint.refit_plus_effect > HOPELESS * joint.torque).count();
+    let used = used.count();
+    used > 0 && 2 * hopeless >= used
+}
+
+/// Joints that move far and often enough to show something.
+fn excited(records: &[Record<'_>]) -> usize {
+    let means = || records.iter().filter(|record| record.kind == RecordKind::Mean);
+    let dof = means().next().map_or(0, |record| record.motion.model.dof);
+    let moves = |joint: &usize| {
+        means().any(|record| {
+            let (window, q) = (&record.window[*joint], &record.motion.q[*joint]);
+            let low = q.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let used = window.iter().sum::<f64>() / window.len().max(1) as f64;
+            used > OFTEN && high - low > FAR
+        })
+    };
+    (0..dof).filter(moves).count()
+}
+
+/// The second model where it misses no more of the records than the first one.
+fn better(records: &[Record<'_>], first: Improved, second: Improved) -> Improved {
+    let missed = |of: &Improved| -> f64 {
+        let means = records.iter().filter(|record| record.kind == RecordKind::Mean);
+        let of_joints = means.flat_map(|record| {
+            let predicted = predicted(record, &of.applied);
+            let relative = |joint: usize| {
+                let measured = &record.measured[joint];
+                let all = measured.iter().map(|x| x * x).sum::<f64>().max(1e-12);
+                let both = measured.iter().zip(&predicted[joint]);
+                both.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / all
+            };
+            (0..predicted.len()).map(relative).collect::<Vec<_>>()
+        });
+        of_joints.sum()
+    };
+    // A sum that is no number is no better.
+    if missed(&second) <= missed(&first) { second } else { first }
 }
 
 /// Takes torques with the other sign where they are far more probable so: joints.

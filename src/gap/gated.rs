@@ -13,6 +13,9 @@ const LENGTHS: [usize; 6] = [1, 2, 3, 4, 5, 7];
 /// The finest step of a window, in parts.
 const FINEST: f64 = 0.02;
 
+/// First step of a coupling is half of this.
+const COUPLING: f64 = 0.4;
+
 /// Functions of time that were found, whose windows may be gated effects.
 pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
 
@@ -67,9 +70,12 @@ impl Search<'_, '_> {
         for piece in set.iter().flat_map(|of| of.pieces.clone()) {
             let placed = &self.table.pieces[piece];
             let Owner::Effect(effect) = placed.owner else { continue };
-            let has_window = GATED.contains(&effect.id);
             let count = placed.shape.len();
-            if !has_window || placed.shape[count - 2] <= placed.shape[count - 3] {
+            let has_window =
+                GATED.contains(&effect.id) && placed.shape[count - 2] > placed.shape[count - 3];
+            // Where another motor turns back is no smooth function of the coupling.
+            let is_coupling = effect.id == "wrist_coupling";
+            if !has_window && !is_coupling {
                 continue;
             }
             let joint = placed.joint.unwrap_or(0);
@@ -79,15 +85,16 @@ impl Search<'_, '_> {
                 .records
                 .first()
                 .map_or(0.0, |record| record.motion.step() * record.motion.len() as f64);
-            let part = lasts / PARTS as f64;
+            let part = if is_coupling { COUPLING } else { lasts / PARTS as f64 };
+            let ends: &[usize] = if is_coupling { &[0] } else { &[count - 3, count - 2] };
             let mut reach = 0.5;
             while reach > FINEST {
                 let mut improved = false;
-                for end in [count - 3, count - 2] {
+                for end in ends.iter().copied() {
                     for step in [-reach * part, reach * part] {
                         let mut shape = best.clone();
                         shape[end] += step;
-                        if shape[count - 2] - shape[count - 3] < FINEST * part {
+                        if has_window && shape[count - 2] - shape[count - 3] < FINEST * part {
                             continue;
                         }
                         self.reshape(piece, effect, joint, &shape);

@@ -1,18 +1,17 @@
 //! The model with what was found of it.
 
-use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector};
 
 use crate::dynamics::{JOINT, RIGID, link_parameters};
 use crate::effects::{Effect, Of, applied};
-use crate::robot::{EffectParameters, Given, Link, Model};
+use crate::robot::{EffectParameters, Given, Model};
 
 use super::polish::Fitted;
+use super::possible::{body, possible};
 
 /// Effects of the log, which robot files keep as numbers of their own.
 pub(super) const OF_LOG: [&str; 4] =
     ["apparent_torque", "encoder_offset", "torque_offset", "torque_constant"];
-/// Least spread of a body's mass along an axis, of the largest.
-const LEAST_SPREAD: f64 = 1e-4;
 
 /// A model as it is written, and as it predicts.
 #[derive(Clone, Debug)]
@@ -47,7 +46,9 @@ impl Improved {
     ) -> Improved {
         let mut written = model.clone();
         let count = mixing.ncols().min(parameters.len());
-        refit(&mut written, &(mixing.columns(0, count) * parameters.rows(0, count)));
+        let used = mixing.columns(0, count);
+        let sizes = DVector::from_fn(used.nrows(), |row, _| used.row(row).norm());
+        refit(&mut written, &(used * parameters.rows(0, count)), &sizes);
         let mut result = Improved::of(written);
         for fitted in effects {
             let mut next = result.written.clone();
@@ -70,52 +71,38 @@ fn reapplied(written: &Model) -> Model {
 }
 
 /// Changes of the standard parameters, as far as a robot can have them.
-fn refit(model: &mut Model, change: &DVector<f64>) {
+fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
+    if change.iter().all(|x| *x == 0.0) {
+        return;
+    }
     let n = model.dof;
+    let mut all = DVector::zeros(change.len());
+    for (number, link) in model.links.iter().enumerate() {
+        all.rows_mut(RIGID * number, RIGID).copy_from_slice(&link_parameters(link));
+    }
+    for joint in 0..n {
+        let at = RIGID * n + JOINT * joint;
+        all[at] = model.motors.as_ref().map_or(0.0, |of| of.reflected_inertia(joint));
+        all[at + 1] = model.friction.viscous[joint];
+        all[at + 2] = model.friction.coulomb[joint];
+        all[at + 3] = model.sensors.torque_offset[joint];
+    }
+    let found = possible(model, &(&all + change), sizes);
     for (number, link) in model.links.iter_mut().enumerate() {
-        let before = link_parameters(link);
-        let more = change.rows(RIGID * number, RIGID);
-        if more.iter().all(|x| *x == 0.0) {
-            continue;
-        }
-        let after: Vec<f64> = before.iter().zip(more.iter()).map(|(a, b)| a + b).collect();
-        if after[0] > 0.0 {
-            *link = body(&after);
+        let of = RIGID * number..RIGID * (number + 1);
+        if of.clone().any(|k| found[k] != all[k]) {
+            *link = body(&found.as_slice()[of]);
         }
     }
     for joint in 0..n {
         let at = RIGID * n + JOINT * joint;
         if let Some(motors) = &mut model.motors {
-            let ratio = motors.ratio[joint];
-            let rotor = &mut motors.rotor_inertia[joint];
-            *rotor = (*rotor + change[at] / (ratio * ratio)).max(0.0);
+            motors.rotor_inertia[joint] = found[at] / motors.ratio[joint].powi(2);
         }
-        let friction = &mut model.friction;
-        friction.viscous[joint] = (friction.viscous[joint] + change[at + 1]).max(0.0);
-        friction.coulomb[joint] = (friction.coulomb[joint] + change[at + 2]).max(0.0);
-        model.sensors.torque_offset[joint] += change[at + 3];
+        model.friction.viscous[joint] = found[at + 1];
+        model.friction.coulomb[joint] = found[at + 2];
+        model.sensors.torque_offset[joint] = found[at + 3];
     }
-}
-
-fn body(parameters: &[f64]) -> Link {
-    let m = parameters[0];
-    let com = Vector3::new(parameters[1], parameters[2], parameters[3]) / m.max(1e-12);
-    let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|k| parameters[4 + k]);
-    let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let steiner = (Matrix3::identity() * com.norm_squared() - com * com.transpose()) * m;
-    let link = Link { mass: m, com, inertia: about - steiner };
-    if link.is_consistent() {
-        return link;
-    }
-    // The nearest body: its mass is spread along each axis, by no less than nothing.
-    let spread = Matrix3::identity() * (0.5 * link.inertia.trace()) - link.inertia;
-    let mut eigen = SymmetricEigen::new(spread);
-    let least = LEAST_SPREAD * eigen.eigenvalues.amax();
-    for value in eigen.eigenvalues.iter_mut() {
-        *value = value.max(least);
-    }
-    let spread = eigen.recompose();
-    Link { inertia: Matrix3::identity() * spread.trace() - spread, ..link }
 }
 
 fn add(model: &mut Model, fitted: &Fitted) {
@@ -134,6 +121,12 @@ fn add(model: &mut Model, fitted: &Fitted) {
     });
     for (parameter, value) in effect.parameters.iter().zip(&fitted.parameters) {
         let value = value.clamp(parameter.bounds[0], parameter.bounds[1]);
+        let friction = match (effect.id, parameter.name, fitted.joint) {
+            ("friction_level", "coulomb", Some(joint)) => model.friction.coulomb[joint],
+            ("friction_level", "viscous", Some(joint)) => model.friction.viscous[joint],
+            _ => f64::INFINITY,
+        };
+        let value = value.max(-friction);
         let values = &mut model.effects[at].values;
         let Some((_, given)) = values.iter_mut().find(|(name, _)| name == parameter.name) else {
             continue;

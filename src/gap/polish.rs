@@ -5,18 +5,21 @@ use nalgebra::{DMatrix, DVector};
 use crate::effects::{Effect, Role};
 
 use super::column::{Owner, Piece, columns_at};
+use super::evidence::Estimate;
 use super::record::Record;
 use super::search::{Chosen, Search};
 use super::table::Placed;
 
 /// Rounds of new tangents.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 8;
 /// Deviations that a shape may still move.
 const STAYS: f64 = 0.1;
 /// Relative change of a shape in one round at most.
 const STEP: f64 = 0.5;
 /// A shape may be this many times beyond the tried values.
 const BEYOND: f64 = 2.0;
+/// Rounds in which friction is held at no less than nothing.
+const BOUNDED: usize = 3;
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
 
@@ -38,12 +41,26 @@ pub struct Fitted {
     pub significance: f64,
 }
 
+impl Fitted {
+    /// Whether a parameter is so many deviations beyond what can be.
+    #[must_use]
+    pub fn is_impossible(&self, deviations: f64) -> bool {
+        let values = self.parameters.iter().zip(&self.deviations);
+        self.effect.parameters.iter().zip(values).any(|(parameter, (value, sd))| {
+            let [low, high] = parameter.bounds;
+            *value < low - deviations * sd || *value > high + deviations * sd
+        })
+    }
+}
+
 /// All effects that were found, and the parameters of the model with them.
 pub struct Polished {
     /// Effects joint by joint.
     pub effects: Vec<Fitted>,
     /// Changes of the model's parameters, in deviations.
     pub parameters: DVector<f64>,
+    /// Joints whose friction came out below nothing and was held there.
+    pub bounded: Vec<usize>,
     /// What is left, 1 where it is noise.
     pub misfit: f64,
 }
@@ -60,59 +77,177 @@ impl Search<'_, '_> {
         let pieces: Vec<usize> = set.iter().flat_map(|of| of.pieces.clone()).collect();
         let columns = self.columns(set);
         let shaped: Vec<usize> = pieces.iter().copied().filter(|of| self.has_shape(*of)).collect();
-        let mut changing: Vec<usize> =
-            shaped.iter().flat_map(|of| self.table.pieces[*of].columns.clone()).collect();
-        changing.sort_unstable();
-        let mut round = 0;
-        loop {
-            round += 1;
-            for number in &shaped {
-                let piece = remade(&self.table.pieces[*number], self.records);
-                self.table.replace(*number, &piece, self.records);
-            }
-            self.table.through_columns(self.records, &self.channels, &changing);
-            let evidence = self.table.evidence_of(self.error, &columns);
-            let all: Vec<usize> = (0..columns.len()).collect();
-            let estimate = evidence.estimate(&all)?;
-            let mut fitted = Vec::new();
-            let mut moved = 0.0_f64;
-            for number in &pieces {
-                let placed = &mut self.table.pieces[*number];
-                let Owner::Effect(effect) = placed.owner else { continue };
-                let at: Vec<usize> =
-                    placed.columns.clone().filter_map(|k| columns.binary_search(&k).ok()).collect();
-                let mean = DVector::from_iterator(at.len(), at.iter().map(|k| estimate.mean[*k]));
-                let covariance = DMatrix::from_fn(at.len(), at.len(), |i, k| {
-                    estimate.covariance[(at[i], at[k])]
-                });
-                let (coordinates, jacobian) = coordinates_of(effect, &placed.shape, &mean);
-                let spread = &jacobian * &covariance * jacobian.transpose();
-                fitted.push(of(effect, placed.joint, &coordinates, &spread));
-                for (k, coordinate) in effect.coordinates.iter().enumerate() {
-                    if !matches!(coordinate.role, Role::Shape(_)) {
-                        continue;
+        let shapes = |search: &Self| -> Vec<Vec<f64>> {
+            shaped.iter().map(|of| search.table.pieces[*of].shape.clone()).collect()
+        };
+        let mut best: Option<(f64, Vec<Vec<f64>>)> = None;
+        for _ in 0..ROUNDS {
+            self.remake(&shaped);
+            let (gain, moved) = self.moved(&pieces, &columns)?;
+            let here = shapes(self);
+            match &best {
+                Some((most, from)) if gain < *most => {
+                    // Too far: back half the way.
+                    for (number, from) in shaped.iter().zip(from) {
+                        let shape = &mut self.table.pieces[*number].shape;
+                        for (x, from) in shape.iter_mut().zip(from) {
+                            *x = f64::midpoint(*x, *from);
+                        }
                     }
-                    let before = placed.shape[k];
-                    let most = STEP * before.abs();
-                    let mut next = before + (coordinates[k] - before).clamp(-most, most);
-                    if let Some([low, high]) = range(effect, self.records, placed.joint, k) {
-                        next = next.clamp(low, high);
-                    }
-                    moved = moved.max((next - before).abs() / spread[(k, k)].sqrt().max(1e-12));
-                    placed.shape[k] = next;
+                    continue;
                 }
+                _ => best = Some((gain, here)),
             }
-            if round < ROUNDS && moved > STAYS {
-                continue;
+            if moved.0 <= STAYS {
+                break;
+            }
+            for (number, shape) in moved.1 {
+                self.table.pieces[number].shape = shape;
+            }
+        }
+        if let Some((_, from)) = best {
+            for (number, from) in shaped.iter().zip(from) {
+                self.table.pieces[*number].shape = from;
+            }
+        }
+        self.remake(&shaped);
+        self.fitted(&pieces, &columns)
+    }
+
+    /// Columns of pieces at their shapes.
+    fn remake(&mut self, shaped: &[usize]) {
+        for number in shaped {
+            let piece = remade(&self.table.pieces[*number], self.records);
+            self.table.replace(*number, &piece, self.records);
+        }
+        let mut changed: Vec<usize> =
+            shaped.iter().flat_map(|of| self.table.pieces[*of].columns.clone()).collect();
+        changed.sort_unstable();
+        self.table.through_columns(self.records, &self.channels, &changed);
+    }
+
+    /// The gain at the shapes as they are, by how many deviations these would move at most, and
+    /// where to.
+    fn moved(&self, pieces: &[usize], columns: &[usize]) -> Option<(f64, (f64, NewShapes))> {
+        let evidence = self.table.evidence_of(self.error, columns);
+        let all: Vec<usize> = (0..columns.len()).collect();
+        let estimate = evidence.estimate(&all)?;
+        let mut shapes = Vec::new();
+        let mut moved = 0.0_f64;
+        for number in pieces {
+            let placed = &self.table.pieces[*number];
+            let Owner::Effect(effect) = placed.owner else { continue };
+            let (coordinates, spread) = estimated(placed, effect, columns, &estimate);
+            let mut shape = placed.shape.clone();
+            for (k, coordinate) in effect.coordinates.iter().enumerate() {
+                if !matches!(coordinate.role, Role::Shape(_)) {
+                    continue;
+                }
+                let before = shape[k];
+                let most = STEP * before.abs();
+                let mut next = before + (coordinates[k] - before).clamp(-most, most);
+                if let Some([low, high]) = range(effect, self.records, placed.joint, k) {
+                    next = next.clamp(low, high);
+                }
+                moved = moved.max((next - before).abs() / spread[(k, k)].sqrt().max(1e-12));
+                shape[k] = next;
+            }
+            shapes.push((*number, shape));
+        }
+        Some((evidence.gain(&all), (moved, shapes)))
+    }
+
+    /// What pieces are, and what they bring, at their shapes.
+    fn fitted(&mut self, pieces: &[usize], columns: &[usize]) -> Option<Polished> {
+        let is_brought = |number: &usize| {
+            let there = self.table.pieces[*number].columns.clone();
+            !there.is_empty()
+                && !pieces.contains(number)
+                && there.clone().all(|k| columns.binary_search(&k).is_ok())
+        };
+        let brought: Vec<usize> = (0..self.table.pieces.len()).filter(is_brought).collect();
+        let before = (self.table.means.clone(), self.table.sds.clone());
+        let mut polished: Option<Polished> = None;
+        for _ in 0..BOUNDED {
+            let evidence = self.table.evidence_of(self.error, columns);
+            let all: Vec<usize> = (0..columns.len()).collect();
+            let Some(estimate) = evidence.estimate(&all) else { break };
+            let mut effects = Vec::new();
+            for number in pieces.iter().chain(&brought) {
+                let placed = &self.table.pieces[*number];
+                let Owner::Effect(effect) = placed.owner else { continue };
+                let (coordinates, spread) = estimated(placed, effect, columns, &estimate);
+                effects.push(of(effect, placed.joint, &coordinates, &spread));
             }
             let gained = evidence.gain(&all);
-            return Some(Polished {
-                effects: fitted,
+            let bounded =
+                polished.as_mut().map_or_else(Vec::new, |of| std::mem::take(&mut of.bounded));
+            let of = polished.insert(Polished {
+                effects,
+                bounded,
                 parameters: evidence.parameters(&all, &estimate.mean),
                 misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
             });
+            if !self.bound_friction(of, pieces, &brought) {
+                break;
+            }
         }
+        (self.table.means, self.table.sds) = before;
+        polished
     }
+
+    /// Holds friction that came out below nothing at nothing; whether there was some.
+    fn bound_friction(&mut self, of: &mut Polished, pieces: &[usize], brought: &[usize]) -> bool {
+        let Some(model) = self.records.first().map(|record| record.motion.model) else {
+            return false;
+        };
+        let friction = [&model.friction.coulomb, &model.friction.viscous];
+        let numbers = pieces
+            .iter()
+            .chain(brought)
+            .filter(|number| matches!(self.table.pieces[**number].owner, Owner::Effect(_)));
+        let mut fixed = Vec::new();
+        for (number, fitted) in numbers.zip(&of.effects) {
+            let placed = &self.table.pieces[*number];
+            let Some(joint) = placed.joint.filter(|_| fitted.effect.id == "friction_level") else {
+                continue;
+            };
+            for (k, nominal) in friction.into_iter().enumerate() {
+                let column = placed.columns.start + k;
+                let least = -nominal[joint];
+                if fitted.coordinates[k] < least && self.table.sds[column] > 0.0 {
+                    fixed.push((column, least / placed.shape[k]));
+                    of.bounded.push(joint);
+                }
+            }
+        }
+        let has_some = !fixed.is_empty();
+        for (column, factor) in fixed {
+            self.table.means[column] = factor;
+            self.table.sds[column] = 0.0;
+        }
+        has_some
+    }
+}
+
+/// Numbers of pieces with new shapes.
+type NewShapes = Vec<(usize, Vec<f64>)>;
+
+/// Coordinates of a piece and their covariance.
+fn estimated(
+    placed: &Placed,
+    effect: &Effect,
+    columns: &[usize],
+    estimate: &Estimate,
+) -> (Vec<f64>, DMatrix<f64>) {
+    let at: Vec<usize> =
+        placed.columns.clone().filter_map(|k| columns.binary_search(&k).ok()).collect();
+    let mean = DVector::from_iterator(at.len(), at.iter().map(|k| estimate.mean[*k]));
+    let covariance =
+        DMatrix::from_fn(at.len(), at.len(), |i, k| estimate.covariance[(at[i], at[k])]);
+    let (coordinates, jacobian) = coordinates_of(effect, &placed.shape, &mean);
+    let spread = &jacobian * &covariance * jacobian.transpose();
+    (coordinates, spread)
 }
 
 /// What lies within the tried values of a shape, and a little beyond.

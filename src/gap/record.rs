@@ -1,7 +1,8 @@
 //! A log ready to be compared with the model.
 
 use crate::effects::Motion;
-use crate::identify::{Samples, Source};
+use crate::identify::{Block, Samples, Source};
+use crate::log::LowPass;
 use crate::robot::Model;
 
 use super::spectrum::Spectrum;
@@ -9,7 +10,7 @@ use super::spectrum::Spectrum;
 /// Rate below which a joint counts as at rest \[rad/s\]: its friction has no sense.
 pub(super) const REST: f64 = 0.02;
 /// Neighbours over which the power of noise is averaged.
-const SMOOTHED: usize = 8;
+pub(super) const SMOOTHED: usize = 8;
 /// The same of the model's torque.
 const OF_MODEL: usize = 4;
 /// Share of the sampling rate up to which repetitions are compared.
@@ -20,6 +21,12 @@ const FADED: f64 = 0.05;
 const TO_DRIFT: usize = 4;
 /// Power of the model's torque that is there at all frequencies, of its mean power.
 const FLOOR: f64 = 1e-4;
+
+/// Rate to which open logs are thinned out \[Hz\], and how often the band is in it.
+const THINNED: f64 = 100.0;
+const BANDS: f64 = 6.0;
+/// Cut-off frequency before that, relative to the rate after it.
+const PASSED: f64 = 0.4;
 
 /// What a record is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +77,11 @@ impl<'a> Record<'a> {
         let rest: Vec<f64> = samples.rest.iter().map(|rest| rest.max(REST)).collect();
         let mut records = Vec::new();
         for block in &samples.blocks {
+            let thin = match samples.source {
+                Source::Filtered { cutoff } => thinned(block, samples.step, cutoff),
+                Source::Periodic { .. } | Source::Logged => None,
+            };
+            let block = thin.as_ref().unwrap_or(block);
             let series = [block.q.clone(), block.qd.clone(), block.qdd.clone()];
             let begins = block.t.first().copied().unwrap_or(0.0);
             let t = block.t.iter().map(|t| t - begins).collect();
@@ -215,6 +227,28 @@ impl Windows {
             noise: noise.into_iter().map(|(of, _)| of).collect(),
         }
     }
+}
+
+/// A block at a rate that is enough for its band; `None` where it has that.
+fn thinned(block: &Block, step: f64, cutoff: f64) -> Option<Block> {
+    let every = (1.0 / (step * THINNED.max(BANDS * cutoff))) as usize;
+    let filter = LowPass::new(PASSED / (step * every as f64), step);
+    if every < 2 || block.len() < 2 * filter.width() {
+        return None;
+    }
+    let tau: Vec<Vec<f64>> = block.tau.iter().map(|x| filter.filtered(x, 0)).collect();
+    let count = tau.first().map_or(0, Vec::len);
+    let of =
+        |x: &[f64]| x[filter.half..filter.half + count].iter().copied().step_by(every).collect();
+    let all = |series: &[Vec<f64>]| series.iter().map(|x| of(x)).collect();
+    Some(Block {
+        t: of(&block.t),
+        q: all(&block.q),
+        qd: all(&block.qd),
+        qdd: all(&block.qdd),
+        tau: tau.iter().map(|x| x.iter().copied().step_by(every).collect()).collect(),
+        clipped: block.clipped.clone(),
+    })
 }
 
 /// Whether all motors whose friction a joint feels turn.

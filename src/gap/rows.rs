@@ -1,6 +1,6 @@
 //! Rows of one joint in all records of a kind: the difference, and what may explain it there.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::effects::Response;
 
@@ -17,14 +17,26 @@ pub(super) struct Rows {
     joint: usize,
     kind: RecordKind,
     /// Difference, then the columns that reach the joint, as they are logged.
-    values: DMatrix<f64>,
+    pub(super) values: DMatrix<f64>,
     /// Of each column, of each record of the kind, its series before the channel.
     plain: Vec<Vec<Option<Vec<f64>>>>,
     measured: Vec<f64>,
     /// Numbers of the columns: 0 is the difference, then parameters, then what may be found.
     reached: Vec<usize>,
-    noise: Vec<f64>,
-    power: Vec<f64>,
+    pub(super) noise: Vec<f64>,
+    pub(super) power: Vec<f64>,
+    /// Variance beyond noise and error \[N²m²\].
+    pub(super) excess: Vec<f64>,
+    /// Of the records of the kind.
+    pub(super) spectra: Vec<Spectrum>,
+}
+
+/// Factors of some columns, and how well they are known.
+pub(super) struct Posterior {
+    /// Place of each column by its number, from 1; the difference has 0.
+    pub(super) places: Vec<Option<usize>>,
+    pub(super) mean: DVector<f64>,
+    pub(super) covariance: DMatrix<f64>,
 }
 
 impl Rows {
@@ -74,7 +86,10 @@ impl Rows {
             .map(|k| (0..records.len()).map(|number| series(number, *k)).collect())
             .collect();
         let values = DMatrix::zeros(height, reached.len());
-        let mut rows = Rows { joint, kind, values, plain, measured, reached, noise, power };
+        let excess = vec![0.0; height];
+        let spectra = records.iter().map(|record| record.spectrum.clone()).collect();
+        let mut rows =
+            Rows { joint, kind, values, plain, measured, reached, noise, power, excess, spectra };
         rows.through(all, &[], |_| true);
         rows
     }
@@ -151,8 +166,8 @@ impl Rows {
     ) -> (DMatrix<f64>, Vec<usize>, f64) {
         let mut weights = Vec::with_capacity(self.len());
         let mut log_weights = 0.0;
-        for (noise, power) in self.noise.iter().zip(&self.power) {
-            let weight = 1.0 / (noise + error * error * power).max(LEAST).sqrt();
+        for ((noise, power), excess) in self.noise.iter().zip(&self.power).zip(&self.excess) {
+            let weight = 1.0 / (noise + error * error * power + excess).max(LEAST).sqrt();
             log_weights += weight.ln();
             weights.push(weight);
         }
@@ -171,6 +186,32 @@ impl Rows {
         }
         let places = used.into_iter().map(|(_, place)| place).collect();
         (weighted.transpose() * &weighted, places, log_weights)
+    }
+}
+
+impl Rows {
+    /// Expected squares of what is missed, by row.
+    pub(super) fn missed(&self, posterior: &Posterior) -> Vec<f64> {
+        let used: Vec<(usize, usize)> = self
+            .reached
+            .iter()
+            .enumerate()
+            .filter(|(_, number)| **number > 0)
+            .filter_map(|(k, number)| Some((k, posterior.places[*number]? - 1)))
+            .collect();
+        let count = used.len();
+        let covariance =
+            DMatrix::from_fn(count, count, |i, k| posterior.covariance[(used[i].1, used[k].1)]);
+        let mean = DVector::from_fn(count, |k, _| posterior.mean[used[k].1]);
+        let mut columns = DMatrix::zeros(self.len(), count);
+        for (mut to, (k, _)) in columns.column_iter_mut().zip(&used) {
+            to.copy_from(&self.values.column(*k));
+        }
+        let left = self.values.column(0) - &columns * mean;
+        let spread = &columns * covariance;
+        (0..self.len())
+            .map(|row| left[row].powi(2) + spread.row(row).dot(&columns.row(row)).max(0.0))
+            .collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::effects::Response;
+use crate::effects::{Parameter, Response};
 
 use super::channel::Late;
 use super::column::Owner;
@@ -17,7 +17,8 @@ use super::table::Table;
 const FAMILY: f64 = 3.0;
 const JOINT: f64 = 1.2;
 /// Effects, and what is left of them without what makes them special.
-const PLAINER: [(&str, &str); 5] = [
+const PLAINER: [(&str, &str); 6] = [
+    ("link_parameters", "payload"),
     ("cable", "torque_offset"),
     ("gravity_spring", "torque_offset"),
     ("nonlinear_viscous", "friction_level"),
@@ -30,6 +31,11 @@ const WORTH: f64 = 3.0;
 const MOST: usize = 6;
 /// Effects of a quick search at most.
 const QUICK: usize = 2;
+
+/// A log that does not repeat and is shorter says nothing of temperatures \[s\].
+const WARMS: f64 = 120.0;
+/// Deviations beyond the bounds of a parameter that cannot be.
+const IMPOSSIBLE: f64 = 2.0;
 
 /// A chosen family with its pieces.
 #[derive(Clone)]
@@ -63,6 +69,10 @@ pub struct Search<'a, 'm> {
     pub late: Option<Late>,
     /// Families that stay, though functions do all that they do.
     pub(super) kept: Vec<usize>,
+    /// Whether some log does not tell its noise.
+    pub(super) open: bool,
+    /// Families at joints whose parameters came out as they cannot be.
+    impossible: Vec<(usize, Option<usize>)>,
     /// Ids that are not looked for.
     pub banned: Vec<&'static str>,
     /// What may explain the difference.
@@ -83,6 +93,9 @@ impl<'a, 'm> Search<'a, 'm> {
         error: f64,
     ) -> Search<'a, 'm> {
         let evidence = table.evidence(error);
+        let open = records.iter().any(|record| record.repetitions < 2);
+        let lasts =
+            records.iter().filter_map(|of| of.motion.t.last()).fold(0.0, |a: f64, b| a.max(*b));
         Search {
             records,
             trust,
@@ -93,7 +106,9 @@ impl<'a, 'm> Search<'a, 'm> {
             ],
             late: None,
             kept: Vec::new(),
-            banned: Vec::new(),
+            impossible: Vec::new(),
+            open,
+            banned: if open && lasts < WARMS { vec!["warm_up"] } else { Vec::new() },
             families: families(&table),
             table,
             evidence,
@@ -167,6 +182,7 @@ impl<'a, 'm> Search<'a, 'm> {
     /// The best set of effects, found one after another. Each is brought to its best shape
     /// before the next one is looked for: what a coarse shape leaves is no other effect.
     pub fn run(&mut self) -> Found {
+        self.impossible.clear();
         self.run_from(Found { chosen: Vec::new(), score: 0.0 })
     }
 
@@ -179,7 +195,59 @@ impl<'a, 'm> Search<'a, 'm> {
             }
             found = self.without_needless(found);
             self.refine(&mut found);
+            if self.is_open() {
+                self.match_excess(&found.chosen);
+                found.score = self.score(&found.chosen);
+            }
+            found = self.without_impossible(found);
         }
+        found
+    }
+
+    /// A set without what came out as it cannot be: a law that has to be turned round to help is
+    /// there in the place of another one.
+    fn without_impossible(&mut self, mut found: Found) -> Found {
+        let bounded = |piece: &usize| match self.table.pieces[*piece].owner {
+            Owner::Effect(effect) => effect.parameters.iter().any(Parameter::is_bounded),
+            Owner::Generic(_) => false,
+        };
+        if !found.chosen.iter().flat_map(|of| &of.pieces).any(bounded) {
+            return found;
+        }
+        let Some(polished) = self.polish(&found.chosen) else { return found };
+        let before = self.impossible.len();
+        for fitted in polished.effects.iter().filter(|of| of.is_impossible(IMPOSSIBLE)) {
+            let of_effect = |of: &&Chosen| {
+                let id = self.families[of.family].owner.id();
+                id == fitted.effect.id && !self.kept.contains(&of.family)
+            };
+            let Some(chosen) = found.chosen.iter().find(of_effect) else { continue };
+            self.impossible.push((chosen.family, fitted.joint));
+        }
+        // In a log that tells no noise, nor do laws that leave a joint less friction than none.
+        for joint in polished.bounded.iter().filter(|_| self.open) {
+            for of in &found.chosen {
+                let Owner::Effect(effect) = self.families[of.family].owner else { continue };
+                let own = |piece: &usize| self.table.pieces[*piece].joint == Some(*joint);
+                if effect.brings.contains(&"friction_level") && of.pieces.iter().any(own) {
+                    self.impossible.push((of.family, Some(*joint)));
+                }
+            }
+        }
+        if self.impossible.len() == before {
+            return found;
+        }
+        for of in &mut found.chosen {
+            let may = |piece: &usize| {
+                !self.impossible.contains(&(of.family, self.table.pieces[*piece].joint))
+            };
+            of.pieces.retain(may);
+        }
+        found.chosen.retain(|of| !of.pieces.is_empty());
+        self.evidence = self.table.evidence(self.error);
+        self.refine(&mut found);
+        self.match_excess(&found.chosen);
+        found.score = self.score(&found.chosen);
         found
     }
 
@@ -208,7 +276,7 @@ impl<'a, 'm> Search<'a, 'm> {
             let mut next: Option<(f64, usize)> = None;
             for (joint, all) in &self.families[family].joints {
                 let taken = |piece: &usize| self.table.pieces[*piece].joint == *joint;
-                if pieces.iter().any(taken) {
+                if pieces.iter().any(taken) || self.impossible.contains(&(family, *joint)) {
                     continue;
                 }
                 for piece in all {
@@ -235,6 +303,16 @@ impl<'a, 'm> Search<'a, 'm> {
 
     /// Puts plainer effects in the place of those that explain hardly more.
     pub fn simplify(&mut self, found: &mut Found, hardly: f64) {
+        // The order changes with each.
+        for _ in 0..PLAINER.len() {
+            if !self.simplified(found, hardly) {
+                return;
+            }
+        }
+    }
+
+    /// The same of one effect; whether there was one.
+    fn simplified(&mut self, found: &mut Found, hardly: f64) -> bool {
         for place in 0..found.chosen.len() {
             let id = self.families[found.chosen[place].family].owner.id();
             let Some((_, plainer)) = PLAINER.iter().find(|(of, _)| *of == id) else { continue };
@@ -249,10 +327,10 @@ impl<'a, 'm> Search<'a, 'm> {
             {
                 *found = other;
                 self.refine(found);
-                // The order has changed.
-                return;
+                return true;
             }
         }
+        false
     }
 
     /// Families that later ones made needless are taken out.

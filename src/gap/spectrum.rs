@@ -10,7 +10,7 @@ use rustfft::{Fft, FftPlanner};
 #[derive(Clone)]
 pub(super) struct Spectrum {
     fft: Arc<dyn Fft<f64>>,
-    length: usize,
+    pub(super) length: usize,
     /// Number of frequencies that are used, the mean among them.
     pub(super) bins: usize,
 }

@@ -39,9 +39,9 @@ pub struct Table {
     /// Changes of the standard parameters for one deviation of each of the model's.
     pub mixing: DMatrix<f64>,
     /// Parameters from here on are in shares of the model's error.
-    errors_from: usize,
-    means: DVector<f64>,
-    sds: DVector<f64>,
+    pub(super) errors_from: usize,
+    pub(super) means: DVector<f64>,
+    pub(super) sds: DVector<f64>,
     joints: Vec<Rows>,
 }
 
@@ -55,6 +55,13 @@ impl Table {
         more: Vec<Piece>,
     ) -> Table {
         let n = records.first().map_or(0, |record| record.motion.model.dof);
+        // What the last link has more is what it carries, unless repetitions tell them apart by
+        // how well each fits.
+        let carries = records.iter().any(|record| record.repetitions < 2)
+            && effects.iter().any(|effect| effect.id == "payload");
+        let is_load = |effect: &Effect, joint: usize| {
+            carries && effect.id == "link_parameters" && joint + 1 == n
+        };
         let wanted: Vec<(Option<&'static Effect>, usize)> = effects
             .iter()
             .filter(|e| e.channel == effects::Channel::Torque && !matches!(e.form, Form::Elsewhere))
@@ -68,6 +75,7 @@ impl Table {
                 };
                 joints.into_iter().map(|joint| (Some(*effect), joint))
             })
+            .filter(|(effect, joint)| effect.is_none_or(|effect| !is_load(effect, *joint)))
             .chain((0..n).map(|joint| (None, joint)))
             .collect();
         let all: Vec<Piece> = wanted
@@ -220,10 +228,9 @@ impl Table {
         }
     }
 
-    /// The same of some columns alone, which count in their order.
-    pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
+    /// Places of the difference, the parameters and some columns by number.
+    pub(super) fn places_of(&self, columns: &[usize]) -> Vec<Option<usize>> {
         let parameters = self.parameters.len();
-        let size = 1 + parameters + columns.len();
         let mut places = vec![None; 1 + parameters + self.means.len()];
         for (k, place) in places.iter_mut().enumerate().take(1 + parameters) {
             *place = Some(k);
@@ -231,6 +238,14 @@ impl Table {
         for (k, column) in columns.iter().enumerate() {
             places[1 + parameters + column] = Some(1 + parameters + k);
         }
+        places
+    }
+
+    /// Weighted products of the difference, the parameters and some columns, and the sum of the
+    /// logarithms of the weights' roots.
+    pub(super) fn gram_of(&self, error: f64, columns: &[usize]) -> (DMatrix<f64>, f64) {
+        let size = 1 + self.parameters.len() + columns.len();
+        let places = self.places_of(columns);
         let parts: Vec<(DMatrix<f64>, Vec<usize>, f64)> =
             self.joints.par_iter().map(|rows| rows.gram(error, |number| places[number])).collect();
         let mut gram = DMatrix::zeros(size, size);
@@ -240,10 +255,28 @@ impl Table {
             add(&mut gram, &part, &reached);
         }
         self.smooth(&mut gram, error);
+        (gram, log_weights)
+    }
+
+    /// Variance of what noise, error and excess make of a joint's torque \[N²m²\].
+    pub(super) fn variance(&self, joint: usize, error: f64) -> f64 {
+        let of_joint = self.joints.iter().filter(|rows| rows.is_mean_of(joint));
+        of_joint.map(|rows| rows.variance(error)).sum()
+    }
+
+    /// Calls `of` for the rows of each joint.
+    pub(super) fn each_rows(&mut self, of: impl Fn(&mut Rows) -> f64 + Send + Sync) -> Vec<f64> {
+        self.joints.par_iter_mut().map(of).collect()
+    }
+
+    /// The same of some columns alone, which count in their order.
+    pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
+        let (gram, log_weights) = self.gram_of(error, columns);
         let rows = self.joints.iter().map(Rows::len).sum();
         let of =
             |x: &DVector<f64>| DVector::from_iterator(columns.len(), columns.iter().map(|k| x[*k]));
-        Evidence::new(&gram, parameters, of(&self.means), of(&self.sds), log_weights, rows)
+        let count = self.parameters.len();
+        Evidence::new(&gram, count, of(&self.means), of(&self.sds), log_weights, rows)
     }
 }
 

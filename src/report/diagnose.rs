@@ -9,6 +9,8 @@ use crate::gap::{Diagnosis, Interval, Said, Verdict};
 /// What a result rests on, beside the result itself.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
+    /// The robot as it was given.
+    pub robot: String,
     /// What was held out: `file`, `trajectory` or `cycles`.
     pub heldout: String,
     /// Where the model went.
@@ -96,7 +98,8 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
         "generic": generic,
         "where": places,
         "gap": gap,
-        "next_experiment": next(found),
+        "next_experiment": next(found, basis)
+            .map(|(why, command)| json!({"why": why, "command": command})),
         "model_error_percent": 100.0 * found.error,
         "reasons": found.reasons,
         "notes": basis.notes,
@@ -128,20 +131,27 @@ fn said(of: &Said) -> Value {
     })
 }
 
-/// What to measure next, and why.
-pub(super) fn next(found: &Diagnosis) -> Value {
+/// What to measure next: why, and the command.
+pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)> {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
         of.class.len() > 1
             || found.verdict != Verdict::Effect && !of.effect.experiment[1].is_empty()
     });
-    match unclear {
-        Some(of) => {
-            let [options, why] = of.effect.experiment;
-            let command = format!("joulepath excite --out excitation {options}");
-            json!({"why": format!("{}: {why}", of.effect.id), "command": command.trim_end()})
-        }
-        None => Value::Null,
+    unclear.map(|of| {
+        let [options, why] = of.effect.experiment;
+        let robot = quoted(&basis.robot);
+        let command = format!("joulepath excite --robot {robot} --out excitation {options}");
+        (format!("{}: {why}", of.effect.id), command.trim_end().to_owned())
+    })
+}
+
+/// A word of a command line.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+:".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
     }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 /// A verdict in words.
@@ -210,6 +220,9 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     for (name, of) in [("all", &found.shrink.total), ("by effect", &found.shrink.by_effect)] {
         let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
         let _ = writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})");
+    }
+    if let Some((why, command)) = next(found, basis) {
+        let _ = writeln!(out, "next: {why}\n  {command}");
     }
     if !basis.model.is_empty() {
         let _ = writeln!(out, "model: {}", basis.model);

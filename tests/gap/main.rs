@@ -6,19 +6,24 @@
 mod excited;
 mod simulated;
 
+use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
 use joulepath::effects::{ALL, Motion, find as effect};
 use joulepath::gap::{
-    Diagnosis, PARAMETERS, Quantity, Record, Settings, Trust, Verdict, attribution, common_factor,
-    diagnose, predicted, shapes,
+    Diagnosis, Improved, PARAMETERS, Quantity, Record, Settings, Trust, Verdict, attribution,
+    common_factor, diagnose, predicted, shapes,
 };
 use joulepath::identify::Samples;
 use joulepath::robot::Model;
+
+use nalgebra::{DMatrix, DVector};
 
 use excited::irb1600;
 use simulated::{Robot, spread};
 
 /// Deviations by which a parameter may be off.
 const WITHIN: f64 = 4.0;
+/// Base parameters that a possible body may be off, of all.
+const SAME_TORQUES: f64 = 1e-2;
 /// Part of the gap that a found effect takes off.
 const SHRINKS: f64 = 0.5;
 
@@ -134,6 +139,36 @@ fn flipped_currents_are_told() {
     let found = diagnosed(&nominal, &robot);
     assert_eq!(named(&found), [("current_sign", vec![3])]);
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+}
+
+#[test]
+fn bodies_that_cannot_be_keep_their_torques() {
+    let nominal = irb1600();
+    let n = nominal.dof;
+    let count = (RIGID + JOINT) * n;
+    let mut wanted = vec![0.0; count];
+    for (link, of) in nominal.links.iter().enumerate() {
+        wanted[RIGID * link..RIGID * (link + 1)].copy_from_slice(&link_parameters(of));
+    }
+    let mixing =
+        DMatrix::from_diagonal(&DVector::from_fn(count, |k, _| 0.1 * wanted[k].abs() + 1e-3));
+    // A moment of link 5 falls below nothing, as far as its neighbours can make up for it.
+    let at = RIGID * 4 + 4;
+    let mut parameters = DVector::zeros(count);
+    parameters[at] = -1.2 * wanted[at] / mixing[(at, at)];
+    let found = Improved::new(&nominal, &mixing, &parameters, &[]).written;
+    assert!(found.links.iter().all(|link| link.mass > 0.0 && link.is_consistent()));
+    assert_ne!(found.links, nominal.links);
+    wanted[at] *= -0.2;
+    let mut kept = wanted.clone();
+    for (link, of) in found.links.iter().enumerate() {
+        kept[RIGID * link..RIGID * (link + 1)].copy_from_slice(&link_parameters(of));
+    }
+    let base = base_parameters(&nominal, Parameters::WithJoints);
+    let (wanted, kept) = (base.of_parameters(&wanted), base.of_parameters(&kept));
+    let size: f64 = wanted.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let off: f64 = wanted.iter().zip(&kept).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    assert!(off < SAME_TORQUES * size, "{off} of {size}");
 }
 
 #[test]

@@ -72,6 +72,12 @@ struct EffectRow {
 }
 
 #[derive(Serialize)]
+struct Next {
+    why: String,
+    command: String,
+}
+
+#[derive(Serialize)]
 struct GapRow {
     name: String,
     noise: String,
@@ -132,7 +138,8 @@ pub fn diagnose_report(
     context.insert("effects", &asserted.chain(considered).collect::<Vec<_>>());
     context.insert("unknown", &unknown(found));
     context.insert("reasons", &found.reasons);
-    context.insert("next", &next(found));
+    let experiment = next(found, basis);
+    context.insert("next", &experiment.map(|(why, command)| Next { why, command }));
     context.insert("gap", &gap(found));
     context.insert("shrinks", &shrinks(found));
     context.insert("places", &places);
