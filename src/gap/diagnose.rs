@@ -128,11 +128,14 @@ pub fn diagnose(
     // than before of what it was fitted to.
     let refit = better(&train, Improved::same(model), refit);
     // Flipped torques were turned round for the fit: they are no measure of a model that flips.
-    let improved = if is_flipped { improved } else { better(&train, refit.clone(), improved) };
+    let mut improved = if is_flipped { improved } else { better(&train, refit.clone(), improved) };
     let mut graded = shrink(held, [model, &refit.applied, &improved.applied]);
-    let mut improved = improved;
     if settings.trust != Trust::Unknown && is_hopeless(&graded) {
-        judged.withdraw(Verdict::Unknown, "the torques are hardly those of this robot: check --robot, the order of the joints and the units");
+        judged.withdraw(
+            Verdict::Unknown,
+            "the torques are hardly those of this robot: check --robot, the order of the joints \
+             and the units",
+        );
         improved = refit.clone();
         graded = shrink(held, [model, &refit.applied, &improved.applied]);
     }

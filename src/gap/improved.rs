@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::dynamics::{JOINT, RIGID, link_parameters};
+use crate::dynamics::{JOINT, RIGID, link_of, link_parameters};
 use crate::effects::{Effect, Of, applied};
 use crate::robot::{EffectParameters, Given, Model};
 
 use super::polish::Fitted;
-use super::possible::{body, possible};
+use super::possible::possible;
 
 /// Effects of the log, which robot files keep as numbers of their own.
 pub(super) const OF_LOG: [&str; 4] =
@@ -91,7 +91,7 @@ fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
     for (number, link) in model.links.iter_mut().enumerate() {
         let of = RIGID * number..RIGID * (number + 1);
         if of.clone().any(|k| found[k] != all[k]) {
-            *link = body(&found.as_slice()[of]);
+            *link = link_of(&found.as_slice()[of]);
         }
     }
     for joint in 0..n {

@@ -49,5 +49,5 @@ pub use record::{Record, RecordKind};
 pub use runs::{Run, RunEffect, RunFound, diagnose_runs};
 pub use search::{Chosen, Found, Search};
 pub use table::{Placed, Table};
-pub use traces::{Profile, Shape, Trace, profile, shapes, trace};
+pub use traces::{Profile, Shape, Torques, Trace, missed, profile, shapes, trace};
 pub use units::common_factor;

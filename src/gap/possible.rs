@@ -4,10 +4,13 @@
 //! same base parameters an affine space: projections on one and the other in turn lead to what
 //! both have in common (J. von Neumann, Functional Operators II, 1950).
 
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Matrix4, SymmetricEigen, Vector3};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
-use crate::dynamics::{BaseParameters, JOINT, Parameters, RIGID, base_parameters};
-use crate::robot::{Link, Model};
+use crate::dynamics::{
+    BaseParameters, JOINT, Parameters, RIGID, base_parameters, body_parameters, link_of,
+    pseudo_inertia,
+};
+use crate::robot::Model;
 
 /// Rounds at most.
 const ROUNDS: usize = 400;
@@ -71,7 +74,7 @@ fn inside(parameters: &DVector<f64>, n: usize) -> DVector<f64> {
     for link in 0..n {
         let at = RIGID * link;
         let own: Vec<f64> = parameters.rows(at, RIGID).iter().copied().collect();
-        if !(own[0] > 0.0 && body(&own).is_consistent()) {
+        if !(own[0] > 0.0 && link_of(&own).is_consistent()) {
             result.rows_mut(at, RIGID).copy_from_slice(&nearest(&own));
         }
     }
@@ -85,34 +88,10 @@ fn inside(parameters: &DVector<f64>, n: usize) -> DVector<f64> {
     result
 }
 
-/// The link of ten parameters about its frame's origin.
-pub(super) fn body(parameters: &[f64]) -> Link {
-    let m = parameters[0];
-    let com = Vector3::new(parameters[1], parameters[2], parameters[3]) / m.max(1e-12);
-    let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|k| parameters[4 + k]);
-    let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let steiner = (Matrix3::identity() * com.norm_squared() - com * com.transpose()) * m;
-    Link { mass: m, com, inertia: about - steiner }
-}
-
 /// The nearest body: eigenvalues of its pseudo-inertia that are too small are raised.
-fn nearest(x: &[f64]) -> [f64; RIGID] {
-    let about = Matrix3::new(x[4], x[7], x[8], x[7], x[5], x[9], x[8], x[9], x[6]);
-    let spread = Matrix3::identity() * (0.5 * about.trace()) - about;
-    let mut pseudo = Matrix4::zeros();
-    pseudo.fixed_view_mut::<3, 3>(0, 0).copy_from(&spread);
-    for k in 0..3 {
-        pseudo[(k, 3)] = x[1 + k];
-        pseudo[(3, k)] = x[1 + k];
-    }
-    pseudo[(3, 3)] = x[0];
-    let mut eigen = SymmetricEigen::new(pseudo);
+fn nearest(parameters: &[f64]) -> [f64; RIGID] {
+    let mut eigen = SymmetricEigen::new(pseudo_inertia(parameters));
     let least = LEAST * eigen.eigenvalues.amax();
     eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(least));
-    let pseudo = eigen.recompose();
-    let spread: Matrix3<f64> = pseudo.fixed_view::<3, 3>(0, 0).into_owned();
-    let about = Matrix3::identity() * spread.trace() - spread;
-    let p = |k: usize| pseudo[(k, 3)];
-    let i = |row: usize, column: usize| about[(row, column)];
-    [p(3), p(0), p(1), p(2), i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)]
+    body_parameters(&eigen.recompose())
 }

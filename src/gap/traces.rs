@@ -42,38 +42,47 @@ pub struct Shape {
     pub profile: Profile,
 }
 
+/// Torques at the instants of records, by record, joint and row \[Nm\].
+pub type Torques = Vec<Vec<Vec<f64>>>;
+
+/// What a model misses in records: measured less said.
+#[must_use]
+pub fn missed(records: &[Record<'_>], model: &Model) -> Torques {
+    let of = |record: &Record<'_>| difference(&record.measured, &predicted(record, model));
+    records.iter().map(of).collect()
+}
+
 /// What models miss of the longest record of a mean motion.
 #[must_use]
-pub fn trace(records: &[Record<'_>], models: &[&Model]) -> Option<Trace> {
-    let means = records.iter().filter(|record| record.kind == RecordKind::Mean);
-    let record = means.max_by_key(|record| record.motion.len())?;
-    let n = record.measured.len();
-    let of = |values: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
-        let at = |joint: usize, row: usize| {
-            if record.moves(joint, row) { values(joint, row) } else { f64::NAN }
+pub fn trace(records: &[Record<'_>], missed: &[Torques]) -> Option<Trace> {
+    let means = records.iter().enumerate().filter(|(_, of)| of.kind == RecordKind::Mean);
+    let (number, record) = means.max_by_key(|(_, record)| record.motion.len())?;
+    let shown = |torques: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let at = |joint: usize, (row, x): (usize, &f64)| {
+            if record.moves(joint, row) { *x } else { f64::NAN }
         };
-        (0..n).map(|joint| (0..record.motion.len()).map(|row| at(joint, row)).collect()).collect()
+        let of = |(joint, series): (usize, &Vec<f64>)| {
+            series.iter().enumerate().map(|of| at(joint, of)).collect()
+        };
+        torques.iter().enumerate().map(of).collect()
     };
-    let missed = models.iter().map(|model| {
-        let said = predicted(record, model);
-        of(&|joint, row| record.measured[joint][row] - said[joint][row])
-    });
     Some(Trace {
         t: record.motion.t.clone(),
-        missed: missed.collect(),
-        measured: of(&|joint, row| record.measured[joint][row]),
+        measured: shown(&record.measured),
+        missed: missed.iter().map(|of| shown(&of[number])).collect(),
     })
 }
 
-/// Means of what a model misses at a joint, over a quantity; the band is that of the mean of
-/// independent instants.
+/// Means of torques of a joint over a quantity; the band is that of the mean of independent
+/// instants.
 #[must_use]
-pub fn profile(records: &[Record<'_>], model: &Model, joint: usize, quantity: Quantity) -> Profile {
-    let samples = samples(records, joint, quantity, &|record| {
-        let said = predicted(record, model);
-        record.measured[joint].iter().zip(&said[joint]).map(|(a, b)| a - b).collect()
-    });
-    Profile { quantity, points: binned(&samples).0 }
+pub fn profile(
+    records: &[Record<'_>],
+    torques: &Torques,
+    joint: usize,
+    quantity: Quantity,
+) -> Profile {
+    Profile { quantity, points: binned(&samples(records, torques, joint, quantity)).0 }
 }
 
 /// The torque that an effect adds at each of its joints, over the quantity that tells most of it,
@@ -88,41 +97,40 @@ pub fn shapes(records: &[Record<'_>], improved: &Improved, said: &Said) -> Vec<S
         return Vec::new();
     }
     let without = Improved::of(without).applied;
-    let others: Vec<Model> =
-        said.parameters.iter().filter_map(|of| moved(improved, said, of)).collect();
+    let between = |with: &Model, bare: &Model| -> Torques {
+        let of =
+            |record: &Record<'_>| difference(&predicted(record, with), &predicted(record, bare));
+        records.iter().map(of).collect()
+    };
+    let added = between(&improved.applied, &without);
+    let moved: Vec<Torques> = said
+        .parameters
+        .iter()
+        .filter_map(|of| moved(improved, said, of))
+        .map(|other| between(&other, &improved.applied))
+        .collect();
     let joints =
         if said.joints.is_empty() { (0..without.dof).collect() } else { said.joints.clone() };
-    let added = |joint: usize, quantity: Quantity, [with, bare]: [&Model; 2]| {
-        samples(records, joint, quantity, &|record| {
-            let [a, b] = [predicted(record, with), predicted(record, bare)];
-            a[joint].iter().zip(&b[joint]).map(|(a, b)| a - b).collect()
-        })
+    let shape = |joint: usize| -> Option<Shape> {
+        let told = QUANTITIES.map(|quantity| {
+            let (points, left) = binned(&samples(records, &added, joint, quantity));
+            (Profile { quantity, points }, left)
+        });
+        let (mut profile, _) = told.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let mut squares = vec![0.0; profile.points.len()];
+        for moved in &moved {
+            let (points, _) = binned(&samples(records, moved, joint, profile.quantity));
+            for (sum, point) in squares.iter_mut().zip(points) {
+                *sum += point[1] * point[1];
+            }
+        }
+        for (point, square) in profile.points.iter_mut().zip(squares) {
+            point[2] = INTERVAL * f64::sqrt(square);
+        }
+        let is_there = profile.points.iter().any(|point| point[1] != 0.0);
+        is_there.then_some(Shape { id, joint, profile })
     };
-    joints
-        .into_iter()
-        .filter_map(|joint| {
-            let told = QUANTITIES.map(|quantity| {
-                let (points, left) = binned(&added(joint, quantity, [&improved.applied, &without]));
-                (Profile { quantity, points }, left)
-            });
-            let (mut profile, _) = told.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-            let mut squares = vec![0.0; profile.points.len()];
-            for other in &others {
-                let moved = added(joint, profile.quantity, [other, &improved.applied]);
-                for (sum, point) in squares.iter_mut().zip(binned(&moved).0) {
-                    *sum += point[1] * point[1];
-                }
-            }
-            for (point, square) in profile.points.iter_mut().zip(squares) {
-                point[2] = INTERVAL * f64::sqrt(square);
-            }
-            profile.points.iter().any(|point| point[1] != 0.0).then_some(Shape {
-                id,
-                joint,
-                profile,
-            })
-        })
-        .collect()
+    joints.into_iter().filter_map(shape).collect()
 }
 
 /// Deviations to each side that hold 95 %.
@@ -146,18 +154,26 @@ fn moved(improved: &Improved, said: &Said, of: &Estimated) -> Option<Model> {
     Some(Improved::of(written).applied)
 }
 
-/// Pairs of a quantity and a value at the instants at which a joint moves.
+fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    a.iter().zip(b).map(of).collect()
+}
+
+/// Pairs of a quantity and a torque at the instants at which a joint moves.
 fn samples(
     records: &[Record<'_>],
+    torques: &Torques,
     joint: usize,
     quantity: Quantity,
-    values: &dyn Fn(&Record<'_>) -> Vec<f64>,
 ) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
-    for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
-        for (row, value) in values(record).into_iter().enumerate() {
+    for (record, torques) in records.iter().zip(torques) {
+        if record.kind != RecordKind::Mean {
+            continue;
+        }
+        for (row, torque) in torques[joint].iter().enumerate() {
             if record.moves(joint, row) {
-                all.push([quantity.at(record, joint, row), value]);
+                all.push([quantity.at(record, joint, row), *torque]);
             }
         }
     }

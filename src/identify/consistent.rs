@@ -1,14 +1,6 @@
 //! Parameters that a real robot can have, near those that the data determine.
 //!
-//! A link is physically consistent where its pseudo-inertia
-//!
-//! ```text
-//! P = ⎡ Σ   h ⎤    Σ = ½ tr(I) 1 − I,  h = m c
-//!     ⎣ hᵀ  m ⎦
-//! ```
-//!
-//! is positive definite (P. Wensing, S. Kim, J.-J. Slotine, "Linear matrix inequalities for
-//! physically consistent inertial parameter identification", RA-L 3, 2018). What is
+//! A link is physically consistent where its [`pseudo_inertia`] P is positive definite. What is
 //! minimised is
 //!
 //! ```text
@@ -21,10 +13,9 @@
 //! rotor and friction from its prior s₀. That is convex, and the divergence keeps every P
 //! positive definite by itself, so that Newton's method finds the one minimum.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 
-use crate::dynamics::RIGID;
-use crate::robot::Link;
+use crate::dynamics::{RIGID, body_parameters, pseudo_inertia};
 
 /// Weights of the divergence, largest first: from where anything converges to where data
 /// decide all that they can.
@@ -111,7 +102,7 @@ fn start(pieces: &[Piece]) -> DVector<f64> {
     let mut values = Vec::new();
     for piece in pieces {
         match piece {
-            Piece::Body(prior) => values.extend(parameters(prior)),
+            Piece::Body(prior) => values.extend(body_parameters(prior)),
             Piece::Positive(prior) => values.push(*prior),
             Piece::Any(_) => values.push(0.0),
         }
@@ -234,16 +225,6 @@ impl Problem<'_> {
     }
 }
 
-/// P of the ten parameters of a body.
-#[must_use]
-pub(super) fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
-    let mut p = Matrix4::zeros();
-    for (k, value) in parameters.iter().enumerate().take(RIGID) {
-        p += direction(k) * *value;
-    }
-    p
-}
-
 /// Change of P with its parameter `k`.
 fn direction(k: usize) -> Matrix4<f64> {
     let mut e = Matrix4::zeros();
@@ -267,35 +248,6 @@ fn direction(k: usize) -> Matrix4<f64> {
     e
 }
 
-/// The ten parameters of a body with the pseudo-inertia `p`.
-#[must_use]
-pub(super) fn parameters(p: &Matrix4<f64>) -> [f64; RIGID] {
-    let [x, y, z] = [p[(0, 0)], p[(1, 1)], p[(2, 2)]];
-    [
-        p[(3, 3)],
-        p[(0, 3)],
-        p[(1, 3)],
-        p[(2, 3)],
-        y + z,
-        x + z,
-        x + y,
-        -p[(0, 1)],
-        -p[(0, 2)],
-        -p[(1, 2)],
-    ]
-}
-
-/// The link of ten parameters.
-#[must_use]
-pub(super) fn link(parameters: &[f64]) -> Link {
-    let [m, mx, my, mz, xx, yy, zz, xy, xz, yz] =
-        std::array::from_fn(|k| parameters.get(k).copied().unwrap_or_default());
-    let com = if m > 0.0 { Vector3::new(mx, my, mz) / m } else { Vector3::zeros() };
-    let about_origin = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let steiner = (Matrix3::identity() * com.norm_squared() - com * com.transpose()) * m;
-    Link { mass: m, com, inertia: about_origin - steiner }
-}
-
 /// The least eigenvalue of a body's pseudo-inertia, over the largest.
 #[must_use]
 pub(super) fn margin(parameters: &[f64]) -> f64 {
@@ -307,8 +259,11 @@ pub(super) fn margin(parameters: &[f64]) -> f64 {
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+    use nalgebra::{Matrix3, Vector3};
+
     use super::*;
     use crate::dynamics::link_parameters;
+    use crate::robot::Link;
 
     fn body(mass: f64, com: [f64; 3], moments: [f64; 3]) -> Link {
         let inertia = Matrix3::from_diagonal(&Vector3::from(moments));
@@ -316,14 +271,10 @@ mod tests {
     }
 
     #[test]
-    fn a_link_becomes_a_pseudo_inertia_and_back() {
+    fn directions_make_up_the_pseudo_inertia() {
         let there = link_parameters(&body(3.0, [0.1, -0.2, 0.3], [0.02, 0.03, 0.04]));
-        let p = pseudo_inertia(&there);
-        for (a, b) in parameters(&p).iter().zip(&there) {
-            assert!((a - b).abs() < 1e-14);
-        }
-        let back = link_parameters(&link(&there));
-        assert!(back.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-14));
+        let sum: Matrix4<f64> = (0..RIGID).map(|k| direction(k) * there[k]).sum();
+        assert!((sum - pseudo_inertia(&there)).norm() < 1e-14);
         assert!(margin(&there) > 0.0);
     }
 

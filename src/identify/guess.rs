@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
-use super::consistent::{BODY, link, margin, parameters, pseudo_inertia};
-use crate::dynamics::{Load, link_parameters};
+use super::consistent::{BODY, margin};
+use crate::dynamics::{Load, body_parameters, link_of, link_parameters, pseudo_inertia};
 use crate::robot::{Link, Model};
 
 /// Density of an arm, with what is hollow in it \[kg/m³\].
@@ -32,7 +32,7 @@ pub(super) fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
 
 /// The link that a descent begins with.
 pub(super) fn first_guess(model: &Model, joint: usize) -> Link {
-    link(&parameters(&prior(model, joint)))
+    link_of(&body_parameters(&prior(model, joint)))
 }
 
 /// A round bar from the origin to a point.

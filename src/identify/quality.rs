@@ -127,8 +127,8 @@ impl Quality {
         if let Some((joint, times)) = self.astray {
             let _ = write!(
                 text,
-                ", joint {} misses {times:.1} times what any masses would: has a column the wrong \
-                 sign or place?",
+                ", joint {} misses {times:.1} times what a fit with any masses does: has a column \
+                 the wrong sign or place?",
                 joint + 1
             );
         }

@@ -33,6 +33,8 @@ const STRANGE: f64 = 10.0;
 const RELATED: f64 = 0.25;
 /// Rows further apart than this tell no rates \[s\].
 const SLOWEST: f64 = 0.5;
+/// Beyond a limit by this angle no joint comes to stand \[rad\].
+const OVERSHOT: f64 = 0.1;
 /// Times its limit that no joint's torque reaches.
 const BEYOND: f64 = 10.0;
 /// Rows that are looked at.
@@ -154,9 +156,6 @@ pub fn beyond_range(model: &Model, log: &Log) -> Vec<(usize, f64)> {
     };
     (0..log.joints()).filter_map(furthest).collect()
 }
-
-/// Beyond a limit by this angle no joint comes to stand \[rad\].
-const OVERSHOT: f64 = 0.1;
 
 /// How many times the rates of `x` the logged ones are; `None` where they have little to do
 /// with each other.

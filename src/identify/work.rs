@@ -3,12 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::dynamics::{
-    BaseParameters, JOINT, Load, Parameters, RIGID, base_parameters_among, link_parameters,
-    parameters,
+    BaseParameters, JOINT, Load, Parameters, RIGID, base_parameters_among, link_of,
+    link_parameters, parameters, pseudo_inertia,
 };
 use crate::robot::{Model, Motors, Origin, Provenance};
 
-use super::consistent::{BODY, Piece, Target, consistent, link, margin, pseudo_inertia};
+use super::consistent::{BODY, Piece, Target, consistent, margin};
 use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
@@ -419,19 +419,19 @@ fn assembled(
     let mut payload = None;
     let mut tables = Vec::new();
     if settings.free == Free::Payload {
-        let added = link(values);
+        let added = link_of(values);
         payload = Some(at_flange(nominal, &added));
         if let Some(last) = model.links.last_mut() {
             let both: Vec<f64> =
                 link_parameters(last).iter().zip(values).map(|(a, b)| a + b).collect();
-            *last = link(&both);
+            *last = link_of(&both);
         }
         tables.push(format!("link {n}"));
     }
     let joints = match settings.free {
         Free::All => {
             // A link of which the motion says nothing stays as it was, where it was a body.
-            let found = values[..RIGID * n].chunks(RIGID).map(link).enumerate();
+            let found = values[..RIGID * n].chunks(RIGID).map(link_of).enumerate();
             model.links = found
                 .map(|(k, new)| match nominal.links.get(k) {
                     Some(old) if !told[k] && margin(&link_parameters(old)) > BODY => old.clone(),

@@ -171,6 +171,42 @@ fn bodies_that_cannot_be_keep_their_torques() {
     assert!(off < SAME_TORQUES * size, "{off} of {size}");
 }
 
+/// Torques that belong to other joints, and joints that rest: nothing is asserted.
+#[test]
+fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
+    let nominal = irb1600();
+    let robot = Robot { model: &nominal, effect: None, noise: 0.005 };
+    let diagnosed = |change: &dyn Fn(&mut Samples)| {
+        let samples = [1, 2].map(|seed| {
+            let mut samples = robot.samples(seed);
+            change(&mut samples);
+            samples
+        });
+        let [train, held] = samples.each_ref().map(|of| Record::all(&nominal, of));
+        let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
+        diagnose(&nominal, train, &held, &settings)
+    };
+    let other = diagnosed(&|samples| {
+        for block in &mut samples.blocks {
+            block.tau.rotate_left(2);
+        }
+        if let Some(repetitions) = &mut samples.repetitions {
+            repetitions.rotate_left(2);
+        }
+    });
+    assert_eq!((other.verdict, named(&other)), (Verdict::Unknown, Vec::new()));
+    let still = diagnosed(&|samples| {
+        for block in &mut samples.blocks {
+            for joint in 0..4 {
+                block.q[joint].fill(0.1);
+                block.qd[joint].fill(0.0);
+                block.qdd[joint].fill(0.0);
+            }
+        }
+    });
+    assert_eq!((still.verdict, named(&still)), (Verdict::NotExcited, Vec::new()));
+}
+
 #[test]
 fn another_unit_is_no_effect() {
     let nominal = irb1600();

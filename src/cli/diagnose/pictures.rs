@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::gap::{
-    Attribution, Diagnosis, Quantity, Record, Verdict, attribution, profile, shapes, trace,
+    Attribution, Diagnosis, Quantity, Record, Verdict, attribution, missed, profile, shapes, trace,
 };
 use crate::report::html::{Excerpt, Line, Pictures};
 use crate::robot::Model;
@@ -15,8 +15,9 @@ const AROUND: usize = 4;
 /// The pictures of a diagnosis of `model` on `records`.
 pub(super) fn pictures(model: &Model, records: &[Record<'_>], found: &Diagnosis) -> Pictures {
     let models = [model, &found.refit.applied, &found.improved.applied];
+    let missed = models.map(|model| missed(records, model));
     let over = |joint: usize, quantity: Quantity| {
-        models.map(|model| profile(records, model, joint, quantity))
+        missed.each_ref().map(|of| profile(records, of, joint, quantity))
     };
     let profiles = (0..model.dof)
         .map(|joint| vec![over(joint, Quantity::Speed), over(joint, Quantity::Position)]);
@@ -28,7 +29,7 @@ pub(super) fn pictures(model: &Model, records: &[Record<'_>], found: &Diagnosis)
         } else {
             Attribution::default()
         },
-        trace: trace(records, &models),
+        trace: trace(records, &missed),
         profiles: profiles.collect(),
         shapes: found.effects.iter().flat_map(|of| shapes(records, &found.improved, of)).collect(),
         sources: sources(found),

@@ -4,15 +4,13 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use super::ReportError;
-use super::format::fixed;
+use super::format::{INTERVAL, fixed};
 use crate::gap::{Attribution, Diagnosis, Interval, Place, Profile, Quantity, Said, Shape, Trace};
 use crate::report::diagnose::{Basis, next, sentence};
 use crate::report::svg::{Curve, Plot, Size};
 
 /// Size of the plots, px.
 const SIZE: Size = Size { width: 620.0, height: 220.0 };
-/// Deviations to each side that hold 95 %.
-const INTERVAL: f64 = 1.96;
 /// Share of the squared gap that a joint needs for its regimes to be shown, %.
 const SHOWN: f64 = 5.0;
 /// Classes of curves: the model as it was, refitted, with effects.
@@ -141,7 +139,6 @@ pub fn diagnose_report(
     let experiment = next(found, basis);
     context.insert("next", &experiment.map(|(why, command)| Next { why, command }));
     context.insert("gap", &gap(found));
-    context.insert("shrinks", &shrinks(found));
     context.insert("places", &places);
     context.insert("players", &pictures.attribution.players);
     context.insert("cells", &cells(&pictures.attribution));
@@ -162,16 +159,12 @@ fn cards(found: &Diagnosis) -> Vec<Card> {
     let card = |name, of: &Interval| Card {
         name,
         value: format!("{} %", fixed(100.0 * of.value, 1)),
-        note: between(of),
+        note: format!("95 %: {} to {} %", fixed(100.0 * of.low, 1), fixed(100.0 * of.high, 1)),
     };
     vec![
         card("the gap shrinks, refit and effects", &found.shrink.total),
         card("of this by the effects", &found.shrink.by_effect),
     ]
-}
-
-fn between(of: &Interval) -> String {
-    format!("95 %: {} to {} %", fixed(100.0 * of.low, 1), fixed(100.0 * of.high, 1))
 }
 
 fn effect(of: &Said, asserted: bool) -> EffectRow {
@@ -230,16 +223,6 @@ fn gap(found: &Diagnosis) -> Vec<GapRow> {
         row((*name).to_owned(), [*noise, *before, *before, *after], unit)
     });
     joints.chain(others).collect()
-}
-
-fn shrinks(found: &Diagnosis) -> Vec<String> {
-    let line = |what: &str, of: &Interval| {
-        format!("{what}: {} % ({})", fixed(100.0 * of.value, 1), between(of))
-    };
-    vec![
-        line("All joints, refit and effects", &found.shrink.total),
-        line("By the effects alone", &found.shrink.by_effect),
-    ]
 }
 
 fn place(of: &Place) -> PlaceRow {

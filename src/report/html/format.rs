@@ -1,5 +1,8 @@
 //! Figures as text.
 
+/// Deviations to each side that hold 95 %.
+pub(super) const INTERVAL: f64 = 1.96;
+
 /// A number with so many decimals, a real minus sign, and a dash where there is none.
 pub(super) fn fixed(x: f64, decimals: usize) -> String {
     if !x.is_finite() {

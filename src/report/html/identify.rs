@@ -4,7 +4,7 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use super::ReportError;
-use super::format::fixed;
+use super::format::{INTERVAL, fixed};
 use crate::identify::{Identified, collinear, essential};
 use crate::report::identify::{Basis, undetermined, white};
 use crate::report::svg::{Curve, Plot, Size};
@@ -154,9 +154,6 @@ pub fn identify_report(
     ])?;
     Ok(tera.render("identify.html", &context)?)
 }
-
-/// Deviations to each side that hold 95 %.
-const INTERVAL: f64 = 1.96;
 
 fn plots(traces: &Traces) -> Vec<String> {
     let first = traces.t.first().copied().unwrap_or(0.0);
