@@ -208,3 +208,53 @@ fn changes_are_told_where_they_matter() {
     assert!(told["Cell.mod"].is_empty());
     client.stop();
 }
+
+/// What the editor held of a document stands for what is on disk until it is closed; then the
+/// open documents of the same program are told anew, with the hovers and fixes that go with it.
+#[test]
+fn closing_a_document_is_told_to_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = fs::read_to_string("fixtures/lint/plants/Shared.mod").unwrap();
+    let work = "MODULE Work\nPROC rWork()\n    MoveJ pAUp,v1000,fine,tGripper;\n    \
+                MoveL pA,v300,fine,tGripper;\n    WaitTime 1;\nENDPROC\nENDMODULE\n";
+    let cell = "MODULE Cell\nPROC main()\n    MoveAbsJ jHome,v1000,fine,tGripper;\n    rWork;\n    \
+                MoveAbsJ jHome,v1000,fine,tGripper;\nENDPROC\nENDMODULE\n";
+    let paths = ["Shared.mod", "Work.mod", "Cell.mod"].map(|name| folder.path().join(name));
+    for (path, text) in paths.iter().zip([data.as_str(), work, cell]) {
+        fs::write(path, text).unwrap();
+    }
+    let codes = |found: &[Value]| -> Vec<String> {
+        found.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
+    };
+    let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
+    let work = client.open(&paths[1]);
+    assert_eq!(codes(&client.told_of().1), ["EW101"]);
+    let cell = client.open(&paths[2]);
+    client.told_of();
+    client.told_of();
+    let change = json!({
+        "textDocument": { "uri": cell, "version": 2 },
+        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nENDPROC\nENDMODULE\n" }],
+    });
+    client.tell("textDocument/didChange", &change);
+    let told = [client.told_of(), client.told_of()];
+    let of_work = told.iter().find(|(name, _)| name == "Work.mod").unwrap();
+    assert!(codes(&of_work.1).contains(&"EW702".to_owned()), "{told:?}");
+    client.tell("textDocument/didClose", &json!({ "textDocument": { "uri": cell } }));
+    assert_eq!(client.told_of(), ("Cell.mod".to_owned(), Vec::new()));
+    let (name, found) = client.told_of();
+    assert_eq!((name.as_str(), codes(&found)), ("Work.mod", vec!["EW101".to_owned()]));
+
+    let document = json!({ "uri": work });
+    let place = json!({ "line": 3, "character": 6 });
+    let asked = json!({ "textDocument": document, "position": place });
+    let hover = client.ask("textDocument/hover", &asked);
+    assert!(hover["contents"]["value"].as_str().unwrap().starts_with("**MoveL**"), "{hover}");
+    assert_eq!(hover["range"]["start"], json!({ "line": 3, "character": 4 }));
+    let asked = json!({ "textDocument": document, "range": found[0]["range"], "context": {} });
+    let actions = client.ask("textDocument/codeAction", &asked);
+    let edit = &actions[0]["edit"]["changes"][&work][0];
+    assert_eq!(actions[0]["isPreferred"], false, "{actions}");
+    assert!(edit["newText"].as_str().unwrap().starts_with('z'), "{actions}");
+    client.stop();
+}

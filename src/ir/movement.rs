@@ -195,6 +195,8 @@ pub struct Movement {
     pub span: Span,
     /// Name of the routine that holds it.
     pub routine: Arc<str>,
+    /// The call through which its routine runs; none in the routine that starts the program.
+    pub called_at: Option<Span>,
     /// Circle point of a circular movement.
     pub via: Option<RobTarget>,
     /// Where it goes.

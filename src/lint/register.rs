@@ -4,7 +4,7 @@ use super::rule::Rule;
 use super::rules as r;
 
 /// Each rule once, by code.
-pub static ALL: [&Rule; 34] = [
+pub static ALL: [&Rule; 35] = [
     &r::unused_suppression::RULE,
     &r::unneeded_stop_point::RULE,
     &r::stop_in_line::RULE,
@@ -37,6 +37,7 @@ pub static ALL: [&Rule; 34] = [
     &r::dead_procedure::RULE,
     &r::duplicated_target::RULE,
     &r::unresolved_movement::RULE,
+    &r::target_out_of_reach::RULE,
     &r::brakes_never_close::RULE,
     &r::energy_signal_unused::RULE,
 ];

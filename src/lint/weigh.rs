@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use super::finding::{Per, Saving};
 use crate::energy::account::at_rest;
 use crate::energy::{Account, EnergyParts, account};
-use crate::ir::movement::{Movement, Wait};
+use crate::ir::movement::{Movement, Output, Wait};
 use crate::motion::timeline::{Run, Simulation, WaitBasis, What};
 use crate::motion::{Options, Step, replay};
 use crate::path::joint_path::{DOF, Joints};
@@ -276,6 +276,9 @@ fn steps(
 ) -> Option<(Joints, Vec<Step>)> {
     let mut start = None;
     let mut steps = Vec::new();
+    // Outputs between fly-by movements stand before the run that they belong into.
+    let mut held: Vec<(usize, &Output)> = Vec::new();
+    let output = |(_, output): (usize, &Output)| Step::Output(Box::new(output.clone()));
     for event in &cycle.simulation.events[window] {
         match &event.what {
             What::Run(run) => {
@@ -283,7 +286,9 @@ fn steps(
                     return None;
                 }
                 start.get_or_insert(run.start);
-                for record in &run.moves {
+                for (index, record) in run.moves.iter().enumerate() {
+                    let due = held.iter().take_while(|(position, _)| *position <= index).count();
+                    steps.extend(held.drain(..due).map(output));
                     let step = Step::Move(Box::new(record.movement.clone()));
                     if spans.contains(&record.movement.span) {
                         steps.extend(change(&step));
@@ -294,6 +299,7 @@ fn steps(
             }
             What::Wait(wait) => {
                 start.get_or_insert(wait.q);
+                steps.extend(held.drain(..).map(output));
                 let comes = wait.basis == WaitBasis::Input;
                 let wait = Wait {
                     duration: Some(event.duration),
@@ -310,10 +316,11 @@ fn steps(
                     steps.push(step);
                 }
             }
-            What::Output(..) => {}
+            What::Output(output, position) => held.push((*position, output)),
             What::Left(_) => return None,
         }
     }
+    steps.extend(held.into_iter().map(output));
     Some((start?, steps))
 }
 

@@ -7,7 +7,7 @@
 mod position;
 mod workspace;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use serde_json::{Value, json};
@@ -116,12 +116,24 @@ impl Server {
             "textDocument/didClose" => {
                 self.workspace.close(&uri);
                 self.told.remove(&uri);
-                return vec![publish(&uri, &[])];
+                let mut messages = vec![publish(&uri, &[])];
+                // What is on disk counts again for the documents beside it.
+                let mut open = self.workspace.beside(&uri);
+                while let Some(other) = open.pop_first() {
+                    messages.extend(self.look(&other, &mut open));
+                }
+                return messages;
             }
             _ => return Vec::new(),
         }
+        self.look(&uri, &mut BTreeSet::new())
+    }
+
+    /// What is found in a document and in those of its programs, which need no look of their own.
+    fn look(&mut self, uri: &str, open: &mut BTreeSet<String>) -> Vec<Message> {
         let mut messages = Vec::new();
-        for (uri, analysis) in self.workspace.analyse(&uri) {
+        for (uri, analysis) in self.workspace.analyse(uri) {
+            open.remove(&uri);
             let shown: Vec<Value> =
                 analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
             messages.push(publish(&uri, &shown));

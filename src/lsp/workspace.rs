@@ -1,6 +1,6 @@
 //! Open documents over the files of their folders, and what is found in them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -81,6 +81,12 @@ impl Workspace {
     pub(super) fn close(&mut self, uri: &str) {
         self.open.remove(uri);
         self.forget(uri);
+    }
+
+    /// The open documents of the folder of a document.
+    pub(super) fn beside(&self, uri: &str) -> BTreeSet<String> {
+        let folder = folder_of(uri);
+        self.open.keys().filter(|other| folder_of(other) == folder).cloned().collect()
     }
 
     /// Looks at the programs that a document belongs to. What was found in it, and in the other

@@ -2,32 +2,85 @@
 
 use joulepath::lint::engine::cycles;
 use joulepath::lint::{Applicability, Fixed, fix};
+use joulepath::motion::timeline::What;
+use joulepath::text::SourceFile;
 
+use crate::plants::plants;
 use crate::{Fixture, fixtures};
 
-fn energy(fixture: &Fixture) -> f64 {
-    cycles(&fixture.job())[0].as_ref().unwrap().account.total.energy_j()
+/// What a cycle takes (J) and does, and where it ends (rad).
+fn cycle(fixture: &Fixture) -> (f64, Vec<String>, Option<[f64; 6]>) {
+    let cycles = cycles(&fixture.job());
+    let cycle = cycles[0].as_ref().unwrap();
+    let mut done = Vec::new();
+    let mut end = None;
+    for event in &cycle.simulation.events {
+        match &event.what {
+            What::Run(run) => end = Some(run.end),
+            What::Wait(wait) => {
+                let stated = wait.wait.duration;
+                done.push(format!("{} {:?} {stated:?}", wait.wait.instruction, wait.wait.signal));
+            }
+            What::Output(output, _) => done.push(format!("{} {}", output.signal, output.value)),
+            What::Left(left) => done.push(left.reason.clone()),
+        }
+    }
+    (cycle.account.total.energy_j(), done, end)
 }
 
-/// Twice is the same as once, and the cycle takes less.
+fn programs() -> impl Iterator<Item = Fixture> {
+    let planted = plants().into_iter().map(|plant| plant.fixture);
+    fixtures().into_iter().filter(|fixture| fixture.model.is_some()).chain(planted)
+}
+
+/// Twice is the same as once, the cycle takes no more, does the same in the same order, and ends
+/// at the same place.
 #[test]
 fn fixes_are_final_and_save() {
     for most in [Applicability::Safe, Applicability::Unsafe] {
         let mut applied_to = 0;
-        for fixture in fixtures().into_iter().filter(|fixture| fixture.model.is_some()) {
+        for fixture in programs() {
             let Fixed { files, applied, .. } = fix(&fixture.job(), most);
             let text = String::from_utf8(files[0].bytes.clone()).unwrap();
-            let fixed = Fixture::new(fixture.path.clone(), &text);
-            let again = fix(&fixed.job(), most);
-            assert_eq!(again.files[0].bytes, files[0].bytes, "{:?}", fixture.path);
-            if applied > 0 {
-                applied_to += 1;
-                assert!(energy(&fixed) <= energy(&fixture) + 1e-6, "{:?}", fixture.path);
-            } else {
-                assert_eq!(fixture.files[0].bytes, files[0].bytes);
+            let fixed = fixture.with_text(text);
+            let place = format!("{most:?} {:?}\n{}", fixture.path, fixed.text());
+            assert_eq!(fix(&fixed.job(), most).files[0].bytes, files[0].bytes, "{place}");
+            if applied == 0 {
+                assert_eq!(fixture.files[0].bytes, files[0].bytes, "{place}");
+                continue;
             }
+            applied_to += 1;
+            let (energy, done, end) = cycle(&fixture);
+            let (energy_after, done_after, end_after) = cycle(&fixed);
+            assert!(energy_after <= energy + 1e-6, "{energy} J, then {energy_after} J: {place}");
+            assert_eq!(done, done_after, "{place}");
+            let (end, end_after) = (end.unwrap(), end_after.unwrap());
+            let near = (0..6).all(|axis| (end[axis] - end_after[axis]).abs() < 1e-4);
+            assert!(near, "{end:?}, then {end_after:?}: {place}");
         }
-        assert!(applied_to >= 2, "{most:?}: {applied_to}");
+        let least = if most == Applicability::Safe { 4 } else { 40 };
+        assert!(applied_to >= least, "{most:?}: {applied_to}");
+    }
+}
+
+/// Ends of lines, tabs and bytes of another encoding are those that were there.
+#[test]
+fn bytes_that_mean_nothing_stay() {
+    let other = |text: &[u8]| -> Vec<u8> {
+        let text = String::from_utf8(text.to_vec()).unwrap();
+        let text = text.replace("    ", "\t ").replace('\n', "\r\n");
+        [b"! caf\xE9\r\n", text.as_bytes()].concat()
+    };
+    for plant in plants().into_iter().filter(|plant| plant.name.starts_with("Fires")) {
+        let plain = fix(&plant.fixture.job(), Applicability::Unsafe);
+        let mut fixture = plant.fixture;
+        let file = &fixture.files[0];
+        fixture.files[0] = SourceFile::new(file.id, file.path.clone(), other(&file.bytes));
+        let fixed = fix(&fixture.job(), Applicability::Unsafe);
+        assert_eq!(plain.applied, fixed.applied, "{} {}", plant.code, plant.name);
+        let (expected, found) = (other(&plain.files[0].bytes), &fixed.files[0].bytes);
+        let show = |bytes: &[u8]| bytes.escape_ascii().to_string();
+        assert_eq!(show(&expected), show(found), "{} {}", plant.code, plant.name);
     }
 }
 

@@ -4,7 +4,9 @@
 
 mod fixes;
 mod formats;
+mod hostile;
 mod manuals;
+mod plants;
 mod savings;
 mod schema;
 
@@ -30,8 +32,15 @@ pub(crate) struct Fixture {
 impl Fixture {
     /// Of a file's name and text: `! robot: NAME`, `! inputs: diA=1 diB=2`.
     pub(crate) fn new(path: PathBuf, text: &str) -> Fixture {
-        let said =
-            |key: &str| text.lines().find_map(|line| line.trim().strip_prefix(key)).map(str::trim);
+        Fixture::of(path, &[text.to_owned()])
+    }
+
+    /// Of the texts of several files, of which the first has the name.
+    pub(crate) fn of(path: PathBuf, texts: &[String]) -> Fixture {
+        let said = |key: &str| {
+            let mut lines = texts.iter().flat_map(|text| text.lines());
+            lines.find_map(|line| line.trim().strip_prefix(key)).map(str::trim)
+        };
         let model = said("! robot:").map(|name| effects::load(name).unwrap());
         let inputs = said("! inputs:").unwrap_or_default().split_whitespace().map(|pair| {
             let (name, seconds) = pair.split_once('=').unwrap();
@@ -39,8 +48,24 @@ impl Fixture {
         });
         let options = Options { inputs: inputs.collect(), ..Options::default() };
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        let files = vec![SourceFile::new(FileId(0), name, text.as_bytes().to_vec())];
+        let file = |(id, text): (usize, &String)| {
+            let name = if id == 0 { name.clone() } else { format!("{id} {name}") };
+            SourceFile::new(FileId(id as u32), name, text.as_bytes().to_vec())
+        };
+        let files = texts.iter().enumerate().map(file).collect();
         Fixture { path, files, model, options, settings: Settings::default() }
+    }
+
+    /// The same with another text of its first file.
+    pub(crate) fn with_text(&self, text: String) -> Fixture {
+        let others = self.files[1..].iter();
+        let others = others.map(|file| String::from_utf8(file.bytes.clone()).unwrap());
+        let texts: Vec<String> = std::iter::once(text).chain(others).collect();
+        Fixture::of(self.path.clone(), &texts)
+    }
+
+    pub(crate) fn text(&self) -> String {
+        String::from_utf8(self.files[0].bytes.clone()).unwrap()
     }
 
     pub(crate) fn job(&self) -> Job<'_> {
@@ -58,8 +83,15 @@ impl Fixture {
         lint(&self.job())
     }
 
-    fn line(&self, finding: &Finding) -> u32 {
-        self.files[0].position(finding.span.start).line
+    /// The lines of its first file that are marked with a rule, and in which the rule fires.
+    pub(crate) fn marked_and_found(&self, code: &str) -> (BTreeSet<u32>, BTreeSet<u32>) {
+        let mark = format!("!~ {code}");
+        let text = self.text();
+        let lines = (1..).zip(text.lines()).filter(|(_, line)| line.contains(&mark));
+        let report = self.report();
+        let own = report.findings.iter().filter(|it| it.rule.code == code);
+        let line = |it: &Finding| self.files[it.span.file.0 as usize].position(it.span.start).line;
+        (lines.map(|(number, _)| number).collect(), own.map(line).collect())
     }
 }
 
@@ -85,13 +117,7 @@ fn rules_fire_where_marked_and_nowhere_else() {
         let stem = format!("{}_{}", rule.code, rule.name.replace('-', "_"));
         let fixture = fixtures.iter().find(|it| it.path.file_stem().unwrap() == stem.as_str());
         let fixture = fixture.unwrap_or_else(|| panic!("fixtures/lint/{stem}.mod is not there"));
-        let text = String::from_utf8(fixture.files[0].bytes.clone()).unwrap();
-        let mark = format!("!~ {}", rule.code);
-        let marked: BTreeSet<u32> =
-            (1..).zip(text.lines()).filter(|(_, l)| l.contains(&mark)).map(|(n, _)| n).collect();
-        let report = fixture.report();
-        let own = report.findings.iter().filter(|finding| finding.rule.code == rule.code);
-        let found: BTreeSet<u32> = own.map(|finding| fixture.line(finding)).collect();
+        let (marked, found) = fixture.marked_and_found(rule.code);
         assert!(!marked.is_empty(), "{stem}: nothing is marked");
         if marked != found {
             wrong.push(format!("{stem}: marked {marked:?}, found {found:?}"));

@@ -2,8 +2,9 @@
 
 use joulepath::lint::engine::cycles;
 use joulepath::lint::{Applicability, Finding};
-use joulepath::text::{Edit, SourceFile, Span, apply};
+use joulepath::text::{Edit, Span, apply};
 
+use crate::plants::plants;
 use crate::{Fixture, fixtures};
 
 /// Largest difference: a share of the saving, or J.
@@ -24,9 +25,7 @@ fn with(fixture: &Fixture, finding: &Finding) -> Fixture {
     let edits = edits.unwrap_or_else(|| vec![by_hand(fixture, finding)]);
     let file = &fixture.files[0];
     let bytes = apply(&file.bytes, &edits).unwrap();
-    let text = String::from_utf8(bytes).unwrap();
-    let changed = SourceFile::new(file.id, file.path.clone(), text.clone().into_bytes());
-    Fixture { files: vec![changed], ..Fixture::new(fixture.path.clone(), &text) }
+    fixture.with_text(String::from_utf8(bytes).unwrap())
 }
 
 /// The change that the message names, made as a reader would make it.
@@ -62,7 +61,9 @@ fn by_hand(fixture: &Fixture, finding: &Finding) -> Edit {
 #[test]
 fn savings_are_those_of_two_simulations() {
     let mut compared = std::collections::BTreeSet::new();
-    for fixture in fixtures().into_iter().filter(|fixture| fixture.model.is_some()) {
+    let planted = plants().into_iter().map(|plant| plant.fixture);
+    let weighed = fixtures().into_iter().filter(|fixture| fixture.model.is_some());
+    for fixture in weighed.chain(planted) {
         let (energy, time) = cycle(&fixture);
         for finding in fixture.report().findings {
             let Some(saving) = finding.saving else { continue };

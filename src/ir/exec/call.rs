@@ -91,7 +91,7 @@ impl Executor<'_> {
                 names.push((param.name.key.clone(), cell));
             }
         }
-        self.enter(id, names, present)
+        self.enter(id, names, present, Some(at))
     }
 
     /// The cell of a parameter: the argument's own for a reference, else a new one.
@@ -148,6 +148,7 @@ impl Executor<'_> {
         id: RoutineId,
         names: Vec<(String, CellId)>,
         present: Vec<String>,
+        called_at: Option<Span>,
     ) -> Flow {
         let program = self.program;
         let routine = program.routine(id);
@@ -159,6 +160,7 @@ impl Executor<'_> {
         let name = routine.name.text.as_str().into();
         self.frames.push(Frame {
             names,
+            called_at,
             present,
             base: cells,
             ..Frame::new(id.module, name, Some(id))

@@ -125,6 +125,8 @@ struct Cell {
 struct Frame {
     module: usize,
     routine: Arc<str>,
+    /// The call that it runs for.
+    called_at: Option<Span>,
     /// Parameters, local data and loop variables, innermost last.
     names: Vec<(String, CellId)>,
     /// Optional parameters that were given.
@@ -144,6 +146,7 @@ impl Frame {
         Frame {
             module,
             routine,
+            called_at: None,
             names: Vec::new(),
             present: Vec::new(),
             id,
@@ -227,7 +230,7 @@ impl<'a> Executor<'a> {
                 );
             }
         }
-        match self.enter(entry, Vec::new(), Vec::new()) {
+        match self.enter(entry, Vec::new(), Vec::new(), None) {
             flow::Flow::Raised(raised) => {
                 let error = raised.error.as_deref().unwrap_or("an error");
                 let reason = format!("{error}, which no handler takes, ends the program here");

@@ -197,6 +197,7 @@ impl Executor<'_> {
             plain: signature.plain,
             span: stmt.span,
             routine: self.frame().routine.clone(),
+            called_at: self.frame().called_at,
             via,
             target,
             external,

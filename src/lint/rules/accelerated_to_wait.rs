@@ -118,6 +118,6 @@ pub(super) fn with_acceleration(step: &Step, share: f64, ramp: Option<f64>) -> V
             let settings = Arc::new(Settings { acceleration: share, ramp, ..before });
             vec![Step::Move(Box::new(Movement { settings, ..(**movement).clone() }))]
         }
-        other @ Step::Wait(_) => vec![other.clone()],
+        other => vec![other.clone()],
     }
 }

@@ -45,17 +45,16 @@ const AXES: [usize; 2] = [3, 5];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let Some(model) = context.model else { return };
+    // Before it the configuration is one of the simulation's assumptions.
+    let Some(known) = context.trace.iter().position(keeps) else { return };
     for site in &context.sites {
         let jump = site.executions.iter().find_map(|step| {
             let (run, record, leg) = context.record(*step)?;
             let movement = &record.movement;
-            // Before it the configuration is one of the simulation's assumptions.
-            if !context.trace[..*step].iter().any(keeps) {
-                return None;
-            }
             let Target::Pose(target) = &movement.target else { return None };
             if movement.form != MoveForm::Linear
                 || movement.settings.conf_linear
+                || *step <= known
                 || run.problem.is_some()
                 || !run.start_known
             {

@@ -34,7 +34,7 @@
 
 use super::super::context::Context;
 use super::super::finding::Finding;
-use super::super::trace::Deed;
+use super::super::trace::{Deed, executions};
 use super::super::weigh::Weighed;
 use crate::dynamics::Load;
 use crate::energy::power::holding_w;
@@ -63,12 +63,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if !model.has_dynamics() {
         return;
     }
+    let executions = executions(&context.trace);
     for (step, done) in context.trace.iter().enumerate() {
         let (Deed::Wait(wait, WaitBasis::Stated), Some((event, _))) = (&done.what, done.event)
         else {
             continue;
         };
-        let times = context.trace.iter().filter(|other| other.what.span() == wait.span).count();
+        let times = executions[&wait.span].len();
         let What::Wait(record) = &cycle.simulation.events[event].what else { continue };
         if done.duration < LONG || times != 1 || !record.position_known {
             continue;
@@ -91,7 +92,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
                         to(template, q),
                     ]
                 }
-                other @ Step::Move(_) => vec![other.clone()],
+                other => vec![other.clone()],
             }
         };
         let Some(way_s) = context.difference(&[wait.span], &way(0.0)).map(|it| -it.time_s) else {

@@ -42,6 +42,8 @@
 //! What is set along a path (a weld, a bead of glue) or in passing is none. Names of outputs say
 //! nothing.
 
+use std::collections::BTreeMap;
+
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::{Deed, Done};
@@ -57,6 +59,8 @@ const ON: f64 = 0.9;
 const FAST: f64 = 0.25;
 /// Fewest movements with a part.
 const MOVES: usize = 2;
+/// Most steps with a part.
+const MOST_BETWEEN: usize = 500;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if !context.calls("gripload").is_empty()
@@ -65,7 +69,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         return;
     }
     // The program lacks it as a whole: one remark is enough.
-    let carries = (0..context.trace.len()).find(|step| carries(context, *step));
+    let resets = resets(context);
+    let carries = resets.into_iter().find(|(step, off)| carries(context, *step, *off));
+    let carries = carries.map(|(step, _)| step);
     let Some(Deed::Output(output)) = carries.map(|step| &context.trace[step].what) else { return };
     let message = format!(
         "{} is set where the tool goes in and out, and reset at another such place: a part is \
@@ -75,19 +81,28 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     findings.push(Finding::new(&RULE, output.span, message));
 }
 
-/// Whether what a step sets holds a part until it is reset.
-fn carries(context: &Context<'_>, step: usize) -> bool {
-    let Deed::Output(output) = &context.trace[step].what else { return false };
-    if output.value != "1" || output.instruction.eq_ignore_ascii_case("pulsedo") {
-        return false;
-    }
-    let off = context.trace[step + 1..].iter().position(|done| match &done.what {
-        Deed::Output(other) => {
-            other.signal.eq_ignore_ascii_case(&output.signal) && other.value == "0"
+/// The steps that set an output, in order, each with the step that resets it.
+fn resets(context: &Context<'_>) -> Vec<(usize, usize)> {
+    let mut next: BTreeMap<String, usize> = BTreeMap::new();
+    let mut found = Vec::new();
+    for (step, done) in context.trace.iter().enumerate().rev() {
+        let Deed::Output(output) = &done.what else { continue };
+        let key = output.signal.to_lowercase();
+        if output.value == "0" {
+            next.insert(key, step);
+        } else if output.value == "1"
+            && !output.instruction.eq_ignore_ascii_case("pulsedo")
+            && let Some(off) = next.get(&key).filter(|off| **off - step <= MOST_BETWEEN)
+        {
+            found.push((step, *off));
         }
-        _ => false,
-    });
-    let Some(off) = off.map(|off| step + 1 + off) else { return false };
+    }
+    found.reverse();
+    found
+}
+
+/// Whether what is set in a step and reset in another one holds a part between them.
+fn carries(context: &Context<'_>, step: usize, off: usize) -> bool {
     let mut moves = 0;
     let mut carried = false;
     for done in &context.trace[step..off] {
@@ -96,15 +111,14 @@ fn carries(context: &Context<'_>, step: usize) -> bool {
         let joint = matches!(movement.form, MoveForm::Joint | MoveForm::AbsJ);
         carried |= joint || movement.speed.tcp >= FAST;
     }
+    if moves < MOVES || !carried {
+        return false;
+    }
     let (Some(on), Some(off)) = (end(context, step), end(context, off)) else { return false };
     let goes_on = |end: &End| end.turn.is_some_and(|turn| turn < ON);
     let comes_out = |end: &End| end.turn.is_some_and(|turn| turn > OUT);
     let ends = [on, off];
-    moves >= MOVES
-        && carried
-        && !ends.iter().any(goes_on)
-        && ends.iter().any(comes_out)
-        && ends.iter().any(|end| end.waits)
+    !ends.iter().any(goes_on) && ends.iter().any(comes_out) && ends.iter().any(|end| end.waits)
 }
 
 /// Where an output is set or reset.

@@ -94,6 +94,6 @@ pub(super) fn as_joint(step: &Step) -> Vec<Step> {
             };
             vec![Step::Move(Box::new(movement))]
         }
-        other @ Step::Wait(_) => vec![other.clone()],
+        other => vec![other.clone()],
     }
 }

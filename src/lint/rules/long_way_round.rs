@@ -112,7 +112,7 @@ fn with_conf(step: &Step, part: usize, quarters: i32) -> Vec<Step> {
             }
             vec![Step::Move(Box::new(movement))]
         }
-        other @ Step::Wait(_) => vec![other.clone()],
+        other => vec![other.clone()],
     }
 }
 

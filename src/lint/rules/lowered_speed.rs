@@ -72,6 +72,6 @@ fn full_speed(step: &Step) -> Vec<Step> {
             let movement = Movement { settings: settings.into(), ..(**movement).clone() };
             vec![Step::Move(Box::new(movement))]
         }
-        other @ Step::Wait(_) => vec![other.clone()],
+        other => vec![other.clone()],
     }
 }

@@ -31,12 +31,15 @@
 //! ## Assumptions
 //! The controller is set to close its brakes at standstill.
 
+use std::collections::BTreeSet;
+
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
 use crate::energy::power::holding_w;
 use crate::motion::timeline::What;
+use crate::text::Span;
 
 rule!("EW302", "micro-move-in-dwell", Dwell, Text, Info, "micro_move_in_dwell.rs");
 
@@ -50,6 +53,7 @@ const WAIT: f64 = 1.0;
 const BOTH: f64 = 5.0;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let mut told: BTreeSet<Span> = BTreeSet::new();
     for step in 1..context.trace.len().saturating_sub(1) {
         let Deed::Move(movement) = &context.trace[step].what else { continue };
         let wait = |step: usize| match &context.trace[step].what {
@@ -57,7 +61,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             _ => None,
         };
         let (Some(before), Some(after)) = (wait(step - 1), wait(step + 1)) else { continue };
-        if before + after < BOTH || !is_tiny(context, step) {
+        // Executions are weighed together: each statement once.
+        if before + after < BOTH || !is_tiny(context, step) || !told.insert(movement.span) {
             continue;
         }
         let total = before + after;

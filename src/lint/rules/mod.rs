@@ -40,6 +40,7 @@ pub(super) mod setting_never_restored;
 pub(super) mod slack_before_wait;
 pub(super) mod stop_for_output;
 pub(super) mod stop_in_line;
+pub(super) mod target_out_of_reach;
 pub(super) mod there_and_back;
 pub(super) mod tiny_zone;
 pub(super) mod tool0_while_gripping;

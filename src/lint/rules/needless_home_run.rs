@@ -2,8 +2,8 @@
 //!
 //! ## What it does
 //! Finds movements to the place at which the program starts, between two other movements, where
-//! nothing is done at home: no wait, no output. Without a robot at least two of them in a cycle
-//! are needed.
+//! nothing is done at home: no wait, no output. Where a procedure that does nothing else goes home,
+//! each call of it is looked at by itself. Without a robot at least two of them in a cycle are needed.
 //!
 //! ## Why it wastes energy
 //! The way home and out again is longer than the way from one work to the next.
@@ -32,12 +32,16 @@
 //! the program also ends and the robot stops.
 
 use super::super::context::Context;
-use super::super::edits::{fix, remove};
+use super::super::edits::{fix, remove, with_line};
 use super::super::finding::{Applicability, Finding};
-use super::super::site::facts_of;
+use super::super::site::{Site, compact, facts_of};
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
+use crate::ir::graph::Step as GraphStep;
+use crate::ir::hir::{Callee, Stmt, StmtKind};
 use crate::ir::instructions::MoveForm;
+use crate::motion::Step;
+use crate::text::{Edit, Span};
 
 rule!("EW406", "needless-home-run", Path, Text, Info, "needless_home_run.rs");
 
@@ -71,23 +75,99 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             MoveForm::Joint => site.is_stop(),
             _ => false,
         };
-        let all = !site.executions.is_empty() && site.executions.iter().all(|step| idle(*step));
-        if !joint || !all || !site.is_plain() {
+        if !joint || !site.is_plain() || site.executions.is_empty() {
             continue;
         }
-        let weighed = context.weigh(&[site.stmt.span], &|_| Vec::new());
-        let saving = match weighed {
-            Weighed::Saves(saving) => Some(saving),
-            Weighed::Unknown if visits >= MANY => None,
-            _ => continue,
-        };
-        let message = format!("{} goes home on the way to other work, for nothing", site.name);
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        "leaving it out".clone_into(&mut finding.change);
-        finding.saving = saving;
-        finding.assumptions.push("the direct way is free".to_owned());
-        finding.fix = remove(context, site).map(|edit| fix(Applicability::Unsafe, edit));
-        findings.push(finding);
+        let edit = || remove(context, site);
+        if site.executions.iter().all(|step| idle(*step)) {
+            let weighed = context.weigh(&[site.stmt.span], &|_| Vec::new());
+            findings.extend(told(site.stmt.span, site.name, weighed, visits, edit()));
+        } else if does_nothing_else(context, site) {
+            for call in idle_calls(context, site, &idle) {
+                let weighed = context.weigh(&[site.stmt.span], &|step| without(step, call.name));
+                findings.extend(told(call.stmt.span, call.text, weighed, visits, call.edit));
+            }
+        }
+    }
+}
+
+fn told(
+    span: Span,
+    name: &str,
+    weighed: Weighed,
+    visits: usize,
+    edit: Option<Edit>,
+) -> Option<Finding> {
+    let saving = match weighed {
+        Weighed::Saves(saving) => Some(saving),
+        Weighed::Unknown if visits >= MANY => None,
+        _ => return None,
+    };
+    let message = format!("{name} goes home on the way to other work, for nothing");
+    let mut finding = Finding::new(&RULE, span, message);
+    "leaving it out".clone_into(&mut finding.change);
+    finding.saving = saving;
+    finding.assumptions.push("the direct way is free".to_owned());
+    finding.fix = edit.map(|edit| fix(Applicability::Unsafe, edit));
+    Some(finding)
+}
+
+/// A call of a routine.
+struct CallSite<'c> {
+    /// The statement.
+    stmt: &'c Stmt,
+    /// The routine's name there.
+    name: Span,
+    text: &'c str,
+    /// Takes the call out.
+    edit: Option<Edit>,
+}
+
+/// The calls of the routine of a movement of which each execution is for nothing.
+fn idle_calls<'c>(
+    context: &Context<'c>,
+    site: &Site<'_>,
+    idle: &impl Fn(usize) -> bool,
+) -> Vec<CallSite<'c>> {
+    let called_at = |step: usize| match &context.trace[step].what {
+        Deed::Move(movement) => movement.called_at,
+        _ => None,
+    };
+    let mut found = Vec::new();
+    for place in context.flow.callers(site.place.0) {
+        let Some(stmt) = context.flow.statement(*place) else { continue };
+        let StmtKind::Call(call) = &stmt.kind else { continue };
+        let Callee::Name(name) = &call.callee else { continue };
+        let mut visits = site.executions.iter().filter(|step| called_at(**step) == Some(name.span));
+        let some = visits.clone().next().is_some();
+        if some && visits.all(|step| idle(*step)) {
+            let alone = compact(context.program.routine(place.0)).contains(&stmt.span);
+            let span = (!alone).then(|| with_line(context, stmt.span));
+            let edit = span.map(|span| Edit { span, text: Vec::new() });
+            found.push(CallSite { stmt, name: name.span, text: &name.text, edit });
+        }
+    }
+    found
+}
+
+/// Whether all that the routine of a movement does is that movement.
+fn does_nothing_else(context: &Context<'_>, site: &Site<'_>) -> bool {
+    let (routine, _) = site.place;
+    context.program.routine(routine).error.is_empty()
+        && context.flow.graph(routine).nodes.iter().all(|node| match node.step {
+            GraphStep::Statement(stmt) => {
+                stmt.span == site.stmt.span || matches!(stmt.kind, StmtKind::Return(None))
+            }
+            GraphStep::Condition(_) | GraphStep::Test(_) | GraphStep::Count(_) => false,
+            GraphStep::Entry | GraphStep::Exit => true,
+        })
+}
+
+/// Nothing, of a movement that runs for a call.
+fn without(step: &Step, call: Span) -> Vec<Step> {
+    match step {
+        Step::Move(movement) if movement.called_at == Some(call) => Vec::new(),
+        other => vec![other.clone()],
     }
 }
 

@@ -99,6 +99,6 @@ fn turning_fast(step: &Step) -> Vec<Step> {
             let speed = Speed { orientation: USUAL, ..movement.speed };
             vec![Step::Move(Box::new(Movement { speed, ..(**movement).clone() }))]
         }
-        other @ Step::Wait(_) => vec![other.clone()],
+        other => vec![other.clone()],
     }
 }

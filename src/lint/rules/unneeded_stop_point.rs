@@ -162,6 +162,6 @@ pub(super) fn with_zone(step: &Step, zone: NamedZone) -> Vec<Step> {
             let movement = Movement { zone: zone.zone, ..(**movement).clone() };
             vec![Step::Move(Box::new(movement))]
         }
-        other @ Step::Wait(_) => vec![other.clone()],
+        other => vec![other.clone()],
     }
 }

@@ -1,4 +1,4 @@
-//! Movements and waits that were executed before, laid on a time line again: what another
+//! Movements, waits and outputs that were executed before, laid on a time line again: what another
 //! zone, speed or order of some of them would change, without running the program.
 
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::load::gripping;
 use super::{Options, VirtualController};
 use crate::ir::exec::Machine;
-use crate::ir::movement::{Movement, Wait};
+use crate::ir::movement::{Movement, Output, Wait};
 use crate::motion::timeline::Simulation;
 use crate::path::joint_path::Joints;
 use crate::robot::Model;
@@ -18,6 +18,8 @@ pub enum Step {
     Move(Box<Movement>),
     /// It waited for as long as the wait states.
     Wait(Box<Wait>),
+    /// An output was set: no rest at a stop point is added where one follows.
+    Output(Box<Output>),
 }
 
 /// Lays steps on a time line from the joints at which the robot stands at first, rad, with what
@@ -39,6 +41,7 @@ pub fn replay(
             Step::Wait(wait) => {
                 machine.waits(*wait);
             }
+            Step::Output(output) => machine.sets(*output),
         }
     }
     machine.flush();

@@ -1,0 +1,78 @@
+//! Programs that nobody would write: broken anywhere, nested deeply, looping without an end.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use crate::Fixture;
+use crate::plants::plants;
+
+/// Far more than any of these takes, far less than what grows with the square of the steps.
+const LONGEST: Duration = Duration::from_secs(40);
+
+/// Cut off, with bytes that are not meant to be there, and with halves exchanged.
+#[test]
+fn broken_programs_are_survived() {
+    let mut random = 12_345_u64;
+    let mut below = |limit: usize| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (random >> 33) as usize % limit.max(1)
+    };
+    for plant in plants().into_iter().filter(|plant| plant.name.starts_with("Fires")) {
+        let mut fixture = plant.fixture;
+        let whole = fixture.files[0].bytes.clone();
+        let start = whole.iter().position(|byte| *byte == b'M').unwrap();
+        for _ in 0..3 {
+            let mut bytes = whole[start..].to_vec();
+            match below(3) {
+                0 => bytes.truncate(below(bytes.len())),
+                1 => {
+                    for _ in 0..8 {
+                        let at = below(bytes.len());
+                        bytes[at] = below(256) as u8;
+                    }
+                }
+                _ => bytes.rotate_left(below(whole.len() - start)),
+            }
+            let file = &fixture.files[0];
+            fixture.files[0] = joulepath::text::SourceFile::new(file.id, file.path.clone(), bytes);
+            fixture.report();
+        }
+    }
+}
+
+fn timed(main: &str, robot: &str) {
+    let shared = fs::read_to_string("fixtures/lint/plants/Shared.mod").unwrap();
+    let shared = if robot.is_empty() { shared.replace("! robot:", "!") } else { shared };
+    let text = format!(
+        "MODULE M\nPROC main()\nMoveJ pA,v1000,fine,tGripper;\n{main}\nENDPROC\nENDMODULE\n"
+    );
+    let fixture = Fixture::of("M.mod".into(), &[text, shared]);
+    assert_eq!(fixture.model.is_some(), !robot.is_empty());
+    let before = Instant::now();
+    fixture.report();
+    assert!(before.elapsed() < LONGEST, "{:?} for {main}", before.elapsed());
+}
+
+#[test]
+fn endless_loops_take_no_time() {
+    for body in [
+        "MoveJ pBUp,v1000,z10,tGripper;\nMoveJ pAUp,v1000,fine,tGripper;",
+        "WaitTime 0.1;",
+        "Set do1;",
+        "Set do1;\nReset do1;",
+        "Set do1;\nMoveJ pBUp,v1000,fine,tGripper;\nSet do2;\nMoveJ pAUp,v1000,fine,tGripper;",
+        "WaitTime 5;\nMoveL Offs(pA,0,0,2),v100,fine,tGripper;\nWaitTime 5;\nMoveL pA,v100,fine,tGripper;",
+    ] {
+        for robot in ["", "known"] {
+            timed(&format!("FOR i FROM 1 TO 100000000 DO\n{body}\nENDFOR"), robot);
+        }
+    }
+}
+
+#[test]
+fn deep_nesting_is_survived() {
+    let depth = 3_000;
+    let nested = "IF TRUE THEN\n".repeat(depth) + "WaitTime 1;\n" + &"ENDIF\n".repeat(depth);
+    timed(&nested, "known");
+    timed(&format!("x:={}1{};", "(".repeat(depth), ")".repeat(depth)), "known");
+}

@@ -1,0 +1,87 @@
+//! Planted programs: for each rule three in which it fires and three near misses.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use joulepath::lint::{ALL, Needs, find};
+
+use crate::Fixture;
+
+/// How many of each kind a rule has.
+const EACH: usize = 3;
+
+/// A module of a file of `fixtures/lint/plants`, with the data that all of them share.
+pub(crate) struct Plant {
+    pub(crate) code: String,
+    pub(crate) name: String,
+    pub(crate) fixture: Fixture,
+}
+
+impl Plant {
+    fn fires(&self) -> bool {
+        self.name.starts_with("Fires")
+    }
+}
+
+/// All of them. A file has a module for each, with a `main` of its own; the lines of the others
+/// are left empty.
+pub(crate) fn plants() -> Vec<Plant> {
+    let folder = "fixtures/lint/plants";
+    let shared = fs::read_to_string(format!("{folder}/Shared.mod")).unwrap();
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<_> = entries.filter(|path| !path.ends_with("Shared.mod")).collect();
+    paths.sort();
+    let mut plants = Vec::new();
+    for path in paths {
+        let text = fs::read_to_string(&path).unwrap();
+        let code = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let names = text.lines().filter_map(|line| line.strip_prefix("MODULE "));
+        for name in names {
+            let mut inside = false;
+            let mut own = String::new();
+            for line in text.lines() {
+                inside |= line.strip_prefix("MODULE ") == Some(name);
+                if inside {
+                    own.push_str(line);
+                }
+                own.push('\n');
+                inside &= line != "ENDMODULE";
+            }
+            let fixture = Fixture::of(path.clone(), &[own, shared.clone()]);
+            plants.push(Plant { code: code.clone(), name: name.to_owned(), fixture });
+        }
+    }
+    plants
+}
+
+#[test]
+fn plants_are_found_and_near_misses_are_not() {
+    let mut wrong = Vec::new();
+    for plant in plants() {
+        let (marked, found) = plant.fixture.marked_and_found(&plant.code);
+        if marked != found || marked.is_empty() == plant.fires() {
+            wrong
+                .push(format!("{} {}: marked {marked:?}, found {found:?}", plant.code, plant.name));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A rule that is taken out, or added without plants, fails here; what only a backup shows is
+/// planted in `tests/lint_command.rs`.
+#[test]
+fn each_rule_has_plants_and_near_misses() {
+    let mut counts: BTreeMap<(String, bool), usize> = BTreeMap::new();
+    for plant in plants() {
+        assert!(find(&plant.code).is_some(), "no rule {}", plant.code);
+        *counts.entry((plant.code.clone(), plant.fires())).or_default() += 1;
+    }
+    for rule in ALL.iter().filter(|rule| rule.needs != Needs::Backup) {
+        for fires in [true, false] {
+            let count = counts.get(&(rule.code.to_owned(), fires)).copied().unwrap_or(0);
+            assert!(count >= EACH, "{}: {count} plants that fire: {fires}", rule.code);
+        }
+    }
+    let backup = ALL.iter().filter(|rule| rule.needs == Needs::Backup).map(|rule| rule.code);
+    assert_eq!(backup.collect::<Vec<_>>(), ["EW801", "EW802"]);
+}
