@@ -123,12 +123,17 @@ fn fixes_are_shown_and_written() {
 
 /// A backup with a signal for energy saving, used or not, and a brake timeout or none.
 fn backup(io: &str, motion: &str) -> tempfile::TempDir {
+    let program = "MODULE M\n    PROC main()\n        WaitTime 60;\n        WaitTime 5;\n    \
+                   ENDPROC\nENDMODULE\n";
+    backup_of(program, io, motion)
+}
+
+/// A backup of a program.
+fn backup_of(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let modules = folder.path().join("RAPID/TASK1/PROGMOD");
     fs::create_dir_all(&modules).unwrap();
     fs::create_dir_all(folder.path().join("SYSPAR")).unwrap();
-    let program = "MODULE M\n    PROC main()\n        WaitTime 60;\n        WaitTime 5;\n    \
-                   ENDPROC\nENDMODULE\n";
     fs::write(modules.join("M.mod"), program).unwrap();
     fs::write(folder.path().join("SYSPAR/EIO.cfg"), io).unwrap();
     fs::write(folder.path().join("SYSPAR/MOC.cfg"), motion).unwrap();
@@ -154,6 +159,50 @@ fn backups_are_asked_for_settings_that_save() {
     let motion = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
     let used = backup(&used, motion);
     assert!(codes(&["--select", "system"], used.path()).is_empty());
+}
+
+/// Three plants and three near misses of each rule that asks for a backup.
+#[test]
+fn backups_are_planted() {
+    let motion = "MOC:CFG_1.0:6:0::\n";
+    let timeout = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
+    let io = "EIO:CFG_1.0:6:1::\n";
+    let program = |body: &str| format!("MODULE M\nPROC main()\n{body}\nENDPROC\nENDMODULE\n");
+    let brakes = [
+        ("WaitTime 45;", motion, true),
+        ("Set doCool;\nWaitTime 120;\nReset doCool;", motion, true),
+        ("FOR i FROM 1 TO 3 DO\nWaitTime 90;\nENDFOR", motion, true),
+        ("WaitTime 2;", motion, false),
+        ("WaitTime 45;", timeout, false),
+        ("WaitDI diDone,1;", motion, false),
+    ];
+    for (body, motion, fires) in brakes {
+        let folder = backup_of(&program(body), io, motion);
+        let found = codes(&["--select", "EW801"], folder.path());
+        assert_eq!(found.contains(&"EW801".to_owned()), fires, "{body} {motion}");
+    }
+    let signal = |name: &str, label: &str| {
+        format!(
+            "{io}#\nEIO_SIGNAL:\n\n      -Name \"{name}\" -SignalType \"DI\" -Label \"{label}\"\n"
+        )
+    };
+    let tied = format!(
+        "{}#\nSYSSIG_IN:\n\n      -Signal \"diSave\" -Action \"X\"\n",
+        signal("diSave", "Energy saving")
+    );
+    let signals = [
+        (signal("diEnSave", "Enable energy saving"), "WaitTime 1;", true),
+        (signal("diSleep", "PROFIenergy pause"), "WaitTime 1;", true),
+        (signal("diSpar", "Energie sparen"), "Set doLamp;", true),
+        (tied, "WaitTime 1;", false),
+        (signal("diEnSave", "Enable energy saving"), "WaitDI diEnSave,0;", false),
+        (signal("diDoor", "Door closed"), "WaitTime 1;", false),
+    ];
+    for (io, body, fires) in signals {
+        let folder = backup_of(&program(body), &io, motion);
+        let found = codes(&["--select", "EW802"], folder.path());
+        assert_eq!(found.contains(&"EW802".to_owned()), fires, "{body} {io}");
+    }
 }
 
 #[test]

@@ -65,7 +65,18 @@ pub struct Corner {
     pub turned: f64,
     /// How far the ways lie along the tool's axis, 0 across it to 1 along it: the larger of both.
     pub along: f64,
+    /// Whether the tool comes in along its axis and goes on across it, as where a bead begins.
+    pub goes_in: bool,
+    /// Whether it comes across its axis and goes out along it, as where a bead ends.
+    pub comes_out: bool,
 }
+
+/// Movements for each wait or output of a program that works.
+const MOST_MOVES: usize = 12;
+/// Share of a way along the tool's axis up to which it is one across it: tools may lean by 30°.
+const ACROSS: f64 = 0.5;
+/// Share from which on it goes in or out.
+const ALONG: f64 = 0.3;
 
 impl Corner {
     /// The shorter way, m.
@@ -157,17 +168,33 @@ impl<'c> Context<'c> {
         constant(self.program, &self.quiet, routine, expr)
     }
 
-    /// Whether the program has a purpose besides its movements: it waits, sets an output, or does
-    /// something else that a robot may do where it stands.
-    pub fn works(&self) -> bool {
-        self.flow.graphs().any(|(routine, graph, reachable)| {
-            graph.nodes.iter().zip(reachable).any(|(node, reachable)| match node.step {
-                GraphStep::Statement(stmt) if *reachable => {
-                    matches!(self.flow.class(routine, stmt), Class::Output | Class::Wait)
+    /// Whether the routines of some movements, or what they call, have a purpose besides moving:
+    /// a wait, an output, or something else that a robot may do where it stands. A cycle with many
+    /// movements for each wait or output is shown for its movements.
+    pub fn works(&self, sites: &[usize]) -> bool {
+        let is_move = |done: &&Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+        let moves = self.trace.iter().filter(is_move).count();
+        let rest = self.trace.len() - moves;
+        if moves > MOST_MOVES * rest.max(1) {
+            return false;
+        }
+        let mut open: Vec<RoutineId> = sites.iter().map(|site| self.sites[*site].place.0).collect();
+        let mut seen: BTreeSet<RoutineId> = BTreeSet::new();
+        while let Some(routine) = open.pop() {
+            if !seen.insert(routine) {
+                continue;
+            }
+            for node in &self.flow.graph(routine).nodes {
+                let GraphStep::Statement(stmt) = node.step else { continue };
+                match self.flow.class(routine, stmt) {
+                    Class::Output | Class::Wait => return true,
+                    Class::Call(callee) => open.push(callee),
+                    Class::Other if self.flow.is_unknown(stmt) => return true,
+                    _ => {}
                 }
-                _ => false,
-            })
-        })
+            }
+        }
+        false
     }
 
     /// The calls of instructions with this name (lower case), where control can get.
@@ -373,13 +400,15 @@ fn corner(a: &Isometry3<f64>, b: &Isometry3<f64>, c: &Isometry3<f64>) -> Corner 
     let (to, from) = (b_at - a_at, c_at - b_at);
     let turned = a.rotation.angle_to(&b.rotation).max(b.rotation.angle_to(&c.rotation));
     let axis = b.rotation * Vector3::z();
-    let along = [to, from].map(|way| axis.dot(&way).abs() / way.norm().max(f64::MIN_POSITIVE));
+    let [into, out] = [to, from].map(|way| axis.dot(&way) / way.norm().max(f64::MIN_POSITIVE));
     Corner {
         before: to.norm(),
         after: from.norm(),
         turn: to.angle(&from),
         turned,
-        along: along[0].max(along[1]),
+        along: into.abs().max(out.abs()),
+        goes_in: into > ALONG && out.abs() < ACROSS,
+        comes_out: into.abs() < ACROSS && out < -ALONG,
     }
 }
 
@@ -390,5 +419,7 @@ fn worst(corners: Vec<Corner>) -> Option<Corner> {
         turn: a.turn.max(b.turn),
         turned: a.turned.max(b.turned),
         along: a.along.min(b.along),
+        goes_in: a.goes_in || b.goes_in,
+        comes_out: a.comes_out || b.comes_out,
     })
 }

@@ -187,11 +187,11 @@ fn replayed(
             window = *window.start()..=*self::window(simulation, touched[next]).end();
             next += 1;
         }
-        let (range, after) = settle_window(model, cycle, window, spans, change)?;
+        let (range, after, rest) = settle_window(model, cycle, window, spans, change)?;
         while next < touched.len() && touched[next] <= *range.end() {
             next += 1;
         }
-        let (more, longer) = rest_behind(model, simulation, &range, &after);
+        let (more, longer) = rest_behind(model, simulation, &range, &after, rest);
         let parts = &cycle.account.events[range.clone()];
         let mut before = EnergyParts::default();
         for part in parts.iter().flatten() {
@@ -225,20 +225,21 @@ fn next_run(simulation: &Simulation, event: usize) -> usize {
     behind.find(|i| matches!(simulation.events[*i].what, What::Run(_))).unwrap_or(last)
 }
 
-/// The window with its replay, made longer until the robot stands where it stood.
+/// The window with its replay, made longer until the robot stands where it stood, and the rest
+/// that a movement right behind would add, s.
 fn settle_window(
     model: &Model,
     cycle: &Cycle,
     window: RangeInclusive<usize>,
     spans: &[Span],
     change: &Change<'_>,
-) -> Option<(RangeInclusive<usize>, Simulation)> {
+) -> Option<(RangeInclusive<usize>, Simulation, f64)> {
     let simulation = &cycle.simulation;
     let (first, mut last) = window.into_inner();
     let before = movement_before(simulation, first);
     for _ in 0..=MOST_BEHIND {
         let (start, steps) = steps(cycle, first..=last, spans, change)?;
-        let after = replay(model, &cycle.options, start, before, steps);
+        let (after, rest) = replay(model, &cycle.options, start, before, steps);
         let sound = after.events.iter().all(|event| match &event.what {
             What::Run(run) => run.problem.is_none(),
             What::Left(_) => false,
@@ -256,7 +257,7 @@ fn settle_window(
         let was = ends(simulation, last + 1)?;
         let is = ends(&after, after.events.len()).unwrap_or(start);
         if apart(&was, &is) <= SAME || last + 1 == simulation.events.len() {
-            return Some((first..=last, after));
+            return Some((first..=last, after, rest));
         }
         last = next_run(simulation, last);
     }
@@ -331,20 +332,13 @@ fn rest_behind(
     simulation: &Simulation,
     window: &RangeInclusive<usize>,
     after: &Simulation,
+    rest: f64,
 ) -> (EnergyParts, f64) {
-    let last_run = |events: &[crate::motion::timeline::Event]| -> Option<f64> {
-        match &events.last()?.what {
-            What::Run(run) => Some(run.settling),
-            _ => None,
-        }
-    };
-    let was = last_run(&simulation.events[..=*window.end()]);
-    let (Some(was), Some(is)) = (was, last_run(&after.events)) else {
-        return (EnergyParts::default(), 0.0);
-    };
-    let longer = (was - is).max(0.0);
-    match after.events.last().map(|event| &event.what) {
-        Some(What::Run(run)) => (at_rest_behind(model, run, longer), longer),
+    let next = simulation.events.get(window.end() + 1);
+    let moves_on = next.is_some_and(|it| it.duration > 0.0 && matches!(it.what, What::Run(_)));
+    let last = after.events.last().filter(|event| moves_on && event.duration > 0.0);
+    match last.map(|event| &event.what) {
+        Some(What::Run(run)) => (at_rest_behind(model, run, rest), rest),
         _ => (EnergyParts::default(), 0.0),
     }
 }

@@ -25,11 +25,14 @@
 //! ## Assumptions
 //! The controller has the parameter, and a backup states what differs from the default.
 
+use std::collections::BTreeSet;
+
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::Deed;
 use crate::energy::power::holding_w;
 use crate::motion::timeline::What;
+use crate::text::Span;
 
 rule!("EW801", "brakes-never-close", System, Backup, Info, "brakes_never_close.rs");
 
@@ -43,9 +46,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if motion.is_none_or(|motion| motion.to_lowercase().contains(TIMEOUT)) {
         return;
     }
+    let mut told: BTreeSet<Span> = BTreeSet::new();
     for done in &context.trace {
         let Deed::Wait(wait, _) = &done.what else { continue };
-        if done.duration < LONG || findings.iter().any(|other| other.span == wait.span) {
+        if done.duration < LONG || told.contains(&wait.span) {
             continue;
         }
         let spared = || {
@@ -65,6 +69,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             done.duration,
             spared().unwrap_or_default()
         );
+        told.insert(wait.span);
         findings.push(Finding::new(&RULE, wait.span, message));
     }
 }

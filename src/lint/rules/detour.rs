@@ -29,7 +29,8 @@
 //! Without a fix: somebody has to say what the loop was for.
 //!
 //! ## Assumptions
-//! Joint movements alone have no purpose, unless the program does nothing else.
+//! Joint movements alone have no purpose, unless the procedure does nothing else, or hardly anything
+//! else.
 
 use super::super::context::Context;
 use super::super::finding::Finding;
@@ -43,10 +44,6 @@ rule!("EW403", "detour", Path, Text, Info, "detour.rs");
 const MOST_POINTS: usize = 6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    // Where all that a program does is to move, that is its purpose.
-    if !context.works() {
-        return;
-    }
     for first in 0..context.sites.len() {
         let mut chain = vec![first];
         while chain.len() <= MOST_POINTS + 1 {
@@ -56,7 +53,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
                 break;
             }
             if same_goal(context, first, next) {
-                if chain.len() > 2 && chain.len() + 1 < context.sites.len() {
+                // Where all that is done is to move, that is the purpose.
+                let works = context.works(&[chain.as_slice(), &[next]].concat());
+                if chain.len() > 2 && chain.len() + 1 < context.sites.len() && works {
                     findings.extend(told(context, &chain, next));
                 }
                 break;

@@ -2,8 +2,9 @@
 //!
 //! ## What it does
 //! Finds movements to the place at which the program starts, between two other movements, where
-//! nothing is done at home: no wait, no output. Where a procedure that does nothing else goes home,
-//! each call of it is looked at by itself. Without a robot at least two of them in a cycle are needed.
+//! nothing is done at home, no wait and no output, but something before it and something behind it.
+//! Where a procedure that does nothing else goes home, each call of it is looked at by itself. Without
+//! a robot at least two of them in a cycle are needed.
 //!
 //! ## Why it wastes energy
 //! The way home and out again is longer than the way from one work to the next.
@@ -66,6 +67,21 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             && step + 1 < context.trace.len()
             && is_move(step + 1)
             && away(step + 1)
+    };
+    // Where nothing is done between two visits, home is a point of a way.
+    let is_home = |step: &usize| goal(context, *step).is_some_and(|goal| goal.is_same(&home));
+    let is_work = |step: &usize| !moves_or_leaves(&context.trace[*step].what);
+    let homes: Vec<usize> = moves.iter().copied().filter(is_home).collect();
+    let at_work: Vec<usize> = (0..context.trace.len()).filter(is_work).collect();
+    let works_between = |from: usize, to: usize| {
+        let next = at_work.partition_point(|step| *step <= from);
+        at_work.get(next).is_some_and(|step| *step < to)
+    };
+    let idle = |step: usize| {
+        let visit = homes.partition_point(|home| *home < step);
+        let before = visit.checked_sub(1).map_or(0, |before| homes[before]);
+        let after = homes.get(visit + 1).copied().unwrap_or(context.trace.len());
+        idle(step) && works_between(before, step) && works_between(step, after)
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for site in &context.sites {

@@ -46,7 +46,7 @@ const TURN: f64 = 0.5;
 /// Least time of turning that is told, s.
 const TIME: f64 = 0.15;
 /// Shortest way of what is still a line and no turn on the spot, m.
-const WAY: f64 = 0.005;
+const WAY: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {

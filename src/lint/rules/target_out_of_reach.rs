@@ -26,9 +26,10 @@
 //!
 //! ## Assumptions
 //! Robot, tool and work object are those that `--robot` and the program name. Where more than one
-//! movement in four is out of reach, the robot is taken for another one and nothing is told.
+//! movement in four cannot be made as it stands, the robot is taken for another one and nothing is
+//! told.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
 use super::super::finding::Finding;
@@ -40,14 +41,23 @@ use crate::text::Span;
 
 rule!("EW705", "target-out-of-reach", Program, Robot, Warning, "target_out_of_reach.rs");
 
-/// Of so many movements one may be out of reach, if the robot is the right one.
+/// Of so many movements one may be impossible, if the robot is the right one.
 const ONE_IN: usize = 4;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let left = || context.trace.iter().any(|done| matches!(done.what, Deed::Left(_)));
-    let (Some(model), Some(entry)) = (context.model, context.entry.filter(|_| left())) else {
+    let (Some(model), Some(entry)) = (context.model, context.entry) else { return };
+    let mut moves: BTreeSet<Span> = BTreeSet::new();
+    let mut left: BTreeSet<Span> = BTreeSet::new();
+    for done in &context.trace {
+        match done.what {
+            Deed::Move(movement) => moves.insert(movement.span),
+            Deed::Left(span) => left.insert(span),
+            _ => false,
+        };
+    }
+    if left.is_empty() || left.len() * ONE_IN > moves.union(&left).count() {
         return;
-    };
+    }
     let recording = record(context.program, entry);
     let mut reasons: BTreeMap<Span, Option<String>> = BTreeMap::new();
     for done in recording.trace() {
@@ -58,17 +68,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             }
         }
     }
-    let told: Vec<(&Span, &String)> =
-        reasons.iter().filter_map(|(span, reason)| Some((span, reason.as_ref()?))).collect();
-    if told.len() * ONE_IN > reasons.len() {
-        return;
-    }
-    for (span, reason) in told {
-        let Some(site) = context.site_of(*span).map(|index| &context.sites[index]) else {
+    for (span, reason) in reasons {
+        let Some(reason) = reason.filter(|_| left.contains(&span)) else { continue };
+        let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else {
             continue;
         };
         let message = format!("{} cannot get where it goes: {reason}", site.name);
-        findings.push(Finding::new(&RULE, *span, message));
+        findings.push(Finding::new(&RULE, span, message));
     }
 }
 

@@ -28,8 +28,8 @@
 //! Unsafe: being there may have been the purpose (to shake something off, to be seen).
 //!
 //! ## Assumptions
-//! Movements alone have no purpose, unless the program does nothing else. Ways that are gone
-//! several times are left alone.
+//! Movements alone have no purpose, unless the procedure does nothing else, or hardly anything else.
+//! Ways that are gone several times are left alone.
 
 use super::super::context::Context;
 use super::super::edits::remove;
@@ -44,10 +44,6 @@ rule!("EW402", "there-and-back", Path, Text, Info, "there_and_back.rs");
 const FAST: f64 = 0.5;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    // Where all that a program does is to move, that is its purpose.
-    if !context.works() {
-        return;
-    }
     for first in 0..context.sites.len() {
         let Some(there) = only_next(context, first) else { continue };
         let Some(back) = only_next(context, there) else { continue };
@@ -63,7 +59,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let again = only_next(context, back).is_some_and(|next| same_goal(context, there, next));
         let before = context.before(first);
         let shaken = before.iter().any(|before| same_goal(context, *before, there));
-        if !idle(there) || !idle(back) || again || shaken {
+        // Where all that is done is to move, that is the purpose.
+        let works = context.works(&[first, there, back]);
+        if !idle(there) || !idle(back) || again || shaken || !works {
             continue;
         }
         let [a, b, c] = [first, there, back].map(|site| &context.sites[site]);

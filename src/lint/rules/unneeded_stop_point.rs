@@ -33,8 +33,8 @@
 //! ## Assumptions
 //! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
 //! the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
-//! than 150 mm across the tool's axis, next to an arc, or four and more in a row), interrupt
-//! routines, first movements.
+//! than 150 mm across the tool's axis, next to an arc, or four and more in a row) and their ends (the
+//! tool goes in, or comes out, next to a line across its axis), interrupt routines, first movements.
 
 use std::collections::BTreeSet;
 
@@ -99,7 +99,12 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
     if corner.turn > BACK || corner.room() < NEAR {
         return None;
     }
-    let lines = site.is_linear() && next.iter().any(|next| context.sites[*next].is_linear());
+    let line_behind = next.iter().any(|next| context.sites[*next].is_linear());
+    // What is drawn, cut or welded begins and ends where it is meant to.
+    if corner.goes_in && line_behind || corner.comes_out && site.is_linear() {
+        return None;
+    }
+    let lines = site.is_linear() && line_behind;
     if site.is_linear() && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
         return None;
     }

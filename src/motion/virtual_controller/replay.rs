@@ -24,14 +24,15 @@ pub enum Step {
 
 /// Lays steps on a time line from the joints at which the robot stands at first, rad, with what
 /// the movement `before` had it carry. Inputs come at no time of their own: a wait without a
-/// stated length takes none.
+/// stated length takes none. With the rest that the last stop point adds where a movement follows
+/// at once, s.
 pub fn replay(
     model: &Model,
     options: &Options,
     start: Joints,
     before: Option<&Movement>,
     steps: Vec<Step>,
-) -> Simulation {
+) -> (Simulation, f64) {
     let options = Options { start: Some(start), inputs: BTreeMap::new(), ..options.clone() };
     let mut machine = VirtualController::new(model, &options);
     machine.tool = before.map(gripping);
@@ -46,12 +47,13 @@ pub fn replay(
     }
     machine.flush();
     machine.lay_out();
-    Simulation {
+    let simulation = Simulation {
         events: machine.events,
         cycle_s: machine.time,
         repeats_from: None,
         unresolved: machine.notes,
         assumed: machine.assumed,
         inputs_asked: machine.asked,
-    }
+    };
+    (simulation, machine.settling)
 }
