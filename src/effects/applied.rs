@@ -168,6 +168,17 @@ fn check_model(model: &Model, given: &EffectParameters) -> Result<(), RobotError
             return Err(wrong(given, name, *value, "0 or more"));
         }
     }
+    if given.id == "stribeck" {
+        // With less friction than none at breakaway a joint would move itself.
+        for law in &model.laws {
+            let [stiction, ..] = law.values;
+            if stiction < -friction.coulomb[law.joint] {
+                let least =
+                    format!("{} or more, the Coulomb friction", -friction.coulomb[law.joint]);
+                return Err(wrong(given, "stiction", stiction, &least));
+            }
+        }
+    }
     if let Some(motors) = &model.motors {
         for (joint, rotor) in motors.rotor_inertia.iter().enumerate() {
             if *rotor < 0.0 {

@@ -2,7 +2,7 @@
 
 use crate::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, linear, shape};
+use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, free, linear, shape};
 
 /// Stribeck friction.
 pub(super) const STRIBECK: Effect = Effect {
@@ -13,11 +13,10 @@ pub(super) const STRIBECK: Effect = Effect {
     law: "τ = stiction·exp(−(q̇/velocity)²)·s",
     source: "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994",
     parameters: &[
-        bounded(
+        free(
             "stiction",
             "Nm",
-            "friction at breakaway above Coulomb friction",
-            [0.0, f64::INFINITY],
+            "friction at breakaway above Coulomb friction; below where negative",
         ),
         bounded("velocity", "rad/s", "speed at which 1/e of it is left", [1e-3, 1.0]),
     ],

@@ -110,6 +110,7 @@ pub fn diagnose(
             }
         })
         .collect();
+    search.match_spread(&kept);
     let mut polished = search.polish(&kept);
     if let Some(late) = search.late {
         judged.assert_late(&late, polished.as_mut());

@@ -7,7 +7,6 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::nuisance::smooth_error;
 use super::rows::{Posterior, Rows};
 use super::search::{Chosen, Search};
 use super::table::Table;
@@ -15,16 +14,19 @@ use super::table::Table;
 /// Rounds of expectation and maximisation at most, and the change at which they end.
 const ROUNDS: usize = 12;
 const SETTLED: f64 = 0.02;
+/// Share of the band, to each side, over which what is missed counts as equal. What a model misses
+/// has no spectrum of its own as noise has: where some frequencies happen to be hit, nothing more is
+/// known there.
+const REACH: f64 = 0.4;
+/// By how many times more than believed parameters may be off.
+const SPREADS: [f64; 3] = [1.0, 3.0, 10.0];
 
 impl Table {
     /// Sets the variance beyond noise and error so that the measurement is most probable with
     /// some columns there.
     pub(super) fn match_excess(&mut self, error: f64, columns: &[usize]) {
-        let matched = self.each_rows(|rows| rows.excess.iter().fold(0.0, |most, x| x.max(most)));
-        if matched.iter().all(|most| *most == 0.0) {
-            // From above: what is known too well at first pulls all else along.
-            self.each_rows(|rows| rows.take_difference(error));
-        }
+        // From above: what is known too well at first pulls all else along.
+        self.each_rows(|rows| rows.take_difference(error));
         for _ in 0..ROUNDS {
             let Some(posterior) = self.posterior(error, columns) else { return };
             let changes = self.each_rows(|rows| rows.match_excess(error, &posterior));
@@ -39,10 +41,7 @@ impl Table {
         let parameters = self.parameters.len();
         let (gram, _) = self.gram_of(error, columns);
         let all = parameters + columns.len();
-        let mut scales = vec![1.0; parameters];
-        for scale in &mut scales[self.errors_from..] {
-            *scale = smooth_error(error);
-        }
+        let mut scales = self.scales(error);
         // Deviations from what is expected, in prior deviations: those of 0 stay.
         let mut sds = vec![1.0; parameters];
         let mut means = vec![0.0; parameters];
@@ -98,7 +97,8 @@ impl Rows {
         for spectrum in self.spectra.clone() {
             let rows = spectrum.rows();
             let roots: Vec<f64> = missed[first..first + rows].iter().map(|x| x.sqrt()).collect();
-            let power = spectrum.smoothed(&roots, super::record::SMOOTHED);
+            let reach = (REACH * spectrum.bins as f64) as usize;
+            let power = spectrum.smoothed(&roots, reach);
             for row in 0..rows {
                 let at = first + row;
                 let known = self.noise[at] + error * error * self.power[at];
@@ -122,6 +122,22 @@ impl Search<'_, '_> {
     /// Rms torque of a joint that is missed with what was found last \[Nm\].
     pub(super) fn missed(&self, joint: usize) -> f64 {
         self.table.variance(joint, self.error).sqrt()
+    }
+
+    /// In logs that do not tell their noise, lets the parameters be off as far as is most probable
+    /// with a set: those of a real robot were identified without its effects.
+    pub(super) fn match_spread(&mut self, set: &[Chosen]) {
+        let mut best = (f64::NEG_INFINITY, SPREADS[0]);
+        for spread in if self.is_open() { &SPREADS[..] } else { &[] } {
+            self.table.set_spread(*spread);
+            self.match_excess(set);
+            let total = self.evidence.null + self.score(set);
+            if total > best.0 {
+                best = (total, *spread);
+            }
+        }
+        self.table.set_spread(best.1);
+        self.match_excess(set);
     }
 
     /// In logs that do not tell their noise, takes what a set leaves for it.

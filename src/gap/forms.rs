@@ -148,8 +148,18 @@ impl Search<'_, '_> {
         let neither: Vec<Chosen> =
             less.iter().filter(|of| of.family != chosen.family).cloned().collect();
         let all = found.score - self.score(&neither);
-        let form = ((found.score - self.score(&less)) / all.max(1e-9)).clamp(0.0, 1.0);
-        (form, (1.0 - form) * all)
+        let beside = found.score - self.score(&less);
+        let form = (beside / all.max(1e-9)).clamp(0.0, 1.0);
+        if !is_robots {
+            return (form, (1.0 - form) * all);
+        }
+        // Functions of single joints may well be there beside what is of the robot: its form is
+        // what they could do in its place.
+        let without: Vec<Chosen> =
+            found.chosen.iter().filter(|of| of.family != chosen.family).cloned().collect();
+        let instead = self.score(&without) - self.score(&neither);
+        let shared = (1.0 - beside / instead.max(1e-9)).clamp(0.0, 1.0);
+        (shared * form, (1.0 - form) * all)
     }
 
     /// A set without the functions that are the form of one of its laws.

@@ -4,10 +4,10 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::dynamics::{JOINT, RIGID, link_of, link_parameters};
 use crate::effects::{Effect, Of, applied};
-use crate::robot::{EffectParameters, Given, Model};
+use crate::robot::{EffectParameters, Friction, Given, Model};
 
 use super::polish::Fitted;
-use super::possible::possible;
+use super::possible::{possible, possible_load};
 
 /// Effects of the log, which robot files keep as numbers of their own.
 pub(super) const OF_LOG: [&str; 4] =
@@ -50,9 +50,12 @@ impl Improved {
         let sizes = DVector::from_fn(used.nrows(), |row, _| used.row(row).norm());
         refit(&mut written, &(used * parameters.rows(0, count)), &sizes);
         let mut result = Improved::of(written);
-        for fitted in effects {
+        // What dry friction there is bounds how far it may fall.
+        let is_level = |of: &&Fitted| of.effect.id == "friction_level";
+        let others = effects.iter().filter(|of| !is_level(of));
+        for fitted in effects.iter().filter(is_level).chain(others) {
             let mut next = result.written.clone();
-            add(&mut next, fitted);
+            add(&mut next, &result.applied.friction, fitted);
             let mut bare = next.clone();
             bare.laws.clear();
             if let Ok(applied) = applied(bare) {
@@ -105,7 +108,7 @@ fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
     }
 }
 
-fn add(model: &mut Model, fitted: &Fitted) {
+fn add(model: &mut Model, now: &Friction, fitted: &Fitted) {
     let effect = fitted.effect;
     if OF_LOG.contains(&effect.id)
         && let (crate::effects::Form::Model(change), Some(joint)) = (&effect.form, fitted.joint)
@@ -119,11 +122,16 @@ fn add(model: &mut Model, fitted: &Fitted) {
         model.effects.push(empty(effect, dof));
         model.effects.len() - 1
     });
-    for (parameter, value) in effect.parameters.iter().zip(&fitted.parameters) {
+    let values = match effect.id {
+        "payload" => &possible_load(model, effect, &fitted.parameters),
+        _ => &fitted.parameters,
+    };
+    for (parameter, value) in effect.parameters.iter().zip(values) {
         let value = value.clamp(parameter.bounds[0], parameter.bounds[1]);
         let friction = match (effect.id, parameter.name, fitted.joint) {
             ("friction_level", "coulomb", Some(joint)) => model.friction.coulomb[joint],
             ("friction_level", "viscous", Some(joint)) => model.friction.viscous[joint],
+            ("stribeck", "stiction", Some(joint)) => now.coulomb[joint],
             _ => f64::INFINITY,
         };
         let value = value.max(-friction);

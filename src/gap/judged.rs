@@ -251,7 +251,7 @@ pub(super) fn judged(
                     .collect();
                 // Joints of which nobody asks are not told beside those that matter.
                 let matter: Vec<&Fitted> =
-                    all_of.iter().copied().filter(|of| matters(search, of)).collect();
+                    all_of.iter().copied().filter(|of| matters(search, polished, of)).collect();
                 let fitted = if matter.is_empty() { all_of } else { matter };
                 let fades = effect.id == "warm_up";
                 let least = if fades { LEAST_OF_TIME } else { LEAST_NATS };
@@ -387,7 +387,7 @@ fn refused(
     if fitted.iter().all(|of| of.significance < SIGNIFICANT) {
         return no("is not significant".to_owned());
     }
-    if let Some(of) = fitted.iter().find(|of| of.is_impossible(SIGNIFICANT)) {
+    if let Some(of) = fitted.iter().find(|of| search.cannot_be(polished, of, SIGNIFICANT)) {
         return open(format!("{} cannot be", of.effect.title));
     }
     // Without stiffness a spring is an offset.
@@ -424,9 +424,12 @@ fn refused(
 }
 
 /// Whether an effect at a joint is large enough to be told.
-fn matters(search: &Search<'_, '_>, of: &Fitted) -> bool {
+fn matters(search: &Search<'_, '_>, polished: &Polished, of: &Fitted) -> bool {
     let is_ripple = of.effect.id == "ripple";
-    if search.is_open() && beside_missed(search, of.effect, &[of]) < AT_JOINT {
+    if search.is_open()
+        && (beside_missed(search, of.effect, &[of]) < AT_JOINT
+            || search.cannot_be(polished, of, SIGNIFICANT))
+    {
         return false;
     }
     size(search, of.effect, &[of]) >= CLEARLY

@@ -4,12 +4,13 @@
 //! same base parameters an affine space: projections on one and the other in turn lead to what
 //! both have in common (J. von Neumann, Functional Operators II, 1950).
 
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, SymmetricEigen};
 
 use crate::dynamics::{
     BaseParameters, JOINT, Parameters, RIGID, base_parameters, body_parameters, link_of,
     pseudo_inertia,
 };
+use crate::effects::{Effect, with_body};
 use crate::robot::Model;
 
 /// Rounds at most.
@@ -55,6 +56,30 @@ pub(super) fn possible(model: &Model, wanted: &DVector<f64>, sizes: &DVector<f64
         at = inside(&(at + &weighted * factor.solve(&off)), n);
     }
     best.1
+}
+
+/// Parameters of a load near `wanted` with which the last link is a body: its mass and centre stay,
+/// moments that no body has are raised.
+pub(super) fn possible_load(model: &Model, payload: &Effect, wanted: &[f64]) -> Vec<f64> {
+    let mut load = wanted.to_vec();
+    let flange = &model.kinematics.flange;
+    let Some(last) = model.links.last() else { return load };
+    let both = with_body(last, flange, &payload.coordinates_of(wanted));
+    if both.mass > 0.0 && !both.is_consistent() {
+        // About the common centre, ∫ r rᵀ dm has no negative eigenvalue.
+        let spread = Matrix3::identity() * (0.5 * both.inertia.trace()) - both.inertia;
+        let mut eigen = SymmetricEigen::new(spread);
+        let least = LEAST * eigen.eigenvalues.amax();
+        eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(least));
+        let raised = eigen.recompose() - spread;
+        let more = Matrix3::identity() * raised.trace() - raised;
+        let axes = flange.rotation.to_rotation_matrix();
+        let more = axes.matrix().transpose() * more * axes.matrix();
+        for (k, at) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            load[RIGID - 6 + k] += more[at];
+        }
+    }
+    load
 }
 
 fn matrix(base: &BaseParameters, width: usize) -> DMatrix<f64> {

@@ -40,6 +40,8 @@ pub struct Table {
     pub mixing: DMatrix<f64>,
     /// Parameters from here on are in shares of the model's error.
     pub(super) errors_from: usize,
+    /// How many times more than believed the model's parameters may be off.
+    spread: f64,
     pub(super) means: DVector<f64>,
     pub(super) sds: DVector<f64>,
     joints: Vec<Rows>,
@@ -124,6 +126,7 @@ impl Table {
             deviations: first.map_or_else(Vec::new, |of| of.deviations.clone()),
             mixing: first.map_or_else(|| DMatrix::zeros(0, 0), |of| of.mixing.clone()),
             errors_from: first.map_or(0, |of| of.errors_from),
+            spread: 1.0,
             means: DVector::from_vec(means),
             sds: DVector::from_vec(sds),
             joints,
@@ -215,16 +218,33 @@ impl Table {
             add(&mut gram, &part, &reached);
             log_weights += log_weight;
         }
-        self.smooth(&mut gram, error);
+        self.scale(&mut gram, error);
         let none = || DVector::zeros(0);
         Evidence::new(&gram, parameters, none(), none(), log_weights, 1)
     }
 
-    /// Scales the columns that are in shares of the model's error.
-    fn smooth(&self, gram: &mut DMatrix<f64>, error: f64) {
-        for k in 1 + self.errors_from..=self.parameters.len() {
-            gram.row_mut(k).scale_mut(smooth_error(error));
-            gram.column_mut(k).scale_mut(smooth_error(error));
+    /// Lets the model's parameters be off by so many times what is believed.
+    pub(super) fn set_spread(&mut self, spread: f64) {
+        let more = spread / self.spread;
+        self.spread = spread;
+        self.mixing *= more;
+        let count = self.mixing.ncols();
+        self.deviations[..count].iter_mut().for_each(|of| *of *= more);
+    }
+
+    /// Factors of the columns of the parameters: some are in shares of the model's error.
+    pub(super) fn scales(&self, error: f64) -> Vec<f64> {
+        let mut scales = vec![1.0; self.parameters.len()];
+        scales[..self.mixing.ncols()].fill(self.spread);
+        scales[self.errors_from..].fill(smooth_error(error));
+        scales
+    }
+
+    /// Scales the columns of the parameters.
+    fn scale(&self, gram: &mut DMatrix<f64>, error: f64) {
+        for (k, scale) in self.scales(error).into_iter().enumerate() {
+            gram.row_mut(1 + k).scale_mut(scale);
+            gram.column_mut(1 + k).scale_mut(scale);
         }
     }
 
@@ -254,7 +274,7 @@ impl Table {
             log_weights += log_weight;
             add(&mut gram, &part, &reached);
         }
-        self.smooth(&mut gram, error);
+        self.scale(&mut gram, error);
         (gram, log_weights)
     }
 
