@@ -311,6 +311,9 @@ fn without_its_effect_a_library_may_not_know() {
     assert_eq!(grades.cases, 5);
     assert_eq!(hits(&grades, "left_out_unknown_or_class"), (4, 5));
     assert_eq!(hits(&grades, "left_out_wrong_name"), (1, 5));
+    // All single effects of the torque are of some family.
+    let family = blind::grade(&labels, &diagnoses, Some(blind::FAMILY)).unwrap();
+    assert_eq!((family.cases, family.rates), (5, grades.rates));
 }
 
 #[test]
@@ -381,11 +384,53 @@ fn generated_cases_are_graded() {
     let output = joulepath(&["blind", "grade", shown, "--format", "json"]);
     let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(grades["cases"], 4);
-    let output = joulepath(&["blind", "grade", shown]);
+    let page = folder.path().join("grades.html");
+    let output = joulepath(&["blind", "grade", shown, "--report", page.to_str().unwrap()]);
     assert!(String::from_utf8(output.stdout).unwrap().contains("healthy_named"));
+    let page = fs::read_to_string(page).unwrap();
+    for text in ["4 cases", "healthy_named", "What stated probabilities are worth", "</html>"] {
+        assert!(page.contains(text), "no {text}");
+    }
     refused(&["blind", "grade", shown, "--leave-out", "nonsense"], "name one that");
 
     hostile(&out, shown);
+}
+
+/// Without its family an effect is looked for anew, and none of the family is named.
+#[test]
+fn families_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = short(13);
+    let number = (1..200)
+        .find(|number| {
+            let label = blind::case(&settings, *number).unwrap().label;
+            label.kind == Kind::One && label.effects[0].id == "wrist_coupling"
+        })
+        .unwrap();
+    let case = blind::case(&settings, number).unwrap();
+    let out = folder.path();
+    for (name, text) in &case.files {
+        fs::create_dir_all(out.join(&case.name)).unwrap();
+        fs::write(out.join(&case.name).join(name), text).unwrap();
+    }
+    let sealed = blind::seal(&[(case.label.clone(), case.salt.clone())]).unwrap();
+    fs::write(out.join(blind::KEY), sealed.key).unwrap();
+    fs::write(out.join(blind::SEALS), sealed.seals).unwrap();
+    let shown = out.to_str().unwrap();
+    let args = ["blind", "grade", shown, "--leave-out", "family", "--format", "json"];
+    let output = joulepath(&args);
+    let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&grades["cases"], &grades["left_out"]), (&json!(1), &json!("family")));
+    let kept = out.join(&case.name).join("diagnosis-without-family.json");
+    let kept: Value = serde_json::from_str(&fs::read_to_string(kept).unwrap()).unwrap();
+    let all =
+        kept["effects"].as_array().unwrap().iter().chain(kept["candidates"].as_array().unwrap());
+    for said in all {
+        let id = said["id"].as_str().unwrap();
+        let of_family =
+            ["wrist_coupling", "ripple", "backlash", "elasticity", "rotor_inertia", "brake_drag"];
+        assert!(!of_family.contains(&id), "{id}");
+    }
 }
 
 /// Files that are broken, missing or changed.

@@ -60,6 +60,7 @@ fn the_json_has_what_is_promised() {
     {
         assert!(value.get(key).is_some(), "no {key}");
     }
+    regimes_add_up(&value["where"]);
     let gap = &value["gap"][0];
     assert_eq!(gap["per_joint"].as_array().unwrap().len(), 6);
     for key in ["noise", "model", "refit", "refit_plus_effect"] {
@@ -79,6 +80,34 @@ fn the_json_has_what_is_promised() {
     // The model predicts by itself.
     let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The thirds of a quantity have the share of their joint, the effects that of their third.
+fn regimes_add_up(places: &Value) {
+    let places = places.as_array().unwrap();
+    let share = |place: &Value| place["share_percent"].as_f64().unwrap();
+    let of = |joint: u64, quantity: &str| -> Vec<&Value> {
+        let is_of = |place: &&Value| {
+            place["joint"] == joint && place["regime"].as_str().unwrap().starts_with(quantity)
+        };
+        places.iter().filter(is_of).collect()
+    };
+    for joint in 1..=6 {
+        let whole = of(joint, "all");
+        assert_eq!(whole.len(), 1);
+        for quantity in ["speed", "position", "load", "time"] {
+            let thirds = of(joint, quantity);
+            assert_eq!(thirds.len(), 3, "joint {joint}, {quantity}");
+            let sum: f64 = thirds.iter().map(|place| share(place)).sum();
+            assert!((sum - share(whole[0])).abs() < 1e-6, "joint {joint}, {quantity}: {sum}");
+            for third in thirds {
+                let effects = third["by_effect_percent"].as_object().unwrap();
+                let sum: f64 = effects.values().map(|share| share.as_f64().unwrap()).sum();
+                assert!((sum - share(third)).abs() < 1e-6, "{third}");
+                assert_eq!(third["t_end_s"].is_number(), quantity == "time");
+            }
+        }
+    }
 }
 
 #[test]

@@ -43,7 +43,7 @@ const LAYERS: [Layer; 23] = [
     layer("generate", &["retrofit"]),
     layer("gap", &["log", "effects", "identify", "motion", "energy"]),
     layer("blind", &["robot"]),
-    layer("report", &["retrofit", "excite", "identify", "lint", "gap"]),
+    layer("report", &["retrofit", "excite", "identify", "lint", "gap", "blind"]),
     layer("config", &["retrofit", "lint"]),
 ];
 

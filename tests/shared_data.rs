@@ -8,6 +8,8 @@
 mod controller_runs;
 #[path = "shared_data/diagnosis.rs"]
 mod diagnosis;
+#[path = "support/real_logs.rs"]
+mod real_logs;
 
 use std::fs;
 use std::path::Path;

@@ -73,16 +73,17 @@ pub fn case(settings: &Settings, number: usize) -> Option<Case> {
 }
 
 /// A robot with its sensors, before anything is wrong.
-struct Bench<'a> {
-    settings: &'a Settings,
+pub(super) struct Bench<'a> {
+    pub(super) settings: &'a Settings,
     number: usize,
     model: Model,
     nominal: Plant,
-    workspace: Workspace,
+    pub(super) workspace: Workspace,
     trust: Trust,
     /// Drawn before what is wrong, so that nothing in the folder hints at it.
-    with_program: bool,
+    pub(super) with_program: bool,
     with_baseline: bool,
+    pub(super) heldout_works: bool,
     variation: f64,
     /// Two to learn from, one held out, one from before.
     motions: [Motion; 4],
@@ -97,7 +98,7 @@ struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    fn drawn(settings: &'a Settings, number: usize) -> Option<Bench<'a>> {
+    pub(super) fn drawn(settings: &'a Settings, number: usize) -> Option<Bench<'a>> {
         let stream = |purpose: &str| Random::new(settings.seed, number as u64, purpose);
         let model = nominal(&mut stream("robot"))?;
         let nominal = Plant::of(&model);
@@ -151,6 +152,7 @@ impl<'a> Bench<'a> {
             trust,
             with_program,
             with_baseline,
+            heldout_works,
             variation,
             motions,
             sizes,
@@ -163,11 +165,35 @@ impl<'a> Bench<'a> {
         })
     }
 
-    fn stream(&self, purpose: &str) -> Random {
+    pub(super) fn stream(&self, purpose: &str) -> Random {
         Random::new(self.settings.seed, self.number as u64, purpose)
     }
 
-    fn robot<'b>(&'b self, disturbances: Vec<&'b Disturbance>) -> Robot<'b> {
+    /// What is wrong with a robot whose torques or power are logged.
+    pub(super) fn wrong(&self) -> (Kind, Vec<Disturbance>) {
+        let scale = Scale {
+            nominal: &self.nominal,
+            plant: &self.plant,
+            workspace: &self.workspace,
+            trust: self.trust,
+            period_s: self.settings.period_s,
+            ratio: self.ratio,
+            rms: self.sizes.rms,
+            peak: self.sizes.peak,
+            fastest: self.sizes.fastest,
+            load: self.sizes.load,
+            power: self.power,
+        };
+        wrong(&scale, self.with_baseline, &mut self.stream("truth"))
+    }
+
+    /// When three logs begin \[s\]: two to learn from, one to grade by.
+    pub(super) fn clocks(&self) -> [f64; 3] {
+        let lasts = self.settings.cycles as f64 * self.settings.period_s;
+        clocks(lasts, &mut self.stream("clock"))
+    }
+
+    pub(super) fn robot<'b>(&'b self, disturbances: Vec<&'b Disturbance>) -> Robot<'b> {
         let Bench { plant, error, supply, .. } = self;
         Robot { plant, error, supply, disturbances }
     }
@@ -211,24 +237,10 @@ fn clocks(lasts: f64, random: &mut Random) -> [f64; 3] {
 /// A case of torques or power.
 fn torque_case(bench: &Bench<'_>) -> Case {
     let Bench { settings, nominal, plant, noise, trust, .. } = bench;
-    let scale = Scale {
-        nominal,
-        plant,
-        workspace: &bench.workspace,
-        trust: *trust,
-        period_s: settings.period_s,
-        ratio: bench.ratio,
-        rms: bench.sizes.rms,
-        peak: bench.sizes.peak,
-        fastest: bench.sizes.fastest,
-        load: bench.sizes.load,
-        power: bench.power,
-    };
-    let (kind, disturbances) = wrong(&scale, bench.with_baseline, &mut bench.stream("truth"));
+    let (kind, disturbances) = bench.wrong();
     let all: Vec<&Disturbance> = disturbances.iter().collect();
     let [first, second, heldout, before] = &bench.motions;
-    let lasts = settings.cycles as f64 * settings.period_s;
-    let clocks = clocks(lasts, &mut bench.stream("clock"));
+    let clocks = bench.clocks();
 
     // What is logged, with the noise of its own.
     let logged = |file: &str, motion: &Motion, clock: f64, of: &[&Disturbance]| {

@@ -25,10 +25,12 @@ mod robots;
 mod seal;
 mod simulate;
 mod trust;
+mod unlogged;
 mod workspace;
 
 pub use case::{Case, Settings, case};
-pub use grade::{Asked, Bin, DiagnosisError, Grades, Rate, Wrong, grade};
+pub use grade::{Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Wrong, grade};
 pub use label::{HeldOut, Kind, Label, TrueParameter, Truth};
 pub use plant::torque;
 pub use seal::{KEY, SEALS, SealError, Sealed, open, seal};
+pub use unlogged::{Unlogged, unlogged};

@@ -1,5 +1,7 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
+mod family;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -12,9 +14,11 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use rayon::prelude::*;
 use serde_json::Value;
 
+use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::blind::{self, Asked, Case, Grades, KEY, SEALS, Sealed, Settings};
+use crate::blind::{self, Asked, Case, FAMILY, Grades, KEY, Kind, Label, SEALS, Sealed, Settings};
+use crate::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade what was said of them.
 #[derive(Debug, Args)]
@@ -74,10 +78,14 @@ struct GradeArgs {
     #[arg(long, value_name = "DIR")]
     results: Option<PathBuf>,
 
-    /// The effect that the library was without: only its cases are graded, and not to know is
-    /// right.
-    #[arg(long, value_name = "EFFECT")]
+    /// An effect that the library is without: only its cases are graded, and not to know is
+    /// right. `family`: each case with one effect of the torque, without all of its family.
+    #[arg(long, value_name = "EFFECT|family")]
     leave_out: Option<String>,
+
+    /// A page with the confusion, the rates and what probabilities are worth.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -152,27 +160,44 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
     let labels = blind::open(&sealed)?;
     if let Some(id) = &args.leave_out
+        && id != FAMILY
         && !labels.iter().any(|label| label.effects.iter().any(|truth| truth.id == *id))
     {
-        bail!("--leave-out {id}: no case has this effect; name one that the examination has");
+        bail!(
+            "--leave-out {id}: no case has this effect; name one that the examination has, or {FAMILY}"
+        );
     }
-    let mut diagnoses = Vec::new();
+    let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
     for label in &labels {
         // A name in a key is no path.
         if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
             bail!("{KEY}: '{}' is no name of a case; take the file that was written", label.case);
         }
-        let beside = args.results.as_ref().unwrap_or(&args.cases);
-        let path = beside.join(&label.case).join("diagnosis.json");
+        let without = without(label, args.leave_out.as_deref());
+        if args.leave_out.is_some() && without.is_empty() {
+            continue;
+        }
+        // Results that are given were computed without what is left out.
+        let (beside, name) = match (&args.results, &args.leave_out) {
+            (Some(results), _) => (results, "diagnosis.json".to_owned()),
+            (None, None) => (&args.cases, "diagnosis.json".to_owned()),
+            (None, Some(id)) => (&args.cases, format!("diagnosis-without-{id}.json")),
+        };
+        let path = beside.join(&label.case).join(&name);
         diagnoses.push(if path.exists() {
             let shown = path.display();
             serde_json::from_str(&read(&path)?)
                 .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))?
         } else {
-            diagnosed(&args.cases.join(&label.case))?
+            diagnosed(&args.cases.join(&label.case), &name, &without)?
         });
+        graded.push(label.clone());
     }
-    let grades = blind::grade(&labels, &diagnoses, args.leave_out.as_deref())?;
+    let grades = blind::grade(&graded, &diagnoses, args.leave_out.as_deref())?;
+    if let Some(path) = &args.report {
+        let page = grades_report(&grades)?;
+        output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
+    }
     let text = match args.format {
         Format::Json => serde_json::to_string_pretty(&grades)? + "\n",
         Format::Text => table(&grades),
@@ -181,14 +206,26 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What `diagnose` says of a case, in its JSON.
-fn diagnosed(case: &Path) -> anyhow::Result<Value> {
+/// Effects that the library is without for a case; none where the case is not asked for.
+fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
+    let ids = || label.effects.iter().map(|truth| truth.id.as_str());
+    match left_out {
+        Some(FAMILY) if label.kind == Kind::One => ids().flat_map(family).copied().collect(),
+        Some(id) if ids().any(|of| of == id) => vec![id],
+        _ => Vec::new(),
+    }
+}
+
+/// What `diagnose` says of a case by a library without some effects, in its JSON, which is kept
+/// under a name.
+fn diagnosed(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
     let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
         .with_context(|| format!("'{}' has no case.json", case.display()))?;
-    let value = diagnose::of_case(case, &options).with_context(|| case.display().to_string())?;
+    let value =
+        diagnose::of_case(case, &options, without).with_context(|| case.display().to_string())?;
     // What was said once need not be computed again.
     let text = format!("{value:#}\n");
-    output::write(&case.join("diagnosis.json"), text.as_bytes())?;
+    output::write(&case.join(name), text.as_bytes())?;
     Ok(value)
 }
 

@@ -6,9 +6,11 @@ mod pictures;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
@@ -16,8 +18,8 @@ use super::logs::{Read, Reader, Ready, read_all};
 use super::output;
 use crate::effects::{self, ALL, Effect};
 use crate::gap::{
-    Diagnosis, Record, Settings, Trust, Verdict, common_factor, diagnose, diagnose_power,
-    diagnose_runs,
+    Diagnosis, Phase, Record, Settings, Trust, Verdict, common_factor, diagnose_power,
+    diagnose_runs, diagnose_telling,
 };
 use crate::identify::Hints;
 use crate::log::{Channel, ColumnMap};
@@ -89,6 +91,8 @@ pub struct DiagnoseArgs {
 
 /// Cut-off frequency of the filter of runs of a program \[Hz\].
 const OF_RUNS: f64 = 10.0;
+/// How often the bar is drawn.
+const TICK: Duration = Duration::from_millis(200);
 
 /// How much parameters are believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -115,11 +119,12 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-/// The JSON of a case that `blind generate` wrote.
+/// The JSON of a case that `blind generate` wrote, by a library without some effects; with all of
+/// them, the model is written as well.
 ///
 /// # Errors
 /// As of [`run`].
-pub fn of_case(case: &Path, options: &Value) -> anyhow::Result<Value> {
+pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
     let baseline = case.join("baseline-1.csv");
     let args = DiagnoseArgs {
@@ -129,10 +134,10 @@ pub fn of_case(case: &Path, options: &Value) -> anyhow::Result<Value> {
         baseline: if baseline.exists() { vec![baseline] } else { Vec::new() },
         program: text("program").map(|folder| case.join(folder)),
         trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
-        effects: None,
+        effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
         map: String::new(),
         period: options.get("period").and_then(Value::as_f64),
-        out: Some(case.join("improved.toml")),
+        out: without.is_empty().then(|| case.join("improved.toml")),
         report: None,
         format: Format::Json,
         quiet: true,
@@ -211,7 +216,8 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     } else {
         wanted.clone()
     };
-    let mut found = of_logs(&model, &train, &held, &Settings { trust, effects: of_torque });
+    let settings = Settings { trust, effects: of_torque };
+    let mut found = of_logs(&model, &train, &held, &settings, &progress(args.quiet));
     if let Some(of) = &of_power {
         found.add_power(of);
     }
@@ -243,12 +249,37 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     Ok((found, basis))
 }
 
-fn of_logs(model: &Model, train: &[Ready], held: &[Ready], settings: &Settings) -> Diagnosis {
+fn of_logs(
+    model: &Model,
+    train: &[Ready],
+    held: &[Ready],
+    settings: &Settings,
+    progress: &ProgressBar,
+) -> Diagnosis {
     let records = |logs: &[Ready]| -> Vec<Record<'_>> {
         logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
     };
     let graded = if held.is_empty() { records(train) } else { records(held) };
-    diagnose(model, records(train), &graded, settings)
+    let tell = |phase: Phase| {
+        let before = Phase::ALL.iter().position(|of| *of == phase);
+        progress.set_position(before.unwrap_or(0) as u64);
+        progress.set_message(phase.name());
+    };
+    let found = diagnose_telling(model, records(train), &graded, settings, &tell);
+    progress.finish_and_clear();
+    found
+}
+
+/// A bar over the phases of a diagnosis; nothing where standard error is no terminal.
+fn progress(quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(Phase::ALL.len() as u64), target);
+    let style = ProgressStyle::with_template("{elapsed:>4} {bar:20} {pos}/{len} {msg}");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(TICK);
+    bar
 }
 
 /// The effects that may be found.

@@ -126,8 +126,10 @@ fn shown(model: &Model, load: &Load, motion: &Motion) -> Option<Vec<Vec<f64>>> {
         return None;
     }
     let series = [motion.q.clone(), motion.qd.clone(), motion.qdd.clone()];
-    // Laws count the time from the beginning of the log.
-    let start = motion.time.first().copied().unwrap_or(0.0);
+    // Laws count the time from the beginning of the log, but a robot that warms up does so by the
+    // clock of all logs, as in `gap::predicted`.
+    let warms = model.effects.iter().any(|of| of.id == "warm_up");
+    let start = if warms { 0.0 } else { motion.time.first().copied().unwrap_or(0.0) };
     let time = motion.time.iter().map(|t| t - start).collect();
     let moved = effects::Motion::new(model, time, series, &[], false);
     let mut shown = moved.torques_of(model, load);

@@ -14,7 +14,7 @@ pub(super) const FILTER_LAG: Effect = Effect {
     source: "docs/identification.md",
     parameters: &[
         bounded("lag", "s", "time constant", [0.0, 0.1]),
-        bounded("joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
+        bounded("only_joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
     ],
     coordinates: &[
         shape(|_| vec![0.002, 0.004, 0.008, 0.016, 0.032]),

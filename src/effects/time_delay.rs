@@ -14,7 +14,7 @@ pub(super) const TIME_DELAY: Effect = Effect {
     source: "docs/identification.md",
     parameters: &[
         bounded("delay", "s", "torque later than position", [-0.05, 0.05]),
-        bounded("joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
+        bounded("only_joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
     ],
     coordinates: &[
         shape(|_| vec![-0.016, -0.008, -0.004, -0.002, 0.002, 0.004, 0.008, 0.016]),

@@ -2,17 +2,16 @@
 
 use crate::robot::Model;
 
-use super::bins::{QUANTITIES, Quantity, ends, piece};
+use super::bins::{QUANTITIES, Quantity};
 use super::heldout::predicted;
 use super::improved::{Improved, OF_LOG};
+use super::pieces::{Pieces, difference};
 use super::record::{Record, RecordKind};
 
 /// Changed parameters of the model, as a player beside the effects.
 pub const PARAMETERS: &str = "parameters";
-/// Pieces of each quantity.
-const PIECES: usize = 3;
 /// Effects whose orders are all gone through.
-const MOST: usize = 5;
+pub(super) const MOST: usize = 5;
 
 /// A joint's instants in a piece of a quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,9 +34,13 @@ impl Cell {
     /// In words.
     #[must_use]
     pub fn regime(&self) -> String {
-        let ([low, high], quantity) = (self.ends, self.quantity);
-        format!("{} {low:.2} to {high:.2} {}", quantity.name(), quantity.unit())
+        regime(self.quantity, self.ends)
     }
+}
+
+/// A piece of a quantity in words.
+pub(super) fn regime(quantity: Quantity, [low, high]: [f64; 2]) -> String {
+    format!("{} {low:.2} to {high:.2} {}", quantity.name(), quantity.unit())
 }
 
 /// The squared gap, shared out.
@@ -89,24 +92,33 @@ pub fn attribution(
         records.iter().filter(|record| record.kind == RecordKind::Mean).collect();
     let pieces = Pieces::new(&records, nominal.dof);
     let models = Subsets { nominal, refit, improved, players: &players };
-    let gaps: Vec<Vec<f64>> =
-        (0..1 << players.len()).map(|set| pieces.squares(&models.of(set))).collect();
-    let whole: f64 = gaps[0].iter().sum::<f64>() / QUANTITIES.len() as f64;
+    let gap = |set: usize| {
+        let model = models.of(set);
+        pieces.squares(|record| difference(&record.measured, &predicted(record, &model)))
+    };
+    let gaps: Vec<Vec<f64>> = (0..1 << players.len()).map(gap).collect();
+    let whole = (gaps[0].iter().sum::<f64>() / QUANTITIES.len() as f64).max(f64::MIN_POSITIVE);
+    let brought = brought(&gaps, players.len());
     let cells = pieces.places.iter().enumerate().map(|(k, (joint, quantity, ends))| Cell {
         joint: *joint,
         quantity: *quantity,
         ends: *ends,
-        gap: gaps[0][k] / whole.max(f64::MIN_POSITIVE),
-        taken: (0..players.len())
-            .map(|player| {
-                let taken = |set: usize| gaps[set][k] - gaps[set | 1 << player][k];
-                let without = (0..gaps.len()).filter(|set| set & 1 << player == 0);
-                let sum: f64 = without.map(|set| weight(set, players.len()) * taken(set)).sum();
-                sum / whole.max(f64::MIN_POSITIVE)
-            })
-            .collect(),
+        gap: gaps[0][k] / whole,
+        taken: brought.iter().map(|of| -of[k] / whole).collect(),
     });
     Attribution { cells: cells.collect(), players: players.clone() }
+}
+
+/// What each of `count` players brings to each of some sums, of which `sums` has the values for
+/// every set of players: the mean over all orders in which they may come (Shapley 1953).
+pub(super) fn brought(sums: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
+    let of = |player: usize| -> Vec<f64> {
+        let without = || (0..sums.len()).filter(move |set| set & 1 << player == 0);
+        let added = |set: usize, k: usize| sums[set | 1 << player][k] - sums[set][k];
+        let mean = |k: usize| without().map(|set| weight(set, count) * added(set, k)).sum();
+        (0..sums[0].len()).map(mean).collect()
+    };
+    (0..count).map(of).collect()
 }
 
 /// Share of the orders of `count` players in which just those of `set` come before one that is
@@ -118,15 +130,16 @@ fn weight(set: usize, count: usize) -> f64 {
 }
 
 /// Models with some of what was found.
-struct Subsets<'a> {
-    nominal: &'a Model,
-    refit: &'a Improved,
-    improved: &'a Improved,
-    players: &'a [&'static str],
+pub(super) struct Subsets<'a> {
+    pub(super) nominal: &'a Model,
+    pub(super) refit: &'a Improved,
+    pub(super) improved: &'a Improved,
+    pub(super) players: &'a [&'static str],
 }
 
 impl Subsets<'_> {
-    fn of(&self, set: usize) -> Model {
+    /// That with the players whose bits are set.
+    pub(super) fn of(&self, set: usize) -> Model {
         let has = |player: usize| set & 1 << player != 0;
         let chosen: Vec<&str> = (0..self.players.len())
             .filter(|player| has(*player))
@@ -153,66 +166,6 @@ impl Subsets<'_> {
             nominal.sensors.clone()
         };
         Improved::of(model).applied
-    }
-}
-
-/// The instants at which joints move, in pieces.
-struct Pieces<'a> {
-    records: &'a [&'a Record<'a>],
-    /// One over the sum of squares of each joint's measured torque \[1/(N²m²)\].
-    scale: Vec<f64>,
-    places: Vec<(usize, Quantity, [f64; 2])>,
-    /// By joint and quantity.
-    ends: Vec<Vec<Vec<f64>>>,
-}
-
-impl<'a> Pieces<'a> {
-    fn new(records: &'a [&'a Record<'a>], dof: usize) -> Pieces<'a> {
-        let rows = |joint: usize| {
-            records.iter().flat_map(move |record| {
-                let moves = move |row: &usize| record.moves(joint, *row);
-                (0..record.motion.len()).filter(moves).map(move |row| (*record, row))
-            })
-        };
-        let mut pieces =
-            Pieces { records, scale: Vec::new(), places: Vec::new(), ends: Vec::new() };
-        for joint in 0..dof {
-            let squares: f64 =
-                rows(joint).map(|(record, row)| record.measured[joint][row].powi(2)).sum();
-            pieces.scale.push(if squares > 0.0 { 1.0 / squares } else { 0.0 });
-            let mut of_joint = Vec::new();
-            for quantity in QUANTITIES {
-                let values = rows(joint).map(|(record, row)| quantity.at(record, joint, row));
-                let ends = ends(values.collect(), PIECES);
-                let each = ends.windows(2).map(|ends| (joint, quantity, [ends[0], ends[1]]));
-                pieces.places.extend(each);
-                of_joint.push(ends);
-            }
-            pieces.ends.push(of_joint);
-        }
-        pieces
-    }
-
-    /// Squares of what a model misses, place by place, in units of the torques.
-    fn squares(&self, model: &Model) -> Vec<f64> {
-        let mut sums = vec![0.0; self.places.len()];
-        for record in self.records {
-            let said = predicted(record, model);
-            let mut first = 0;
-            for (joint, of_joint) in self.ends.iter().enumerate() {
-                for (quantity, ends) in QUANTITIES.iter().zip(of_joint) {
-                    for row in 0..record.motion.len() {
-                        if record.moves(joint, row) {
-                            let missed = record.measured[joint][row] - said[joint][row];
-                            let at = piece(ends, quantity.at(record, joint, row));
-                            sums[first + at] += self.scale[joint] * missed * missed;
-                        }
-                    }
-                    first += ends.len().saturating_sub(1);
-                }
-            }
-        }
-        sums
     }
 }
 

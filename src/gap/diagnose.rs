@@ -6,12 +6,14 @@ use crate::effects::Effect;
 use crate::robot::Model;
 
 use super::column::Owner;
-use super::diagnosis::{Diagnosis, Place, Verdict};
+use super::diagnosis::{Diagnosis, Verdict};
 use super::gated::{OF_TIME, gated};
 use super::heldout::{Shrink, predicted, shrink};
 use super::improved::Improved;
 use super::judged::judged;
 use super::nuisance::Trust;
+use super::phase::Phase;
+use super::places::places;
 use super::record::{Record, RecordKind};
 use super::search::{Chosen, Found, Search};
 use super::table::{Table, nuisances};
@@ -47,10 +49,23 @@ pub struct Settings {
 #[must_use]
 pub fn diagnose(
     model: &Model,
-    mut train: Vec<Record<'_>>,
+    train: Vec<Record<'_>>,
     held: &[Record<'_>],
     settings: &Settings,
 ) -> Diagnosis {
+    diagnose_telling(model, train, held, settings, &|_| {})
+}
+
+/// The same; `tell` is called with each phase that begins.
+#[must_use]
+pub fn diagnose_telling(
+    model: &Model,
+    mut train: Vec<Record<'_>>,
+    held: &[Record<'_>],
+    settings: &Settings,
+    tell: &dyn Fn(Phase),
+) -> Diagnosis {
+    tell(Phase::Channel);
     let flipped = flip(&mut train, settings);
     let table = Table::new(&train, &settings.effects, settings.trust, Vec::new());
     let mut search = Search::new(&train, table, settings.trust, ERRORS[0]);
@@ -66,9 +81,11 @@ pub fn diagnose(
     search.match_excess(&[]);
     let none = search.evidence.parameters(&[], &DVector::zeros(0));
     let refit = Improved::new(model, &search.table.mixing, &none, &[]);
+    tell(Phase::Search);
     let mut found = search.run();
     let of_time = joints_of_time(&search, &found);
     if !of_time.is_empty() {
+        tell(Phase::Windows);
         let more = gated(&settings.effects, &train, &of_time);
         let table = Table::new(&train, &settings.effects, settings.trust, more);
         let (error, channels, late) = (search.error, search.channels.clone(), search.late);
@@ -83,6 +100,7 @@ pub fn diagnose(
         search.banned = banned;
         found = search.run_from(found);
     }
+    tell(Phase::Shapes);
     found = search.name_functions(found);
     search.simplify(&mut found, CLASS);
     // What a law is worth shows where nothing else follows its form.
@@ -119,6 +137,7 @@ pub fn diagnose(
     for joint in flipped {
         judged.assert_flipped(joint, polished.as_mut());
     }
+    tell(Phase::Grading);
     let improved = match &polished {
         Some(of) if !of.effects.is_empty() => {
             Improved::new(model, &search.table.mixing, &of.parameters, &of.effects)
@@ -152,9 +171,11 @@ pub fn diagnose(
     if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && missed < RIGHT {
         verdict = Verdict::NoGap;
     }
+    let asserted: Vec<&'static str> = judged.effects.iter().map(|said| said.effect.id).collect();
+    let places = places(&train, model, [&refit, &improved], &asserted);
     Diagnosis {
         verdict,
-        places: places(&train, model, &refit, &improved),
+        places,
         effects: judged.effects,
         candidates: judged.candidates,
         anything: judged.anything,
@@ -267,46 +288,4 @@ fn joints_of_time(search: &Search<'_, '_>, found: &Found) -> Vec<usize> {
     joints.sort_unstable();
     joints.dedup();
     joints
-}
-
-/// Shares of the joints in what changes.
-fn places(
-    records: &[Record<'_>],
-    model: &Model,
-    refit: &Improved,
-    improved: &Improved,
-) -> Vec<Place> {
-    let n = model.dof;
-    let mut shares = vec![0.0; n];
-    // The same parameters without the effects, or, where there are none, the nominal ones.
-    let mut bare = improved.written.clone();
-    if bare == refit.written {
-        bare = model.clone();
-    } else {
-        bare.effects.clone_from(&refit.written.effects);
-        bare.sensors.clone_from(&refit.written.sensors);
-        bare.laws.clone_from(&refit.written.laws);
-    }
-    let (mut change, mut size) = (vec![0.0; n], vec![0.0; n]);
-    for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
-        let (with, without) = (predicted(record, &improved.applied), predicted(record, &bare));
-        for joint in 0..n {
-            let both = with[joint].iter().zip(&without[joint]);
-            change[joint] += both.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            size[joint] += record.measured[joint].iter().map(|x| x * x).sum::<f64>();
-        }
-    }
-    for joint in 0..n {
-        shares[joint] = change[joint] / size[joint].max(1e-12);
-    }
-    let sum: f64 = shares.iter().sum::<f64>().max(1e-300);
-    (0..n)
-        .map(|joint| Place {
-            joint: Some(joint),
-            regime: "all".to_owned(),
-            share: shares[joint] / sum,
-            movement: None,
-            line: None,
-        })
-        .collect()
 }

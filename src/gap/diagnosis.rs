@@ -88,14 +88,18 @@ pub struct Anything {
 }
 
 /// Where the gap is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Place {
     /// Joint, from 0.
     pub joint: Option<usize>,
-    /// When.
+    /// When: `all`, or a piece of the speed, position, load or time.
     pub regime: String,
     /// Share of the gap \[1\].
     pub share: f64,
+    /// What of it each effect has, where it is told; below 0 where it makes up for another one.
+    pub by_effect: Vec<(&'static str, f64)>,
+    /// Times of a piece of the motion \[s\].
+    pub span: Option<[f64; 2]>,
     /// The movement behind which it is, from 1.
     pub movement: Option<usize>,
     /// File and line of the program.
@@ -169,7 +173,7 @@ impl Diagnosis {
                     regime: of.effect.id.to_owned(),
                     share: 1.0,
                     movement: of.movement,
-                    line: None,
+                    ..Place::default()
                 });
             }
         }

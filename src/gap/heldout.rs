@@ -4,19 +4,22 @@ use crate::dynamics::Load;
 use crate::effects::{Motion, of_the_whole_motion};
 use crate::robot::Model;
 
-use super::record::{Record, RecordKind};
+use super::interval::{Interval, interval};
+use super::record::{REST, Record, RecordKind};
 
-/// Blocks into which a log is cut for intervals.
-const BLOCKS: usize = 20;
+/// Blocks into which a motion is cut for intervals: as long as what a model misses in it remembers.
+const BLOCKS: usize = 5;
 /// Draws of blocks.
 const DRAWS: usize = 400;
-/// Ends of a 95 % interval.
-const ENDS: [f64; 2] = [0.025, 0.975];
+/// Change of an acceleration from row to row, of its largest value, that is a jump.
+const JUMP: f64 = 0.25;
+/// Rows before and after a jump of which nobody can say on which side they are.
+const BESIDE: usize = 2;
 
 /// Rms torques of a joint that a model misses, less the noise \[Nm\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointGap {
-    /// Of the measurement's noise.
+    /// Of the noise of the mean of the repetitions, which is taken off.
     pub noise: f64,
     /// Of the measured torque itself.
     pub torque: f64,
@@ -26,17 +29,6 @@ pub struct JointGap {
     pub refit: f64,
     /// By that with the effects.
     pub refit_plus_effect: f64,
-}
-
-/// A share with its 95 % interval \[1\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Interval {
-    /// Its value.
-    pub value: f64,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
 }
 
 /// The gap, joint by joint, and how far it shrinks.
@@ -60,10 +52,12 @@ pub fn shrink(records: &[Record<'_>], models: [&Model; 3]) -> Shrink {
     let mut blocks: Vec<Vec<Sums>> = Vec::new();
     for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
         let predicted = models.map(|model| predicted(record, model));
+        let is_known = beside_no_jump(record);
         let rows = record.motion.len();
         for block in 0..BLOCKS {
             let (from, to) = (rows * block / BLOCKS, rows * (block + 1) / BLOCKS);
-            blocks.push((0..n).map(|joint| sums(record, &predicted, joint, from..to)).collect());
+            let used: Vec<usize> = (from..to).filter(|row| is_known[*row]).collect();
+            blocks.push((0..n).map(|joint| sums(record, &predicted, joint, &used)).collect());
         }
     }
     let all: Vec<usize> = (0..blocks.len()).collect();
@@ -82,7 +76,7 @@ pub fn shrink(records: &[Record<'_>], models: [&Model; 3]) -> Shrink {
     let [total, by_effect] = [total, by_effect]
         .into_iter()
         .zip(drawn)
-        .map(|(value, drawn)| interval(value, drawn))
+        .map(|(value, drawn)| interval(value, &drawn, blocks.len()))
         .collect::<Vec<_>>()
         .try_into()
         .unwrap_or_default();
@@ -116,15 +110,33 @@ pub fn predicted(record: &Record<'_>, model: &Model) -> Vec<Vec<f64>> {
     sum
 }
 
-fn sums(
-    record: &Record<'_>,
-    predicted: &[Vec<Vec<f64>>; 3],
-    joint: usize,
-    rows: std::ops::Range<usize>,
-) -> Sums {
+/// Rows of repeated positions beside which no joint's acceleration jumps: where it does, they do
+/// not tell it, and torques belong to either side.
+#[must_use]
+pub fn beside_no_jump(record: &Record<'_>) -> Vec<bool> {
+    let count = record.motion.len();
+    let mut is_known = vec![true; count];
+    if !record.motion.closed {
+        return is_known;
+    }
+    for x in &record.motion.qdd {
+        let largest = x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for row in 0..count {
+            let next = (row + 1) % count;
+            if (x[next] - x[row]).abs() > JUMP * largest {
+                for other in 0..2 * BESIDE {
+                    is_known[(row + count + 1 + other - BESIDE) % count] = false;
+                }
+            }
+        }
+    }
+    is_known
+}
+
+fn sums(record: &Record<'_>, predicted: &[Vec<Vec<f64>>; 3], joint: usize, rows: &[usize]) -> Sums {
     let mut sums = [0.0; 6];
-    for row in rows {
-        if record.window[joint][row] == 0.0 {
+    for row in rows.iter().copied() {
+        if record.motion.qd[joint][row].abs() <= REST {
             continue;
         }
         let measured = record.measured[joint][row];
@@ -132,7 +144,7 @@ fn sums(
         for (k, of) in predicted.iter().enumerate() {
             sums[1 + k] += (measured - of[joint][row]).powi(2);
         }
-        sums[4] += record.variance[joint];
+        sums[4] += record.scatter[joint][row];
         sums[5] += 1.0;
     }
     sums
@@ -169,13 +181,4 @@ fn shrunk(joints: &[JointGap], before: impl Fn(&JointGap) -> f64) -> f64 {
         last += (joint.refit_plus_effect / joint.torque).powi(2);
     }
     if first > 0.0 { 1.0 - (last / first).sqrt() } else { 0.0 }
-}
-
-fn interval(value: f64, mut drawn: Vec<f64>) -> Interval {
-    drawn.sort_by(f64::total_cmp);
-    let end = |share: f64| {
-        let at = (share * (drawn.len().max(1) - 1) as f64).round() as usize;
-        drawn.get(at).copied().unwrap_or(value)
-    };
-    Interval { value, low: end(ENDS[0]).min(value), high: end(ENDS[1]).max(value) }
 }

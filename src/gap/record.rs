@@ -55,6 +55,8 @@ pub struct Record<'a> {
     pub(super) spectrum: Spectrum,
     /// Variance of the noise of each instant, by joint \[N²m²\].
     pub variance: Vec<f64>,
+    /// The same as the repetitions show it instant by instant, by joint and row \[N²m²\].
+    pub(super) scatter: Vec<Vec<f64>>,
     /// Variance of the noise in the rows of each frequency, by joint \[N²m²\].
     pub(super) noise: Vec<Vec<f64>>,
     /// Power of the model's torque there.
@@ -133,9 +135,9 @@ impl Windows {
         self.spectrum.of(x.iter().zip(&self.window[joint]).map(|(x, w)| x * w))
     }
 
-    /// Variances of one repetition's noise in the rows of each frequency, and at an instant:
+    /// Variances of one repetition's noise in the rows of each frequency, and at each instant:
     /// of what is neither the mean nor a drift of the repetitions.
-    fn noise(&self, joint: usize, spread: &[Vec<f64>]) -> (Vec<f64>, f64) {
+    fn noise(&self, joint: usize, spread: &[Vec<f64>]) -> [Vec<f64>; 2] {
         let count = spread.len();
         let line = line(count);
         let rows = spread.first().map_or(0, Vec::len);
@@ -144,15 +146,15 @@ impl Windows {
             .collect();
         let left = (count - if count > 2 { 2 } else { 1 }).max(1) as f64;
         let mut sum = vec![0.0; self.spectrum.bins];
-        let mut variance = 0.0;
+        let mut scatter = vec![0.0; rows];
         for (of, weight) in spread.iter().zip(&line) {
             let weight = if count > 2 { *weight } else { 0.0 };
             let rest: Vec<f64> = of.iter().zip(&drift).map(|(x, d)| x - weight * d).collect();
-            variance += rest.iter().map(|x| x * x).sum::<f64>() / rows.max(1) as f64;
+            scatter.iter_mut().zip(&rest).for_each(|(sum, x)| *sum += x * x / left);
             let power = self.spectrum.smoothed(&self.rows(joint, &rest), SMOOTHED);
             sum.iter_mut().zip(power).for_each(|(sum, power)| *sum += power);
         }
-        (sum.iter().map(|sum| sum / left).collect(), variance / left)
+        [sum.iter().map(|sum| sum / left).collect(), scatter]
     }
 
     fn mean<'a>(
@@ -164,15 +166,15 @@ impl Windows {
     ) -> Record<'a> {
         let repetitions = spread.and_then(<[_]>::first).map_or(1, Vec::len).max(1);
         let share = 1.0 / repetitions as f64;
-        let mut noise = Vec::new();
-        let mut variance = Vec::new();
+        let [mut noise, mut scatter]: [Vec<Vec<f64>>; 2] = Default::default();
         for joint in 0..motion.model.dof {
-            let (of, at) = match spread {
+            let of = match spread {
                 Some(all) if repetitions > 1 => self.noise(joint, &all[joint]),
                 _ => floor_of_noise(&self.spectrum, &measured[joint], &self.window[joint]),
             };
-            noise.push(of.iter().map(|noise| noise * share).collect());
-            variance.push(at * share);
+            let [of, at] = of.map(|of| of.iter().map(|noise| noise * share).collect());
+            noise.push(of);
+            scatter.push(at);
         }
         let power = (0..motion.model.dof)
             .map(|joint| {
@@ -190,7 +192,8 @@ impl Windows {
             repetitions,
             window: self.window.clone(),
             spectrum: self.spectrum.clone(),
-            variance,
+            variance: scatter.iter().map(|of| mean(of)).collect(),
+            scatter,
             noise,
             power,
         }
@@ -212,8 +215,8 @@ impl Windows {
                 (0..rows).map(at).collect()
             })
             .collect();
-        let noise: Vec<(Vec<f64>, f64)> =
-            spread.iter().enumerate().map(|(joint, of)| self.noise(joint, of)).collect();
+        let all = spread.iter().enumerate().map(|(joint, of)| self.noise(joint, of));
+        let (noise, scatter): (Vec<Vec<f64>>, Vec<Vec<f64>>) = all.map(Into::into).unzip();
         Record {
             kind: RecordKind::Drift,
             times: line.iter().enumerate().map(|(k, w)| (begins + period * k as f64, *w)).collect(),
@@ -222,9 +225,10 @@ impl Windows {
             repetitions,
             window: self.window.clone(),
             spectrum: self.spectrum.clone(),
-            power: noise.iter().map(|(of, _)| vec![0.0; of.len()]).collect(),
-            variance: noise.iter().map(|(_, at)| *at).collect(),
-            noise: noise.into_iter().map(|(of, _)| of).collect(),
+            power: noise.iter().map(|of| vec![0.0; of.len()]).collect(),
+            variance: scatter.iter().map(|of| mean(of)).collect(),
+            scatter,
+            noise,
         }
     }
 }
@@ -277,7 +281,7 @@ fn faded(row: usize, motion: &Motion<'_>) -> f64 {
 }
 
 /// White noise as the fastest changes show it; motion has none of them.
-fn floor_of_noise(spectrum: &Spectrum, tau: &[f64], window: &[f64]) -> (Vec<f64>, f64) {
+fn floor_of_noise(spectrum: &Spectrum, tau: &[f64], window: &[f64]) -> [Vec<f64>; 2] {
     // Fourth differences have 70 times the variance of white noise.
     let differences = tau.windows(5).map(|x| x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4]);
     let mut squares: Vec<f64> = differences.map(|x| x * x / 70.0).collect();
@@ -285,5 +289,9 @@ fn floor_of_noise(spectrum: &Spectrum, tau: &[f64], window: &[f64]) -> (Vec<f64>
     // The median of the squares of a normal deviate is 0.455 of its variance.
     let variance = squares.get(squares.len() / 2).map_or(0.0, |x| x / 0.455);
     let used = window.iter().map(|w| w * w).sum::<f64>() / window.len().max(1) as f64;
-    (vec![variance * used; spectrum.bins], variance)
+    [vec![variance * used; spectrum.bins], vec![variance; tau.len()]]
+}
+
+fn mean(of: &[f64]) -> f64 {
+    of.iter().sum::<f64>() / of.len().max(1) as f64
 }

@@ -6,6 +6,7 @@ use super::bins::{QUANTITIES, Quantity, ends, piece};
 use super::diagnosis::{Estimated, Said};
 use super::heldout::predicted;
 use super::improved::Improved;
+use super::pieces::difference;
 use super::record::{Record, RecordKind};
 
 /// Points of a mean over a quantity.
@@ -152,11 +153,6 @@ fn moved(improved: &Improved, said: &Said, of: &Estimated) -> Option<Model> {
         Given::Joints(values) => *values.get_mut(joint?)? += of.sd,
     }
     Some(Improved::of(written).applied)
-}
-
-fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
-    a.iter().zip(b).map(of).collect()
 }
 
 /// Pairs of a quantity and a torque at the instants at which a joint moves.

@@ -7,13 +7,25 @@
 //! for each series: the widest whose error in predicting a sample from its neighbours is
 //! next to the least. At the ends of a section the window is that of the last sample which
 //! has both sides.
+//!
+//! Where an acceleration jumps, as at the ramps of a move, no polynomial fits across. There the
+//! window is moved and narrowed, with fewer terms, until it fits as well as the noise lets it: of
+//! all that do, the one whose acceleration is surest.
+
+use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
 
-/// Degree of the polynomial.
-const DEGREE: usize = 5;
-/// Its coefficients.
-const TERMS: usize = DEGREE + 1;
+/// Coefficients of the polynomial: degree 5.
+const TERMS: usize = 6;
+/// Those beside a jump.
+const FEW_TERMS: usize = 4;
+/// Deviations of the mean square that a fit leaves of noise alone, beyond which it does not fit.
+const UNFIT: f64 = 5.0;
+/// The quantile of the changes within a window that counts as fast, and the share of it that
+/// counts as moving.
+const FAST: f64 = 0.9;
+const MOVING: f64 = 0.1;
 /// Samples to each side of one, by choice.
 const HALF_WIDTHS: [usize; 8] = [4, 6, 9, 13, 19, 28, 40, 56];
 /// How much the squared error of prediction may exceed the least: rates gain more from a
@@ -34,11 +46,12 @@ pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     let sections = sections(t);
     let half = half_width(t, x, &sections);
     let mut found = vec![None; t.len()];
-    // The noise of the samples, from how well they are predicted.
-    let noise = error_of(t, x, &sections, half).unwrap_or(0.0);
+    let smooth = Smooth::of(t, x, &sections);
+    // The noise of the samples, from how well they are predicted, but for jumps.
+    let noise = error_of(t, x, &sections, half).unwrap_or(0.0).min(smooth.variance);
     for [from, to] in &sections {
         for i in *from..*to {
-            found[i] = fit(t, x, [*from, *to], i, half).map(|fit| {
+            found[i] = smooth.fit([*from, *to], i, half).map(|fit| {
                 let deviation = (noise * fit.rate_variance).sqrt();
                 let rate = if fit.rate.abs() < AT_REST * deviation { 0.0 } else { fit.rate };
                 [rate, fit.acceleration]
@@ -92,6 +105,76 @@ fn error_of(t: &[f64], x: &[f64], sections: &[[usize; 2]], half: usize) -> Optio
     (count > 0.0).then(|| sum / count)
 }
 
+/// A series, and the noise of its samples as the narrowest windows show it.
+struct Smooth<'a> {
+    t: &'a [f64],
+    x: &'a [f64],
+    variance: f64,
+}
+
+impl<'a> Smooth<'a> {
+    fn of(t: &'a [f64], x: &'a [f64], sections: &[[usize; 2]]) -> Smooth<'a> {
+        let half = HALF_WIDTHS[0];
+        let stride = t.len().div_ceil(TRIALS).max(1);
+        let inner = sections.iter().filter(|[from, to]| to - from > 2 * half);
+        let looks: Vec<[f64; 2]> = inner
+            .flat_map(|[from, to]| (from + half..to - half).step_by(stride))
+            .filter_map(|i| {
+                let fit = window_fit(t, x, i - half..i + half + 1, i, TERMS)?;
+                Some([(x[i + half] - x[i - half]).abs(), fit.left])
+            })
+            .collect();
+        // What rests is rounded to the same number again and again: its noise does not show.
+        let fast = quantile(looks.iter().map(|of| of[0]).collect(), FAST);
+        let moving = looks.iter().filter(|of| of[0] >= MOVING * fast);
+        Smooth { t, x, variance: quantile(moving.map(|of| of[1]).collect(), 0.5) }
+    }
+
+    /// Whether a fit leaves no more than noise.
+    fn fits(&self, fit: &Fit) -> bool {
+        fit.left <= (1.0 + UNFIT * (2.0 / fit.freedom).sqrt()) * self.variance
+    }
+
+    /// The fit around sample `i` of a section, or beside it where it does not fit.
+    fn fit(&self, [from, to]: [usize; 2], i: usize, half: usize) -> Option<Fit> {
+        let centred = fit(self.t, self.x, [from, to], i, half)?;
+        if self.variance == 0.0 || self.fits(&centred) {
+            return Some(centred);
+        }
+        let mut surest: Option<Fit> = None;
+        let mut least: Option<Fit> = None;
+        for half in HALF_WIDTHS.into_iter().filter(|other| *other <= half) {
+            let width = 2 * half + 1;
+            let firsts = (i + 1).saturating_sub(width).max(from)..=i.min(to.saturating_sub(width));
+            for first in firsts {
+                for terms in [FEW_TERMS, TERMS] {
+                    let Some(fit) = window_fit(self.t, self.x, first..first + width, i, terms)
+                    else {
+                        continue;
+                    };
+                    let surer = surest
+                        .as_ref()
+                        .is_none_or(|of| fit.acceleration_variance < of.acceleration_variance);
+                    let error = |of: &Fit| of.left * of.acceleration_variance;
+                    if surer && self.fits(&fit) {
+                        surest = Some(fit);
+                    } else if least.as_ref().is_none_or(|of| error(&fit) < error(of)) {
+                        least = Some(fit);
+                    }
+                }
+            }
+        }
+        surest.or(least).or(Some(centred))
+    }
+}
+
+/// The value below which a share of the others lies; 0 of none.
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1) as f64;
+    values.get((share * last) as usize).copied().unwrap_or(0.0)
+}
+
 struct Fit {
     value: f64,
     rate: f64,
@@ -100,23 +183,32 @@ struct Fit {
     leverage: f64,
     /// Variance of the rate per variance of the samples \[1/s²\].
     rate_variance: f64,
+    /// That of the acceleration \[1/s⁴\].
+    acceleration_variance: f64,
+    /// Mean square that is left, and its degrees of freedom.
+    left: f64,
+    freedom: f64,
 }
 
 /// The fit around sample `i` of a section.
 fn fit(t: &[f64], x: &[f64], [from, to]: [usize; 2], i: usize, half: usize) -> Option<Fit> {
     let width = (2 * half + 1).min(to - from);
     let first = i.saturating_sub(half).clamp(from, to - width);
-    let window = first..first + width;
     // A short section gets a polynomial of fewer terms, down to a parabola.
-    let terms = TERMS.min(width);
+    window_fit(t, x, first..first + width, i, TERMS.min(width))
+}
+
+/// The polynomial of so many terms in a window, at sample `i`.
+fn window_fit(t: &[f64], x: &[f64], window: Range<usize>, i: usize, terms: usize) -> Option<Fit> {
     if terms < 3 {
         return None;
     }
+    let width = window.len();
     let scale = (t[window.end - 1] - t[window.start]).max(f64::MIN_POSITIVE) / 2.0;
     let mut normal = SMatrix::<f64, TERMS, TERMS>::identity();
     normal.view_mut((0, 0), (terms, terms)).fill(0.0);
     let mut right = SVector::<f64, TERMS>::zeros();
-    for k in window {
+    let powers = |k: usize| {
         let u = (t[k] - t[i]) / scale;
         let mut powers = SVector::<f64, TERMS>::zeros();
         let mut power = 1.0;
@@ -124,17 +216,67 @@ fn fit(t: &[f64], x: &[f64], [from, to]: [usize; 2], i: usize, half: usize) -> O
             powers[term] = power;
             power *= u;
         }
+        powers
+    };
+    for k in window.clone() {
+        let powers = powers(k);
         normal += powers * powers.transpose();
         // Differences to the sample keep their digits where positions are large.
         right += powers * (x[k] - x[i]);
     }
     let inverse = normal.cholesky()?.inverse();
     let c = inverse * right;
+    let freedom = (width - terms).max(1) as f64;
+    let left = window.map(|k| (x[k] - x[i] - powers(k).dot(&c)).powi(2)).sum::<f64>() / freedom;
     Some(Fit {
         value: x[i] + c[0],
         rate: c[1] / scale,
         acceleration: 2.0 * c[2] / (scale * scale),
         leverage: inverse[(0, 0)],
         rate_variance: inverse[(1, 1)] / (scale * scale),
+        acceleration_variance: 4.0 * inverse[(2, 2)] / scale.powi(4),
+        left,
+        freedom,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::*;
+
+    const STEP: f64 = 0.01;
+    const HARD: f64 = 8.0;
+    /// An error that no ramp has but beside its ends.
+    const LARGE: f64 = 2.0;
+    /// Jumps of the motion, and rows that may be wrong at each.
+    const JUMPS: usize = 12;
+    const WRONG: usize = 2;
+
+    /// Moves of trapezoids of the speed, rounded as encoders do.
+    #[test]
+    fn accelerations_that_jump_are_not_smeared() {
+        let [mut t, mut x, mut exact] = [vec![], vec![], vec![]];
+        let (mut position, mut rate) = (0.0, 0.0);
+        for row in 0..300 {
+            let acceleration = match row % 100 {
+                0..25 => HARD,
+                50..75 => -HARD,
+                _ => 0.0,
+            };
+            t.push(STEP * f64::from(row));
+            x.push(f64::round(1e5 * position) / 1e5);
+            exact.push(acceleration);
+            position += rate * STEP + 0.5 * acceleration * STEP * STEP;
+            rate += acceleration * STEP;
+        }
+        let found = derivatives(&t, &x);
+        let wrong = found
+            .iter()
+            .zip(&exact)
+            .filter(|(found, exact)| (found.unwrap()[1] - **exact).abs() > LARGE);
+        let wrong = wrong.count();
+        assert!(wrong <= WRONG * JUMPS, "{wrong} rows");
+    }
 }

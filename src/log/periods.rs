@@ -7,6 +7,7 @@
 
 use std::f64::consts::TAU;
 
+use super::differentiate::derivatives;
 use super::uniform::Section;
 
 /// Samples at which repetitions are compared, for the search.
@@ -26,6 +27,8 @@ const RESTING: f64 = 0.01;
 const SHORTEST: usize = 20;
 /// Harmonics of the series at most.
 const HARMONICS: usize = 240;
+/// Share of these from which on a series has no end.
+const ENDLESS: f64 = 0.9;
 /// Frequencies at which noise is looked at.
 const IN_TAIL: usize = 60;
 /// A harmonic counts where its power is this many times what noise would give it.
@@ -213,8 +216,9 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
         let n = all.len() as f64;
         (0..samples).map(|k| all.iter().map(|one| one[k]).sum::<f64>() / n).collect()
     };
-    let mut fits = Vec::new();
+    let mut motion: [Vec<Vec<f64>>; 3] = Default::default();
     let mut harmonics = 1;
+    let most = HARMONICS.min((samples - 1) / 4);
     for series in &section.series[..joints] {
         let all = repetitions(series);
         let mean = mean_of(&all);
@@ -224,7 +228,7 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
             .flat_map(|one| one.iter().zip(&mean).map(|(a, b)| (a - b).powi(2)))
             .sum::<f64>()
             / ((count - 1.0) * samples as f64);
-        let series = fourier(&mean, 0..=HARMONICS.min((samples - 1) / 4));
+        let series = fourier(&mean, 0..=most);
         // Power of a coefficient of the mean that is noise alone. Rounding is the same in each
         // repetition: only frequencies without motion show it.
         let tail: Vec<[f64; 2]> = fourier(&mean, tail(samples));
@@ -238,11 +242,13 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
         };
         let highest = series.iter().skip(1).rposition(counts).map_or(0, |k| k + 1);
         harmonics = harmonics.max(highest);
-        fits.push(series.into_iter().take(highest + 1).collect::<Vec<_>>());
-    }
-    let mut motion: [Vec<Vec<f64>>; 3] = Default::default();
-    for series in &fits {
-        let values = evaluated(series, samples, periods.period);
+        // An acceleration that jumps has harmonics without end.
+        let values = if highest as f64 >= ENDLESS * most as f64 {
+            let [rates, accelerations] = beside_jumps(&mean, step);
+            [mean, rates, accelerations]
+        } else {
+            evaluated(&series[..=highest], samples, periods.period)
+        };
         for (to, values) in motion.iter_mut().zip(values) {
             to.push(values);
         }
@@ -259,6 +265,16 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
         spread.push(all);
     }
     Averaged { step, harmonics, motion, mean, spread }
+}
+
+/// Rates and accelerations of a period that repeats, by local polynomials.
+fn beside_jumps(x: &[f64], step: f64) -> [Vec<f64>; 2] {
+    let n = x.len();
+    // Another period to each side, so that none of it is at an end.
+    let t: Vec<f64> = (0..3 * n).map(|k| step * k as f64).collect();
+    let all: Vec<f64> = x.iter().cycle().take(3 * n).copied().collect();
+    let found = derivatives(&t, &all);
+    [0, 1].map(|order| found[n..2 * n].iter().map(|of| of.map_or(0.0, |of| of[order])).collect())
 }
 
 /// The value between samples, on a line.

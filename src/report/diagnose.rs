@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use crate::gap::{Diagnosis, Interval, Said, Verdict};
+use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
 
 /// What a result rests on, beside the result itself.
 #[derive(Clone, Debug, Default)]
@@ -44,9 +44,10 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
                 "file": of.line.as_ref().map(|(file, _)| file),
                 "line": of.line.as_ref().map(|(_, line)| line),
                 "movement": of.movement,
-                "t_start_s": null,
-                "t_end_s": null,
+                "t_start_s": of.span.map(|[start, _]| start),
+                "t_end_s": of.span.map(|[_, end]| end),
                 "share_percent": 100.0 * of.share,
+                "by_effect_percent": by_effect(of),
             })
         })
         .collect();
@@ -105,6 +106,12 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
         "notes": basis.notes,
         "model": basis.model,
     })
+}
+
+/// Shares of effects; none where they are not told.
+fn by_effect(of: &Place) -> Option<Map<String, Value>> {
+    let share = |(id, share): &(&'static str, f64)| ((*id).to_owned(), json!(100.0 * share));
+    (!of.by_effect.is_empty()).then(|| of.by_effect.iter().map(share).collect())
 }
 
 fn interval(of: &Interval) -> Value {

@@ -15,6 +15,9 @@ use score::{Outcome, Score, score};
 
 pub use diagnosis::DiagnosisError;
 
+/// Left out: of each case with one effect of the torque, all that its effect is likely to be
+/// taken for.
+pub const FAMILY: &str = "family";
 /// Edges of the bins of probability.
 const BINS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0];
 
@@ -79,6 +82,10 @@ pub struct Bin {
     pub hits: usize,
     /// All that were stated.
     pub of: usize,
+    /// Lower end of the 95 % interval of `hits` over `of`.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
 }
 
 /// A case with a wrong name.
@@ -94,7 +101,8 @@ pub struct Wrong {
 
 /// Grades diagnoses, each in the JSON of `diagnose` and in the order of `labels`. With
 /// `left_out`, an effect that the library has been without, only cases of it are graded: it has
-/// to come out as unknown, or in a class with what can't be told from it.
+/// to come out as unknown, or in a class with what can't be told from it. [`FAMILY`] means all
+/// cases with one effect of the torque.
 ///
 /// # Errors
 /// A diagnosis that has another shape.
@@ -143,8 +151,11 @@ pub fn grade(
 
 /// Whether a case is one of an effect, under any of its names.
 fn is_of(label: &Label, id: &str) -> bool {
-    matches!(label.kind, Kind::One | Kind::Power | Kind::Motion)
-        && label.effects.iter().any(|truth| truth.id == id)
+    match label.kind {
+        Kind::One if id == FAMILY => true,
+        Kind::One | Kind::Power | Kind::Motion => label.effects.iter().any(|truth| truth.id == id),
+        Kind::Healthy | Kind::ParametersOnly | Kind::Two | Kind::Outside => false,
+    }
 }
 
 /// The row of the confusion table.
@@ -255,8 +266,10 @@ fn reliability(scores: &[Score]) -> Vec<Bin> {
                 .filter(|(p, _)| *p >= from && (*p < to || i == last && *p <= to))
                 .collect();
             let of = within.len();
+            let hits = within.iter().filter(|(_, hit)| *hit).count();
+            let [low, high] = wilson::interval(hits, of);
             let stated = within.iter().map(|(p, _)| p).sum::<f64>() / of.max(1) as f64;
-            Bin { from, to, stated, hits: within.iter().filter(|(_, hit)| *hit).count(), of }
+            Bin { from, to, stated, hits, of, low, high }
         })
         .collect()
 }

@@ -126,7 +126,9 @@ pub fn diagnose_report(
     let mut context = Context::new();
     let asserted = found.effects.iter().map(|of| effect(of, true));
     let considered = found.candidates.iter().map(|of| effect(of, false));
-    let places: Vec<PlaceRow> = found.places.iter().map(place).collect();
+    // Regimes of joints are in the table of who takes what away.
+    let whole = |of: &&Place| of.joint.is_none() || of.regime == "all";
+    let places: Vec<PlaceRow> = found.places.iter().filter(whole).map(place).collect();
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", robot);
     context.insert("verdict", sentence(found.verdict));
@@ -226,10 +228,9 @@ fn gap(found: &Diagnosis) -> Vec<GapRow> {
 }
 
 fn place(of: &Place) -> PlaceRow {
-    let regime = if of.regime == "all" { String::new() } else { format!(" {}", of.regime) };
     PlaceRow {
         name: match of.joint {
-            Some(joint) => format!("joint {}{regime}", joint + 1),
+            Some(joint) => format!("joint {}", joint + 1),
             None => of.regime.clone(),
         },
         share: fixed(100.0 * of.share, 1),

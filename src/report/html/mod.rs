@@ -4,6 +4,7 @@
 mod diagnose;
 mod energy_time;
 mod format;
+mod grades;
 mod identify;
 mod movements;
 mod proof;
@@ -16,6 +17,7 @@ mod summary;
 mod ways;
 
 pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
+pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
 pub use simulation::simulate_report;
 

@@ -1,0 +1,101 @@
+//! The loop closes: a nominal model, logs of a robot with an effect that it lacks, the diagnosis,
+//! the improved model, and what that predicts of motions that took no part, against the torques
+//! and the electrical power of the robot itself:
+//! `cargo run --release --example closed_loop -- [SEED [CASES]]`.
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
+#[path = "../tests/support/examined.rs"]
+mod examined;
+
+use examined::{examined, noiseless, records};
+use joulepath::blind::{self, Kind, Settings, Unlogged};
+use joulepath::dynamics::{Data, Load};
+use joulepath::effects::ALL;
+use joulepath::energy::power::{power_at, supply_w};
+use joulepath::gap::{self, diagnose, predicted};
+use joulepath::robot::Model;
+
+/// A seed of development, and cases of it.
+const SEED: u64 = 101;
+const CASES: usize = 24;
+/// Motions that took no part.
+const MOTIONS: usize = 4;
+
+/// What a model misses of a robot: torques over their size, power \[W\], energy \[1\].
+struct Missed {
+    torque: f64,
+    power: f64,
+    energy: f64,
+}
+
+fn main() {
+    let mut given = std::env::args().skip(1).map(|x| x.parse::<u64>().unwrap());
+    let settings = Settings::new(given.next().unwrap_or(SEED));
+    let cases = given.next().map_or(CASES, |count| count as usize);
+    println!("missed of motions that took no part: nominal → improved");
+    println!(
+        "case  true effect          named                 torque, %       power, W        energy, %"
+    );
+    for number in 1..=cases {
+        let Some(motions) = blind::unlogged(&settings, number, MOTIONS) else { continue };
+        let case = blind::case(&settings, number).unwrap();
+        if case.label.kind != Kind::One {
+            continue;
+        }
+        let of = examined(&case, &settings);
+        let options = gap::Settings { trust: of.trust, effects: ALL.iter().collect() };
+        let heldout = records(&of.nominal, &of.heldout);
+        let found = diagnose(&of.nominal, records(&of.nominal, &of.train), &heldout, &options);
+        let named: Vec<&str> = found.effects.iter().map(|said| said.effect.id).collect();
+        let [before, after] = [&of.nominal, &found.improved.applied]
+            .map(|model| missed(model, &of.nominal, &motions, &settings));
+        println!(
+            "{number:>4}  {:<20} {:<20} {:>6.2} → {:<6.2} {:>7.1} → {:<7.1} {:>6.2} → {:<6.2}",
+            case.label.effects[0].id,
+            named.join(" + "),
+            100.0 * before.torque,
+            100.0 * after.torque,
+            before.power,
+            after.power,
+            100.0 * before.energy,
+            100.0 * after.energy
+        );
+    }
+}
+
+/// What a model misses of the robot's own torques and power.
+fn missed(model: &Model, nominal: &Model, motions: &[Unlogged], settings: &Settings) -> Missed {
+    let logs = noiseless(motions, settings);
+    let (mut torque, mut size) = (vec![0.0; model.dof], vec![0.0; model.dof]);
+    for record in records(nominal, &logs) {
+        let said = predicted(&record, model);
+        for joint in 0..model.dof {
+            for (measured, said) in record.measured[joint].iter().zip(&said[joint]) {
+                torque[joint] += (measured - said).powi(2);
+                size[joint] += measured * measured;
+            }
+        }
+    }
+    let relative = torque.iter().zip(&size).map(|(missed, size)| missed / size).sum::<f64>();
+    let (mut squares, mut rows, mut energies) = (0.0, 0.0, [0.0; 2]);
+    let mut data = Data::new();
+    for of in motions {
+        for (row, measured) in of.power.iter().enumerate() {
+            let [q, qd, qdd]: [Vec<f64>; 3] =
+                [&of.q, &of.qd, &of.qdd].map(|x| x.iter().map(|x| x[row]).collect());
+            let state: [&[f64]; 3] = [&q, &qd, &qdd];
+            let power = power_at(model, &mut data, &Load::none(), state);
+            let said = supply_w(model, &mut data, &Load::none(), state, &power);
+            squares += (measured - said).powi(2);
+            rows += 1.0;
+            energies[0] += measured;
+            energies[1] += said;
+        }
+    }
+    Missed {
+        torque: (relative / model.dof as f64).sqrt(),
+        power: f64::sqrt(squares / rows),
+        energy: (energies[1] / energies[0] - 1.0).abs(),
+    }
+}

@@ -1,0 +1,111 @@
+//! How often the interval of a claimed shrink holds the shrink that is achieved: that of the same
+//! improved model on a long motion of the same robot that no log has, without noise:
+//! `cargo run --release --example shrink_coverage -- [SEED [CASES]]`.
+//!
+//! A case's diagnosis looks for its own effects only, to be quick. The long motion is eight of the
+//! kind of the held-out log; rests and rows beside jumps of an acceleration are left out as in the
+//! claim.
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
+#[path = "../tests/support/examined.rs"]
+mod examined;
+
+use examined::{examined, noiseless, records};
+use joulepath::blind::{self, Kind, Settings};
+use joulepath::effects::find;
+use joulepath::gap::{self, Interval, Record, beside_no_jump, diagnose, predicted};
+use joulepath::robot::Model;
+use rayon::prelude::*;
+
+/// A seed of development, and cases of it.
+const SEED: u64 = 301;
+const CASES: usize = 110;
+/// Repetitions of each log, and their length \[s\].
+const CYCLES: usize = 5;
+const PERIOD_S: f64 = 5.0;
+/// Motions of what is achieved.
+const MOTIONS: usize = 8;
+
+/// What a case claims of all changes and of the effects alone, and what is achieved.
+type Held = [(Interval, f64); 2];
+
+fn main() {
+    let mut given = std::env::args().skip(1).map(|x| x.parse::<u64>().unwrap());
+    let seed = given.next().unwrap_or(SEED);
+    let cases = given.next().map_or(CASES, |count| count as usize);
+    let settings = Settings { cycles: CYCLES, period_s: PERIOD_S, ..Settings::new(seed) };
+    let all: Vec<(usize, Held, bool)> =
+        (1..=cases).into_par_iter().filter_map(|number| held(&settings, number)).collect();
+    println!("case    claimed, 95 %               achieved");
+    for (number, held, _) in &all {
+        let (claim, achieved) = held[0];
+        let holds = if is_held(&held[0]) { "" } else { "   not held" };
+        println!(
+            "{number:>4} {:>8.3} ({:.3} to {:.3}) {achieved:>10.3}{holds}",
+            claim.value, claim.low, claim.high
+        );
+    }
+    for (k, name) in ["all changes", "effects alone"].into_iter().enumerate() {
+        // Without an effect nothing is claimed of effects.
+        let asked = all.iter().filter(|(_, _, has_effect)| k == 0 || *has_effect);
+        let claims: Vec<&(Interval, f64)> = asked.map(|(_, held, _)| &held[k]).collect();
+        let count = claims.iter().filter(|of| is_held(of)).count();
+        let mut widths: Vec<f64> = claims.iter().map(|(of, _)| of.high - of.low).collect();
+        widths.sort_by(f64::total_cmp);
+        println!(
+            "{name}: held in {count} of {} cases, {:.1} %; median width {:.3}",
+            claims.len(),
+            100.0 * count as f64 / claims.len() as f64,
+            widths[widths.len() / 2]
+        );
+    }
+}
+
+fn is_held((claim, achieved): &(Interval, f64)) -> bool {
+    (claim.low..=claim.high).contains(achieved)
+}
+
+/// Claims and achievements of a case of torques, and whether an effect was asserted.
+fn held(settings: &Settings, number: usize) -> Option<(usize, Held, bool)> {
+    let motions = blind::unlogged(settings, number, MOTIONS)?;
+    let case = blind::case(settings, number).filter(|case| case.label.kind != Kind::Power)?;
+    let of = examined(&case, settings);
+    let effects = case.label.effects.iter().filter_map(|truth| find(&truth.id)).collect();
+    let options = gap::Settings { trust: of.trust, effects };
+    let heldout = records(&of.nominal, &of.heldout);
+    let found = diagnose(&of.nominal, records(&of.nominal, &of.train), &heldout, &options);
+    let models = [&of.nominal, &found.refit.applied, &found.improved.applied];
+    let logs = noiseless(&motions, settings);
+    let [nominal, refit, improved] = squares(&records(&of.nominal, &logs), models);
+    let shrink = |before: f64| if before > 0.0 { 1.0 - (improved / before).sqrt() } else { 0.0 };
+    let claims = [(found.shrink.total, shrink(nominal)), (found.shrink.by_effect, shrink(refit))];
+    Some((number, claims, !found.effects.is_empty()))
+}
+
+/// Squares that models miss, each joint in units of its torque.
+fn squares(records: &[Record<'_>], models: [&Model; 3]) -> [f64; 3] {
+    let n = models[0].dof;
+    let (mut missed, mut size) = (vec![[0.0; 3]; n], vec![0.0; n]);
+    for record in records {
+        let is_known = beside_no_jump(record);
+        let said = models.map(|model| predicted(record, model));
+        for joint in 0..n {
+            for row in (0..record.motion.len()).filter(|row| is_known[*row]) {
+                if !record.moves(joint, row) {
+                    continue;
+                }
+                let measured = record.measured[joint][row];
+                size[joint] += measured * measured;
+                for (sum, said) in missed[joint].iter_mut().zip(&said) {
+                    *sum += (measured - said[joint][row]).powi(2);
+                }
+            }
+        }
+    }
+    let of = |k: usize| {
+        let joints = missed.iter().zip(&size).filter(|(_, size)| **size > 0.0);
+        joints.map(|(missed, size)| missed[k] / size).sum()
+    };
+    [of(0), of(1), of(2)]
+}

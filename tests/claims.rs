@@ -1,0 +1,204 @@
+//! What `diagnose` claims of held-out logs, recomputed from the output of `predict`.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use joulepath::blind::{self, Case, Settings};
+use joulepath::log::{Channel, ColumnMap, Log, read_csv};
+use serde_json::Value;
+
+/// Repetitions of each log.
+const CYCLES: usize = 4;
+/// Rate below which a joint rests \[rad/s\].
+const RESTS: f64 = 0.02;
+/// What both may differ by: of the claim, and of the noise of the mean.
+const OF_CLAIM: f64 = 0.05;
+const OF_NOISE: f64 = 0.25;
+/// An angle that is farther than its log says \[rad\].
+const OFFSET: f64 = 0.04;
+/// Points of percentage that the shrink may differ by.
+const OF_SHRINK: f64 = 4.0;
+
+fn joulepath(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
+}
+
+/// The rows of a log.
+fn log(text: &str) -> Log {
+    read_csv(text.as_bytes(), &ColumnMap::default()).unwrap()
+}
+
+/// Rms that a model misses of a log's torques, and that of these, joint by joint: of the mean of
+/// the repetitions, at the instants at which the joint moves.
+fn missed(robot: &str, held: &str) -> [Vec<f64>; 2] {
+    let output = joulepath(&["predict", "--robot", robot, "--log", held, "--quiet"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let predicted: Vec<Vec<f64>> = String::from_utf8(output.stdout)
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    let log = log(&fs::read_to_string(held).unwrap());
+    let time = log.time();
+    assert_eq!(predicted.len(), time.len());
+    let rows = time.len() / CYCLES;
+    let rms = |joint: usize| {
+        let q = log.column(Channel::Position(joint)).unwrap();
+        let tau = log.column(Channel::Torque(joint)).unwrap();
+        let mean = |of: &dyn Fn(usize) -> f64, phase: usize| -> f64 {
+            (0..CYCLES).map(|k| of(k * rows + phase % rows)).sum::<f64>() / CYCLES as f64
+        };
+        let step = time[1] - time[0];
+        let (mut count, mut squares, mut size) = (0.0, 0.0, 0.0);
+        for phase in 0..rows {
+            let change = mean(&|row| q[row], phase + 1) - mean(&|row| q[row], phase + rows - 1);
+            if change.abs() > 2.0 * step * RESTS {
+                count += 1.0;
+                squares += mean(&|row| tau[row] - predicted[row][1 + joint], phase).powi(2);
+                size += mean(&|row| tau[row], phase).powi(2);
+            }
+        }
+        [f64::sqrt(squares / count), f64::sqrt(size / count)]
+    };
+    let all: Vec<[f64; 2]> = (0..log.joints()).map(rms).collect();
+    [all.iter().map(|of| of[0]).collect(), all.iter().map(|of| of[1]).collect()]
+}
+
+/// A case of the examination with short logs.
+fn case(seed: u64, number: usize) -> Case {
+    let settings = Settings { cycles: CYCLES, period_s: 5.0, ..Settings::new(seed) };
+    blind::case(&settings, number).unwrap()
+}
+
+/// Holds the claims for a case of the examination that has the effect.
+fn of_case(seed: u64, number: usize, id: &str) {
+    let case = case(seed, number);
+    assert!(case.label.effects.iter().any(|truth| truth.id == id), "{:?}", case.label.effects);
+    holds(&case, id);
+}
+
+/// Diagnoses a case with one effect in the library, and holds its claims against `predict`.
+fn holds(case: &Case, id: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in &case.files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let at = |name: &str| Path::join(folder.path(), name).display().to_string();
+    let (nominal, better) = (at("nominal.toml"), at("better.toml"));
+    // In the second log accelerations never jump, so that both ways to differentiate agree.
+    let (first, last, held) = (at("log-1.csv"), at("heldout.csv"), at("log-2.csv"));
+    let args = ["diagnose", "--robot", &nominal, "--log", &first, &last, "--heldout", &held];
+    let rest = ["--trust", &case.label.trust, "--period", "5", "--effects", id];
+    let more = ["--out", &better, "--format", "json", "--quiet"];
+    let output = joulepath(&[&args[..], &rest, &more].concat());
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["effects"][0]["id"], id, "{found:#}");
+    let gap = &found["gap"][0];
+    let [before, size] = missed(&nominal, &held);
+    let [after, _] = missed(&better, &held);
+    let mut sums = [0.0; 2];
+    for (joint, claim) in gap["per_joint"].as_array().unwrap().iter().enumerate() {
+        let of = |name: &str| claim[name].as_f64().unwrap();
+        let noise = of("noise");
+        let pairs = [(of("model"), before[joint]), (of("refit_plus_effect"), after[joint])];
+        for (k, (claimed, rms)) in pairs.into_iter().enumerate() {
+            let recomputed = (rms * rms - noise * noise).max(0.0).sqrt();
+            let may = OF_CLAIM * claimed + OF_NOISE * noise;
+            assert!(
+                (recomputed - claimed).abs() <= may,
+                "{id}, joint {}: claimed {claimed}, recomputed {recomputed}, noise {noise}",
+                joint + 1
+            );
+            sums[k] += (recomputed / size[joint]).powi(2);
+        }
+    }
+    let shrink = 100.0 * (1.0 - (sums[1] / sums[0]).sqrt());
+    let claimed = gap["shrink_percent"]["value"].as_f64().unwrap();
+    assert!((shrink - claimed).abs() <= OF_SHRINK, "{id}: claimed {claimed} %, {shrink} %");
+}
+
+#[test]
+fn of_a_payload() {
+    of_case(11, 24, "payload");
+}
+
+#[test]
+fn of_stiction() {
+    of_case(14, 40, "stribeck");
+}
+
+#[test]
+fn of_a_delay() {
+    of_case(12, 38, "time_delay");
+}
+
+#[test]
+fn of_a_flipped_sign() {
+    of_case(13, 53, "current_sign");
+}
+
+/// A healthy robot whose second angle is not where its logs say.
+#[test]
+fn of_an_encoder_offset() {
+    let mut case = case(11, 5);
+    for (_, text) in case.files.iter_mut().filter(|(_, text)| text.starts_with("t,")) {
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        for line in &mut lines[1..] {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            let angle: f64 = fields[2].parse().unwrap();
+            fields[2] = format!("{:.6}", angle - OFFSET);
+            *line = fields.join(",");
+        }
+        *text = lines.join("\n") + "\n";
+    }
+    holds(&case, "encoder_offset");
+}
+
+#[test]
+fn of_a_tilted_base() {
+    of_case(12, 13, "base_tilt");
+}
+
+#[test]
+fn of_a_coupled_wrist() {
+    of_case(13, 38, "wrist_coupling");
+}
+
+#[test]
+fn of_a_dragging_brake() {
+    of_case(13, 35, "brake_drag");
+}
+
+#[test]
+fn of_a_force_from_outside() {
+    of_case(13, 26, "contact");
+}
+
+/// A robot that is cold when the clock of its logs begins is warm later.
+#[test]
+fn warming_up_counts_by_the_clock_of_the_logs() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let model = at("cold.toml");
+    let text = "name = \"cold\"\nextends = \"IRB1600-10/1.45\"\n[effects.warm_up]\njoint = 1\n\
+        coulomb = 10.0\ntime_constant = 100.0\n";
+    fs::write(&model, text).unwrap();
+    let friction = |start: f64| -> f64 {
+        let rows = (0..200).map(|row| {
+            let t = 0.01 * f64::from(row);
+            format!("{},{t},0,0,0,0,0", start + t)
+        });
+        let csv = format!("t,q1,q2,q3,q4,q5,q6\n{}\n", rows.collect::<Vec<_>>().join("\n"));
+        let log = at("log.csv");
+        fs::write(&log, csv).unwrap();
+        let output = joulepath(&["predict", "--robot", &model, "--log", &log, "--quiet"]);
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.lines().nth(100).unwrap().split(',').nth(1).unwrap().parse().unwrap()
+    };
+    let warmed = friction(0.0) - friction(1000.0);
+    assert!((warmed - 10.0).abs() < 0.2, "{warmed} Nm");
+}

@@ -1,0 +1,98 @@
+//! Public logs of real robots: what is fitted, what grades, and the model without the effect.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use joulepath::effects::{ALL, from_toml};
+use joulepath::gap::{Diagnosis, Record, Settings, Trust, diagnose};
+use joulepath::identify::{
+    Free, Hints, Samples, Settings as Identify, Source, Weighting, identify, prepare, torques,
+};
+use joulepath::log::{ColumnMap, Log, read_csv};
+use joulepath::robot::{Model, import_urdf};
+
+/// Part of the log that is fitted; the rest grades.
+const TRAINED: f64 = 0.7;
+/// A coupling that counts as stated, so that none is looked for.
+const STATED: f64 = 1e-12;
+
+/// A robot of the shared data: its files, and whether rates are logged.
+pub(crate) struct RealRobot {
+    pub(crate) urdf: &'static str,
+    pub(crate) csv: &'static str,
+    pub(crate) has_rates: bool,
+}
+
+/// Coupled wrist, torques of the motors.
+pub(crate) const TX40: RealRobot = RealRobot {
+    urdf: "tx40/tx40_mdh_modified.urdf",
+    csv: "tx40/tx40_joint_space.csv",
+    has_rates: false,
+};
+/// Friction that is not Coulomb and viscous, torques by currents.
+pub(crate) const UR10: RealRobot = RealRobot {
+    urdf: "ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf",
+    csv: "ur10_unisa/ur10_exciting_trajectory.csv",
+    has_rates: true,
+};
+/// Torques measured behind the gears.
+pub(crate) const PANDA: RealRobot = RealRobot {
+    urdf: "ur10_unisa/panda_mdh_dummy_inertia.urdf",
+    csv: "ur10_unisa/panda_exciting_trajectory.csv",
+    has_rates: true,
+};
+
+/// The model that the first part of a robot's log tells, and what is missing in it, graded by the
+/// other part. The texts are those of its files.
+pub(crate) fn diagnosed(robot: &RealRobot, urdf: &str, csv: &str, trust: Trust) -> Diagnosis {
+    let text = import_urdf(robot.urdf, urdf).unwrap();
+    let bare = from_toml(robot.urdf, &text).unwrap();
+    let [first, last] = parts(&bare, csv, robot);
+    let nominal = nominal(&bare, &first);
+    let settings = Settings { trust, effects: ALL.iter().collect() };
+    let held = Record::all(&nominal, &last);
+    diagnose(&nominal, Record::all(&nominal, &first), &held, &settings)
+}
+
+/// Ids of what is asserted.
+pub(crate) fn named(found: &Diagnosis) -> Vec<&'static str> {
+    found.effects.iter().map(|said| said.effect.id).collect()
+}
+
+/// Both parts of a log: what is fitted, what grades.
+fn parts(model: &Model, csv: &str, robot: &RealRobot) -> [Samples; 2] {
+    let mut map = String::from("t=t_s");
+    for joint in 1..=model.dof {
+        let _ = write!(map, ",q{joint}=q_rad_{joint},tau{joint}=tau_Nm_{joint}");
+        if robot.has_rates {
+            let _ = write!(map, ",qd{joint}=qd_rad_s_{joint}");
+        }
+    }
+    let log = read_csv(csv.as_bytes(), &ColumnMap::parse(&map).unwrap()).unwrap();
+    let cut = (TRAINED * log.time().len() as f64) as usize;
+    let rows = |range: Range<usize>| Log {
+        channels: log.channels.clone(),
+        values: log.values.iter().map(|x| x[range.clone()].to_vec()).collect(),
+        rows: log.rows[range].to_vec(),
+        rejected: Vec::new(),
+        degrees: Vec::new(),
+    };
+    let samples =
+        |log: &Log, hints| prepare(log, &torques(model, log).unwrap().tau, hints).unwrap();
+    let first = samples(&rows(0..cut), Hints::default());
+    let Source::Filtered { cutoff } = first.source else { panic!("{:?}", first.source) };
+    let hints = Hints { period: None, cutoff: Some(cutoff) };
+    let last = samples(&rows(cut..log.time().len()), hints);
+    [first, last]
+}
+
+/// The model that the first part tells, without a coupling of the wrist.
+fn nominal(bare: &Model, samples: &Samples) -> Model {
+    let mut stated = bare.clone();
+    stated.wrist.coupling = STATED;
+    let settings =
+        Identify { free: Free::All, weighting: Weighting::Joint, source: "a log".into() };
+    let mut found = identify(&stated, samples, &[], &settings).unwrap().model;
+    found.wrist.coupling = 0.0;
+    found
+}
