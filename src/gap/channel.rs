@@ -3,7 +3,7 @@
 use crate::effects::{Response, find};
 
 use super::polish::Fitted;
-use super::search::Search;
+use super::search::{Found, Search};
 
 /// Delays that are tried at first \[s\].
 const DELAYS: [f64; 18] = [
@@ -21,7 +21,7 @@ const WORTH: f64 = 15.0;
 const OPEN: f64 = 30.0;
 const STEPS: f64 = 1.0;
 /// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].
-const FORMS: f64 = 0.05;
+const FORMS: f64 = 0.1;
 const TICKS: f64 = 1e-4;
 /// What naming one costs, and one joint of it.
 const COST: f64 = 6.0;
@@ -124,6 +124,27 @@ impl Search<'_, '_> {
             self.error = error;
             self.set_channels(&vec![Response::default(); dof]);
         }
+    }
+
+    /// The best set of effects, with what is late or without it: what one joint seems to be late by may
+    /// be what moves it besides.
+    pub fn run_late_or_not(&mut self, errors: &[f64]) -> Found {
+        let behind = self.run();
+        let Some(late) = self.late.filter(|late| late.joint.is_some()) else { return behind };
+        let (total, error) = (self.evidence.null + behind.score, self.error);
+        self.late = None;
+        self.set_channels(&vec![Response::default(); self.dof()]);
+        self.choose_error(errors);
+        self.match_excess(&[]);
+        let plain = self.run();
+        if self.evidence.null + plain.score > total - COST - JOINT {
+            return plain;
+        }
+        self.late = Some(late);
+        self.error = error;
+        self.set_channels(&late.channels(self.dof()));
+        self.match_excess(&[]);
+        self.run()
     }
 
     /// Interval of the rows \[s\].

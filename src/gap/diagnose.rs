@@ -10,7 +10,7 @@ use super::diagnosis::{Diagnosis, Verdict};
 use super::gated::{OF_TIME, gated};
 use super::heldout::{Shrink, predicted, shrink};
 use super::improved::Improved;
-use super::judged::judged;
+use super::judged::{LEAST_NATS, judged};
 use super::nuisance::Trust;
 use super::phase::Phase;
 use super::places::places;
@@ -82,7 +82,8 @@ pub fn diagnose_telling(
     let none = search.evidence.parameters(&[], &DVector::zeros(0));
     let refit = Improved::new(model, &search.table.mixing, &none, &[]);
     tell(Phase::Search);
-    let mut found = search.run();
+    let chance = search.reached_by_chance();
+    let mut found = search.run_late_or_not(errors);
     let of_time = joints_of_time(&search, &found);
     if !of_time.is_empty() {
         tell(Phase::Windows);
@@ -106,6 +107,7 @@ pub fn diagnose_telling(
     // What a law is worth shows where nothing else follows its form.
     let laws = search.without_forms(&found);
     let polished = search.polish(&laws);
+    search.chance = chance;
     let mut judged = judged(&search, &found, polished.as_ref());
     // What is not asserted is not in the model, so that its parameters are those without it.
     let kept: Vec<Chosen> = found
@@ -130,7 +132,7 @@ pub fn diagnose_telling(
         .collect();
     search.match_spread(&kept);
     let mut polished = search.polish(&kept);
-    if let Some(late) = search.late {
+    if let Some(late) = search.late.filter(|late| late.nats > LEAST_NATS) {
         judged.assert_late(&late, polished.as_mut());
     }
     let is_flipped = !flipped.is_empty();
@@ -181,6 +183,7 @@ pub fn diagnose_telling(
         anything: judged.anything,
         shrink: graded,
         error: search.error,
+        chance,
         refit,
         improved,
         reasons: judged.reasons,

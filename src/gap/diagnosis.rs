@@ -123,6 +123,8 @@ pub struct Diagnosis {
     pub shrink: Shrink,
     /// The model's own error, as a share of its torques.
     pub error: f64,
+    /// What the best effect reaches where there is none, but in one of 50 measurements \[nats\].
+    pub chance: f64,
     /// The nominal model with its parameters refitted.
     pub refit: Improved,
     /// That with the asserted effects.

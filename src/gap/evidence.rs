@@ -44,6 +44,11 @@ impl Given {
             more.iter().copied().filter(|column| !self.columns.contains(column)).collect();
         self.base + self.evidence.gain(&more)
     }
+
+    /// Takes another measurement, by its products with the columns.
+    pub(super) fn measure(&mut self, products: DVector<f64>) {
+        self.evidence.b = products;
+    }
 }
 
 /// Factors of some columns.
@@ -93,6 +98,11 @@ impl Evidence {
             misfit: left / rows.max(1) as f64,
             rows,
         }
+    }
+
+    /// Products of the columns, the parameters marginalised.
+    pub(super) fn products(&self) -> &DMatrix<f64> {
+        &self.a
     }
 
     /// Logarithm of how much more probable the measurement is with the columns than without.

@@ -150,11 +150,11 @@ impl Search<'_, '_> {
         let all = found.score - self.score(&neither);
         let beside = found.score - self.score(&less);
         let form = (beside / all.max(1e-9)).clamp(0.0, 1.0);
-        if !is_robots {
+        if !is_robots || !self.open {
             return (form, (1.0 - form) * all);
         }
-        // Functions of single joints may well be there beside what is of the robot: its form is
-        // what they could do in its place.
+        // A real robot has functions of single joints beside what is of the robot: its form is what
+        // they could do in its place.
         let without: Vec<Chosen> =
             found.chosen.iter().filter(|of| of.family != chosen.family).cloned().collect();
         let instead = self.score(&without) - self.score(&neither);

@@ -1,7 +1,6 @@
 //! What may be said of the effects that were found.
 
-use crate::effects::{Effect, find};
-use crate::robot::MAX_DOF;
+use crate::effects::find;
 
 use super::channel::Late;
 use super::column::Owner;
@@ -11,8 +10,8 @@ use super::gated::{GATED, OF_TIME};
 use super::generic::OF_DRIFT;
 use super::nuisance::Trust;
 use super::polish::{Fitted, Polished};
-use super::record::{Record, RecordKind};
 use super::search::{Chosen, Found, Search};
+use super::sizes::{beside_missed, fades, missed, noise, size};
 
 /// Most ids that say anything.
 const LARGEST_CLASS: usize = 5;
@@ -25,7 +24,7 @@ const LEFT: f64 = 0.3;
 /// What an effect has to bring, of what the strongest does.
 const OF_STRONGEST: f64 = 0.005;
 /// What an effect has to bring.
-const LEAST_NATS: f64 = 8.0;
+pub(super) const LEAST_NATS: f64 = 8.0;
 /// The same of what changes with time, as all friction does a little.
 const LEAST_OF_TIME: f64 = 25.0;
 /// Share of its joint's torque that an effect has to have, and where it brings as many nats and
@@ -33,6 +32,8 @@ const LEAST_OF_TIME: f64 = 25.0;
 const RELEVANT: f64 = 0.01;
 const CLEARLY: f64 = 0.001;
 const CLEAR: f64 = 30.0;
+/// A joint at which an effect is so much smaller than at another one is not told.
+const OF_LARGEST: f64 = 0.15;
 /// Effects at once, and what each has to bring of what the first one does where there are more.
 const AT_ONCE: usize = 2;
 const OF_FIRST: f64 = 0.05;
@@ -44,6 +45,8 @@ const LESSER: f64 = 0.15;
 const IMPROBABLE: f64 = 0.05;
 /// Spread of a parameter where functions follow the form, of the share that they have.
 const FORM_SPREAD: f64 = 0.5;
+/// The same where nothing follows it: no robot obeys a law to the last digit.
+const LEAST_SPREAD: f64 = 0.03;
 /// An effect that is so many times what the model misses is there against others.
 const CANCELS: f64 = 3.0;
 const SMOOTH: [&str; 6] = [
@@ -58,9 +61,6 @@ const SMOOTH: [&str; 6] = [
 /// joint that is told, of what is missed beside it: real robots have a little of all effects.
 const OF_MISSED: f64 = 0.8;
 const AT_JOINT: f64 = 0.5;
-/// Ripple that any motor may have, of the noise.
-const BELOW_NOISE: f64 = 0.25;
-
 /// What may be said of what was found.
 pub(super) struct Judged {
     pub(super) verdict: Verdict,
@@ -77,11 +77,20 @@ impl Judged {
         let family = |id: &str| {
             found.chosen.iter().position(|of| search.families[of.family].owner.id() == id)
         };
-        let score_without = |places: &[usize]| {
-            let kept: Vec<Chosen> = (0..found.chosen.len())
-                .filter(|k| !places.contains(k))
-                .map(|k| found.chosen[k].clone())
-                .collect();
+        // Without the family at a place; of another one, without what it is at some joints.
+        let score_without = |gone: Option<usize>, less: Option<usize>, joints: &[usize]| {
+            let at_joints = |piece: &usize| {
+                let joint = search.table.pieces[*piece].joint;
+                joint.is_some_and(|joint| joints.contains(&joint))
+            };
+            let mut kept = Vec::new();
+            for (place, of) in found.chosen.iter().enumerate() {
+                let mut of = of.clone();
+                of.pieces.retain(|p| Some(place) != gone && !(Some(place) == less && at_joints(p)));
+                if !of.pieces.is_empty() {
+                    kept.push(of);
+                }
+            }
             search.score(&kept)
         };
         let mut lesser: Vec<&str> = Vec::new();
@@ -94,9 +103,11 @@ impl Judged {
                 if said.joints.is_empty() || !both_there {
                     continue;
                 }
-                let own = found.score - score_without(&[a]);
-                let both = found.score - score_without(&[a, b]);
-                if own < LESSER * both && own < found.score - score_without(&[b]) {
+                let joints = &said.joints;
+                let own = found.score - score_without(Some(a), None, joints);
+                let both = found.score - score_without(Some(a), Some(b), joints);
+                let other = found.score - score_without(None, Some(b), joints);
+                if own < LESSER * both && own < other {
                     lesser.push(said.effect.id);
                 }
             }
@@ -250,12 +261,16 @@ pub(super) fn judged(
                     .filter(|of| of.effect.id == effect.id && own(of))
                     .collect();
                 // Joints of which nobody asks are not told beside those that matter.
-                let matter: Vec<&Fitted> =
-                    all_of.iter().copied().filter(|of| matters(search, polished, of)).collect();
+                let largest = all_of.iter().map(|of| size(search, effect, &[of]));
+                let least = OF_LARGEST * largest.fold(0.0, f64::max);
+                let tells = |of: &&Fitted| {
+                    matters(search, polished, of) && size(search, effect, &[of]) >= least
+                };
+                let matter: Vec<&Fitted> = all_of.iter().copied().filter(tells).collect();
                 let fitted = if matter.is_empty() { all_of } else { matter };
                 let fades = effect.id == "warm_up";
                 let least = if fades { LEAST_OF_TIME } else { LEAST_NATS };
-                let least = least.max(OF_STRONGEST * strongest);
+                let least = least.max(OF_STRONGEST * strongest).max(search.chance);
                 let (class, probability) = if drops[k] < least && form[k] == 0.0 {
                     (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
                 } else {
@@ -305,6 +320,12 @@ pub(super) fn judged(
         .filter(|of| OF_DRIFT.contains(&of.id) && !is_form(of))
         .filter_map(|of| of.joint)
         .collect();
+    // While friction fades, what it is at is a matter of when.
+    let fading = judged.effects.iter().any(|said| said.effect.id == "warm_up");
+    let (kept, levels): (Vec<Said>, Vec<Said>) =
+        judged.effects.drain(..).partition(|said| !fading || said.effect.id != "friction_level");
+    judged.effects = kept;
+    judged.candidates.extend(levels);
     let (kept, doubtful): (Vec<Said>, Vec<Said>) = judged.effects.drain(..).partition(|said| {
         said.effect.id == "warm_up" || !said.joints.iter().any(|joint| drifting.contains(joint))
     });
@@ -364,7 +385,8 @@ fn refused(
     if said.class.len() > LARGEST_CLASS {
         return open(format!("cannot be told from {}", said.class.join(", ")));
     }
-    let may_be_small = said.nats > CLEAR && !SMOOTH.contains(&id);
+    // The form of a filter leaves something wherever torques jump.
+    let may_be_small = said.nats > CLEAR && !SMOOTH.contains(&id) && search.late.is_none();
     let relevant = if may_be_small { CLEARLY } else { RELEVANT };
     if said.size < relevant {
         return no(format!("is less than {} % of the torque", 100.0 * relevant));
@@ -380,6 +402,9 @@ fn refused(
     }
     if id == "ripple" && search.is_open() {
         return no("is there in any motor: a baseline would tell what changed".to_owned());
+    }
+    if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {
+        return no("is no more than friction differs by from hour to hour".to_owned());
     }
     if said.nats < least {
         return no(format!("brings {:.1} nats only", said.nats));
@@ -432,100 +457,11 @@ fn matters(search: &Search<'_, '_>, polished: &Polished, of: &Fitted) -> bool {
     {
         return false;
     }
+    if of.effect.id == "warm_up" && !fades(search, of) {
+        return false;
+    }
     size(search, of.effect, &[of]) >= CLEARLY
         && !(is_ripple && of.parameters[0] < noise(search, of.joint))
-}
-
-/// Ripple of a joint that nobody asks for \[Nm\].
-fn noise(search: &Search<'_, '_>, joint: Option<usize>) -> f64 {
-    let of = |record: &Record<'_>| {
-        let variance = record.variance[joint.unwrap_or(0)];
-        variance * if record.kind == RecordKind::Mean { record.repetitions as f64 } else { 1.0 }
-    };
-    BELOW_NOISE * search.records.iter().map(of).fold(0.0, f64::max).sqrt()
-}
-
-/// The largest share that an effect has in the torques of a joint.
-fn size(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> f64 {
-    let [squares, all, _] = squares(search, effect, fitted);
-    squares.iter().zip(&all).map(|(x, all)| (x / all.max(1e-12)).sqrt()).fold(0.0, f64::max)
-}
-
-/// The largest rms of an effect at a joint, over what is missed there.
-fn beside_missed(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> f64 {
-    let [squares, _, rows] = squares(search, effect, fitted);
-    (0..search.dof())
-        .map(|joint| {
-            (squares[joint] / rows[joint].max(1.0)).sqrt() / search.missed(joint).max(1e-12)
-        })
-        .fold(0.0, f64::max)
-}
-
-/// By joint, sums of squares of an effect and of the torques, and the number of rows.
-fn squares(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> [Vec<f64>; 3] {
-    let mut sums = [vec![0.0; MAX_DOF], vec![0.0; MAX_DOF], vec![0.0; MAX_DOF]];
-    let mean = |record: &&Record<'_>| record.kind == RecordKind::Mean;
-    for record in search.records.iter().filter(mean) {
-        let motion = &record.motion;
-        for of in fitted {
-            let joint = of
-                .joint
-                .unwrap_or_else(|| (effect.joints)(motion.model.dof).first().copied().unwrap_or(0));
-            for (to, series) in shown(search, effect, record, joint, &of.coordinates) {
-                sums[0][to] += series.iter().map(|x| x * x).sum::<f64>();
-            }
-        }
-        for joint in 0..motion.model.dof {
-            sums[1][joint] += record.measured[joint].iter().map(|x| x * x).sum::<f64>();
-            sums[2][joint] += motion.len() as f64;
-        }
-    }
-    sums
-}
-
-/// The largest share of the torque of an effect's joints that the model misses.
-fn missed(search: &Search<'_, '_>, fitted: &[&Fitted]) -> f64 {
-    let (mut squares, mut all) = (vec![0.0; MAX_DOF], vec![1e-12; MAX_DOF]);
-    for record in search.records.iter().filter(|record| record.kind == RecordKind::Mean) {
-        for joint in 0..record.motion.model.dof {
-            for (x, y) in record.measured[joint].iter().zip(&record.motion.torque[joint]) {
-                squares[joint] += (x - y).powi(2);
-                all[joint] += x * x;
-            }
-        }
-    }
-    let asked = |joint: &usize| {
-        fitted.iter().all(|of| {
-            of.joint.is_none_or(|own| own == *joint || own == 5 && *joint == 4) || fitted.len() > 1
-        })
-    };
-    (0..MAX_DOF).filter(asked).map(|joint| (squares[joint] / all[joint]).sqrt()).fold(0.0, f64::max)
-}
-
-/// What an effect adds to a motion; of what fades, only what has faded over all logs counts.
-fn shown(
-    search: &Search<'_, '_>,
-    effect: &Effect,
-    record: &Record<'_>,
-    joint: usize,
-    coordinates: &[f64],
-) -> Vec<(usize, Vec<f64>)> {
-    if effect.id != "warm_up" {
-        return effect.added(&record.motion, joint, coordinates);
-    }
-    let times = search.records.iter().flat_map(|record| record.times.iter().map(|(t, _)| *t));
-    let (first, last) = times
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(first, last), t| (first.min(t), last.max(t)));
-    let at = |later: f64| {
-        let mut moved = record.motion.clone();
-        moved.t.iter_mut().for_each(|t| *t += later);
-        effect.added(&moved, joint, coordinates)
-    };
-    at(first)
-        .into_iter()
-        .zip(at(last))
-        .map(|((joint, a), (_, b))| (joint, a.iter().zip(&b).map(|(a, b)| a - b).collect()))
-        .collect()
 }
 
 /// What cannot be told from the effect, and how probable it is.
@@ -564,7 +500,7 @@ fn rivals(
 /// Parameters depend on the form that a law is taken to have.
 fn of_form(mut parameters: Vec<Estimated>, form: f64) -> Vec<Estimated> {
     for of in &mut parameters {
-        of.sd = of.sd.hypot(FORM_SPREAD * form * of.value);
+        of.sd = of.sd.hypot((FORM_SPREAD * form).max(LEAST_SPREAD) * of.value);
     }
     parameters
 }

@@ -5,6 +5,7 @@
 
 mod attribution;
 mod bins;
+mod chance;
 mod channel;
 mod column;
 mod diagnose;
@@ -31,6 +32,7 @@ mod ripples;
 mod rows;
 mod runs;
 mod search;
+mod sizes;
 mod spectrum;
 mod table;
 mod traces;

@@ -33,6 +33,8 @@ const OF_FIRST_JOINT: f64 = 0.3;
 const WORTH: f64 = 3.0;
 /// Effects at most.
 const MOST: usize = 6;
+/// Exchanges at most.
+const EXCHANGES: usize = 2;
 /// Effects of a quick search at most.
 const QUICK: usize = 2;
 
@@ -77,6 +79,8 @@ pub struct Search<'a, 'm> {
     pub(super) kept: Vec<usize>,
     /// Whether some log does not tell its noise.
     pub(super) open: bool,
+    /// What the best family reaches by chance \[nats\].
+    pub(super) chance: f64,
     /// Families at joints whose parameters came out as they cannot be.
     impossible: Vec<(usize, Option<usize>)>,
     /// Ids that are not looked for.
@@ -114,6 +118,7 @@ impl<'a, 'm> Search<'a, 'm> {
             kept: Vec::new(),
             impossible: Vec::new(),
             open,
+            chance: 0.0,
             banned: if open && lasts < WARMS { vec!["warm_up"] } else { Vec::new() },
             families: families(&table),
             table,
@@ -185,14 +190,60 @@ impl<'a, 'm> Search<'a, 'm> {
         self.evidence.given(&self.columns(set))
     }
 
-    /// The best set of effects, found one after another. Each is brought to its best shape
-    /// before the next one is looked for: what a coarse shape leaves is no other effect.
+    /// The best set of effects: found one after another, unless some pair or an exchange of one
+    /// member explains more.
     pub fn run(&mut self) -> Found {
         self.impossible.clear();
-        self.run_from(Found { chosen: Vec::new(), score: 0.0 })
+        let mut found = self.run_from(Found { chosen: Vec::new(), score: 0.0 });
+        for _ in 0..EXCHANGES {
+            let better = [self.best_pair(), self.exchanged(&found)].into_iter().flatten();
+            let best = better.max_by(|a, b| a.score.total_cmp(&b.score));
+            let Some(mut other) = best.filter(|of| of.score > found.score + WORTH) else { break };
+            self.refine(&mut other);
+            let other = self.run_from(other);
+            if other.score <= found.score {
+                break;
+            }
+            found = other;
+        }
+        found
     }
 
-    /// The best set that one leads to.
+    /// The best of all pairs of families, at the shapes as they are.
+    fn best_pair(&self) -> Option<Found> {
+        let none = self.given(&[]);
+        let singles: Vec<Found> = (0..self.families.len())
+            .into_par_iter()
+            .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
+            .filter_map(|family| self.with(&none, &[], family))
+            .collect();
+        singles
+            .into_par_iter()
+            .filter_map(|first| {
+                let given = self.given(&first.chosen);
+                let own = first.chosen.first().map_or(0, |of| of.family);
+                (own + 1..self.families.len())
+                    .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
+                    .filter_map(|family| self.with(&given, &first.chosen, family))
+                    .max_by(|a, b| a.score.total_cmp(&b.score))
+            })
+            .max_by(|a, b| a.score.total_cmp(&b.score))
+    }
+
+    /// The best set in which another family has the place of one.
+    fn exchanged(&self, found: &Found) -> Option<Found> {
+        (0..found.chosen.len())
+            .filter_map(|place| {
+                let mut rest = found.chosen.clone();
+                rest.remove(place);
+                let score = self.score(&rest);
+                self.next(&Found { chosen: rest, score })
+            })
+            .max_by(|a, b| a.score.total_cmp(&b.score))
+    }
+
+    /// The best set of effects that one after another leads to. Each is brought to its best shape
+    /// before the next one is looked for: what a coarse shape leaves is no other effect.
     pub fn run_from(&mut self, mut found: Found) -> Found {
         while found.chosen.len() < MOST {
             match self.next(&found) {

@@ -22,6 +22,8 @@ const TERMS: usize = 6;
 const FEW_TERMS: usize = 4;
 /// Deviations of the mean square that a fit leaves of noise alone, beyond which it does not fit.
 const UNFIT: f64 = 5.0;
+/// Places of a window around a sample that are tried, about.
+const PLACES: usize = 8;
 /// The quantile of the changes within a window that counts as fast, and the share of it that
 /// counts as moving.
 const FAST: f64 = 0.9;
@@ -145,8 +147,11 @@ impl<'a> Smooth<'a> {
         let mut least: Option<Fit> = None;
         for half in HALF_WIDTHS.into_iter().filter(|other| *other <= half) {
             let width = 2 * half + 1;
-            let firsts = (i + 1).saturating_sub(width).max(from)..=i.min(to.saturating_sub(width));
-            for first in firsts {
+            let [low, high] =
+                [(i + 1).saturating_sub(width).max(from), i.min(to.saturating_sub(width))];
+            let places = (low..high).step_by((width / PLACES).max(1)).chain([high]);
+            // A section shorter than the window has no place for it.
+            for first in places.filter(|first| *first >= low) {
                 for terms in [FEW_TERMS, TERMS] {
                     let Some(fit) = window_fit(self.t, self.x, first..first + width, i, terms)
                     else {

@@ -102,6 +102,7 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
         "next_experiment": next(found, basis)
             .map(|(why, command)| json!({"why": why, "command": command})),
         "model_error_percent": 100.0 * found.error,
+        "null_nats": found.chance,
         "reasons": found.reasons,
         "notes": basis.notes,
         "model": basis.model,
