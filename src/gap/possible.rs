@@ -120,3 +120,32 @@ fn nearest(parameters: &[f64]) -> [f64; RIGID] {
     eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(least));
     body_parameters(&eigen.recompose())
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::*;
+    use crate::effects::find;
+
+    /// Mass, centre, moments about it: one with a negative moment, one that a body has.
+    const LOADS: [[f64; RIGID]; 2] = [
+        [3.0, 0.02, 0.03, 0.1, -0.4, 0.01, 0.01, 0.0, 0.0, 0.0],
+        [3.0, 0.02, 0.03, 0.1, 0.02, 0.02, 0.02, 0.0, 0.0, 0.0],
+    ];
+
+    #[test]
+    fn a_load_that_no_body_has_keeps_its_mass_and_centre() {
+        let model = crate::robot::load("IRB1600-10/1.45").unwrap();
+        let payload = find("payload").unwrap();
+        let last = model.links.last().unwrap();
+        let both =
+            |load: &[f64]| with_body(last, &model.kinematics.flange, &payload.coordinates_of(load));
+        let [impossible, own] = LOADS;
+        assert!(!both(&impossible).is_consistent());
+        let found = possible_load(&model, payload, &impossible);
+        assert!(both(&found).is_consistent());
+        assert_eq!(found[..4], impossible[..4]);
+        assert_eq!(possible_load(&model, payload, &own), own);
+    }
+}
