@@ -92,6 +92,16 @@ fn rotors_and_losses() {
     assert_eq!(changed.sensors.torque_error[1], 0.05);
 }
 
+/// The bound of one effect is no matter of another one's numbers.
+#[test]
+fn a_joint_may_rub_less_at_breakaway_down_to_nothing() {
+    let text = "extends = \"IRB1600-10/1.45\"\nname = \"changed\"\n\
+                [effects.cable]\nstiffness_j2 = -100\n\
+                [effects.stribeck]\nstiction_j2 = -12\nvelocity_j2 = 0.1\n";
+    let model = from_toml("robot.toml", text).unwrap();
+    assert_eq!(model.friction.coulomb[1], 12.0);
+}
+
 #[test]
 fn wrong_effects_say_why() {
     let messages = [
@@ -101,6 +111,8 @@ fn wrong_effects_say_why() {
         "[effects.stribeck]\njoint = 7\nstiction = 1",
         "[effects.stribeck]\nstiction_j2 = 1\nvelocity_j2 = 0",
         "[effects.stribeck]\nstiction_j2 = 1\nvelocity_j7 = 0.1",
+        "[effects.stribeck]\nstiction_j2 = -13\nvelocity_j2 = 0.1",
+        "[effects.stribeck]\nstiction_j2 = -11\nvelocity_j2 = 0.1\n[effects.friction_level]\ncoulomb_j2 = -2",
         "[effects.friction_level]\ncoulomb_j2 = -1000",
         "[effects.payload]\nmass = -50",
         "[effects.payload]\nmas = 5",

@@ -51,6 +51,8 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
             kept.push(given);
         }
     }
+    // Other effects change the Coulomb friction, before or behind.
+    kept.iter().try_for_each(|given| check_breakaway(&model, given))?;
     model.effects = kept;
     Ok(model)
 }
@@ -81,18 +83,8 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
 
 /// Coordinates of an effect at a joint; `None` where it has none of it.
 fn coordinates(effect: &Effect, given: &EffectParameters, joint: usize) -> Option<Vec<f64>> {
-    let parameters: Vec<f64> = effect
-        .parameters
-        .iter()
-        .map(|parameter| {
-            let value = given.values.iter().find(|(name, _)| name == parameter.name);
-            match value {
-                Some((_, Given::Robot(value))) => *value,
-                Some((_, Given::Joints(list))) => list.get(joint).copied().unwrap_or(0.0),
-                None => 0.0,
-            }
-        })
-        .collect();
+    let parameters: Vec<f64> =
+        effect.parameters.iter().map(|parameter| value(given, parameter.name, joint)).collect();
     let named = effect.of == Of::Robot || parameters.iter().any(|value| *value != 0.0);
     named.then(|| effect.coordinates_of(&parameters))
 }
@@ -131,22 +123,15 @@ fn check_names(effect: &Effect, given: &EffectParameters, dof: usize) -> Result<
 }
 
 fn check_bounds(effect: &Effect, given: &EffectParameters, dof: usize) -> Result<(), RobotError> {
-    let value = |name: &str, joint: usize| {
-        let found = given.values.iter().find(|(known, _)| known == name);
-        found.map_or(0.0, |(_, given)| match given {
-            Given::Robot(value) => *value,
-            Given::Joints(list) => list.get(joint).copied().unwrap_or(0.0),
-        })
-    };
     for joint in (effect.joints)(dof) {
         // All 0 stands for a joint without the effect.
-        let named = |p: &&Parameter| value(p.name, joint) != 0.0;
+        let named = |p: &&Parameter| value(given, p.name, joint) != 0.0;
         if effect.parameters.iter().all(|p| !named(&p)) {
             continue;
         }
         for parameter in effect.parameters {
             let [low, high] = parameter.bounds;
-            let value = value(parameter.name, joint);
+            let value = value(given, parameter.name, joint);
             if !(low..=high).contains(&value) {
                 let must = if high.is_finite() {
                     format!("from {low} to {high}")
@@ -160,23 +145,40 @@ fn check_bounds(effect: &Effect, given: &EffectParameters, dof: usize) -> Result
     Ok(())
 }
 
+/// Friction below none at breakaway, with which a joint would move itself.
+fn check_breakaway(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
+    if given.id != "stribeck" {
+        return Ok(());
+    }
+    for (joint, coulomb) in model.friction.coulomb.iter().enumerate() {
+        let stiction = value(given, "stiction", joint);
+        if stiction < -coulomb {
+            let least = format!(
+                "{} or more, no less than the Coulomb friction of joint {}",
+                -coulomb,
+                joint + 1
+            );
+            return Err(wrong(given, "stiction", stiction, &least));
+        }
+    }
+    Ok(())
+}
+
+/// A parameter that is given of a joint; 0 where it is not.
+fn value(given: &EffectParameters, name: &str, joint: usize) -> f64 {
+    let found = given.values.iter().find(|(known, _)| known == name);
+    found.map_or(0.0, |(_, given)| match given {
+        Given::Robot(value) => *value,
+        Given::Joints(list) => list.get(joint).copied().unwrap_or(0.0),
+    })
+}
+
 /// Numbers that no robot has.
 fn check_model(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     let friction = &model.friction;
     for (name, list) in [("coulomb", &friction.coulomb), ("viscous", &friction.viscous)] {
         if let Some(value) = list.iter().find(|value| **value < 0.0) {
             return Err(wrong(given, name, *value, "0 or more"));
-        }
-    }
-    if given.id == "stribeck" {
-        // With less friction than none at breakaway a joint would move itself.
-        for law in &model.laws {
-            let [stiction, ..] = law.values;
-            if stiction < -friction.coulomb[law.joint] {
-                let least =
-                    format!("{} or more, the Coulomb friction", -friction.coulomb[law.joint]);
-                return Err(wrong(given, "stiction", stiction, &least));
-            }
         }
     }
     if let Some(motors) = &model.motors {
@@ -191,12 +193,7 @@ fn check_model(model: &Model, given: &EffectParameters) -> Result<(), RobotError
         && !(last.mass > 0.0 && last.is_consistent())
     {
         let must = "a load that leaves the last link a body";
-        let mass = given.values.iter().find(|(name, _)| name == "mass");
-        let mass = match mass {
-            Some((_, Given::Robot(mass))) => *mass,
-            _ => 0.0,
-        };
-        return Err(wrong(given, "mass", mass, must));
+        return Err(wrong(given, "mass", value(given, "mass", 0), must));
     }
     if model.drive.base_w < 0.0 {
         return Err(wrong(given, "power", model.drive.base_w, "0 or more"));

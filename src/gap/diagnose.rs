@@ -107,8 +107,7 @@ pub fn diagnose_telling(
     // What a law is worth shows where nothing else follows its form.
     let laws = search.without_forms(&found);
     let polished = search.polish(&laws);
-    search.chance = chance;
-    let mut judged = judged(&search, &found, polished.as_ref());
+    let mut judged = judged(&search, &found, polished.as_ref(), chance);
     // What is not asserted is not in the model, so that its parameters are those without it.
     let kept: Vec<Chosen> = found
         .chosen

@@ -61,6 +61,7 @@ const SMOOTH: [&str; 6] = [
 /// joint that is told, of what is missed beside it: real robots have a little of all effects.
 const OF_MISSED: f64 = 0.8;
 const AT_JOINT: f64 = 0.5;
+
 /// What may be said of what was found.
 pub(super) struct Judged {
     pub(super) verdict: Verdict,
@@ -203,11 +204,12 @@ impl Judged {
     }
 }
 
-/// What may be said of a set.
+/// What may be said of a set; `chance` is what the best family reaches where nothing is \[nats\].
 pub(super) fn judged(
     search: &Search<'_, '_>,
     found: &Found,
     polished: Option<&Polished>,
+    chance: f64,
 ) -> Judged {
     let mut judged = Judged {
         verdict: Verdict::ParametersOnly,
@@ -270,7 +272,7 @@ pub(super) fn judged(
                 let fitted = if matter.is_empty() { all_of } else { matter };
                 let fades = effect.id == "warm_up";
                 let least = if fades { LEAST_OF_TIME } else { LEAST_NATS };
-                let least = least.max(OF_STRONGEST * strongest).max(search.chance);
+                let least = least.max(OF_STRONGEST * strongest).max(chance);
                 let (class, probability) = if drops[k] < least && form[k] == 0.0 {
                     (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
                 } else {

@@ -79,8 +79,6 @@ pub struct Search<'a, 'm> {
     pub(super) kept: Vec<usize>,
     /// Whether some log does not tell its noise.
     pub(super) open: bool,
-    /// What the best family reaches by chance \[nats\].
-    pub(super) chance: f64,
     /// Families at joints whose parameters came out as they cannot be.
     impossible: Vec<(usize, Option<usize>)>,
     /// Ids that are not looked for.
@@ -118,7 +116,6 @@ impl<'a, 'm> Search<'a, 'm> {
             kept: Vec::new(),
             impossible: Vec::new(),
             open,
-            chance: 0.0,
             banned: if open && lasts < WARMS { vec!["warm_up"] } else { Vec::new() },
             families: families(&table),
             table,
@@ -173,13 +170,18 @@ impl<'a, 'm> Search<'a, 'm> {
         found
     }
 
+    /// Numbers of the families that are looked for.
+    pub(super) fn wanted(&self) -> Vec<usize> {
+        let is_wanted = |of: &usize| !self.banned.contains(&self.families[*of].owner.id());
+        (0..self.families.len()).filter(is_wanted).collect()
+    }
+
     /// The best set with one family more.
     fn next(&self, found: &Found) -> Option<Found> {
         let given = self.given(&found.chosen);
-        (0..self.families.len())
+        self.wanted()
             .into_par_iter()
             .filter(|family| found.chosen.iter().all(|of| of.family != *family))
-            .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
             .filter_map(|family| self.with(&given, &found.chosen, family))
             .max_by(|a, b| a.score.total_cmp(&b.score))
     }
@@ -199,9 +201,12 @@ impl<'a, 'm> Search<'a, 'm> {
             let better = [self.best_pair(), self.exchanged(&found)].into_iter().flatten();
             let best = better.max_by(|a, b| a.score.total_cmp(&b.score));
             let Some(mut other) = best.filter(|of| of.score > found.score + WORTH) else { break };
-            self.refine(&mut other);
-            let other = self.run_from(other);
-            if other.score <= found.score {
+            let before = self.evidence.null + found.score;
+            self.settle(&mut other);
+            other = self.run_from(other);
+            if self.evidence.null + other.score <= before {
+                // Shapes and variances are the other one's now.
+                self.settle(&mut found);
                 break;
             }
             found = other;
@@ -211,23 +216,18 @@ impl<'a, 'm> Search<'a, 'm> {
 
     /// The best of all pairs of families, at the shapes as they are.
     fn best_pair(&self) -> Option<Found> {
-        let none = self.given(&[]);
-        let singles: Vec<Found> = (0..self.families.len())
-            .into_par_iter()
-            .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
-            .filter_map(|family| self.with(&none, &[], family))
-            .collect();
+        let (none, wanted) = (self.given(&[]), self.wanted());
+        let best = |a: &Found, b: &Found| a.score.total_cmp(&b.score);
+        let singles = wanted.par_iter().filter_map(|first| self.with(&none, &[], *first));
         singles
-            .into_par_iter()
-            .filter_map(|first| {
-                let given = self.given(&first.chosen);
-                let own = first.chosen.first().map_or(0, |of| of.family);
-                (own + 1..self.families.len())
-                    .filter(|family| !self.banned.contains(&self.families[*family].owner.id()))
-                    .filter_map(|family| self.with(&given, &first.chosen, family))
-                    .max_by(|a, b| a.score.total_cmp(&b.score))
+            .filter_map(|single| {
+                let given = self.given(&single.chosen);
+                // Pairs count once: with a family that comes later.
+                let later =
+                    wanted.iter().filter(|of| single.chosen.iter().all(|own| own.family < **of));
+                later.filter_map(|second| self.with(&given, &single.chosen, *second)).max_by(best)
             })
-            .max_by(|a, b| a.score.total_cmp(&b.score))
+            .max_by(best)
     }
 
     /// The best set in which another family has the place of one.
@@ -251,11 +251,7 @@ impl<'a, 'm> Search<'a, 'm> {
                 _ => break,
             }
             found = self.without_needless(found);
-            self.refine(&mut found);
-            if self.is_open() {
-                self.match_excess(&found.chosen);
-                found.score = self.score(&found.chosen);
-            }
+            self.settle(&mut found);
             found = self.without_impossible(found);
         }
         found
@@ -306,9 +302,7 @@ impl<'a, 'm> Search<'a, 'm> {
         }
         found.chosen.retain(|of| !of.pieces.is_empty());
         self.evidence = self.table.evidence(self.error);
-        self.refine(&mut found);
-        self.match_excess(&found.chosen);
-        found.score = self.score(&found.chosen);
+        self.settle(&mut found);
         found
     }
 
@@ -333,6 +327,15 @@ impl<'a, 'm> Search<'a, 'm> {
         let is_level = |of: &&Fitted| of.effect.id == "friction_level" && of.joint == Some(joint);
         let level = polished.effects.iter().find(is_level).map_or(0.0, |of| of.parameters[0]);
         nominal.unwrap_or(0.0) + refit + level
+    }
+
+    /// Shapes become the best ones, then what they leave the variance of a log that tells none.
+    fn settle(&mut self, found: &mut Found) {
+        self.refine(found);
+        if self.is_open() {
+            self.match_excess(&found.chosen);
+            found.score = self.score(&found.chosen);
+        }
     }
 
     /// Shapes of what was found become the best ones.
