@@ -13,8 +13,21 @@ const DELAYS: [f64; 18] = [
 /// Lags that are tried at first \[s\].
 const LAGS: [f64; 11] =
     [0.001, 0.002, 0.003, 0.0045, 0.006, 0.008, 0.01, 0.013, 0.016, 0.02, 0.025];
-/// Rounds of finer steps.
-const ROUNDS: usize = 7;
+/// Least value \[s\], first steps of a search for the best one, of itself, and the least step \[s\].
+const LEAST: f64 = 1e-3;
+const COARSE: f64 = 0.3;
+const FINE: f64 = 0.1;
+const STEP: f64 = 1e-6;
+/// Rounds of such a search at most, and how far a parabola reaches beyond its points, in steps.
+const ROUNDS: usize = 8;
+const REACH: f64 = 2.0;
+/// Deviations that the best value may still move, and of steps that tell a deviation.
+const NEAR: f64 = 0.1;
+const WIDE: f64 = 2.0;
+/// Deviations by which a value has to move to be another one.
+const STAYS: f64 = 0.3;
+/// How far behind another kind may be before its best value is looked for.
+const CLOSE: f64 = 50.0;
 /// What a delay or a lag has to bring before all else is looked at.
 const WORTH: f64 = 15.0;
 /// The same in a log that does not tell its noise, and how many steps it is late at least.
@@ -103,11 +116,14 @@ impl Search<'_, '_> {
         // With a large error of the model nothing would be late.
         self.error = errors.get(1).copied().unwrap_or(error);
         let mut best: Option<Late> = None;
+        let none = self.total(Late::none(), &[]);
         for (kind, joint, value) in self.suspected(&kinds) {
-            let late = self.tuned(kind, joint, &[], value);
+            let step = COARSE * value.abs().max(LEAST);
+            let late = self.tuned(Late { kind, joint, value, ..Late::none() }, &[], step);
             let cost = if joint.is_some() { JOINT } else { 0.0 };
-            if late.nats - cost > best.map_or(WORTH, |best| best.nats) {
-                best = Some(Late { nats: late.nats - cost, ..late });
+            let nats = late.nats - none - cost;
+            if nats > best.map_or(WORTH, |best| best.nats) {
+                best = Some(Late { nats, ..late });
             }
         }
         let Some(late) = best else {
@@ -192,60 +208,76 @@ impl Search<'_, '_> {
     /// The delay or lag that was found, tuned once more with some columns there.
     pub(super) fn tune(&mut self, columns: &[usize]) {
         let Some(late) = self.late else { return };
-        let mut best: Option<Late> = None;
-        for kind in [Kind::Delay, Kind::Lag] {
-            let tuned = self.tuned(kind, late.joint, columns, late.value);
-            if best.is_none_or(|best| tuned.nats > best.nats) {
-                best = Some(tuned);
-            }
+        let own = if late.sd.is_finite() { late.sd } else { FINE * late.value.abs() };
+        let mut best = self.tuned(late, columns, own.max(STEP));
+        let other = match late.kind {
+            Kind::Delay => Kind::Lag,
+            Kind::Lag => Kind::Delay,
+        };
+        let value = late.value.abs().max(LEAST);
+        let other = Late { kind: other, value, ..late };
+        // Another kind takes the place where it may come close.
+        let likely = self.total(other, columns) > best.nats - CLOSE;
+        if likely {
+            let tuned = self.tuned(other, columns, FINE * value);
+            best = if tuned.nats > best.nats { tuned } else { best };
         }
-        if let Some(tuned) = best {
-            let late = Late { nats: late.nats, ..tuned };
-            self.late = Some(late);
-            self.set_channels(&late.channels(self.dof()));
+        if best.kind == late.kind && (best.value - late.value).abs() <= STAYS * best.sd {
+            self.table.through(self.records, &self.channels, columns);
+            return;
         }
+        let late = Late { nats: late.nats, ..best };
+        self.late = Some(late);
+        self.set_channels(&late.channels(self.dof()));
     }
 
-    /// The best value of a kind with some columns there; its gain is over none.
-    fn tuned(&mut self, kind: Kind, joint: Option<usize>, columns: &[usize], near: f64) -> Late {
+    /// How probable the measurement is with what is late, and some columns.
+    fn total(&mut self, late: Late, columns: &[usize]) -> f64 {
+        self.table.through(self.records, &late.channels(self.dof()), columns);
+        let evidence = self.table.evidence_of(self.error, columns);
         let all: Vec<usize> = (0..columns.len()).collect();
-        let dof = self.dof();
-        let total = |search: &mut Search<'_, '_>, value: f64| {
-            let late = Late { kind, joint, value, sd: 0.0, nats: 0.0 };
-            search.table.through(search.records, &late.channels(dof), columns);
-            let evidence = search.table.evidence_of(search.error, columns);
-            evidence.null + evidence.gain(&all)
+        evidence.null + evidence.gain(&all)
+    }
+
+    /// The best value of a kind with some columns there, from one near it and `step` beside it on.
+    fn tuned(&mut self, from: Late, columns: &[usize], mut step: f64) -> Late {
+        let mut total = |value: f64| {
+            let is_possible = from.kind == Kind::Delay || value > 0.0;
+            if is_possible {
+                self.total(Late { value, ..from }, columns)
+            } else {
+                f64::NEG_INFINITY
+            }
         };
-        let none = total(self, 0.0);
-        let near = if kind == Kind::Lag { near.abs() } else { near };
-        let (mut value, mut most) = (0.0, none);
-        let found = total(self, near);
-        if found > most {
-            (value, most) = (near, found);
-        }
-        let mut sd = f64::INFINITY;
-        if most > none + WORTH || !columns.is_empty() {
-            let share = if columns.is_empty() { 0.3 } else { 0.1 };
-            let mut step = share * value.abs().max(1e-3);
-            for _ in 0..ROUNDS {
-                let [low, high] = [value - step, value + step].map(|next| {
-                    let allowed = kind == Kind::Delay || next > 0.0;
-                    if allowed { total(self, next) } else { f64::NEG_INFINITY }
-                });
-                let bend = 2.0 * most - low - high;
-                if bend > 0.0 && bend.is_finite() {
-                    sd = step / bend.sqrt();
+        let (mut value, mut most, mut sd) = (from.value, total(from.value), f64::INFINITY);
+        for _ in 0..ROUNDS {
+            let [low, high] = [value - step, value + step].map(&mut total);
+            let before = value;
+            let bend = 2.0 * most - low - high;
+            if low.max(high) > most {
+                let beside = if low > high { value - step } else { value + step };
+                (value, most) = (beside, low.max(high));
+            }
+            if bend > 0.0 && bend.is_finite() {
+                // Parabola through the three.
+                sd = step / bend.sqrt();
+                let top =
+                    before + (0.5 * step * (high - low) / bend).clamp(-REACH * step, REACH * step);
+                if (top - before).abs() > NEAR * sd {
+                    let at_top = total(top);
+                    if at_top > most {
+                        (value, most) = (top, at_top);
+                    }
                 }
-                if low > most {
-                    (value, most) = (value - step, low);
-                } else if high > most {
-                    (value, most) = (value + step, high);
-                } else {
-                    step *= 0.5;
+                if (value - before).abs() <= NEAR * sd && step <= WIDE * sd {
+                    break;
                 }
+                step = step.min(sd).max(STEP);
+            } else if value == before {
+                step *= 0.5;
             }
         }
-        Late { kind, joint, value, sd, nats: most - none }
+        Late { value, sd, nats: most, ..from }
     }
 }
 

@@ -3,6 +3,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::table::Products;
+
 /// Marginal likelihoods at one size of the model's own error.
 pub struct Evidence {
     /// `ΦᵀWΦ` with the parameters marginalised.
@@ -97,6 +99,24 @@ impl Evidence {
             null: log_weights - 0.5 * left - log_det,
             misfit: left / rows.max(1) as f64,
             rows,
+        }
+    }
+
+    /// Takes other columns in the place of some.
+    pub(super) fn replace(&mut self, products: &Products) {
+        let Some(of) = &mut self.parameters else { return };
+        let (count, first) = (of.y.len(), 1 + of.y.len());
+        for (place, column) in products.of.iter().zip(products.with.column_iter()) {
+            of.c.column_mut(*place).copy_from(&column.rows(1, count));
+        }
+        for (k, place) in products.of.iter().enumerate() {
+            let column = products.with.column(k);
+            let told = of.factor.solve(&column.rows(1, count).into_owned());
+            let left = column.rows_range(first..) - of.c.tr_mul(&told);
+            self.a.column_mut(*place).copy_from(&left);
+            self.a.row_mut(*place).tr_copy_from(&left);
+            self.b[*place] = column[0] - of.y.dot(&told);
+            (self.means[*place], self.sds[*place]) = (products.means[k], products.sds[k]);
         }
     }
 
@@ -210,5 +230,39 @@ impl Evidence {
             }
         }
         (fixed, left)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding.
+    const SAME: f64 = 1e-12;
+
+    /// Products of a difference, two parameters and three columns over some rows.
+    fn products(columns: &DMatrix<f64>) -> Evidence {
+        let gram = columns.transpose() * columns;
+        let [means, sds] =
+            [[0.0, 1.0, 0.0], [2.0, 0.5, 1.0]].map(|of| DVector::from_row_slice(&of));
+        Evidence::new(&gram, 2, means, sds, 0.0, columns.nrows())
+    }
+
+    #[test]
+    fn a_replaced_column_counts_as_if_it_had_always_been_there() {
+        let mut random = fastrand::Rng::with_seed(5);
+        let before = DMatrix::from_fn(20, 6, |_, _| random.f64() - 0.5);
+        let mut after = before.clone();
+        after.column_mut(4).iter_mut().for_each(|x| *x = random.f64());
+        let mut evidence = products(&before);
+        let with = DMatrix::from_columns(&[after.transpose() * after.column(4)]);
+        evidence.replace(&Products { of: vec![1], with, means: vec![1.0], sds: vec![0.5] });
+        let anew = products(&after);
+        for columns in [vec![0, 1, 2], vec![1], vec![0, 2]] {
+            assert!((evidence.gain(&columns) - anew.gain(&columns)).abs() < SAME);
+            let factors = DVector::from_element(columns.len(), 0.3);
+            let [a, b] = [&evidence, &anew].map(|of| of.parameters(&columns, &factors));
+            assert!((a - b).norm() < SAME);
+        }
     }
 }

@@ -147,6 +147,6 @@ impl Search<'_, '_> {
         }
         let columns = self.columns(set);
         self.table.match_excess(self.error, &columns);
-        self.evidence = self.table.evidence(self.error);
+        self.weigh();
     }
 }

@@ -89,7 +89,7 @@ impl Search<'_, '_> {
             for (laws, needed) in [(others, FORM), (own, OWN_FORM)] {
                 let mut best: Option<Found> = None;
                 for mut law in laws.into_iter().take(TRIED) {
-                    self.refine(&mut law);
+                    self.refine(&mut law, rest.len());
                     if best.as_ref().is_none_or(|best| law.score > best.score) {
                         best = Some(law);
                     }

@@ -10,11 +10,15 @@ use super::search::{Chosen, Search};
 const PARTS: usize = 20;
 /// Lengths of windows, in parts.
 const LENGTHS: [usize; 6] = [1, 2, 3, 4, 5, 7];
+/// First steps of a window, in parts: of one that was found so and of one that is sharp already.
+const BLUNT: f64 = 0.5;
+const SHARP: f64 = 0.0625;
 /// The finest step of a window, in parts.
 const FINEST: f64 = 0.02;
 
-/// First step of a coupling is half of this.
-const COUPLING: f64 = 0.4;
+/// An effect whose shape is a coupling, and twice the first step of that.
+pub(super) const COUPLING: &str = "wrist_coupling";
+const OF_COUPLING: f64 = 0.4;
 
 /// Functions of time that were found, whose windows may be gated effects.
 pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
@@ -63,31 +67,34 @@ pub(super) fn gated(
 }
 
 impl Search<'_, '_> {
-    /// Moves the ends of windows as long as it helps.
-    pub(super) fn sharpen(&mut self, set: &[Chosen]) {
+    /// Moves the ends of windows of some pieces of a set as long as it helps.
+    pub(super) fn sharpen(&mut self, set: &[Chosen], pieces: &[usize]) {
         let columns = self.columns(set);
         let all: Vec<usize> = (0..columns.len()).collect();
-        for piece in set.iter().flat_map(|of| of.pieces.clone()) {
+        for piece in pieces.iter().copied() {
             let placed = &self.table.pieces[piece];
             let Owner::Effect(effect) = placed.owner else { continue };
             let count = placed.shape.len();
             let has_window =
                 GATED.contains(&effect.id) && placed.shape[count - 2] > placed.shape[count - 3];
             // Where another motor turns back is no smooth function of the coupling.
-            let is_coupling = effect.id == "wrist_coupling";
+            let is_coupling = effect.id == COUPLING;
             if !has_window && !is_coupling {
                 continue;
             }
-            let joint = placed.joint.unwrap_or(0);
             let mut best = placed.shape.clone();
-            let mut most = self.table.evidence_of(self.error, &columns).gain(&all);
+            let own = placed.columns.clone();
+            let own: Vec<usize> =
+                all.iter().copied().filter(|k| own.contains(&columns[*k])).collect();
+            let mut evidence = self.table.evidence_of(self.error, &columns);
+            let mut most = evidence.gain(&all);
             let lasts = self
                 .records
                 .first()
                 .map_or(0.0, |record| record.motion.step() * record.motion.len() as f64);
-            let part = if is_coupling { COUPLING } else { lasts / PARTS as f64 };
+            let part = if is_coupling { OF_COUPLING } else { lasts / PARTS as f64 };
             let ends: &[usize] = if is_coupling { &[0] } else { &[count - 3, count - 2] };
-            let mut reach = 0.5;
+            let mut reach = if self.sharp.contains(&piece) { SHARP } else { BLUNT };
             while reach > FINEST {
                 let mut improved = false;
                 for end in ends.iter().copied() {
@@ -97,8 +104,10 @@ impl Search<'_, '_> {
                         if has_window && shape[count - 2] - shape[count - 3] < FINEST * part {
                             continue;
                         }
-                        self.reshape(piece, effect, joint, &shape);
-                        let gain = self.table.evidence_of(self.error, &columns).gain(&all);
+                        self.reshape(&[(piece, shape.clone())]);
+                        let products = self.table.products_of(self.error, &columns, own.clone());
+                        evidence.replace(&products);
+                        let gain = evidence.gain(&all);
                         if gain > most {
                             (most, best, improved) = (gain, shape, true);
                         }
@@ -108,21 +117,8 @@ impl Search<'_, '_> {
                     reach *= 0.5;
                 }
             }
-            self.reshape(piece, effect, joint, &best);
+            self.reshape(&[(piece, best)]);
+            self.sharp.insert(piece);
         }
-    }
-
-    fn reshape(&mut self, piece: usize, effect: &'static Effect, joint: usize, shape: &[f64]) {
-        let placed = &self.table.pieces[piece];
-        let made = Piece {
-            owner: placed.owner,
-            joint: placed.joint,
-            shape: shape.to_vec(),
-            choices: placed.choices,
-            columns: columns_at(effect, self.records, joint, shape),
-        };
-        self.table.replace(piece, &made, self.records);
-        let columns: Vec<usize> = self.table.pieces[piece].columns.clone().collect();
-        self.table.through(self.records, &self.channels, &columns);
     }
 }

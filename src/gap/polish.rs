@@ -6,6 +6,7 @@ use crate::effects::{Effect, Role};
 
 use super::column::{Owner, Piece, columns_at};
 use super::evidence::Estimate;
+use super::gated::COUPLING;
 use super::record::Record;
 use super::search::{Chosen, Search};
 use super::table::Placed;
@@ -66,69 +67,73 @@ pub struct Polished {
 }
 
 impl Search<'_, '_> {
-    /// Whether a piece can be brought to a better shape.
-    pub(super) fn has_shape(&self, piece: usize) -> bool {
+    /// Whether tangents bring a piece to a better shape.
+    fn has_shape(&self, piece: usize) -> bool {
         let Owner::Effect(effect) = self.table.pieces[piece].owner else { return false };
-        effect.coordinates.iter().any(|of| matches!(of.role, Role::Shape(_)))
+        effect.id != COUPLING
+            && effect.coordinates.iter().any(|of| matches!(of.role, Role::Shape(_)))
     }
 
-    /// Improves the shapes of a set by new tangents until they stay; the table has them then.
+    /// A set at its best shapes; the table has them then.
     pub fn polish(&mut self, set: &[Chosen]) -> Option<Polished> {
         let pieces: Vec<usize> = set.iter().flat_map(|of| of.pieces.clone()).collect();
+        self.bring_to_best(set, &pieces);
+        self.fitted(&pieces, &self.columns(set))
+    }
+
+    /// Improves the shapes of some pieces of a set by new tangents until they stay.
+    pub(super) fn bring_to_best(&mut self, set: &[Chosen], pieces: &[usize]) {
         let columns = self.columns(set);
         let shaped: Vec<usize> = pieces.iter().copied().filter(|of| self.has_shape(*of)).collect();
-        let shapes = |search: &Self| -> Vec<Vec<f64>> {
-            shaped.iter().map(|of| search.table.pieces[*of].shape.clone()).collect()
-        };
-        let mut best: Option<(f64, Vec<Vec<f64>>)> = None;
+        if shaped.is_empty() {
+            return;
+        }
+        let mut here: Shapes =
+            shaped.iter().map(|of| (*of, self.table.pieces[*of].shape.clone())).collect();
+        let mut best: Option<(f64, Shapes)> = None;
         for _ in 0..ROUNDS {
-            self.remake(&shaped);
-            let (gain, moved) = self.moved(&pieces, &columns)?;
-            let here = shapes(self);
+            self.reshape(&here);
+            let Some((gain, moved, next)) = self.moved(&shaped, &columns) else { break };
             match &best {
                 Some((most, from)) if gain < *most => {
                     // Too far: back half the way.
-                    for (number, from) in shaped.iter().zip(from) {
-                        let shape = &mut self.table.pieces[*number].shape;
+                    for ((_, shape), (_, from)) in here.iter_mut().zip(from) {
                         for (x, from) in shape.iter_mut().zip(from) {
                             *x = f64::midpoint(*x, *from);
                         }
                     }
                     continue;
                 }
-                _ => best = Some((gain, here)),
+                _ => best = Some((gain, std::mem::replace(&mut here, next))),
             }
-            if moved.0 <= STAYS {
+            if moved <= STAYS {
                 break;
             }
-            for (number, shape) in moved.1 {
-                self.table.pieces[number].shape = shape;
-            }
         }
-        if let Some((_, from)) = best {
-            for (number, from) in shaped.iter().zip(from) {
-                self.table.pieces[*number].shape = from;
-            }
+        if let Some((_, shapes)) = best {
+            self.reshape(&shapes);
         }
-        self.remake(&shaped);
-        self.fitted(&pieces, &columns)
     }
 
-    /// Columns of pieces at their shapes.
-    fn remake(&mut self, shaped: &[usize]) {
-        for number in shaped {
-            let piece = remade(&self.table.pieces[*number], self.records);
+    /// Brings pieces to shapes.
+    pub(super) fn reshape(&mut self, shapes: &[(usize, Vec<f64>)]) {
+        let mut changed: Vec<usize> = Vec::new();
+        for (number, shape) in shapes {
+            let placed = &self.table.pieces[*number];
+            if placed.shape == *shape {
+                continue;
+            }
+            changed.extend(placed.columns.clone());
+            let piece = shaped(placed, shape.clone(), self.records);
             self.table.replace(*number, &piece, self.records);
         }
-        let mut changed: Vec<usize> =
-            shaped.iter().flat_map(|of| self.table.pieces[*of].columns.clone()).collect();
         changed.sort_unstable();
         self.table.through_columns(self.records, &self.channels, &changed);
     }
 
     /// The gain at the shapes as they are, by how many deviations these would move at most, and
     /// where to.
-    fn moved(&self, pieces: &[usize], columns: &[usize]) -> Option<(f64, (f64, NewShapes))> {
+    fn moved(&self, pieces: &[usize], columns: &[usize]) -> Option<(f64, f64, Shapes)> {
         let evidence = self.table.evidence_of(self.error, columns);
         let all: Vec<usize> = (0..columns.len()).collect();
         let estimate = evidence.estimate(&all)?;
@@ -154,7 +159,7 @@ impl Search<'_, '_> {
             }
             shapes.push((*number, shape));
         }
-        Some((evidence.gain(&all), (moved, shapes)))
+        Some((evidence.gain(&all), moved, shapes))
     }
 
     /// What pieces are, and what they bring, at their shapes.
@@ -230,8 +235,8 @@ impl Search<'_, '_> {
     }
 }
 
-/// Numbers of pieces with new shapes.
-type NewShapes = Vec<(usize, Vec<f64>)>;
+/// Numbers of pieces with their shapes.
+type Shapes = Vec<(usize, Vec<f64>)>;
 
 /// Coordinates of a piece and their covariance.
 fn estimated(
@@ -265,24 +270,18 @@ fn range(
     Some([beyond(*low, 1.0 / BEYOND), beyond(*high, BEYOND)])
 }
 
-/// The piece at its shape.
-fn remade(placed: &Placed, records: &[Record<'_>]) -> Piece {
+/// The piece at a shape.
+fn shaped(placed: &Placed, shape: Vec<f64>, records: &[Record<'_>]) -> Piece {
     let columns = match placed.owner {
         Owner::Effect(effect) => columns_at(
             effect,
             records,
             placed.joint.unwrap_or_else(|| of_robot(effect, records)),
-            &placed.shape,
+            &shape,
         ),
         Owner::Generic(id) => super::generic::named(id, records, placed.joint.unwrap_or(0)),
     };
-    Piece {
-        owner: placed.owner,
-        joint: placed.joint,
-        shape: placed.shape.clone(),
-        choices: placed.choices,
-        columns,
-    }
+    Piece { owner: placed.owner, joint: placed.joint, shape, choices: placed.choices, columns }
 }
 
 /// The joint that stands for the robot.

@@ -11,6 +11,8 @@ use super::spectrum::Spectrum;
 
 /// Least variance of a row \[N²m²\].
 const LEAST: f64 = 1e-18;
+/// Columns whose products are made at once.
+const BLOCK: usize = 128;
 
 /// Rows of one joint in all records of a kind.
 pub(super) struct Rows {
@@ -164,49 +166,81 @@ impl Rows {
         error: f64,
         place: impl Fn(usize) -> Option<usize>,
     ) -> (DMatrix<f64>, Vec<usize>, f64) {
-        let mut weights = Vec::with_capacity(self.len());
-        let mut log_weights = 0.0;
-        for ((noise, power), excess) in self.noise.iter().zip(&self.power).zip(&self.excess) {
-            let weight = 1.0 / (noise + error * error * power + excess).max(LEAST).sqrt();
-            log_weights += weight.ln();
-            weights.push(weight);
+        let weights = self.weights(error);
+        let log_weights = weights.iter().map(|weight| weight.ln()).sum();
+        let (used, places) = self.used(place);
+        let weighted = self.weighted(&weights, &used);
+        let transposed = weighted.transpose();
+        let count = used.len();
+        let mut gram = DMatrix::zeros(count, count);
+        for from in (0..count).step_by(BLOCK) {
+            // What is above the diagonal is below it, too.
+            let width = BLOCK.min(count - from);
+            let below = transposed.rows_range(from..) * weighted.columns(from, width);
+            gram.view_mut((from, from), below.shape()).copy_from(&below);
+            gram.view_mut((from, from), (width, count - from)).tr_copy_from(&below);
         }
-        let used: Vec<(usize, usize)> = self
-            .reached
-            .iter()
-            .enumerate()
-            .filter_map(|(k, number)| Some((k, place(*number)?)))
-            .collect();
+        (gram, places, log_weights)
+    }
+
+    /// Products of the columns with a place with some of these by number, weighted, and the
+    /// places of both.
+    pub(super) fn products(
+        &self,
+        error: f64,
+        place: impl Fn(usize) -> Option<usize>,
+        some: &[usize],
+    ) -> Option<(DMatrix<f64>, [Vec<usize>; 2])> {
+        let (of, to) = self.used(|number| some.binary_search(&number).ok());
+        if of.is_empty() {
+            return None;
+        }
+        let weights: Vec<f64> = self.weights(error).into_iter().map(|x| x * x).collect();
+        let weighted = self.weighted(&weights, &of);
+        let (used, places) = self.used(place);
+        let product = |i: usize, k: usize| self.values.column(used[i]).dot(&weighted.column(k));
+        Some((DMatrix::from_fn(used.len(), of.len(), product), [places, to]))
+    }
+
+    /// Roots of the weights of the rows.
+    fn weights(&self, error: f64) -> Vec<f64> {
+        let variances = self.noise.iter().zip(&self.power).zip(&self.excess);
+        variances
+            .map(|((noise, power), excess)| noise + error * error * power + excess)
+            .map(|variance| 1.0 / variance.max(LEAST).sqrt())
+            .collect()
+    }
+
+    /// Columns with a place, and these places.
+    fn used(&self, place: impl Fn(usize) -> Option<usize>) -> (Vec<usize>, Vec<usize>) {
+        let reached = self.reached.iter().enumerate();
+        reached.filter_map(|(k, number)| Some((k, place(*number)?))).unzip()
+    }
+
+    /// Some columns, each row times its weight.
+    fn weighted(&self, weights: &[f64], used: &[usize]) -> DMatrix<f64> {
         let mut weighted = DMatrix::zeros(self.len(), used.len());
-        for (mut to, (k, _)) in weighted.column_iter_mut().zip(&used) {
+        for (mut to, k) in weighted.column_iter_mut().zip(used) {
             let from = self.values.column(*k);
-            for ((to, from), weight) in to.iter_mut().zip(from.iter()).zip(&weights) {
+            for ((to, from), weight) in to.iter_mut().zip(from.iter()).zip(weights) {
                 *to = from * weight;
             }
         }
-        let places = used.into_iter().map(|(_, place)| place).collect();
-        (weighted.transpose() * &weighted, places, log_weights)
+        weighted
     }
 }
 
 impl Rows {
     /// Expected squares of what is missed, by row.
     pub(super) fn missed(&self, posterior: &Posterior) -> Vec<f64> {
-        let used: Vec<(usize, usize)> = self
-            .reached
-            .iter()
-            .enumerate()
-            .filter(|(_, number)| **number > 0)
-            .filter_map(|(k, number)| Some((k, posterior.places[*number]? - 1)))
-            .collect();
+        let place = |number: usize| posterior.places[number].filter(|_| number > 0);
+        let (used, places) = self.used(place);
         let count = used.len();
+        let of = |k: usize| places[k] - 1;
         let covariance =
-            DMatrix::from_fn(count, count, |i, k| posterior.covariance[(used[i].1, used[k].1)]);
-        let mean = DVector::from_fn(count, |k, _| posterior.mean[used[k].1]);
-        let mut columns = DMatrix::zeros(self.len(), count);
-        for (mut to, (k, _)) in columns.column_iter_mut().zip(&used) {
-            to.copy_from(&self.values.column(*k));
-        }
+            DMatrix::from_fn(count, count, |i, k| posterior.covariance[(of(i), of(k))]);
+        let mean = DVector::from_fn(count, |k, _| posterior.mean[of(k)]);
+        let columns = self.values.select_columns(&used);
         let left = self.values.column(0) - &columns * mean;
         let spread = &columns * covariance;
         (0..self.len())

@@ -1,5 +1,7 @@
 //! Which effects explain a difference.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use crate::effects::{Parameter, Response};
@@ -7,7 +9,6 @@ use crate::effects::{Parameter, Response};
 use super::channel::Late;
 use super::column::Owner;
 use super::evidence::{Evidence, Given};
-use super::gated::GATED;
 use super::hypothesis::{Family, families};
 use super::nuisance::Trust;
 use super::polish::{Fitted, Polished};
@@ -79,6 +80,8 @@ pub struct Search<'a, 'm> {
     pub(super) kept: Vec<usize>,
     /// Whether some log does not tell its noise.
     pub(super) open: bool,
+    /// Pieces whose windows have been brought to their best ends.
+    pub(super) sharp: BTreeSet<usize>,
     /// Families at joints whose parameters came out as they cannot be.
     impossible: Vec<(usize, Option<usize>)>,
     /// Ids that are not looked for.
@@ -114,6 +117,7 @@ impl<'a, 'm> Search<'a, 'm> {
             ],
             late: None,
             kept: Vec::new(),
+            sharp: BTreeSet::new(),
             impossible: Vec::new(),
             open,
             banned: if open && lasts < WARMS { vec!["warm_up"] } else { Vec::new() },
@@ -131,13 +135,26 @@ impl<'a, 'm> Search<'a, 'm> {
     pub(super) fn set_channels(&mut self, channels: &[Response]) {
         self.channels = channels.to_vec();
         self.table.through_all(self.records, channels);
+        self.weigh();
+    }
+
+    /// Weighs everything anew.
+    pub(super) fn weigh(&mut self) {
+        self.table.changed.clear();
         self.evidence = self.table.evidence(self.error);
+    }
+
+    /// The same where only shapes have changed.
+    fn weigh_changed(&mut self) {
+        let all: Vec<usize> = (0..self.table.means.len()).collect();
+        let changed = std::mem::take(&mut self.table.changed).into_iter().collect();
+        self.evidence.replace(&self.table.products_of(self.error, &all, changed));
     }
 
     /// Takes the model for right to this share of its torques.
     pub(super) fn set_error(&mut self, error: f64) {
         self.error = error;
-        self.evidence = self.table.evidence(error);
+        self.weigh();
     }
 
     /// Takes the error of the model with which the measurement is most probable, effects that a
@@ -301,7 +318,7 @@ impl<'a, 'm> Search<'a, 'm> {
             of.pieces.retain(may);
         }
         found.chosen.retain(|of| !of.pieces.is_empty());
-        self.evidence = self.table.evidence(self.error);
+        self.weigh_changed();
         self.settle(&mut found);
         found
     }
@@ -329,25 +346,25 @@ impl<'a, 'm> Search<'a, 'm> {
         nominal.unwrap_or(0.0) + refit + level
     }
 
-    /// Shapes become the best ones, then what they leave the variance of a log that tells none.
+    /// What is late and shapes become the best ones, then what they leave the variance of a log that
+    /// tells none.
     fn settle(&mut self, found: &mut Found) {
-        self.refine(found);
+        self.tune(&self.columns(&found.chosen));
+        self.refine(found, 0);
         if self.is_open() {
             self.match_excess(&found.chosen);
             found.score = self.score(&found.chosen);
         }
     }
 
-    /// Shapes of what was found become the best ones.
-    pub(super) fn refine(&mut self, found: &mut Found) {
-        let pieces: Vec<usize> = found.chosen.iter().flat_map(|of| of.pieces.clone()).collect();
-        let has_window = |piece: &usize| GATED.contains(&self.table.pieces[*piece].owner.id());
-        let changes = pieces.iter().any(|piece| self.has_shape(*piece) || has_window(piece));
-        self.sharpen(&found.chosen);
-        let columns = self.columns(&found.chosen);
-        self.tune(&columns);
-        if changes && self.polish(&found.chosen).is_some() {
-            self.evidence = self.table.evidence(self.error);
+    /// Shapes of what was found, from one member on, become the best ones.
+    pub(super) fn refine(&mut self, found: &mut Found, from: usize) {
+        let pieces: Vec<usize> =
+            found.chosen[from..].iter().flat_map(|of| of.pieces.clone()).collect();
+        self.sharpen(&found.chosen, &pieces);
+        self.bring_to_best(&found.chosen, &pieces);
+        if !self.table.changed.is_empty() {
+            self.weigh_changed();
         }
         found.score = self.score(&found.chosen);
     }
@@ -416,7 +433,7 @@ impl<'a, 'm> Search<'a, 'm> {
                 && other.score > found.score - hardly
             {
                 *found = other;
-                self.refine(found);
+                self.refine(found, 0);
                 return true;
             }
         }

@@ -1,6 +1,8 @@
 //! The difference between measurement and model, and all that may explain it, as rows of
 //! spectra.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -44,7 +46,20 @@ pub struct Table {
     spread: f64,
     pub(super) means: DVector<f64>,
     pub(super) sds: DVector<f64>,
+    /// Columns that others have replaced since all was weighed.
+    pub(super) changed: BTreeSet<usize>,
     joints: Vec<Rows>,
+}
+
+/// Products of the difference, the parameters and columns with some of the columns.
+pub(super) struct Products {
+    /// Places of these among the columns.
+    pub(super) of: Vec<usize>,
+    /// By row, then by column.
+    pub(super) with: DMatrix<f64>,
+    /// Expected factors of these, and their deviations.
+    pub(super) means: Vec<f64>,
+    pub(super) sds: Vec<f64>,
 }
 
 impl Table {
@@ -129,6 +144,7 @@ impl Table {
             spread: 1.0,
             means: DVector::from_vec(means),
             sds: DVector::from_vec(sds),
+            changed: BTreeSet::new(),
             joints,
         }
     }
@@ -138,6 +154,7 @@ impl Table {
         let placed = &mut self.pieces[number];
         placed.shape.clone_from(&piece.shape);
         let parameters = self.parameters.len();
+        self.changed.extend(placed.columns.clone());
         for (k, column) in placed.columns.clone().zip(&piece.columns) {
             self.means[k] = column.mean;
             self.sds[k] = column.sd;
@@ -276,6 +293,32 @@ impl Table {
         }
         self.scale(&mut gram, error);
         (gram, log_weights)
+    }
+
+    /// Products of some columns, by their places among others, with all of these.
+    pub(super) fn products_of(&self, error: f64, columns: &[usize], of: Vec<usize>) -> Products {
+        let parameters = self.parameters.len();
+        let places = self.places_of(columns);
+        let numbers: Vec<usize> = of.iter().map(|k| 1 + parameters + columns[*k]).collect();
+        let parts: Vec<_> = self
+            .joints
+            .par_iter()
+            .filter_map(|rows| rows.products(error, |number| places[number], &numbers))
+            .collect();
+        let mut with = DMatrix::zeros(1 + parameters + columns.len(), of.len());
+        for (part, [rows, to]) in parts {
+            for (k, to) in to.iter().enumerate() {
+                for (i, row) in rows.iter().enumerate() {
+                    with[(*row, *to)] += part[(i, k)];
+                }
+            }
+        }
+        for (k, scale) in self.scales(error).into_iter().enumerate() {
+            with.row_mut(1 + k).scale_mut(scale);
+        }
+        let of_all = |x: &DVector<f64>| of.iter().map(|k| x[columns[*k]]).collect();
+        let (means, sds) = (of_all(&self.means), of_all(&self.sds));
+        Products { of, with, means, sds }
     }
 
     /// Variance of what noise, error and excess make of a joint's torque \[N²m²\].
