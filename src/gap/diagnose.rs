@@ -84,6 +84,9 @@ pub fn diagnose_telling(
     tell(Phase::Search);
     let chance = search.reached_by_chance();
     let mut found = search.run_late_or_not(errors);
+    if search.lower_error(&mut found, errors) {
+        found = search.run_from(found);
+    }
     let of_time = joints_of_time(&search, &found);
     if !of_time.is_empty() {
         tell(Phase::Windows);
@@ -94,19 +97,36 @@ pub fn diagnose_telling(
         search.late = late;
         search.set_channels(&channels);
         search.match_excess(&[]);
+        // With windows less may be the model's error.
+        if !search.is_open() {
+            search.choose_error(errors);
+        }
         // First what has a window, then what that leaves.
         let banned = search.banned.clone();
         search.banned.extend(OF_TIME);
-        found = search.run();
+        found = search.run_gated(errors);
         search.banned = banned;
         found = search.run_from(found);
+        if search.lower_error(&mut found, errors) {
+            found = search.run_from(found);
+        }
     }
     tell(Phase::Shapes);
     found = search.name_functions(found);
     search.simplify(&mut found, CLASS);
     // What a law is worth shows where nothing else follows its form.
-    let laws = search.without_forms(&found);
-    let polished = search.polish(&laws);
+    let mut laws = search.without_forms(&found);
+    let mut polished = search.polish(&laws);
+    if let Some(of) = &polished
+        && search.strike(&mut found, of, &[])
+    {
+        // Another law may have its place.
+        let next = search.run_from(found);
+        found = search.name_functions(next);
+        search.simplify(&mut found, CLASS);
+        laws = search.without_forms(&found);
+        polished = search.polish(&laws);
+    }
     let mut judged = judged(&search, &found, polished.as_ref(), chance);
     // What is not asserted is not in the model, so that its parameters are those without it.
     let kept: Vec<Chosen> = found

@@ -4,7 +4,7 @@ use crate::effects::{Effect, find};
 
 use super::column::{Owner, Piece, columns_at};
 use super::record::Record;
-use super::search::{Chosen, Search};
+use super::search::{Chosen, Found, Search};
 
 /// Parts of a repetition at which windows begin and end.
 const PARTS: usize = 20;
@@ -13,8 +13,9 @@ const LENGTHS: [usize; 6] = [1, 2, 3, 4, 5, 7];
 /// First steps of a window, in parts: of one that was found so and of one that is sharp already.
 const BLUNT: f64 = 0.5;
 const SHARP: f64 = 0.0625;
-/// The finest step of a window, in parts.
+/// The finest step of a window, in parts and in rows.
 const FINEST: f64 = 0.02;
+const OF_ROW: f64 = 0.25;
 
 /// An effect whose shape is a coupling, and twice the first step of that.
 pub(super) const COUPLING: &str = "wrist_coupling";
@@ -67,6 +68,45 @@ pub(super) fn gated(
 }
 
 impl Search<'_, '_> {
+    /// The best set of effects, from the one with a window that explains most by itself where nothing
+    /// else does: what a coarse window leaves must not hide it.
+    pub fn run_gated(&mut self, errors: &[f64]) -> Found {
+        let has_window = |of: &usize| GATED.contains(&self.families[*of].owner.id());
+        let families: Vec<usize> = self.wanted().into_iter().filter(has_window).collect();
+        // High frequencies tell where a window ends, once it ends nearly there; low ones lead to it.
+        self.table.limit(PARTS);
+        self.weigh();
+        let given = self.given(&[]);
+        let coarse: Vec<Found> =
+            families.into_iter().filter_map(|family| self.with(&given, &[], family)).collect();
+        let mut highest = PARTS;
+        while highest < self.table.bins() {
+            self.table.limit(highest);
+            for found in &coarse {
+                let pieces: Vec<usize> = found.chosen[0].pieces.clone();
+                self.sharpen(&found.chosen, &pieces);
+            }
+            highest *= 2;
+        }
+        self.table.limit(usize::MAX);
+        self.weigh();
+        let mut best = self.next(&Found { chosen: Vec::new(), score: 0.0 });
+        let mut is_gated = false;
+        for mut found in coarse {
+            self.refine(&mut found, 0);
+            if best.as_ref().is_none_or(|best| found.score > best.score) {
+                (best, is_gated) = (Some(found), true);
+            }
+        }
+        match best.filter(|_| is_gated) {
+            Some(mut found) => {
+                self.lower_error(&mut found, errors);
+                self.run_from(found)
+            }
+            None => self.run(),
+        }
+    }
+
     /// Moves the ends of windows of some pieces of a set as long as it helps.
     pub(super) fn sharpen(&mut self, set: &[Chosen], pieces: &[usize]) {
         let columns = self.columns(set);
@@ -95,7 +135,10 @@ impl Search<'_, '_> {
             let part = if is_coupling { OF_COUPLING } else { lasts / PARTS as f64 };
             let ends: &[usize] = if is_coupling { &[0] } else { &[count - 3, count - 2] };
             let mut reach = if self.sharp.contains(&piece) { SHARP } else { BLUNT };
-            while reach > FINEST {
+            // A row more or less inside of a window is seen.
+            let row = OF_ROW * self.records.first().map_or(0.0, |of| of.motion.step()) / part;
+            let finest = if is_coupling { FINEST } else { FINEST.min(row) };
+            while reach > finest {
                 let mut improved = false;
                 for end in ends.iter().copied() {
                     for step in [-reach * part, reach * part] {

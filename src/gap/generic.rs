@@ -21,17 +21,30 @@ struct Kind {
 /// Largest values in a motion.
 struct Extent {
     rate: f64,
+    acceleration: f64,
     gear: f64,
     middle: f64,
     range: f64,
 }
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 11] = [
     Kind {
         id: "speed",
         bumps: 13,
         of: |m, j, i, e| [m.rates[j][i] / e.rate, m.senses[j][i].abs()],
         dense: true,
+    },
+    Kind {
+        id: "acceleration",
+        bumps: 8,
+        of: |m, j, i, e| [m.qdd[j][i] / e.acceleration, 1.0],
+        dense: false,
+    },
+    Kind {
+        id: "acceleration_and_sense",
+        bumps: 8,
+        of: |m, j, i, e| [m.qdd[j][i] / e.acceleration, m.senses[j][i]],
+        dense: false,
     },
     Kind {
         id: "position",
@@ -92,6 +105,7 @@ pub(super) fn generic(records: &[Record<'_>], joint: usize) -> Vec<Piece> {
     let high = extents.iter().map(|e| e.middle + e.range).fold(f64::NEG_INFINITY, f64::max);
     let all = Extent {
         rate: largest(|e| e.rate),
+        acceleration: largest(|e| e.acceleration),
         gear: largest(|e| e.gear),
         middle: 0.5 * (low + high),
         range: (0.5 * (high - low)).max(1e-9),
@@ -153,6 +167,7 @@ fn extent(motion: &Motion<'_>, joint: usize) -> Extent {
     let high = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     Extent {
         rate: largest(&motion.rates[joint]),
+        acceleration: largest(&motion.qdd[joint]),
         gear: largest(&motion.gear[joint]),
         middle: 0.5 * (low + high),
         range: 0.5 * (high - low),

@@ -144,7 +144,7 @@ impl Judged {
     /// A delay or a lag.
     pub(super) fn assert_late(&mut self, late: &Late, polished: Option<&mut Polished>) {
         let Some(fitted) = late.fitted() else { return };
-        self.effects.push(Said {
+        let said = Said {
             effect: fitted.effect,
             joints: late.joint.into_iter().collect(),
             class: vec!["time_delay", "filter_lag"],
@@ -153,7 +153,20 @@ impl Judged {
             share: 1.0,
             nats: late.nats,
             size: 1.0,
+        };
+        // Where more is found at its joint that cannot be named, lateness is a part of that.
+        let beside = self.candidates.iter().filter(|other| {
+            let there = |joint| other.joints.is_empty() || other.joints.contains(&joint);
+            late.joint.is_some_and(there) && other.nats > late.nats
         });
+        if let Some(other) = beside.map(|other| other.effect.id).next() {
+            self.reasons.push(format!("{}: less than {other}, which is not clear", late.id()));
+            self.candidates.push(said);
+            self.verdict =
+                if self.effects.is_empty() { Verdict::Unknown } else { Verdict::Partial };
+            return;
+        }
+        self.effects.push(said);
         if let Some(polished) = polished {
             polished.effects.push(fitted);
         }

@@ -143,7 +143,11 @@ struct Cause {
 }
 
 fn causes(dof: usize, given_back: f64) -> Vec<Cause> {
-    let mut all = vec![Cause { id: "base_load", joint: None, column: |_, _, _, _| 1.0 }];
+    let mut all = vec![
+        Cause { id: "base_load", joint: None, column: |_, _, _, _| 1.0 },
+        // What hangs on the link of the drives takes what joints give back.
+        Cause { id: "base_load", joint: None, column: |of, log, _, row| of.share(log, row) },
+    ];
     if given_back > 0.0 {
         all.push(Cause {
             id: "no_regeneration",

@@ -29,6 +29,9 @@ pub(super) struct Rows {
     pub(super) power: Vec<f64>,
     /// Variance beyond noise and error \[N²m²\].
     pub(super) excess: Vec<f64>,
+    /// Frequency of each row, and the highest one that counts, in numbers of bins.
+    bins: Vec<usize>,
+    pub(super) highest: usize,
     /// Of the records of the kind.
     pub(super) spectra: Vec<Spectrum>,
 }
@@ -67,10 +70,12 @@ impl Rows {
         }));
         let height = records.iter().map(|record| record.spectrum.rows()).sum();
         let (mut noise, mut power, mut measured) = (Vec::new(), Vec::new(), Vec::new());
+        let mut bins = Vec::new();
         for record in &records {
             measured.extend(record.rows_of(joint, &record.measured[joint]));
             for row in 0..record.spectrum.rows() {
                 let bin = Spectrum::bin(row);
+                bins.push(bin);
                 noise.push(record.noise[joint][bin]);
                 power.push(record.power[joint][bin]);
             }
@@ -90,8 +95,20 @@ impl Rows {
         let values = DMatrix::zeros(height, reached.len());
         let excess = vec![0.0; height];
         let spectra = records.iter().map(|record| record.spectrum.clone()).collect();
-        let mut rows =
-            Rows { joint, kind, values, plain, measured, reached, noise, power, excess, spectra };
+        let mut rows = Rows {
+            joint,
+            kind,
+            values,
+            plain,
+            measured,
+            reached,
+            noise,
+            power,
+            excess,
+            bins,
+            highest: usize::MAX,
+            spectra,
+        };
         rows.through(all, &[], |_| true);
         rows
     }
@@ -167,7 +184,7 @@ impl Rows {
         place: impl Fn(usize) -> Option<usize>,
     ) -> (DMatrix<f64>, Vec<usize>, f64) {
         let weights = self.weights(error);
-        let log_weights = weights.iter().map(|weight| weight.ln()).sum();
+        let log_weights = weights.iter().filter(|of| **of > 0.0).map(|of| of.ln()).sum();
         let (used, places) = self.used(place);
         let weighted = self.weighted(&weights, &used);
         let transposed = weighted.transpose();
@@ -207,7 +224,12 @@ impl Rows {
         let variances = self.noise.iter().zip(&self.power).zip(&self.excess);
         variances
             .map(|((noise, power), excess)| noise + error * error * power + excess)
-            .map(|variance| 1.0 / variance.max(LEAST).sqrt())
+            .zip(&self.bins)
+            .map(
+                |(variance, bin)| {
+                    if *bin > self.highest { 0.0 } else { 1.0 / variance.max(LEAST).sqrt() }
+                },
+            )
             .collect()
     }
 

@@ -175,6 +175,25 @@ impl<'a, 'm> Search<'a, 'm> {
         total
     }
 
+    /// Takes the error with which the measurement is most probable with a set; whether that is a
+    /// smaller one.
+    pub(super) fn lower_error(&mut self, found: &mut Found, errors: &[f64]) -> bool {
+        let before = self.error;
+        let mut best = (self.evidence.null + found.score, before);
+        for error in errors.iter().copied().filter(|error| *error < before) {
+            self.set_error(error);
+            let total = self.evidence.null + self.score(&found.chosen);
+            if total > best.0 {
+                best = (total, error);
+            }
+        }
+        if self.error != best.1 {
+            self.set_error(best.1);
+        }
+        found.score = self.score(&found.chosen);
+        best.1 < before
+    }
+
     /// The best set of effects at the shapes that are tried.
     fn quick(&self) -> Found {
         let mut found = Found { chosen: Vec::new(), score: 0.0 };
@@ -194,7 +213,7 @@ impl<'a, 'm> Search<'a, 'm> {
     }
 
     /// The best set with one family more.
-    fn next(&self, found: &Found) -> Option<Found> {
+    pub(super) fn next(&self, found: &Found) -> Option<Found> {
         let given = self.given(&found.chosen);
         self.wanted()
             .into_par_iter()
@@ -287,13 +306,29 @@ impl<'a, 'm> Search<'a, 'm> {
             return found;
         }
         let Some(polished) = self.polish(&found.chosen) else { return found };
+        let kept = self.kept.clone();
+        if self.strike(&mut found, &polished, &kept) {
+            self.weigh_changed();
+            self.settle(&mut found);
+        }
+        found
+    }
+
+    /// Takes what came out as it cannot be out of a set, but for families to keep, and looks for it no
+    /// more; whether there was some.
+    pub(super) fn strike(
+        &mut self,
+        found: &mut Found,
+        polished: &Polished,
+        keep: &[usize],
+    ) -> bool {
         let before = self.impossible.len();
-        let cannot_be = |of: &&Fitted| self.cannot_be(&polished, of, IMPOSSIBLE);
+        let cannot_be = |of: &&Fitted| self.cannot_be(polished, of, IMPOSSIBLE);
         let impossible: Vec<&Fitted> = polished.effects.iter().filter(cannot_be).collect();
         for fitted in impossible {
             let of_effect = |of: &&Chosen| {
                 let id = self.families[of.family].owner.id();
-                id == fitted.effect.id && !self.kept.contains(&of.family)
+                id == fitted.effect.id && !keep.contains(&of.family)
             };
             let Some(chosen) = found.chosen.iter().find(of_effect) else { continue };
             self.impossible.push((chosen.family, fitted.joint));
@@ -308,9 +343,6 @@ impl<'a, 'm> Search<'a, 'm> {
                 }
             }
         }
-        if self.impossible.len() == before {
-            return found;
-        }
         for of in &mut found.chosen {
             let may = |piece: &usize| {
                 !self.impossible.contains(&(of.family, self.table.pieces[*piece].joint))
@@ -318,9 +350,7 @@ impl<'a, 'm> Search<'a, 'm> {
             of.pieces.retain(may);
         }
         found.chosen.retain(|of| !of.pieces.is_empty());
-        self.weigh_changed();
-        self.settle(&mut found);
-        found
+        self.impossible.len() > before
     }
 
     /// Whether a parameter is so many deviations beyond what can be.

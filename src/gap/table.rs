@@ -240,6 +240,17 @@ impl Table {
         Evidence::new(&gram, parameters, none(), none(), log_weights, 1)
     }
 
+    /// Frequencies beyond a bin count no more.
+    pub(super) fn limit(&mut self, highest: usize) {
+        self.joints.iter_mut().for_each(|rows| rows.highest = highest);
+    }
+
+    /// Number of the bins of the longest record.
+    pub(super) fn bins(&self) -> usize {
+        let spectra = self.joints.iter().flat_map(|rows| &rows.spectra);
+        spectra.map(|spectrum| spectrum.bins).max().unwrap_or(0)
+    }
+
     /// Lets the model's parameters be off by so many times what is believed.
     pub(super) fn set_spread(&mut self, spread: f64) {
         let more = spread / self.spread;
