@@ -84,7 +84,7 @@ pub struct Worthless;
 pub enum Weighed {
     /// Nothing can be said.
     Unknown,
-    /// It saves nothing.
+    /// It saves nothing, or may as well cost.
     Nothing,
     /// It saves this.
     Saves(Saving),
@@ -136,6 +136,9 @@ impl Difference {
         ];
         let off: f64 = list.iter().zip(DOUBT).map(|(part, share)| part.abs() * share).sum();
         let (low_j, high_j) = (energy_j - off, energy_j + off);
+        if low_j <= 0.0 {
+            return Weighed::Nothing;
+        }
         Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s, per: Per::Cycle })
     }
 }
