@@ -194,6 +194,10 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
     let metadata = fs::metadata(path)
         .map_err(|error| InputError::Unreadable { path: shown(path), reason: error.to_string() })?;
     if metadata.is_dir() {
+        if let Err(error) = fs::read_dir(path) {
+            let reason = error.to_string();
+            return Err(InputError::Unreadable { path: shown(path), reason });
+        }
         let mut files = Vec::new();
         walk(path, 0, &mut files, unreadable);
         let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =

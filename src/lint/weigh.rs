@@ -123,9 +123,6 @@ impl Difference {
     pub fn weighed(&self) -> Weighed {
         let parts = &self.saved;
         let energy_j = parts.energy_j();
-        if energy_j <= 0.0 {
-            return Weighed::Nothing;
-        }
         let list = [
             parts.mechanical_j,
             parts.friction_j,
@@ -184,10 +181,11 @@ fn replayed(
     let mut replayed: Vec<Replayed> = Vec::new();
     let mut next = 0;
     while next < touched.len() {
-        let mut window = window(simulation, touched[next]);
+        let mut window = window(simulation, touched[next], spans, change);
         next += 1;
         while next < touched.len() && touched[next] <= *window.end() {
-            window = *window.start()..=*self::window(simulation, touched[next]).end();
+            let further = self::window(simulation, touched[next], spans, change);
+            window = *window.start()..=*further.end();
             next += 1;
         }
         let (range, after, rest) = settle_window(model, cycle, window, spans, change)?;
@@ -206,11 +204,32 @@ fn replayed(
     Some((saved, replayed))
 }
 
-/// From the run at or before an event to the next run.
-fn window(simulation: &Simulation, event: usize) -> RangeInclusive<usize> {
+/// From the run at or before an event to the next run; to the event alone if it is a run that
+/// stops at its end after the change as before: the next run begins as it did.
+fn window(
+    simulation: &Simulation,
+    event: usize,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> RangeInclusive<usize> {
+    if let What::Run(run) = &simulation.events[event].what
+        && stops(run, spans, change)
+    {
+        return event..=event;
+    }
     let is_run = |index: &usize| matches!(simulation.events[*index].what, What::Run(_));
     let first = (0..=event).rev().find(is_run).unwrap_or(event);
     first..=next_run(simulation, event)
+}
+
+/// Whether the last movement of a run is a stop point after a change.
+fn stops(run: &Run, spans: &[Span], change: &Change<'_>) -> bool {
+    let Some(last) = run.moves.last() else { return false };
+    if !spans.contains(&last.movement.span) {
+        return last.movement.zone.fine;
+    }
+    let changed = change(&Step::Move(Box::new(last.movement.clone())));
+    matches!(changed.last(), Some(Step::Move(movement)) if movement.zone.fine)
 }
 
 /// The last movement before an event.
