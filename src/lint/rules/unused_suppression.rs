@@ -61,7 +61,8 @@ pub(in crate::lint) fn judge(
             || rule.needs == Needs::Backup
             || job.model.is_none() && depends_on_robot(rule)
     };
-    let judged = unused.iter().copied().filter(|code| !meant(code).into_iter().any(|rule| idle(rule)));
+    let judged =
+        unused.iter().copied().filter(|code| !meant(code).into_iter().any(|rule| idle(rule)));
     let (vain, unknown): (Vec<&str>, Vec<&str>) = judged.partition(|code| !meant(code).is_empty());
     let whole = vain.len() + unknown.len() == suppression.codes.len();
     let mut told = Vec::new();
