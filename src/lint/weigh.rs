@@ -356,7 +356,7 @@ fn rest_behind(
     after: &Simulation,
     rest: f64,
 ) -> (EnergyParts, f64) {
-    let next = simulation.events.get(window.end() + 1);
+    let next = simulation.events[window.end() + 1..].iter().find(|it| !it.is_within_next_run());
     let moves_on = next.is_some_and(|it| it.duration > 0.0 && matches!(it.what, What::Run(_)));
     let last = after.events.last().filter(|event| moves_on && event.duration > 0.0);
     match last.map(|event| &event.what) {
