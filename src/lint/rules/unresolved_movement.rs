@@ -2,7 +2,8 @@
 //!
 //! ## What it does
 //! Finds movements that run, but whose target, speed or zone is not in the files or not known.
-//! Where many names are missing, the first of them is told.
+//! Where many names are missing, the first of them is told. A place that the robot reads of itself
+//! (`CRobT`) nobody can state: it is left alone.
 //!
 //! ## Why it wastes energy
 //! What can't be worked out is in no figure, and whatever it wastes is not found.
@@ -37,6 +38,8 @@ rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.
 
 /// End of the reason why a name says nothing.
 const MISSING: &str = "is not declared in the files given";
+/// End of the reason why a place that the robot reads of itself is not known.
+const OWN: &str = "depends on where the robot is";
 /// Names that may be missing without a whole module being it.
 const FEW: usize = 3;
 
@@ -63,7 +66,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
         let Some(note) = context.unresolved.iter().find(|note| note.span == span) else { continue };
         // One remark for one cause.
-        if told.insert(&note.reason) {
+        if !note.reason.ends_with(OWN) && told.insert(&note.reason) {
             let message = format!("{} can't be worked out: {}", site.name, note.reason);
             let finding = Finding::new(&RULE, span, message);
             let list = if note.reason.ends_with(MISSING) { &mut missing } else { &mut *findings };
