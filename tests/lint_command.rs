@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -119,6 +119,78 @@ fn fixes_are_shown_and_written() {
     fs::write(&path, &before).unwrap();
     joulepath(&["lint", ".", "--fix", "--unsafe-fixes"], folder.path());
     assert_eq!(fs::read(&path).unwrap(), before);
+}
+
+#[cfg(unix)]
+#[test]
+fn protected_files_stay_and_links_stay_links() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder("EW102_stop_in_line.mod");
+    let path = folder.path().join("Cell.mod");
+    let before = fs::read(&path).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+    let fix = |name: &str| {
+        let output = joulepath(&[&["lint", name, "--fix"], &ROBOT[..]].concat(), folder.path());
+        (output.status.code(), text(&output.stderr))
+    };
+    let (code, said) = fix("Cell.mod");
+    assert_eq!(code, Some(2));
+    assert!(said.contains("Cell.mod' is read-only"), "{said}");
+    assert_eq!(fs::read(&path).unwrap(), before);
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o644)).unwrap();
+    let link = folder.path().join("Link.mod");
+    symlink("Cell.mod", &link).unwrap();
+    assert_eq!(fix("Link.mod").0, Some(0));
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_ne!(fs::read(&path).unwrap(), before);
+}
+
+/// One program with a number that nobody means takes no budget of the others away.
+#[test]
+fn endless_energy_is_not_added() {
+    let folder = folder("EW101_unneeded_stop_point.mod");
+    let endless = "MODULE M\nPROC main()\n  MoveAbsJ [[0,0,0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],\
+                   v1000,fine,tool0;\n  WaitTime 1E308;\n  WaitTime 1E308;\nENDPROC\nENDMODULE\n";
+    fs::write(folder.path().join("Endless.mod"), endless).unwrap();
+    let args = [&["lint", ".", "--format", "json", "--max-waste", "0.001%"], &ROBOT[..]].concat();
+    let output = joulepath(&args, folder.path());
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(value["totals"]["cycle_energy_j"].as_f64().is_some_and(|energy| energy > 0.0));
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn nobody_has_to_read_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "MODULE M\nPROC main()\n  MoveJ pGone,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
+    for index in 0..1_000 {
+        fs::write(folder.path().join(format!("{index}.mod")), text).unwrap();
+    }
+    for format in ["concise", "json"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+            .args(["lint", ".", "--format", format, "--quiet"])
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), output.stderr), (Some(0), Vec::new()), "{format}");
+    }
+}
+
+#[test]
+fn what_has_no_joules_is_told() {
+    let folder = folder("EW102_stop_in_line.mod");
+    let said = |args: &[&str]| text(&joulepath(args, folder.path()).stderr);
+    let lint = |more: &[&str]| said(&[&["lint", "Cell.mod"], more].concat());
+    assert!(lint(&[]).contains("nothing has joules: no robot is named"));
+    assert!(lint(&["--robot", "IRB120-3/0.58"]).contains("has no dynamics"));
+    assert!(lint(&[&ROBOT[..], &["--entry", "nowhere"]].concat()).contains("--entry NAME"));
+    assert_eq!(lint(&ROBOT), "");
+    let locked = fs::canonicalize("fixtures/backup/RAPID/TASK2/PROGMOD/Locked.mod").unwrap();
+    assert!(said(&["lint", locked.to_str().unwrap()]).contains("is an encoded module"));
 }
 
 /// A backup with a signal for energy saving, used or not, and a brake timeout or none.

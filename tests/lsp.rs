@@ -170,9 +170,10 @@ fn a_robot_that_is_not_known_stops_nothing() {
 #[test]
 fn changes_are_told_where_they_matter() {
     let folder = tempfile::tempdir().unwrap();
-    let work = "MODULE Work\nPROC rWork()\nMoveJ pOver,v1000,fine,tool0;\nENDPROC\nENDMODULE\n";
+    let work = "MODULE Work\nPROC rWork()\nMoveJ pOver,v1000,fine,tool0;\nENDPROC\n\
+                PROC rStay()\nMoveJ pOver,v1000,fine,tool0;\nENDPROC\nENDMODULE\n";
     let cell = "MODULE Cell\nCONST robtarget pOver:=[[600,0,400],[0,0,1,0],[0,0,0,0],\
-                [9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\nrWork;\nENDPROC\nENDMODULE\n";
+                [9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\nrWork;\nrStay;\nENDPROC\nENDMODULE\n";
     let other = "MODULE Other\nPROC main()\nWaitTime 1;\nENDPROC\nENDMODULE\n";
     let other_folder = folder.path().join("other");
     fs::create_dir(&other_folder).unwrap();
@@ -199,7 +200,7 @@ fn changes_are_told_where_they_matter() {
     // Without its call the procedure is dead, and that is told in the other document.
     let change = json!({
         "textDocument": { "uri": cell, "version": 2 },
-        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nENDPROC\nENDMODULE\n" }],
+        "contentChanges": [{ "text": paths[1].1.replace("rWork;\n", "") }],
     });
     client.tell("textDocument/didChange", &change);
     let told: std::collections::BTreeMap<String, Vec<Value>> =
@@ -216,9 +217,11 @@ fn closing_a_document_is_told_to_the_others() {
     let folder = tempfile::tempdir().unwrap();
     let data = fs::read_to_string("fixtures/lint/plants/Shared.mod").unwrap();
     let work = "MODULE Work\nPROC rWork()\n    MoveJ pAUp,v1000,fine,tGripper;\n    \
-                MoveL pA,v300,fine,tGripper;\n    WaitTime 1;\nENDPROC\nENDMODULE\n";
+                MoveL pA,v300,fine,tGripper;\n    WaitTime 1;\nENDPROC\n\
+                PROC rStay()\n    MoveJ pBUp,v1000,fine,tGripper;\n    WaitTime 1;\nENDPROC\n\
+                ENDMODULE\n";
     let cell = "MODULE Cell\nPROC main()\n    MoveAbsJ jHome,v1000,fine,tGripper;\n    rWork;\n    \
-                MoveAbsJ jHome,v1000,fine,tGripper;\nENDPROC\nENDMODULE\n";
+                rStay;\n    MoveAbsJ jHome,v1000,fine,tGripper;\nENDPROC\nENDMODULE\n";
     let paths = ["Shared.mod", "Work.mod", "Cell.mod"].map(|name| folder.path().join(name));
     for (path, text) in paths.iter().zip([data.as_str(), work, cell]) {
         fs::write(path, text).unwrap();
@@ -234,7 +237,7 @@ fn closing_a_document_is_told_to_the_others() {
     client.told_of();
     let change = json!({
         "textDocument": { "uri": cell, "version": 2 },
-        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nENDPROC\nENDMODULE\n" }],
+        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nrStay;\nENDPROC\nENDMODULE\n" }],
     });
     client.tell("textDocument/didChange", &change);
     let told = [client.told_of(), client.told_of()];

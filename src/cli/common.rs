@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -360,10 +361,9 @@ pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
     Ok(values.map(f64::to_radians))
 }
 
-/// A note on standard error.
-#[expect(clippy::print_stderr, reason = "notes go to standard error")]
+/// A note on standard error, if somebody reads it.
 pub fn note(quiet: bool, text: &str) {
     if !quiet {
-        eprintln!("note: {text}");
+        writeln!(std::io::stderr(), "note: {text}").unwrap_or_default();
     }
 }

@@ -123,7 +123,11 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     let mut seen = BTreeSet::new();
     for path in paths {
         match find(path, &mut input.unreadable) {
-            Ok(files) => found.extend(files.into_iter().filter(|f| seen.insert(shown(&f.path)))),
+            Ok(files) => {
+                let place =
+                    |file: &Found| fs::canonicalize(&file.path).unwrap_or(file.path.clone());
+                found.extend(files.into_iter().filter(|file| seen.insert(place(file))));
+            }
             Err(error) => {
                 input.unreadable.push(Unreadable { path: shown(path), reason: error.to_string() });
                 first_error.get_or_insert(error);
@@ -194,6 +198,10 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
     let metadata = fs::metadata(path)
         .map_err(|error| InputError::Unreadable { path: shown(path), reason: error.to_string() })?;
     if metadata.is_dir() {
+        if let Err(error) = fs::read_dir(path) {
+            let reason = error.to_string();
+            return Err(InputError::Unreadable { path: shown(path), reason });
+        }
         let mut files = Vec::new();
         walk(path, 0, &mut files, unreadable);
         let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =
@@ -386,7 +394,8 @@ mod tests {
     fn a_named_file_is_read_whatever_its_extension_and_once() {
         let folder = folder(&[("program.txt", "MODULE a ENDMODULE")]);
         let path = folder.path().join("program.txt");
-        let input = read(&[path.clone(), path]).unwrap();
+        let same = folder.path().join(".").join("program.txt");
+        let input = read(&[path.clone(), path, same]).unwrap();
         assert_eq!(relatives(input.files.iter()), ["program.txt"]);
         assert_eq!(input.files[0].source.bytes, b"MODULE a ENDMODULE");
     }

@@ -19,7 +19,7 @@ use crate::effects;
 use crate::lint::{self, Applicability, Fixed, Group, Job, Report, Settings, System};
 use crate::report;
 use crate::robot::Model;
-use crate::text::{FileId, SourceFile};
+use crate::text::{FileId, SourceFile, is_encoded_module};
 
 /// Find wasted energy in RAPID programs.
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -180,6 +180,10 @@ impl Setup {
         let input = input::read(&args.cell.paths)?;
         for unreadable in &input.unreadable {
             note(args.cell.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
+        }
+        for file in input.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
+            let path = &file.source.path;
+            note(args.cell.quiet, &format!("'{path}' is an encoded module: nothing in it is seen"));
         }
         let cell = &args.cell;
         let (config, folder) = common::configuration(cell)?;
@@ -423,8 +427,14 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
     if args.statistics {
         write!(std::io::stderr().lock(), "{}", report::lint::text::statistics(report, files))?;
     }
-    if setup.model.is_none() {
-        note(args.cell.quiet, "no robot is named: nothing has joules (--robot NAME)");
-    }
+    let why = match &setup.model {
+        None => "no robot is named (--robot NAME)".to_owned(),
+        Some(model) if !model.has_dynamics() => format!("{} has no dynamics", model.name),
+        Some(_) if report.cycle_energy_j.is_none() => {
+            "no file has the routine that starts a program (--entry NAME)".to_owned()
+        }
+        Some(_) => return Ok(()),
+    };
+    note(args.cell.quiet, &format!("nothing has joules: {why}"));
     Ok(())
 }

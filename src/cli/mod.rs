@@ -25,6 +25,7 @@ pub mod signals;
 pub mod simulate;
 pub mod standstill;
 
+use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -78,12 +79,23 @@ pub fn main() -> ExitCode {
         Command::Lsp(args) => lsp::run(&args),
     };
     result.unwrap_or_else(|error| {
-        report(&error);
+        if is_closed(&error) {
+            return ExitCode::SUCCESS;
+        }
+        writeln!(std::io::stderr(), "error: {error:#}").unwrap_or_default();
         ExitCode::from(2)
     })
 }
 
-#[expect(clippy::print_stderr, reason = "the message of a failed command goes to standard error")]
-fn report(error: &anyhow::Error) {
-    eprintln!("error: {error:#}");
+/// Whether a command ended because nobody reads on, as behind `| head`.
+fn is_closed(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        let kind = match cause.downcast_ref::<std::io::Error>() {
+            Some(error) => Some(error.kind()),
+            None => {
+                cause.downcast_ref::<serde_json::Error>().and_then(serde_json::Error::io_error_kind)
+            }
+        };
+        kind == Some(ErrorKind::BrokenPipe)
+    })
 }

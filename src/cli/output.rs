@@ -22,8 +22,13 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// Writes a file beside its place.
 ///
 /// # Errors
-/// As [`write()`].
+/// As [`write()`], and where a file that is read-only stands at its place.
 pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
+    // A link stays one: what it leads to is written.
+    let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if std::fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly()) {
+        anyhow::bail!("'{}' is read-only; make it writable to have it changed", path.display());
+    }
     let folder = parent(path);
     let closed = || {
         format!(

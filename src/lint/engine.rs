@@ -22,7 +22,7 @@ use crate::ir::program::{Program, RoutineId};
 use crate::motion::{Options, simulate};
 use crate::robot::Model;
 use crate::syntax;
-use crate::text::SourceFile;
+use crate::text::{SourceFile, Span};
 
 /// Files that may belong together, and how they run.
 #[derive(Clone, Debug)]
@@ -247,7 +247,12 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         worth && !settings.ignores_in(finding.rule, path)
     });
     let dynamics = job.model.is_some_and(Model::has_dynamics);
-    let energy = cycle.as_ref().filter(|_| dynamics).map(|cycle| cycle.account.total.energy_j());
+    // A wait without an end has no energy that others could be added to.
+    let energy = cycle
+        .as_ref()
+        .filter(|_| dynamics)
+        .map(|cycle| cycle.account.total.energy_j())
+        .filter(|energy| energy.is_finite());
     let report = Report { findings, cycle_energy_j: energy, unresolved: unresolved.len() };
     (report, cycle)
 }
@@ -261,17 +266,21 @@ fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
 
 /// Drops what comments take back, and adds what comments take back in vain.
 fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
-    let mut used: BTreeSet<(usize, usize)> = BTreeSet::new();
+    // By file, comment and code of the comment.
+    let mut used: BTreeSet<(usize, usize, usize)> = BTreeSet::new();
     findings.retain(|finding| {
         let file = finding.span.file.0 as usize;
         let Some(read) = read.get(file) else { return true };
-        let source = &job.files[file];
-        let first = source.position(finding.span.start).line;
+        let line = |at: u32| job.files[file].position(at).line;
+        let Span { start, end, .. } = finding.span;
+        let lines = line(start)..=line(end.saturating_sub(1).max(start));
         let mut kept = true;
         for (index, suppression) in read.suppressions.iter().enumerate() {
-            if suppression.line == first && suppression.names(finding.rule) {
-                used.insert((file, index));
-                kept = false;
+            if lines.contains(&suppression.line) {
+                for code in suppression.naming(finding.rule) {
+                    used.insert((file, index, code));
+                    kept = false;
+                }
             }
         }
         kept
@@ -281,9 +290,10 @@ fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<
     }
     for file in &unit.files {
         for (index, suppression) in read[*file].suppressions.iter().enumerate() {
-            if !used.contains(&(*file, index)) {
-                unused_suppression::judge(job, suppression, findings);
-            }
+            let codes = suppression.codes.iter().enumerate();
+            let unused = codes.filter(|(code, _)| !used.contains(&(*file, index, *code)));
+            let unused: Vec<&str> = unused.map(|(_, code)| code.as_str()).collect();
+            unused_suppression::judge(job, suppression, &unused, findings);
         }
     }
 }

@@ -17,7 +17,7 @@ of the energy is off by its share to the good or the bad side: rigid body 10 %, 
 copper 25 %, drive 50 %, idle 30 %, brakes 50 %. Without a robot, without dynamics, and where the
 cycle does not come by, nothing is told: `saving_j` is null. Findings whose saving is below the
 threshold (1 J, `--threshold`, or `[lint]` of the configuration) are not told, and neither is a
-change that saves nothing.
+change that saves nothing or whose interval reaches below zero.
 
 **Fixes** are *safe* where path, order and end points provably stay, else *unsafe*. `--fix` applies
 safe ones, `--unsafe-fixes` both, `--diff` shows what they would do. Each is simulated before and

@@ -14,14 +14,14 @@ pub struct Suppression {
     pub span: Span,
     /// The codes that it names, as written.
     pub codes: Vec<String>,
-    /// The line of the statement that it is about, from 1.
+    /// A line of the statement that it is about, from 1.
     pub line: u32,
 }
 
 impl Suppression {
-    /// Whether it names a rule.
-    pub fn names(&self, rule: &Rule) -> bool {
-        self.codes.iter().any(|code| rule.is_meant(code))
+    /// Which of its codes name a rule.
+    pub fn naming(&self, rule: &Rule) -> impl Iterator<Item = usize> {
+        (0..self.codes.len()).filter(|index| rule.is_meant(&self.codes[*index]))
     }
 }
 

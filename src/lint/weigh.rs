@@ -84,7 +84,7 @@ pub struct Worthless;
 pub enum Weighed {
     /// Nothing can be said.
     Unknown,
-    /// It saves nothing.
+    /// It saves nothing, or may as well cost.
     Nothing,
     /// It saves this.
     Saves(Saving),
@@ -123,9 +123,6 @@ impl Difference {
     pub fn weighed(&self) -> Weighed {
         let parts = &self.saved;
         let energy_j = parts.energy_j();
-        if energy_j <= 0.0 {
-            return Weighed::Nothing;
-        }
         let list = [
             parts.mechanical_j,
             parts.friction_j,
@@ -136,6 +133,9 @@ impl Difference {
         ];
         let off: f64 = list.iter().zip(DOUBT).map(|(part, share)| part.abs() * share).sum();
         let (low_j, high_j) = (energy_j - off, energy_j + off);
+        if low_j <= 0.0 {
+            return Weighed::Nothing;
+        }
         Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s, per: Per::Cycle })
     }
 }
@@ -181,10 +181,11 @@ fn replayed(
     let mut replayed: Vec<Replayed> = Vec::new();
     let mut next = 0;
     while next < touched.len() {
-        let mut window = window(simulation, touched[next]);
+        let mut window = window(simulation, touched[next], spans, change);
         next += 1;
         while next < touched.len() && touched[next] <= *window.end() {
-            window = *window.start()..=*self::window(simulation, touched[next]).end();
+            let further = self::window(simulation, touched[next], spans, change);
+            window = *window.start()..=*further.end();
             next += 1;
         }
         let (range, after, rest) = settle_window(model, cycle, window, spans, change)?;
@@ -203,11 +204,32 @@ fn replayed(
     Some((saved, replayed))
 }
 
-/// From the run at or before an event to the next run.
-fn window(simulation: &Simulation, event: usize) -> RangeInclusive<usize> {
+/// From the run at or before an event to the next run; to the event alone if it is a run that
+/// stops at its end after the change as before: the next run begins as it did.
+fn window(
+    simulation: &Simulation,
+    event: usize,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> RangeInclusive<usize> {
+    if let What::Run(run) = &simulation.events[event].what
+        && stops(run, spans, change)
+    {
+        return event..=event;
+    }
     let is_run = |index: &usize| matches!(simulation.events[*index].what, What::Run(_));
     let first = (0..=event).rev().find(is_run).unwrap_or(event);
     first..=next_run(simulation, event)
+}
+
+/// Whether the last movement of a run is a stop point after a change.
+fn stops(run: &Run, spans: &[Span], change: &Change<'_>) -> bool {
+    let Some(last) = run.moves.last() else { return false };
+    if !spans.contains(&last.movement.span) {
+        return last.movement.zone.fine;
+    }
+    let changed = change(&Step::Move(Box::new(last.movement.clone())));
+    matches!(changed.last(), Some(Step::Move(movement)) if movement.zone.fine)
 }
 
 /// The last movement before an event.
@@ -334,7 +356,7 @@ fn rest_behind(
     after: &Simulation,
     rest: f64,
 ) -> (EnergyParts, f64) {
-    let next = simulation.events.get(window.end() + 1);
+    let next = simulation.events[window.end() + 1..].iter().find(|it| !it.is_within_next_run());
     let moves_on = next.is_some_and(|it| it.duration > 0.0 && matches!(it.what, What::Run(_)));
     let last = after.events.last().filter(|event| moves_on && event.duration > 0.0);
     match last.map(|event| &event.what) {

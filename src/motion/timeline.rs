@@ -38,6 +38,13 @@ pub struct Event {
     pub what: What,
 }
 
+impl Event {
+    /// Whether it is an output between fly-by movements, which stands before their run.
+    pub fn is_within_next_run(&self) -> bool {
+        matches!(&self.what, What::Output(_, position) if *position > 0)
+    }
+}
+
 /// The kinds of events.
 #[derive(Debug)]
 pub enum What {

@@ -502,13 +502,19 @@ impl<'a> VirtualController<'a> {
     /// Between two movements the robot rests at the stop point. A wait takes that time too.
     fn settle(&mut self) {
         let settling = self.settling;
-        let Some(Event { duration, what: What::Run(before), .. }) = self.events.last_mut() else {
+        let own = self.events.iter().rev().take_while(|event| event.is_within_next_run()).count();
+        let at = self.events.len() - own;
+        let (events, own) = self.events.split_at_mut(at);
+        let Some(Event { duration, what: What::Run(before), .. }) = events.last_mut() else {
             return;
         };
         let Some(last) = before.moves.last_mut().filter(|_| *duration > 0.0) else { return };
         before.settling += settling;
         last.duration += settling;
         *duration += settling;
+        for event in own {
+            event.t_start += settling;
+        }
         self.time += settling;
     }
 

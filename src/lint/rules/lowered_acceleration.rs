@@ -1,7 +1,8 @@
 //! A lowered acceleration costs time, and more energy than it spares.
 //!
 //! ## What it does
-//! Finds `AccSet` below 100 % where the movements under it take fewer joules with 100 %.
+//! Finds `AccSet` below 100 % where the movements under it take fewer joules with 100 %, and not
+//! all of them are lines and arcs: these may be a process.
 //!
 //! ## Why it wastes energy
 //! Softer starts spare little; the base load, the open brakes and the holding of the arm run for
@@ -61,7 +62,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         };
         let share = value.max(LEAST) / 100.0;
         let spans = under(context, |settings| settings.acceleration == share);
-        if !alone || spans.is_empty() {
+        let in_air = |span: &Span| {
+            let site = context.site_of(*span).map(|index| &context.sites[index]);
+            site.is_some_and(|site| !site.is_linear())
+        };
+        if !alone || !spans.iter().any(in_air) {
             continue;
         }
         let weighed = context.weigh(&spans, &|step| with_acceleration(step, 1.0, Some(1.0)));

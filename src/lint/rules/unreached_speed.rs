@@ -66,8 +66,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let Some((name, below)) = slower(BELOW * reached).next() else { continue };
         let weighed = context.weigh(&[site.stmt.span], &|step| with_speed(step, below));
         let Weighed::Saves(saving) = weighed else { continue };
-        // So small a gain has to be sure.
-        if saving.time_s < -LONGER || saving.low_j <= 0.0 {
+        if saving.time_s < -LONGER {
             continue;
         }
         let written = context.text(site.speed.span);

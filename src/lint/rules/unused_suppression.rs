@@ -1,7 +1,8 @@
 //! A comment takes back a finding that is not there.
 //!
 //! ## What it does
-//! Finds `! joulepath: ignore CODE reason` where no such finding is on the line it is about.
+//! Finds `! joulepath: ignore CODE reason` where no such finding is in the statement it is about.
+//! Of several codes each is judged.
 //!
 //! ## Why it wastes energy
 //! It does not, but it hides the next finding of that kind.
@@ -47,31 +48,41 @@ pub(in crate::lint) static RULE: Rule = Rule {
     check: |_, _| {},
 };
 
-/// Adds a finding for a comment that took nothing back, unless its rules could not run.
+/// Adds a finding for the codes of a comment that took nothing back, as far as their rules ran.
 pub(in crate::lint) fn judge(
     job: &Job<'_>,
     suppression: &Suppression,
+    unused: &[&str],
     findings: &mut Vec<Finding>,
 ) {
-    let meant = || ALL.iter().filter(|rule| suppression.names(rule));
+    let meant = |code: &str| ALL.iter().filter(|rule| rule.is_meant(code)).collect::<Vec<_>>();
     let idle = |rule: &Rule| {
         !job.settings.selects(rule)
             || rule.needs == Needs::Backup
             || job.model.is_none() && depends_on_robot(rule)
     };
-    if meant().any(|rule| idle(rule)) {
+    let judged =
+        unused.iter().copied().filter(|code| !meant(code).into_iter().any(|rule| idle(rule)));
+    let (vain, unknown): (Vec<&str>, Vec<&str>) = judged.partition(|code| !meant(code).is_empty());
+    let whole = vain.len() + unknown.len() == suppression.codes.len();
+    let mut told = Vec::new();
+    if suppression.codes.is_empty() {
+        told.push("the comment names no rule: write ! joulepath: ignore CODE reason".to_owned());
+    }
+    if !unknown.is_empty() {
+        told.push(format!("there is no rule {}: joulepath rule lists them", unknown.join(", ")));
+    }
+    if !vain.is_empty() {
+        let so = if whole { "the comment takes nothing back" } else { "leave it out" };
+        told.push(format!("nothing here is found by {}: {so}", vain.join(", ")));
+    }
+    if told.is_empty() {
         return;
     }
-    let codes = suppression.codes.join(", ");
-    let message = match (suppression.codes.is_empty(), meant().next().is_some()) {
-        (true, _) => "the comment names no rule: write ! joulepath: ignore CODE reason".to_owned(),
-        (false, false) => format!("there is no rule {codes}: joulepath rule lists them"),
-        (false, true) => {
-            format!("nothing here is found by {codes}: the comment takes nothing back")
-        }
-    };
-    let mut finding = Finding::new(&RULE, suppression.span, message);
-    finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
+    let mut finding = Finding::new(&RULE, suppression.span, told.join("; "));
+    if whole {
+        finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
+    }
     findings.push(finding);
 }
 
