@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use crate::effects::Effect;
 use crate::robot::Model;
 
+use super::calibration::calibrate;
 use super::column::Owner;
 use super::diagnosis::{Diagnosis, Verdict};
 use super::gated::{OF_TIME, gated};
@@ -192,6 +193,7 @@ pub fn diagnose_telling(
     if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && missed < RIGHT {
         verdict = Verdict::NoGap;
     }
+    calibrate(&mut judged.effects, &mut judged.candidates);
     let asserted: Vec<&'static str> = judged.effects.iter().map(|said| said.effect.id).collect();
     let places = places(&train, model, [&refit, &improved], &asserted);
     Diagnosis {

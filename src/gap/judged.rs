@@ -10,7 +10,7 @@ use super::gated::{GATED, OF_TIME};
 use super::generic::OF_DRIFT;
 use super::nuisance::Trust;
 use super::polish::{Fitted, Polished};
-use super::search::{Chosen, Found, Search};
+use super::search::{Chosen, Found, STRIBECK, Search};
 use super::sizes::{beside_missed, fades, missed, noise, size};
 
 /// Most ids that say anything.
@@ -47,6 +47,8 @@ const IMPROBABLE: f64 = 0.05;
 const FORM_SPREAD: f64 = 0.5;
 /// The same where nothing follows it: no robot obeys a law to the last digit.
 const LEAST_SPREAD: f64 = 0.03;
+/// Friction at breakaway below this share of Coulomb friction is a form of that.
+const OF_COULOMB: f64 = 0.1;
 /// An effect that is so many times what the model misses is there against others.
 const CANCELS: f64 = 3.0;
 const SMOOTH: [&str; 6] = [
@@ -420,6 +422,12 @@ fn refused(
     }
     if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {
         return no("is no more than friction differs by from hour to hour".to_owned());
+    }
+    let is_step = |of: &&Fitted| {
+        of.joint.is_some_and(|j| of.parameters[0].abs() < OF_COULOMB * search.coulomb(polished, j))
+    };
+    if id == STRIBECK && !search.is_open() && fitted.iter().copied().all(|of| is_step(&of)) {
+        return no("is no more than any step of friction is rounded by".to_owned());
     }
     if said.nats < least {
         return no(format!("brings {:.1} nats only", said.nats));

@@ -5,6 +5,7 @@
 
 mod attribution;
 mod bins;
+mod calibration;
 mod chance;
 mod channel;
 mod column;

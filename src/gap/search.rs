@@ -42,7 +42,7 @@ const QUICK: usize = 2;
 /// A log that does not repeat and is shorter says nothing of temperatures \[s\].
 const WARMS: f64 = 120.0;
 /// Its friction at breakaway is bounded by the friction at speed.
-const STRIBECK: &str = "stribeck";
+pub(super) const STRIBECK: &str = "stribeck";
 /// Deviations beyond the bounds of a parameter that cannot be.
 const IMPOSSIBLE: f64 = 2.0;
 
@@ -366,7 +366,7 @@ impl<'a, 'm> Search<'a, 'm> {
     }
 
     /// Coulomb friction of a joint as it was found \[Nm\].
-    fn coulomb(&self, polished: &Polished, joint: usize) -> f64 {
+    pub(super) fn coulomb(&self, polished: &Polished, joint: usize) -> f64 {
         let nominal = self.records.first().map(|of| of.motion.model.friction.coulomb[joint]);
         let name = format!("joint {} coulomb", joint + 1);
         let at = self.table.parameters.iter().position(|of| *of == name);
