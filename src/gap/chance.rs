@@ -1,17 +1,16 @@
 //! What chance alone reaches: the threshold that this motion with this noise has.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::evidence::{Evidence, Given};
 use super::search::Search;
+use super::table::Table;
 
 /// Measurements that are drawn.
 const DRAWS: usize = 40;
 /// Share of measurements without any effect in which none may be found.
 const CONFIDENT: f64 = 0.98;
-/// Share by which the diagonal of the products is raised, so that they have a root.
-const RIDGE: f64 = 1e-9;
 /// Euler's constant.
 const EULER: f64 = 0.577_215_664_901_532_9;
 
@@ -22,13 +21,14 @@ impl Search<'_, '_> {
     /// The largest of many scores is distributed as E. J. Gumbel's law has it (Statistics of
     /// Extremes, 1958), whose two numbers are those of the draws.
     pub(super) fn reached_by_chance(&self) -> f64 {
-        let Some(root) = self.evidence.root(RIDGE) else { return 0.0 };
         let mut random = fastrand::Rng::with_seed(1);
+        let mut normal = move || normal(&mut random);
+        let noise = self.table.products_with_noise(self.error, DRAWS, &mut normal);
+        let products = self.evidence.by_chance(&noise, &mut normal);
         let mut given = self.given(&[]);
         let mut largest = Vec::with_capacity(DRAWS);
-        for _ in 0..DRAWS {
-            let deviates = DVector::from_fn(root.nrows(), |_, _| normal(&mut random));
-            given.measure(&root * deviates);
+        for draw in products.column_iter() {
+            given.measure(draw.into_owned());
             largest.push(self.best_alone(&given));
         }
         exceeded_by_few(&largest)
@@ -49,15 +49,41 @@ fn exceeded_by_few(maxima: &[f64]) -> f64 {
     mean - scale * (EULER + (-CONFIDENT.ln()).ln())
 }
 
-impl Evidence {
-    /// Root of the covariance that products of columns and measurement have by chance: that of
-    /// the products of the columns.
-    fn root(&self, ridge: f64) -> Option<DMatrix<f64>> {
-        let mut products = self.products().clone();
-        for k in 0..products.nrows() {
-            products[(k, k)] += ridge * products[(k, k)] + f64::MIN_POSITIVE.sqrt();
+impl Table {
+    /// Weighted products of everything with noise, by draw.
+    fn products_with_noise(
+        &self,
+        error: f64,
+        draws: usize,
+        normal: &mut impl FnMut() -> f64,
+    ) -> DMatrix<f64> {
+        let columns: Vec<usize> = (0..self.means.len()).collect();
+        let places = self.places_of(&columns);
+        let mut products = DMatrix::zeros(places.len(), draws);
+        for rows in &self.joints {
+            let noise = DMatrix::from_fn(rows.len(), draws, |_, _| normal());
+            let (part, reached) = rows.products_with(error, |number| places[number], &noise);
+            for (row, place) in part.row_iter().zip(reached) {
+                let mut to = products.row_mut(place);
+                to += row;
+            }
         }
-        Some(Cholesky::new(products)?.unpack())
+        for (k, scale) in self.scales(error).into_iter().enumerate() {
+            products.row_mut(1 + k).scale_mut(scale);
+        }
+        products
+    }
+}
+
+impl Evidence {
+    /// Products of the columns with measurements of noise alone, the parameters being off as they may
+    /// be and marginalised.
+    fn by_chance(&self, noise: &DMatrix<f64>, normal: &mut impl FnMut() -> f64) -> DMatrix<f64> {
+        let count = self.parameter_count();
+        let off = DMatrix::from_fn(count, noise.ncols(), |_, _| normal());
+        let told = off - noise.rows(1, count);
+        let more = self.of_parameters(&told);
+        noise.rows(noise.nrows() - more.nrows(), more.nrows()) + more
     }
 }
 
@@ -69,37 +95,40 @@ fn normal(random: &mut fastrand::Rng) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+    use nalgebra::DVector;
 
     use super::*;
 
-    /// Rounding, and the share by which the diagonal is raised.
+    /// How far columns are apart that are nearly alike.
     const SAME: f64 = 1e-8;
     /// Draws of Gumbel's law, and how far their quantile may be off, of its scale.
     const MANY: usize = 20_000;
     const NEAR: f64 = 0.1;
 
-    /// A difference, a parameter and two columns, which are like each other.
-    fn evidence() -> Evidence {
-        let gram = DMatrix::from_row_slice(
-            4,
-            4,
-            &[
-                9.0, 1.0, 2.0, 3.0, //
-                1.0, 4.0, 1.0, 0.5, //
-                2.0, 1.0, 5.0, 4.0, //
-                3.0, 0.5, 4.0, 6.0,
-            ],
-        );
-        let [means, sds] = [0.0, 1.0].map(|x| DVector::from_element(2, x));
-        Evidence::new(&gram, 1, means, sds, 0.0, 10)
+    /// A difference, two parameters and three columns over some rows, of which two are nearly alike.
+    fn rows(random: &mut fastrand::Rng) -> DMatrix<f64> {
+        let mut rows = DMatrix::from_fn(30, 6, |_, _| random.f64() - 0.5);
+        let alike = rows.column(3) * (1.0 + SAME);
+        rows.set_column(4, &alike);
+        rows
     }
 
     #[test]
-    fn draws_are_as_uncertain_as_the_columns_products() {
-        let evidence = evidence();
-        let root = evidence.root(RIDGE).unwrap();
-        assert!((&root * root.transpose() - evidence.products()).norm() < SAME);
+    fn products_with_noise_are_as_uncertain_as_the_columns_products() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let rows = rows(&mut random);
+        let gram = rows.transpose() * &rows;
+        let [means, sds] = [0.0, 1.0].map(|x| DVector::from_element(3, x));
+        let evidence = Evidence::new(&gram, 2, means, sds, 0.0, 30);
+        let mut normal = || normal(&mut random);
+        let noise = rows.transpose() * DMatrix::from_fn(30, MANY, |_, _| normal());
+        let drawn = evidence.by_chance(&noise, &mut normal);
+        let covariance = &drawn * drawn.transpose() / MANY as f64;
+        let exact = evidence.products();
+        assert!((covariance - exact).norm() < NEAR * exact.norm());
+        // Nothing is where columns alike differ.
+        let apart = drawn.row(0) - drawn.row(1);
+        assert!(apart.norm() < NEAR * SAME.sqrt() * drawn.row(0).norm());
     }
 
     #[test]

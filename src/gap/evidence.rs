@@ -120,7 +120,21 @@ impl Evidence {
         }
     }
 
+    /// Number of the model's parameters.
+    pub(super) fn parameter_count(&self) -> usize {
+        self.parameters.as_ref().map_or(0, |of| of.y.len())
+    }
+
+    /// Products of the columns with what products with the parameters tell of them.
+    pub(super) fn of_parameters(&self, products: &DMatrix<f64>) -> DMatrix<f64> {
+        match &self.parameters {
+            Some(of) => of.c.transpose() * of.factor.solve(products),
+            None => DMatrix::zeros(self.b.len(), products.ncols()),
+        }
+    }
+
     /// Products of the columns, the parameters marginalised.
+    #[cfg(test)]
     pub(super) fn products(&self) -> &DMatrix<f64> {
         &self.a
     }

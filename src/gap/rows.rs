@@ -219,6 +219,17 @@ impl Rows {
         Some((DMatrix::from_fn(used.len(), of.len(), product), [places, to]))
     }
 
+    /// Products of the columns with a place with columns of whitened noise, and their places.
+    pub(super) fn products_with(
+        &self,
+        error: f64,
+        place: impl Fn(usize) -> Option<usize>,
+        noise: &DMatrix<f64>,
+    ) -> (DMatrix<f64>, Vec<usize>) {
+        let (used, places) = self.used(place);
+        (self.weighted(&self.weights(error), &used).transpose() * noise, places)
+    }
+
     /// Roots of the weights of the rows.
     fn weights(&self, error: f64) -> Vec<f64> {
         let variances = self.noise.iter().zip(&self.power).zip(&self.excess);

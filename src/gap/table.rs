@@ -48,7 +48,7 @@ pub struct Table {
     pub(super) sds: DVector<f64>,
     /// Columns that others have replaced since all was weighed.
     pub(super) changed: BTreeSet<usize>,
-    joints: Vec<Rows>,
+    pub(super) joints: Vec<Rows>,
 }
 
 /// Products of the difference, the parameters and columns with some of the columns.
