@@ -22,7 +22,7 @@ const BEYOND: f64 = 3.0;
 /// What a function of time may still bring beside a gated effect, of what that does.
 const LEFT: f64 = 0.3;
 /// What an effect has to bring, of what the strongest does.
-const OF_STRONGEST: f64 = 0.005;
+const OF_STRONGEST: f64 = 0.01;
 /// What an effect has to bring.
 pub(super) const LEAST_NATS: f64 = 8.0;
 /// The same of what changes with time, as all friction does a little.
@@ -119,6 +119,17 @@ impl Judged {
             self.effects.drain(..).partition(|said| lesser.contains(&said.effect.id));
         self.effects = kept;
         self.candidates.extend(demoted);
+    }
+
+    /// Of two effects with windows the lesser one is there where the window of the other is not its.
+    fn demote_second_window(&mut self) {
+        let has_window = |said: &&Said| GATED.contains(&said.effect.id);
+        let nats = self.effects.iter().filter(has_window).map(|said| said.nats);
+        let most = nats.fold(0.0, f64::max);
+        let is_second = |said: &Said| has_window(&said) && said.nats < most;
+        let (second, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_second);
+        self.effects = kept;
+        self.candidates.extend(second);
     }
 
     /// More effects than can be at once are what none of them is; whether it is so.
@@ -327,6 +338,7 @@ pub(super) fn judged(
         }
     }
     judged.demote_lesser(search, found);
+    judged.demote_second_window();
     refusal |= judged.demote_too_many(search);
     let is_form = |of: &Anything| followed.contains(&of.joint) || followed.contains(&None);
     let forms = judged.anything.iter().filter(|of| is_form(of)).map(|of| of.share).sum::<f64>();

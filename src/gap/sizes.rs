@@ -12,12 +12,23 @@ const FADES: f64 = 0.1;
 /// Ripple that any motor may have, of the noise.
 const BELOW_NOISE: f64 = 0.25;
 
-/// Whether a cold joint rubs clearly more than a warm one.
+/// Whether a joint rubs clearly more when the logs begin than when they end.
 pub(super) fn fades(search: &Search<'_, '_>, of: &Fitted) -> bool {
     let (Some(joint), Some(record)) = (of.joint, search.records.first()) else { return false };
     let scale = record.motion.scale(joint);
-    let [coulomb, viscous] = [of.parameters[0] / scale.coulomb, of.parameters[1] / scale.viscous];
+    let [first, last] = times(search);
+    // What would fade later is not seen.
+    let left = |t: f64| (-t / of.parameters[2].max(1e-9)).exp();
+    let seen = left(first) - left(last);
+    let [coulomb, viscous] =
+        [of.parameters[0] / scale.coulomb, of.parameters[1] / scale.viscous].map(|x| x * seen);
     coulomb.max(viscous) > FADES && coulomb + viscous > 0.0
+}
+
+/// Times of the first and the last repetition, by the clock of the logs \[s\].
+fn times(search: &Search<'_, '_>) -> [f64; 2] {
+    let times = search.records.iter().flat_map(|record| record.times.iter().map(|(t, _)| *t));
+    times.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], t| [first.min(t), last.max(t)])
 }
 
 /// Ripple of a joint that nobody asks for \[Nm\].
@@ -97,9 +108,7 @@ fn shown(
     if effect.id != "warm_up" {
         return effect.added(&record.motion, joint, coordinates);
     }
-    let times = search.records.iter().flat_map(|record| record.times.iter().map(|(t, _)| *t));
-    let (first, last) = times
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(first, last), t| (first.min(t), last.max(t)));
+    let [first, last] = times(search);
     let at = |later: f64| {
         let mut moved = record.motion.clone();
         moved.t.iter_mut().for_each(|t| *t += later);
