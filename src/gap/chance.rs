@@ -1,11 +1,9 @@
 //! What chance alone reaches: the threshold that this motion with this noise has.
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::evidence::{Evidence, Given};
+use super::evidence::Given;
 use super::search::Search;
-use super::table::Table;
 
 /// Measurements that are drawn.
 const DRAWS: usize = 40;
@@ -49,87 +47,19 @@ fn exceeded_by_few(maxima: &[f64]) -> f64 {
     mean - scale * (EULER + (-CONFIDENT.ln()).ln())
 }
 
-impl Table {
-    /// Weighted products of everything with noise, by draw.
-    fn products_with_noise(
-        &self,
-        error: f64,
-        draws: usize,
-        normal: &mut impl FnMut() -> f64,
-    ) -> DMatrix<f64> {
-        let columns: Vec<usize> = (0..self.means.len()).collect();
-        let places = self.places_of(&columns);
-        let mut products = DMatrix::zeros(places.len(), draws);
-        for rows in &self.joints {
-            let noise = DMatrix::from_fn(rows.len(), draws, |_, _| normal());
-            let (part, reached) = rows.products_with(error, |number| places[number], &noise);
-            for (row, place) in part.row_iter().zip(reached) {
-                let mut to = products.row_mut(place);
-                to += row;
-            }
-        }
-        for (k, scale) in self.scales(error).into_iter().enumerate() {
-            products.row_mut(1 + k).scale_mut(scale);
-        }
-        products
-    }
-}
-
-impl Evidence {
-    /// Products of the columns with measurements of noise alone, the parameters being off as they may
-    /// be and marginalised.
-    fn by_chance(&self, noise: &DMatrix<f64>, normal: &mut impl FnMut() -> f64) -> DMatrix<f64> {
-        let count = self.parameter_count();
-        let off = DMatrix::from_fn(count, noise.ncols(), |_, _| normal());
-        let told = off - noise.rows(1, count);
-        let more = self.of_parameters(&told);
-        noise.rows(noise.nrows() - more.nrows(), more.nrows()) + more
-    }
-}
-
 /// A standard normal deviate (G. E. P. Box, M. E. Muller 1958).
-fn normal(random: &mut fastrand::Rng) -> f64 {
+pub(super) fn normal(random: &mut fastrand::Rng) -> f64 {
     let radius = (-2.0 * (1.0 - random.f64()).ln()).sqrt();
     radius * (std::f64::consts::TAU * random.f64()).cos()
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DVector;
-
     use super::*;
 
-    /// How far columns are apart that are nearly alike.
-    const SAME: f64 = 1e-8;
     /// Draws of Gumbel's law, and how far their quantile may be off, of its scale.
     const MANY: usize = 20_000;
     const NEAR: f64 = 0.1;
-
-    /// A difference, two parameters and three columns over some rows, of which two are nearly alike.
-    fn rows(random: &mut fastrand::Rng) -> DMatrix<f64> {
-        let mut rows = DMatrix::from_fn(30, 6, |_, _| random.f64() - 0.5);
-        let alike = rows.column(3) * (1.0 + SAME);
-        rows.set_column(4, &alike);
-        rows
-    }
-
-    #[test]
-    fn products_with_noise_are_as_uncertain_as_the_columns_products() {
-        let mut random = fastrand::Rng::with_seed(3);
-        let rows = rows(&mut random);
-        let gram = rows.transpose() * &rows;
-        let [means, sds] = [0.0, 1.0].map(|x| DVector::from_element(3, x));
-        let evidence = Evidence::new(&gram, 2, means, sds, 0.0, 30);
-        let mut normal = || normal(&mut random);
-        let noise = rows.transpose() * DMatrix::from_fn(30, MANY, |_, _| normal());
-        let drawn = evidence.by_chance(&noise, &mut normal);
-        let covariance = &drawn * drawn.transpose() / MANY as f64;
-        let exact = evidence.products();
-        assert!((covariance - exact).norm() < NEAR * exact.norm());
-        // Nothing is where columns alike differ.
-        let apart = drawn.row(0) - drawn.row(1);
-        assert!(apart.norm() < NEAR * SAME.sqrt() * drawn.row(0).norm());
-    }
 
     #[test]
     fn one_largest_score_in_fifty_is_beyond() {

@@ -119,9 +119,10 @@ impl Search<'_, '_> {
         let none = self.total(Late::none(), &[]);
         for (kind, joint, value) in self.suspected(&kinds) {
             let step = COARSE * value.abs().max(LEAST);
-            let late = self.tuned(Late { kind, joint, value, ..Late::none() }, &[], step);
+            let from = Late { kind, joint, value, ..Late::none() };
+            let (late, total) = self.tuned(from, &[], step);
             let cost = if joint.is_some() { JOINT } else { 0.0 };
-            let nats = late.nats - none - cost;
+            let nats = total - none - cost;
             if nats > best.map_or(WORTH, |best| best.nats) {
                 best = Some(Late { nats, ..late });
             }
@@ -209,7 +210,7 @@ impl Search<'_, '_> {
     pub(super) fn tune(&mut self, columns: &[usize]) {
         let Some(late) = self.late else { return };
         let own = if late.sd.is_finite() { late.sd } else { FINE * late.value.abs() };
-        let mut best = self.tuned(late, columns, own.max(STEP));
+        let (mut best, most) = self.tuned(late, columns, own.max(STEP));
         let other = match late.kind {
             Kind::Delay => Kind::Lag,
             Kind::Lag => Kind::Delay,
@@ -217,18 +218,17 @@ impl Search<'_, '_> {
         let value = late.value.abs().max(LEAST);
         let other = Late { kind: other, value, ..late };
         // Another kind takes the place where it may come close.
-        let likely = self.total(other, columns) > best.nats - CLOSE;
-        if likely {
-            let tuned = self.tuned(other, columns, FINE * value);
-            best = if tuned.nats > best.nats { tuned } else { best };
+        if self.total(other, columns) > most - CLOSE {
+            let (tuned, total) = self.tuned(other, columns, FINE * value);
+            best = if total > most { tuned } else { best };
         }
         if best.kind == late.kind && (best.value - late.value).abs() <= STAYS * best.sd {
+            self.late = Some(Late { sd: best.sd, ..late });
             self.table.through(self.records, &self.channels, columns);
             return;
         }
-        let late = Late { nats: late.nats, ..best };
-        self.late = Some(late);
-        self.set_channels(&late.channels(self.dof()));
+        self.late = Some(best);
+        self.set_channels(&best.channels(self.dof()));
     }
 
     /// How probable the measurement is with what is late, and some columns.
@@ -239,8 +239,9 @@ impl Search<'_, '_> {
         evidence.null + evidence.gain(&all)
     }
 
-    /// The best value of a kind with some columns there, from one near it and `step` beside it on.
-    fn tuned(&mut self, from: Late, columns: &[usize], mut step: f64) -> Late {
+    /// The best value of a kind with some columns there, from one near it and `step` beside it on, and
+    /// how probable the measurement is with it.
+    fn tuned(&mut self, from: Late, columns: &[usize], mut step: f64) -> (Late, f64) {
         let mut total = |value: f64| {
             let is_possible = from.kind == Kind::Delay || value > 0.0;
             if is_possible {
@@ -277,7 +278,7 @@ impl Search<'_, '_> {
                 step *= 0.5;
             }
         }
-        Late { value, sd, nats: most, ..from }
+        (Late { value, sd, ..from }, most)
     }
 }
 

@@ -120,23 +120,18 @@ impl Evidence {
         }
     }
 
-    /// Number of the model's parameters.
-    pub(super) fn parameter_count(&self) -> usize {
-        self.parameters.as_ref().map_or(0, |of| of.y.len())
-    }
-
-    /// Products of the columns with what products with the parameters tell of them.
-    pub(super) fn of_parameters(&self, products: &DMatrix<f64>) -> DMatrix<f64> {
-        match &self.parameters {
-            Some(of) => of.c.transpose() * of.factor.solve(products),
-            None => DMatrix::zeros(self.b.len(), products.ncols()),
-        }
-    }
-
-    /// Products of the columns, the parameters marginalised.
-    #[cfg(test)]
-    pub(super) fn products(&self) -> &DMatrix<f64> {
-        &self.a
+    /// Products of the columns with measurements of noise alone, whose own products are `noise`, the
+    /// parameters being off as they may be and marginalised.
+    pub(super) fn by_chance(
+        &self,
+        noise: &DMatrix<f64>,
+        normal: &mut impl FnMut() -> f64,
+    ) -> DMatrix<f64> {
+        let columns = noise.rows(noise.nrows() - self.b.len(), self.b.len());
+        let Some(of) = &self.parameters else { return columns.into_owned() };
+        let count = of.y.len();
+        let off = DMatrix::from_fn(count, noise.ncols(), |_, _| normal());
+        columns + of.c.transpose() * of.factor.solve(&(off - noise.rows(1, count)))
     }
 
     /// Logarithm of how much more probable the measurement is with the columns than without.
@@ -249,10 +244,16 @@ impl Evidence {
 
 #[cfg(test)]
 mod tests {
+    use super::super::chance::normal;
     use super::*;
 
     /// Rounding.
     const SAME: f64 = 1e-12;
+    /// How far columns are apart that are nearly alike.
+    const ALIKE: f64 = 1e-8;
+    /// Draws, and how far their covariance may be off, of itself.
+    const MANY: usize = 20_000;
+    const NEAR: f64 = 0.1;
 
     /// Products of a difference, two parameters and three columns over some rows.
     fn products(columns: &DMatrix<f64>) -> Evidence {
@@ -278,5 +279,22 @@ mod tests {
             let [a, b] = [&evidence, &anew].map(|of| of.parameters(&columns, &factors));
             assert!((a - b).norm() < SAME);
         }
+    }
+
+    #[test]
+    fn products_with_noise_are_as_uncertain_as_the_columns_products() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut rows = DMatrix::from_fn(30, 6, |_, _| random.f64() - 0.5);
+        let alike = rows.column(3) * (1.0 + ALIKE);
+        rows.set_column(4, &alike);
+        let evidence = products(&rows);
+        let mut normal = || normal(&mut random);
+        let noise = rows.transpose() * DMatrix::from_fn(30, MANY, |_, _| normal());
+        let drawn = evidence.by_chance(&noise, &mut normal);
+        let covariance = &drawn * drawn.transpose() / MANY as f64;
+        assert!((covariance - &evidence.a).norm() < NEAR * evidence.a.norm());
+        // Nothing is where columns alike differ.
+        let apart = drawn.row(0) - drawn.row(1);
+        assert!(apart.norm() < NEAR * ALIKE.sqrt() * drawn.row(0).norm());
     }
 }

@@ -121,7 +121,7 @@ impl Judged {
         self.candidates.extend(demoted);
     }
 
-    /// Of two effects with windows the lesser one is there where the window of the other is not its.
+    /// Of two effects with windows the lesser one explains what the other one's form leaves.
     fn demote_second_window(&mut self) {
         let has_window = |said: &&Said| GATED.contains(&said.effect.id);
         let nats = self.effects.iter().filter(has_window).map(|said| said.nats);
@@ -435,10 +435,10 @@ fn refused(
     if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {
         return no("is no more than friction differs by from hour to hour".to_owned());
     }
-    let is_step = |of: &&Fitted| {
+    let is_step = |of: &Fitted| {
         of.joint.is_some_and(|j| of.parameters[0].abs() < OF_COULOMB * search.coulomb(polished, j))
     };
-    if id == STRIBECK && !search.is_open() && fitted.iter().copied().all(|of| is_step(&of)) {
+    if id == STRIBECK && !search.is_open() && fitted.iter().all(|of| is_step(of)) {
         return no("is no more than any step of friction is rounded by".to_owned());
     }
     if said.nats < least {

@@ -307,15 +307,12 @@ impl<'a, 'm> Search<'a, 'm> {
         }
         let Some(polished) = self.polish(&found.chosen) else { return found };
         let kept = self.kept.clone();
-        if self.strike(&mut found, &polished, &kept) {
-            self.weigh_changed();
-            self.settle(&mut found);
-        }
+        self.strike(&mut found, &polished, &kept);
         found
     }
 
-    /// Takes what came out as it cannot be out of a set, but for families to keep, and looks for it no
-    /// more; whether there was some.
+    /// Takes what came out as it cannot be out of a set, but for families to keep, settles what stays,
+    /// and looks for it no more; whether there was some.
     pub(super) fn strike(
         &mut self,
         found: &mut Found,
@@ -343,6 +340,9 @@ impl<'a, 'm> Search<'a, 'm> {
                 }
             }
         }
+        if self.impossible.len() == before {
+            return false;
+        }
         for of in &mut found.chosen {
             let may = |piece: &usize| {
                 !self.impossible.contains(&(of.family, self.table.pieces[*piece].joint))
@@ -350,7 +350,9 @@ impl<'a, 'm> Search<'a, 'm> {
             of.pieces.retain(may);
         }
         found.chosen.retain(|of| !of.pieces.is_empty());
-        self.impossible.len() > before
+        self.weigh_changed();
+        self.settle(found);
+        true
     }
 
     /// Whether a parameter is so many deviations beyond what can be.

@@ -48,7 +48,7 @@ pub struct Table {
     pub(super) sds: DVector<f64>,
     /// Columns that others have replaced since all was weighed.
     pub(super) changed: BTreeSet<usize>,
-    pub(super) joints: Vec<Rows>,
+    joints: Vec<Rows>,
 }
 
 /// Products of the difference, the parameters and columns with some of the columns.
@@ -330,6 +330,30 @@ impl Table {
         let of_all = |x: &DVector<f64>| of.iter().map(|k| x[columns[*k]]).collect();
         let (means, sds) = (of_all(&self.means), of_all(&self.sds));
         Products { of, with, means, sds }
+    }
+
+    /// Weighted products of everything with noise, by draw.
+    pub(super) fn products_with_noise(
+        &self,
+        error: f64,
+        draws: usize,
+        normal: &mut impl FnMut() -> f64,
+    ) -> DMatrix<f64> {
+        let columns: Vec<usize> = (0..self.means.len()).collect();
+        let places = self.places_of(&columns);
+        let mut products = DMatrix::zeros(places.len(), draws);
+        for rows in &self.joints {
+            let noise = DMatrix::from_fn(rows.len(), draws, |_, _| normal());
+            let (part, reached) = rows.products_with(error, |number| places[number], &noise);
+            for (row, place) in part.row_iter().zip(reached) {
+                let mut to = products.row_mut(place);
+                to += row;
+            }
+        }
+        for (k, scale) in self.scales(error).into_iter().enumerate() {
+            products.row_mut(1 + k).scale_mut(scale);
+        }
+        products
     }
 
     /// Variance of what noise, error and excess make of a joint's torque \[N²m²\].
