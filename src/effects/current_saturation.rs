@@ -1,6 +1,6 @@
 //! Torque that lags behind the current where the iron saturates.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, linear};
+use super::effect::{Channel, Effect, Form, Of, bounded, every, linear, shape};
 use super::motion::Motion;
 
 /// Saturation of the motor.
@@ -9,15 +9,18 @@ pub(super) const CURRENT_SATURATION: Effect = Effect {
     channel: Channel::Torque,
     of: Of::Joint,
     title: "Saturation of the motor",
-    law: "τ = τ·(1 + error·(τ/τ_max)²), logged; τ_max: the limit, else of the motion",
+    law: "τ = τ·(1 + error·(|τ|/τ_max)^exponent), logged; τ_max: the limit, else of the motion",
     source: "G. Terzic, M. Jadric, IEEE T-IE 48, 2001",
-    parameters: &[bounded(
-        "error",
-        "1",
-        "logged over true torque at the largest current, less 1",
-        [-0.9, 5.0],
-    )],
-    coordinates: &[linear(|_| 0.15)],
+    parameters: &[
+        bounded(
+            "error",
+            "1",
+            "logged over true torque at the largest current, less 1",
+            [-0.9, 5.0],
+        ),
+        bounded("exponent", "1", "power of the torque; 0: as 2", [0.0, 8.0]),
+    ],
+    coordinates: &[linear(|_| 0.15), shape(|_| vec![1.0, 2.0, 4.0])],
     published: None,
     joints: every,
     brings: &[],
@@ -26,11 +29,16 @@ pub(super) const CURRENT_SATURATION: Effect = Effect {
     form: Form::Series(added),
 };
 
+/// The exponent of a symmetric curve's first term.
+const CUBIC: f64 = 2.0;
+
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let tau = &motion.torque[joint];
     // The same torque for every motion, where the robot has one.
     let limit = motion.model.limits.torque.as_ref().map(|of| of[joint]);
     let largest = limit.unwrap_or_else(|| tau.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let largest = largest.max(1e-9);
-    vec![(joint, tau.iter().map(|x| values[0] * x * (x / largest).powi(2)).collect())]
+    let [error, exponent] = [values[0], if values[1] > 0.0 { values[1] } else { CUBIC }];
+    let series = tau.iter().map(|x| error * x * (x.abs() / largest).powf(exponent));
+    vec![(joint, series.collect())]
 }

@@ -18,3 +18,8 @@ pub(super) fn calibrate(asserted: &mut [Said], refused: &mut [Said]) {
         }
     }
 }
+
+/// How probable it is that an effect of another channel is there, by the logarithm of its odds.
+pub(super) fn asserted(nats: f64) -> f64 {
+    ASSERTED / (1.0 + (-nats).exp())
+}

@@ -1,8 +1,8 @@
 //! What torques go through on their way into a log.
 
-use crate::effects::{Response, find};
+use crate::effects::Response;
 
-use super::polish::Fitted;
+use super::late::{Kind, Late};
 use super::search::{Found, Search};
 
 /// Delays that are tried at first \[s\].
@@ -30,77 +30,11 @@ const STAYS: f64 = 0.3;
 const CLOSE: f64 = 50.0;
 /// What a delay or a lag has to bring before all else is looked at.
 const WORTH: f64 = 15.0;
-/// The same in a log that does not tell its noise, and how many steps it is late at least.
+/// The same in a log that does not tell its noise.
 const OPEN: f64 = 30.0;
-const STEPS: f64 = 1.0;
-/// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].
-const FORMS: f64 = 0.1;
-const TICKS: f64 = 1e-4;
 /// What naming one costs, and one joint of it.
 const COST: f64 = 6.0;
 const JOINT: f64 = 2.0;
-
-/// Which one it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Delay,
-    Lag,
-}
-
-/// A delay or a lag that was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Late {
-    kind: Kind,
-    /// Joint, from 0; `None` of all.
-    pub joint: Option<usize>,
-    value: f64,
-    sd: f64,
-    /// Logarithm of the odds that it brings.
-    pub nats: f64,
-}
-
-impl Late {
-    /// Its id.
-    #[must_use]
-    pub fn id(&self) -> &'static str {
-        match self.kind {
-            Kind::Delay => "time_delay",
-            Kind::Lag => "filter_lag",
-        }
-    }
-
-    /// As an effect.
-    #[must_use]
-    pub fn fitted(&self) -> Option<Fitted> {
-        let of = self.joint.map_or(0.0, |joint| joint as f64 + 1.0);
-        Some(Fitted {
-            effect: find(self.id())?,
-            joint: self.joint,
-            coordinates: vec![self.value, of],
-            parameters: vec![self.value, of],
-            deviations: vec![self.deviation(), 0.0],
-            significance: self.value.abs() / self.sd.max(1e-300),
-        })
-    }
-
-    fn is_longer(&self, step: f64) -> bool {
-        self.value.abs() > STEPS * step
-    }
-
-    /// A filter has other forms than one pole, a clock is no better than it ticks.
-    fn deviation(&self) -> f64 {
-        self.sd.hypot(FORMS * self.value).hypot(TICKS)
-    }
-
-    fn channels(&self, dof: usize) -> Vec<Response> {
-        let channel = match self.kind {
-            Kind::Delay => Response { delay: self.value, lag: 0.0 },
-            Kind::Lag => Response { delay: 0.0, lag: self.value },
-        };
-        let of = |joint: usize| self.joint.is_none_or(|own| own == joint);
-        (0..dof).map(|joint| if of(joint) { channel } else { Response::default() }).collect()
-    }
-}
 
 impl Search<'_, '_> {
     /// The most probable error, behind the most probable delay or lag of all or of one joint, if
@@ -279,11 +213,5 @@ impl Search<'_, '_> {
             }
         }
         (Late { value, sd, ..from }, most)
-    }
-}
-
-impl Late {
-    fn none() -> Late {
-        Late { kind: Kind::Delay, joint: None, value: 0.0, sd: 0.0, nats: 0.0 }
     }
 }

@@ -25,8 +25,6 @@ const ERRORS: [f64; 4] = [0.0015, 0.005, 0.015, 0.045];
 pub(super) const CLASS: f64 = 4.6;
 /// Share of the torques below which a model without a gap is right.
 const RIGHT: f64 = 0.02;
-/// Changes of parameters, which a model has whether they are asserted or not.
-const OF_PARAMETERS: [&str; 4] = ["link_parameters", "friction_level", "rotor_inertia", "payload"];
 /// What another sign has to bring.
 pub(super) const FLIP: f64 = 50.0;
 /// Correlation of a torque with the model's below which its sign may be the other one.
@@ -129,49 +127,26 @@ pub fn diagnose_telling(
         polished = search.polish(&laws);
     }
     let mut judged = judged(&search, &found, polished.as_ref(), chance);
-    // What is not asserted is not in the model, so that its parameters are those without it.
-    let kept: Vec<Chosen> = found
-        .chosen
-        .iter()
-        .filter(|of| {
-            let id = search.families[of.family].owner.id();
-            OF_PARAMETERS.contains(&id) || judged.effects.iter().any(|said| said.effect.id == id)
-        })
-        .map(|of| {
-            let id = search.families[of.family].owner.id();
-            let said = judged.effects.iter().find(|said| said.effect.id == id);
-            let is_told = |piece: &usize| match (search.table.pieces[*piece].joint, said) {
-                (Some(joint), Some(said)) => said.joints.contains(&joint),
-                _ => true,
-            };
-            Chosen {
-                family: of.family,
-                pieces: of.pieces.iter().copied().filter(is_told).collect(),
-            }
-        })
-        .collect();
-    search.match_spread(&kept);
-    let mut polished = search.polish(&kept);
     if let Some(late) = search.late.filter(|late| late.nats > LEAST_NATS) {
-        judged.assert_late(&late, polished.as_mut());
+        judged.assert_late(&late);
     }
-    let is_flipped = !flipped.is_empty();
-    for joint in flipped {
-        judged.assert_flipped(joint, polished.as_mut());
+    for joint in &flipped {
+        judged.assert_flipped(*joint);
     }
+    let asserted = search.with_asserted(model, &found, &judged, &flipped);
     tell(Phase::Grading);
-    let improved = match &polished {
-        Some(of) if !of.effects.is_empty() => {
-            Improved::new(model, &search.table.mixing, &of.parameters, &of.effects)
-        }
-        _ => refit.clone(),
-    };
     // What a robot can have may be far from what was fitted: nothing is written that misses more
     // than before of what it was fitted to.
     let refit = better(&train, Improved::same(model), refit);
     // Flipped torques were turned round for the fit: they are no measure of a model that flips.
-    let mut improved = if is_flipped { improved } else { better(&train, refit.clone(), improved) };
-    let mut graded = shrink(held, [model, &refit.applied, &improved.applied]);
+    let of_asserted = |asserted: Option<Improved>| match asserted {
+        Some(improved) if flipped.is_empty() => better(&train, refit.clone(), improved),
+        Some(improved) => improved,
+        None => refit.clone(),
+    };
+    let graded_with = |of: &Improved| shrink(held, [model, &refit.applied, &of.applied]);
+    let mut improved = of_asserted(asserted);
+    let mut graded = graded_with(&improved);
     if settings.trust != Trust::Unknown && is_hopeless(&graded) {
         judged.withdraw(
             Verdict::Unknown,
@@ -179,7 +154,10 @@ pub fn diagnose_telling(
              and the units",
         );
         improved = refit.clone();
-        graded = shrink(held, [model, &refit.applied, &improved.applied]);
+        graded = graded_with(&improved);
+    } else if judged.withdraw_idle(&graded) {
+        improved = of_asserted(search.with_asserted(model, &found, &judged, &flipped));
+        graded = graded_with(&improved);
     }
     if judged.effects.is_empty() && 2 * excited(&train) < model.dof {
         judged.withdraw(

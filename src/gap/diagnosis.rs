@@ -2,10 +2,24 @@
 
 use crate::effects::Effect;
 
+use super::calibration::asserted;
 use super::heldout::Shrink;
 use super::improved::Improved;
 use super::power::PowerFound;
 use super::runs::RunFound;
+
+/// Effects of what measures torques, not of the torques.
+const OF_MEASUREMENT: [&str; 9] = [
+    "torque_constant",
+    "current_saturation",
+    "flux_weakening",
+    "current_sign",
+    "torque_offset",
+    "time_delay",
+    "filter_lag",
+    "ripple",
+    "encoder_offset",
+];
 
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,13 +153,19 @@ impl Diagnosis {
     /// What the power says is a part of it.
     pub fn add_power(&mut self, found: &PowerFound) {
         // Torques that are wrong make wrong powers.
-        let trusted = matches!(self.verdict, Verdict::NoGap | Verdict::ParametersOnly);
-        if let Some(of) = found.effect.as_ref().filter(|_| trusted) {
+        let is_measured = |said: &Said| OF_MEASUREMENT.contains(&said.effect.id);
+        let trusted = match self.verdict {
+            Verdict::NoGap | Verdict::ParametersOnly => true,
+            Verdict::Effect => !self.effects.iter().any(is_measured),
+            _ => false,
+        };
+        let effects = if trusted { found.effects.as_slice() } else { &[] };
+        for of in effects {
             self.effects.push(Said {
                 effect: of.effect,
                 joints: of.joint.into_iter().collect(),
                 class: of.class.clone(),
-                probability: 1.0 / (1.0 + (-of.nats).exp()),
+                probability: asserted(of.nats),
                 parameters: of.parameters.clone(),
                 share: 1.0,
                 nats: of.nats,
@@ -153,7 +173,7 @@ impl Diagnosis {
             });
         }
         self.channels.push(("power", "W", found.gap));
-        self.add(found.effect.is_some() && trusted, found.is_unknown && trusted);
+        self.add(!effects.is_empty(), found.is_unknown && trusted);
     }
 
     /// What runs of the program say is a part of it.
@@ -163,7 +183,7 @@ impl Diagnosis {
                 effect: of.effect,
                 joints: Vec::new(),
                 class: of.class.clone(),
-                probability: 1.0 / (1.0 + (-of.nats).exp()),
+                probability: asserted(of.nats),
                 parameters: of.parameters.clone(),
                 share: 1.0,
                 nats: of.nats,

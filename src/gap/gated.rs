@@ -21,6 +21,11 @@ const OF_ROW: f64 = 0.25;
 pub(super) const COUPLING: &str = "wrist_coupling";
 const OF_COUPLING: f64 = 0.4;
 
+/// An effect whose force may grow, the longest rise and twice the first step of that.
+const CONTACT: &str = "contact";
+const MOST_RISE: f64 = 0.5;
+const OF_RISE: f64 = 0.4;
+
 /// Functions of time that were found, whose windows may be gated effects.
 pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
 
@@ -133,17 +138,27 @@ impl Search<'_, '_> {
                 .first()
                 .map_or(0.0, |record| record.motion.step() * record.motion.len() as f64);
             let part = if is_coupling { OF_COUPLING } else { lasts / PARTS as f64 };
-            let ends: &[usize] = if is_coupling { &[0] } else { &[count - 3, count - 2] };
+            let mut moved: Vec<(usize, f64)> = if is_coupling {
+                vec![(0, part)]
+            } else {
+                vec![(count - 3, part), (count - 2, part)]
+            };
+            if effect.id == CONTACT {
+                moved.push((count - 4, OF_RISE));
+            }
             let mut reach = if self.sharp.contains(&piece) { SHARP } else { BLUNT };
             // A row more or less inside of a window is seen.
             let row = OF_ROW * self.records.first().map_or(0.0, |of| of.motion.step()) / part;
             let finest = if is_coupling { FINEST } else { FINEST.min(row) };
             while reach > finest {
                 let mut improved = false;
-                for end in ends.iter().copied() {
-                    for step in [-reach * part, reach * part] {
+                for (of, unit) in moved.iter().copied() {
+                    for step in [-reach * unit, reach * unit] {
                         let mut shape = best.clone();
-                        shape[end] += step;
+                        shape[of] += step;
+                        if effect.id == CONTACT {
+                            shape[count - 4] = shape[count - 4].clamp(0.0, MOST_RISE);
+                        }
                         if has_window && shape[count - 2] - shape[count - 3] < FINEST * part {
                             continue;
                         }

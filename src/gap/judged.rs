@@ -2,7 +2,6 @@
 
 use crate::effects::find;
 
-use super::channel::Late;
 use super::column::Owner;
 use super::diagnose::{CLASS, FLIP};
 use super::diagnosis::{Anything, Estimated, Said, Verdict};
@@ -40,7 +39,7 @@ const OF_FIRST: f64 = 0.05;
 /// The same in a log that does not tell its noise.
 const OF_FIRST_OPEN: f64 = 0.3;
 /// Share of what two effects at a joint bring that the lesser one needs.
-const LESSER: f64 = 0.15;
+pub(super) const LESSER: f64 = 0.15;
 /// Probability below which an effect is not asserted, whatever it brings.
 const IMPROBABLE: f64 = 0.05;
 /// Spread of a parameter where functions follow the form, of the share that they have.
@@ -154,38 +153,6 @@ impl Judged {
         !clear
     }
 
-    /// A delay or a lag.
-    pub(super) fn assert_late(&mut self, late: &Late, polished: Option<&mut Polished>) {
-        let Some(fitted) = late.fitted() else { return };
-        let said = Said {
-            effect: fitted.effect,
-            joints: late.joint.into_iter().collect(),
-            class: vec!["time_delay", "filter_lag"],
-            probability: 1.0 / (1.0 + (-late.nats).exp()),
-            parameters: parameters(&[&fitted])[..1].to_vec(),
-            share: 1.0,
-            nats: late.nats,
-            size: 1.0,
-        };
-        // Where more is found at its joint that cannot be named, lateness is a part of that.
-        let beside = self.candidates.iter().filter(|other| {
-            let there = |joint| other.joints.is_empty() || other.joints.contains(&joint);
-            late.joint.is_some_and(there) && other.nats > late.nats
-        });
-        if let Some(other) = beside.map(|other| other.effect.id).next() {
-            self.reasons.push(format!("{}: less than {other}, which is not clear", late.id()));
-            self.candidates.push(said);
-            self.verdict =
-                if self.effects.is_empty() { Verdict::Unknown } else { Verdict::Partial };
-            return;
-        }
-        self.effects.push(said);
-        if let Some(polished) = polished {
-            polished.effects.push(fitted);
-        }
-        self.found_more();
-    }
-
     /// Takes back what was asserted.
     pub(super) fn withdraw(&mut self, verdict: Verdict, why: &str) {
         self.candidates.append(&mut self.effects);
@@ -193,7 +160,7 @@ impl Judged {
         self.reasons.insert(0, why.to_owned());
     }
 
-    fn found_more(&mut self) {
+    pub(super) fn found_more(&mut self) {
         self.verdict = match self.verdict {
             Verdict::Unknown | Verdict::Partial => Verdict::Partial,
             _ => Verdict::Effect,
@@ -201,18 +168,8 @@ impl Judged {
     }
 
     /// A current of the other sign, which is beyond doubt.
-    pub(super) fn assert_flipped(&mut self, joint: usize, polished: Option<&mut Polished>) {
+    pub(super) fn assert_flipped(&mut self, joint: usize) {
         let Some(effect) = find("current_sign") else { return };
-        if let Some(polished) = polished {
-            polished.effects.push(Fitted {
-                effect,
-                joint: Some(joint),
-                coordinates: vec![1.0],
-                parameters: vec![1.0],
-                deviations: vec![0.0],
-                significance: f64::INFINITY,
-            });
-        }
         match self.effects.iter_mut().find(|said| said.effect.id == effect.id) {
             Some(said) => said.joints.push(joint),
             None => self.effects.push(Said {
@@ -265,7 +222,8 @@ pub(super) fn judged(
         .collect();
     let mut followed: Vec<Option<usize>> = Vec::new();
     let mut refusal = false;
-    let strongest = drops.iter().copied().fold(0.0, f64::max);
+    let late = search.late.map_or(0.0, |late| late.nats);
+    let strongest = drops.iter().copied().fold(late, f64::max);
     let all: f64 = drops.iter().map(|drop| drop.max(0.0)).sum::<f64>().max(1e-12);
     for (k, chosen) in found.chosen.iter().enumerate() {
         let family = &search.families[chosen.family];
@@ -540,7 +498,7 @@ fn of_form(mut parameters: Vec<Estimated>, form: f64) -> Vec<Estimated> {
     parameters
 }
 
-fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
+pub(super) fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
     let mut all = Vec::new();
     for of in fitted {
         for (parameter, (value, sd)) in

@@ -3,6 +3,7 @@
 //! [`Record`] is a log ready to be compared, [`Table`] all that may explain the difference,
 //! [`Evidence`] how well some of it does.
 
+mod asserted;
 mod attribution;
 mod bins;
 mod calibration;
@@ -21,6 +22,7 @@ mod hypothesis;
 mod improved;
 mod interval;
 mod judged;
+mod late;
 mod nuisance;
 mod phase;
 mod pieces;
@@ -41,7 +43,6 @@ mod units;
 
 pub use attribution::{Attribution, Cell, PARAMETERS, attribution};
 pub use bins::Quantity;
-pub use channel::Late;
 pub use column::{Column, Owner, Piece};
 pub use diagnose::{Settings, diagnose, diagnose_telling};
 pub use diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};
@@ -50,6 +51,7 @@ pub use heldout::{JointGap, Shrink, beside_no_jump, predicted, shrink};
 pub use hypothesis::{Family, families};
 pub use improved::Improved;
 pub use interval::Interval;
+pub use late::Late;
 pub use nuisance::Trust;
 pub use phase::Phase;
 pub use polish::{Fitted, Polished};

@@ -4,19 +4,32 @@
 //! losses of each joint, P = base + g·(Σ τ q̇ + Σ k τ²), g = 1, or what is given back where the
 //! sum is negative.
 
-use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
+
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::effects::{Effect, find};
 use crate::robot::Model;
 
 use super::diagnosis::Estimated;
+use super::evidence::Evidence;
 
 /// What an effect has to bring \[nats\].
 const LEAST_NATS: f64 = 25.0;
 /// Odds below which two explanations cannot be told apart: 1 to 100.
 const CLASS: f64 = 4.6;
-/// Share of the difference that an effect has to explain.
+/// Share of the difference that the effects have to explain.
 const EXPLAINS: f64 = 0.7;
+/// What is told of the losses of a joint that takes no load, of those that do.
+const TOLD: f64 = 1e-6;
+/// Effects that are named together at most.
+const MOST: usize = 2;
+/// The reference's own error, of the power: its losses are not all that there are.
+const ERROR: f64 = 0.005;
+/// The least that an effect is there for, of the power.
+const LEAST_SIZE: f64 = 0.01;
+/// What an effect changes before anything is measured, of the power.
+const PRIOR: f64 = 0.1;
 /// Effects that are the same while a robot moves.
 const CONSTANT: [&str; 2] = ["base_load", "brake_power"];
 
@@ -44,8 +57,8 @@ impl Powers {
 /// What was found of the power.
 #[derive(Clone)]
 pub struct PowerFound {
-    /// The effect, if there is one.
-    pub effect: Option<PowerEffect>,
+    /// The effects, the strongest first.
+    pub effects: Vec<PowerEffect>,
     /// Whether there is a difference that no known effect explains.
     pub is_unknown: bool,
     /// Rms on the held-out data, noise taken off: noise, reference, with the effect \[W\].
@@ -75,6 +88,8 @@ struct Reference {
     variance: f64,
     /// Independent samples per row.
     independent: f64,
+    /// A root of the covariance of base and losses.
+    root: DMatrix<f64>,
 }
 
 impl Reference {
@@ -85,10 +100,15 @@ impl Reference {
             .motors
             .as_ref()
             .map_or_else(|| vec![0.0; n], |motors| motors.loss_constant.clone());
-        let mut reference =
-            Reference { base: 0.0, loss: nominal, given_back, variance: 0.0, independent: 1.0 };
-        let rows: Vec<(&Powers, usize)> =
-            logs.iter().flat_map(|log| (0..log.len()).map(move |row| (log, row))).collect();
+        let mut reference = Reference {
+            base: 0.0,
+            loss: nominal,
+            given_back,
+            variance: 0.0,
+            independent: 1.0,
+            root: DMatrix::zeros(n + 1, n + 1),
+        };
+        let rows: Vec<(&Powers, usize)> = rows(logs).collect();
         if rows.len() < 10 * (n + 1) {
             return None;
         }
@@ -97,12 +117,8 @@ impl Reference {
             let mut x = DMatrix::zeros(rows.len(), n + 1);
             let mut y = DVector::zeros(rows.len());
             for (i, (log, row)) in rows.iter().enumerate() {
-                let share = reference.share(log, *row);
-                x[(i, 0)] = 1.0;
-                for joint in 0..n {
-                    x[(i, 1 + joint)] = share * log.tau[joint][*row].powi(2);
-                }
-                y[i] = log.power[*row] - share * log.mechanical(*row);
+                x.row_mut(i).tr_copy_from(&reference.columns(log, *row));
+                y[i] = log.power[*row] - reference.share(log, *row) * log.mechanical(*row);
             }
             let scale: Vec<f64> = (0..=n).map(|k| x.column(k).norm().max(1e-12)).collect();
             for (k, scale) in scale.iter().enumerate() {
@@ -117,8 +133,23 @@ impl Reference {
                 / left.norm_squared().max(1e-12);
             let memory = memory.clamp(0.0, 0.98);
             reference.independent = (1.0 - memory) / (1.0 + memory);
+            // Loads that never vary tell nothing of their losses.
+            let ridge = DMatrix::identity(n + 1, n + 1) * TOLD;
+            let inverse = Cholesky::new(x.tr_mul(&x) + ridge)?.inverse();
+            reference.root = Cholesky::new(inverse)?.l();
+            for (k, scale) in scale.iter().enumerate() {
+                let sd = (reference.variance / reference.independent).sqrt() / scale;
+                reference.root.row_mut(k).scale_mut(sd);
+            }
         }
         Some(reference)
+    }
+
+    /// What base and losses are multiplied by.
+    fn columns(&self, log: &Powers, row: usize) -> DVector<f64> {
+        let share = self.share(log, row);
+        let square = |joint: usize| share * log.tau[joint][row].powi(2);
+        DVector::from_fn(log.tau.len() + 1, |k, _| if k == 0 { 1.0 } else { square(k - 1) })
     }
 
     fn sum(&self, log: &Powers, row: usize) -> f64 {
@@ -133,49 +164,58 @@ impl Reference {
     fn missed(&self, log: &Powers, row: usize) -> f64 {
         log.power[row] - self.base - self.share(log, row) * self.sum(log, row)
     }
+
+    /// Mean square that is missed without causes and with them \[W²\].
+    fn left(&self, logs: &[Powers], added: &[(&Cause, f64)]) -> [f64; 2] {
+        let (mut before, mut after, mut count) = (0.0, 0.0, 0.0_f64);
+        for (log, row) in rows(logs) {
+            let missed = self.missed(log, row);
+            let more = added.iter().map(|(cause, value)| value * cause.of(self, log, row));
+            before += missed * missed;
+            after += (missed - more.sum::<f64>()).powi(2);
+            count += 1.0;
+        }
+        [before, after].map(|sum| sum / count.max(1.0))
+    }
 }
 
 /// A possible cause: its column.
 struct Cause {
-    id: &'static str,
+    effect: &'static Effect,
     joint: Option<usize>,
     column: fn(&Reference, &Powers, usize, usize) -> f64,
 }
 
-fn causes(dof: usize, given_back: f64) -> Vec<Cause> {
-    let mut all = vec![
-        Cause { id: "base_load", joint: None, column: |_, _, _, _| 1.0 },
-        // What hangs on the link of the drives takes what joints give back.
-        Cause { id: "base_load", joint: None, column: |of, log, _, row| of.share(log, row) },
-    ];
-    if given_back > 0.0 {
-        all.push(Cause {
-            id: "no_regeneration",
-            joint: None,
-            column: |of, log, _, row| -of.given_back * of.sum(log, row).min(0.0),
-        });
+impl Cause {
+    fn of(&self, reference: &Reference, log: &Powers, row: usize) -> f64 {
+        (self.column)(reference, log, self.joint.unwrap_or(0), row)
     }
-    for joint in 0..dof {
-        all.push(Cause {
-            id: "copper_loss",
-            joint: Some(joint),
-            column: |of, log, j, row| of.share(log, row) * log.tau[j][row].powi(2),
-        });
-        all.push(Cause {
-            id: "inverter_loss",
-            joint: Some(joint),
-            column: |of, log, j, row| of.share(log, row) * log.tau[j][row].abs(),
-        });
-        all.push(Cause {
-            id: "iron_loss",
-            joint: Some(joint),
-            column: |of, log, j, row| of.share(log, row) * log.qd[j][row].powi(2),
-        });
-    }
-    all
 }
 
-/// Which effect separates the power now from that of the baseline. `None` where the baseline
+fn causes(dof: usize, given_back: f64, may: &dyn Fn(&str) -> bool) -> Vec<Cause> {
+    type Column = fn(&Reference, &Powers, usize, usize) -> f64;
+    let mut all: Vec<(&str, Option<usize>, Column)> = vec![
+        ("base_load", None, |_, _, _, _| 1.0),
+        // What hangs on the link of the drives takes what joints give back.
+        ("base_load", None, |of, log, _, row| of.share(log, row)),
+    ];
+    if given_back > 0.0 {
+        let kept: Column = |of, log, _, row| -of.given_back * of.sum(log, row).min(0.0);
+        all.push(("no_regeneration", None, kept));
+    }
+    for joint in (0..dof).map(Some) {
+        let losses: [(&str, Column); 3] = [
+            ("copper_loss", |of, log, j, row| of.share(log, row) * log.tau[j][row].powi(2)),
+            ("inverter_loss", |of, log, j, row| of.share(log, row) * log.tau[j][row].abs()),
+            ("iron_loss", |of, log, j, row| of.share(log, row) * log.qd[j][row].powi(2)),
+        ];
+        all.extend(losses.map(|(id, column)| (id, joint, column)));
+    }
+    let all = all.into_iter().filter(|(id, ..)| may(id));
+    all.filter_map(|(id, joint, column)| Some(Cause { effect: find(id)?, joint, column })).collect()
+}
+
+/// Which effects separate the power now from that of the baseline. `None` where the baseline
 /// tells no reference.
 #[must_use]
 pub fn diagnose_power(
@@ -186,81 +226,134 @@ pub fn diagnose_power(
     may: &dyn Fn(&str) -> bool,
 ) -> Option<PowerFound> {
     let reference = Reference::new(model, baseline)?;
-    let missed: Vec<f64> =
-        train.iter().flat_map(|log| (0..log.len()).map(|row| reference.missed(log, row))).collect();
-    if missed.is_empty() {
-        return None;
-    }
-    let all: f64 = missed.iter().map(|x| x * x).sum();
-    let weight = 0.5 * reference.independent / reference.variance.max(1e-12);
-    let mut found: Vec<(f64, f64, f64, Cause)> = Vec::new();
-    for cause in causes(model.dof, reference.given_back).into_iter().filter(|of| may(of.id)) {
-        let joint = cause.joint.unwrap_or(0);
-        let (mut xx, mut xy) = (0.0, 0.0);
-        let rows = train.iter().flat_map(|log| (0..log.len()).map(move |row| (log, row)));
-        for ((log, row), y) in rows.zip(&missed) {
-            let x = (cause.column)(&reference, log, joint, row);
-            xx += x * x;
-            xy += x * y;
-        }
-        // Every cause takes more power.
-        if xx > 0.0 && xy > 0.0 {
-            let value = xy / xx;
-            let sd = (reference.variance / reference.independent / xx).sqrt();
-            found.push((weight * xy * xy / xx, value, sd, cause));
-        }
-    }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let noise = reference.variance * missed.len() as f64;
-    let mut result = PowerFound { effect: None, is_unknown: false, gap: [0.0; 3] };
-    let mut added: Option<(f64, &Cause)> = None;
-    if let Some((nats, value, sd, cause)) = found.first()
-        && *nats > LEAST_NATS
-    {
-        let explained = nats / weight;
-        if explained < EXPLAINS * (all - noise) {
-            result.is_unknown = true;
-        } else {
-            let mut class: Vec<&'static str> = Vec::new();
-            for (_, _, _, other) in found.iter().filter(|(other, ..)| nats - other < CLASS) {
-                let same =
-                    if CONSTANT.contains(&other.id) { &CONSTANT[..] } else { &[other.id][..] };
-                for id in same {
-                    if !class.contains(id) {
-                        class.push(id);
-                    }
-                }
+    let causes = causes(model.dof, reference.given_back, may);
+    let search = Search::new(&reference, &causes, train)?;
+    let chosen = search.forward();
+    let values = search.evidence.estimate(&chosen)?;
+    let added: Vec<(&Cause, f64)> =
+        chosen.iter().zip(values.mean.iter()).map(|(k, value)| (&causes[*k], *value)).collect();
+    let [before, after] = reference.left(train, &added);
+    let noise = search.variance;
+    let explained = (before - after) / (before - noise).max(noise);
+    let is_unknown = !chosen.is_empty() && explained < EXPLAINS;
+    let sds = values.covariance.diagonal().map(f64::sqrt);
+    let told = if is_unknown { &[][..] } else { &chosen };
+    let effects = told.iter().zip(values.mean.iter().zip(sds.iter()));
+    let effects: Vec<PowerEffect> =
+        effects.map(|(k, (value, sd))| search.effect(&chosen, *k, *value, *sd)).collect();
+    let [before, after] = reference.left(held, if is_unknown { &[] } else { &added });
+    let rms = |mean: f64| (mean - reference.variance).max(0.0).sqrt();
+    let gap = [reference.variance.sqrt(), rms(before), rms(after)];
+    Some(PowerFound { effects, is_unknown, gap })
+}
+
+/// What is weighed against each other.
+struct Search<'a> {
+    causes: &'a [Cause],
+    evidence: Evidence,
+    /// Variance of noise and of the reference's own error \[W²\].
+    variance: f64,
+    /// Rms of the measured power, and of what causes bring per unit \[W\].
+    power: f64,
+    sizes: Vec<f64>,
+}
+
+impl Search<'_> {
+    fn new<'a>(reference: &Reference, causes: &'a [Cause], train: &[Powers]) -> Option<Search<'a>> {
+        let count = rows(train).count();
+        let of_reference = reference.loss.len() + 1;
+        let width = 1 + of_reference + causes.len();
+        let mut gram = DMatrix::zeros(width, width);
+        let mut power = 0.0;
+        for (log, row) in rows(train) {
+            let mut all = DVector::zeros(width);
+            all[0] = reference.missed(log, row);
+            // In deviations of the reference's parameters.
+            let told = reference.root.tr_mul(&reference.columns(log, row));
+            all.rows_mut(1, of_reference).copy_from(&told);
+            for (k, cause) in causes.iter().enumerate() {
+                all[1 + of_reference + k] = cause.of(reference, log, row);
             }
-            let effect = find(cause.id)?;
-            let parameters = effect.parameters.iter().map(|parameter| Estimated {
-                name: parameter.name.to_owned(),
-                value: *value,
-                sd: *sd,
-                unit: parameter.unit,
-            });
-            result.effect = Some(PowerEffect {
-                effect,
-                joint: cause.joint,
-                class,
-                parameters: parameters.collect(),
-                nats: *nats,
-            });
-            added = Some((*value, cause));
+            gram.ger(1.0, &all, &all, 1.0);
+            power += log.power[row] * log.power[row];
+        }
+        let power = (power / count.max(1) as f64).sqrt();
+        let squares = gram.diagonal() / count.max(1) as f64;
+        let sizes: Vec<f64> =
+            squares.iter().skip(1 + of_reference).map(|square| square.sqrt()).collect();
+        let variance = reference.variance + (ERROR * power).powi(2);
+        gram *= reference.independent / variance;
+        let sds = sizes.iter().map(|size| if *size > 0.0 { PRIOR * power / size } else { 0.0 });
+        let sds = DVector::from_iterator(causes.len(), sds);
+        let means = DVector::zeros(causes.len());
+        let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0, count);
+        (count > 0).then_some(Search { causes, evidence, variance, power, sizes })
+    }
+
+    /// The causes that bring enough, the strongest first.
+    fn forward(&self) -> Vec<usize> {
+        let mut chosen: Vec<usize> = Vec::new();
+        while chosen.len() < MOST {
+            let given = self.evidence.gain(&chosen);
+            let with = |k: usize| [chosen.as_slice(), &[k]].concat();
+            let best = (0..self.causes.len())
+                .filter(|k| !chosen.iter().any(|of| self.is_alike(*of, *k)))
+                .filter(|k| self.is_possible(&with(*k)))
+                .map(|k| (self.evidence.gain(&with(k)), k))
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            match best {
+                Some((nats, k)) if nats - given > LEAST_NATS => chosen.push(k),
+                _ => break,
+            }
+        }
+        chosen
+    }
+
+    /// Whether a cause is the other one's form: losses of a joint are alike.
+    fn is_alike(&self, a: usize, b: usize) -> bool {
+        let [a, b] = [a, b].map(|k| &self.causes[k]);
+        a.joint == b.joint && (a.joint.is_some() || a.effect.id == b.effect.id)
+    }
+
+    /// Whether each of some causes takes more power, and enough of it.
+    fn is_possible(&self, chosen: &[usize]) -> bool {
+        let Some(values) = self.evidence.estimate(chosen) else { return false };
+        let mut of = chosen.iter().zip(values.mean.iter());
+        of.all(|(k, value)| value * self.sizes[*k] > LEAST_SIZE * self.power)
+    }
+
+    /// What is said of one of the chosen causes.
+    fn effect(&self, chosen: &[usize], one: usize, value: f64, sd: f64) -> PowerEffect {
+        let cause = &self.causes[one];
+        let others: Vec<usize> = chosen.iter().copied().filter(|k| *k != one).collect();
+        let gain = |k: usize| self.evidence.gain(&[others.as_slice(), &[k]].concat());
+        let all = gain(one);
+        let mut class = vec![cause.effect.id];
+        for (k, other) in self.causes.iter().enumerate() {
+            let is_like = k == one || !chosen.contains(&k) && all - gain(k) < CLASS;
+            let id = other.effect.id;
+            let same = if CONSTANT.contains(&id) { &CONSTANT[..] } else { &[id] };
+            class.extend(same.iter().filter(|_| is_like));
+        }
+        let mut seen = BTreeSet::new();
+        class.retain(|id| seen.insert(*id));
+        let parameters = cause.effect.parameters.iter().map(|parameter| Estimated {
+            name: parameter.name.to_owned(),
+            value,
+            sd,
+            unit: parameter.unit,
+        });
+        PowerEffect {
+            effect: cause.effect,
+            joint: cause.joint,
+            class,
+            parameters: parameters.collect(),
+            nats: all - self.evidence.gain(&others),
         }
     }
-    let (mut before, mut after, mut count) = (0.0, 0.0, 0.0_f64);
-    for log in held {
-        for row in 0..log.len() {
-            let missed = reference.missed(log, row);
-            let more = added.map_or(0.0, |(value, cause)| {
-                value * (cause.column)(&reference, log, cause.joint.unwrap_or(0), row)
-            });
-            before += missed * missed;
-            after += (missed - more).powi(2);
-            count += 1.0;
-        }
-    }
-    let rms = |sum: f64| (sum / count.max(1.0) - reference.variance).max(0.0).sqrt();
-    result.gap = [reference.variance.sqrt(), rms(before), rms(after)];
-    Some(result)
+}
+
+/// Rows of some logs.
+fn rows(logs: &[Powers]) -> impl Iterator<Item = (&Powers, usize)> {
+    logs.iter().flat_map(|log| (0..log.len()).map(move |row| (log, row)))
 }

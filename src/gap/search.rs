@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use crate::effects::{Parameter, Response};
 
-use super::channel::Late;
 use super::column::Owner;
 use super::evidence::{Evidence, Given};
 use super::hypothesis::{Family, families};
+use super::late::Late;
 use super::nuisance::Trust;
 use super::polish::{Fitted, Polished};
 use super::record::Record;

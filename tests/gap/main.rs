@@ -4,10 +4,11 @@
 
 #[path = "../support/excited.rs"]
 mod excited;
+mod power;
 mod simulated;
 
 use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
-use joulepath::effects::{ALL, Motion, find as effect};
+use joulepath::effects::{ALL, find as effect};
 use joulepath::gap::{
     Diagnosis, Improved, PARAMETERS, Quantity, Record, Settings, Trust, Verdict, attribution,
     common_factor, diagnose, predicted, shapes,
@@ -24,6 +25,9 @@ use simulated::{Robot, spread};
 const WITHIN: f64 = 4.0;
 /// Base parameters that a possible body may be off, of all.
 const SAME_TORQUES: f64 = 1e-2;
+/// A row of a log \[s\], and how far a force may be off, of itself.
+const ROW: f64 = 0.01;
+const OF_FORCE: f64 = 0.05;
 /// Part of the gap that a found effect takes off.
 const SHRINKS: f64 = 0.5;
 
@@ -46,7 +50,7 @@ fn named(found: &Diagnosis) -> Vec<(&'static str, Vec<usize>)> {
 fn healthy_robots_have_no_effect() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
-    let found = diagnosed(&nominal, &Robot { model: &truth, effect: None, noise: 0.005 });
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &[], noise: 0.005 });
     assert!(named(&found).is_empty(), "{:?}", named(&found));
     assert!(matches!(found.verdict, Verdict::ParametersOnly | Verdict::NoGap));
     // The parameters were off, and are so no more.
@@ -59,8 +63,7 @@ fn offsets_are_found_with_their_size() {
     let truth = spread(&nominal, 3);
     let offset = effect("torque_offset").unwrap();
     let expected = 0.6;
-    let size = |_: &Motion<'_>| vec![expected];
-    let robot = Robot { model: &truth, effect: Some((offset, 4, &size)), noise: 0.005 };
+    let robot = Robot { model: &truth, effects: &[(offset, 4, &[expected])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
     assert_eq!(named(&found), [("torque_offset", vec![5])]);
     let samples = robot.samples(1);
@@ -69,6 +72,8 @@ fn offsets_are_found_with_their_size() {
     // What the nominal model has as its own offset is believed to this share of the torque.
     let believed = 0.002 * record[0].motion.scale(4).torque[1];
     assert!((of.value - expected).abs() < WITHIN * of.sd.hypot(believed), "{of:?} {expected}");
+    // No evidence makes the library complete.
+    assert!((0.5..=0.95).contains(&found.effects[0].probability));
     assert!(found.shrink.by_effect.value > SHRINKS, "{:?}", found.shrink);
 }
 
@@ -78,8 +83,7 @@ fn shares_of_the_gap_add_up() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
     let stribeck = effect("stribeck").unwrap();
-    let size = |_: &Motion<'_>| vec![4.0, 0.15];
-    let robot = Robot { model: &truth, effect: Some((stribeck, 1, &size)), noise: 0.005 };
+    let robot = Robot { model: &truth, effects: &[(stribeck, 1, &[4.0, 0.15])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
     let ids: Vec<&'static str> = found.effects.iter().map(|said| said.effect.id).collect();
     assert_eq!(ids, ["stribeck"]);
@@ -134,11 +138,93 @@ fn flipped_currents_are_told() {
     let nominal = irb1600();
     let truth = spread(&nominal, 4);
     let sign = effect("current_sign").unwrap();
-    let size = |_: &Motion<'_>| vec![1.0];
-    let robot = Robot { model: &truth, effect: Some((sign, 2, &size)), noise: 0.005 };
+    let robot = Robot { model: &truth, effects: &[(sign, 2, &[1.0])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
     assert_eq!(named(&found), [("current_sign", vec![3])]);
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+}
+
+/// Windows are off the grid of those that are tried first, and noise is so low that a row beside an end
+/// outweighs all that a coarse window explains.
+#[test]
+fn contacts_are_found_with_their_windows() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let contact = effect("contact").unwrap();
+    for rise in [0.0, 0.35] {
+        let coordinates = [30.0, -40.0, 12.0, rise, 2.636, 3.792, 10.0];
+        let robot = Robot { model: &truth, effects: &[(contact, 0, &coordinates)], noise: 5e-4 };
+        let found = diagnosed(&nominal, &robot);
+        assert_eq!(named(&found), [("contact", vec![])], "{rise}");
+        let value = |name: &str| {
+            found.effects[0].parameters.iter().find(|of| of.name == name).unwrap().value
+        };
+        let force = (30.0_f64.powi(2) + 40.0_f64.powi(2) + 12.0_f64.powi(2)).sqrt();
+        assert!((value("force") / force - 1.0).abs() < OF_FORCE, "{rise} {}", value("force"));
+        for (name, expected) in [("t_start_s", 2.636), ("t_end_s", 3.792)] {
+            assert!((value(name) - expected).abs() < ROW, "{rise} {name} {}", value(name));
+        }
+    }
+}
+
+/// A motor's curve may bend sooner than with the cube of its torque.
+#[test]
+fn saturation_is_told_from_friction_of_the_load() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let saturation = effect("current_saturation").unwrap();
+    let effects = [(saturation, 2, [0.3, 1.0].as_slice())];
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.002 });
+    assert_eq!(named(&found), [("current_saturation", vec![3])]);
+    let exponent = &found.effects[0].parameters[1];
+    assert!((exponent.value - 1.0).abs() < WITHIN * exponent.sd, "{exponent:?}");
+}
+
+/// Each joint's friction has some step at breakaway.
+#[test]
+fn little_friction_at_breakaway_is_not_named() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 3);
+    let stribeck = effect("stribeck").unwrap();
+    let named_with = |share: f64| {
+        let stiction = share * truth.friction.coulomb[1];
+        let coordinates = [stiction, 0.1];
+        let effects = [(stribeck, 1, coordinates.as_slice())];
+        let robot = Robot { model: &truth, effects: &effects, noise: 2e-4 };
+        named(&diagnosed(&nominal, &robot))
+    };
+    assert_eq!(named_with(0.4), [("stribeck", vec![2])]);
+    assert!(named_with(0.07).is_empty());
+}
+
+#[test]
+fn two_effects_are_told() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 6);
+    let [payload, stribeck] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
+    let mut body = [0.0; 10];
+    body[0] = 1.5;
+    body[3] = 0.15;
+    let effects = [(payload, 0, body.as_slice()), (stribeck, 1, [8.0, 0.1].as_slice())];
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
+    let mut told = named(&found);
+    told.sort();
+    assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
+}
+
+/// Two forces in two windows: one is told, for what its form leaves has a window too.
+#[test]
+fn of_windows_one_is_told() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let [contact, brake] = ["contact", "brake_drag"].map(|id| effect(id).unwrap());
+    let effects = [
+        (contact, 0, [60.0, 0.0, 20.0, 0.0, 2.0, 4.0, 10.0].as_slice()),
+        (brake, 4, [1.0, 6.0, 8.0, 10.0].as_slice()),
+    ];
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
+    assert_eq!(named(&found), [("contact", vec![])]);
+    assert!(found.candidates.iter().any(|said| said.effect.id == "brake_drag"));
 }
 
 #[test]
@@ -175,7 +261,7 @@ fn bodies_that_cannot_be_keep_their_torques() {
 #[test]
 fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
     let nominal = irb1600();
-    let robot = Robot { model: &nominal, effect: None, noise: 0.005 };
+    let robot = Robot { model: &nominal, effects: &[], noise: 0.005 };
     let diagnosed = |change: &dyn Fn(&mut Samples)| {
         let samples = [1, 2].map(|seed| {
             let mut samples = robot.samples(seed);
@@ -211,7 +297,7 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
 fn another_unit_is_no_effect() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
-    let robot = Robot { model: &truth, effect: None, noise: 0.005 };
+    let robot = Robot { model: &truth, effects: &[], noise: 0.005 };
     let mut samples = robot.samples(1);
     let factor =
         |samples: &Samples| common_factor(&Record::all(&nominal, samples), Trust::Commissioned);

@@ -25,13 +25,11 @@ pub(crate) fn spread(model: &Model, seed: u64) -> Model {
     other
 }
 
-/// Size of an effect in a motion.
-pub(crate) type Size<'a> = &'a dyn Fn(&Motion<'_>) -> Vec<f64>;
-
 /// A robot and what its logs are like.
 pub(crate) struct Robot<'a> {
     pub(crate) model: &'a Model,
-    pub(crate) effect: Option<(&'static Effect, usize, Size<'a>)>,
+    /// Effects, at joints from 0, with their coordinates.
+    pub(crate) effects: &'a [(&'static Effect, usize, &'a [f64])],
     /// Noise of the torque, of its largest value.
     pub(crate) noise: f64,
 }
@@ -49,8 +47,8 @@ impl Robot<'_> {
         let t = (0..count).map(|i| 0.01 * i as f64).collect();
         let motion = Motion::new(self.model, t, [of(0), of(1), of(2)], &[], true);
         let mut torque = motion.torque.clone();
-        if let Some((effect, joint, size)) = self.effect {
-            for (to, added) in effect.added(&motion, joint, &size(&motion)) {
+        for (effect, joint, coordinates) in self.effects {
+            for (to, added) in effect.added(&motion, *joint, coordinates) {
                 torque[to].iter_mut().zip(added).for_each(|(x, a)| *x += a);
             }
         }

@@ -1,0 +1,153 @@
+//! The model with what is asserted, and whether that takes off what is missed.
+
+use crate::effects::find;
+use crate::robot::Model;
+
+use super::diagnosis::{Said, Verdict};
+use super::heldout::{JointGap, Shrink};
+use super::improved::Improved;
+use super::judged::Judged;
+use super::polish::Fitted;
+use super::search::{Chosen, Found, Search};
+
+/// Changes of parameters, which a model has whether they are asserted or not.
+const OF_PARAMETERS: [&str; 4] = ["link_parameters", "friction_level", "rotor_inertia", "payload"];
+/// A model's own error, of the torque, and the mean square beyond it at which more is missed for
+/// sure.
+const ERROR: f64 = 0.005;
+const CLEARLY: f64 = 50.0;
+/// What may be left of that with an effect which explains it.
+const LEFT: f64 = 0.6;
+/// An effect that fades from repetition to repetition, so that means do not show it.
+const FADING: &str = "warm_up";
+
+impl Search<'_, '_> {
+    /// The model with the asserted effects, if there are some; the torques of joints that are flipped
+    /// had been turned round for the fit.
+    pub(super) fn with_asserted(
+        &mut self,
+        model: &Model,
+        found: &Found,
+        judged: &Judged,
+        flipped: &[usize],
+    ) -> Option<Improved> {
+        let kept = self.asserted(found, judged);
+        self.match_spread(&kept);
+        let mut polished = self.polish(&kept)?;
+        let is_said = |id: &str| judged.effects.iter().any(|said| said.effect.id == id);
+        let late = self.late.filter(|late| is_said(late.id()));
+        polished.effects.extend(late.and_then(|late| late.fitted()));
+        polished.effects.extend(flipped.iter().filter_map(|joint| turned_round(*joint)));
+        let is_same = polished.effects.is_empty();
+        let improved =
+            || Improved::new(model, &self.table.mixing, &polished.parameters, &polished.effects);
+        (!is_same).then(improved)
+    }
+
+    /// What is asserted of a set: what is not is not in the model, so that its parameters are those
+    /// without it.
+    fn asserted(&self, found: &Found, judged: &Judged) -> Vec<Chosen> {
+        let mut kept = Vec::new();
+        for of in &found.chosen {
+            let id = self.families[of.family].owner.id();
+            let said = judged.effects.iter().find(|said| said.effect.id == id);
+            if said.is_none() && !OF_PARAMETERS.contains(&id) {
+                continue;
+            }
+            let is_told = |piece: &usize| match (self.table.pieces[*piece].joint, said) {
+                (Some(joint), Some(said)) => said.joints.contains(&joint),
+                _ => true,
+            };
+            let pieces = of.pieces.iter().copied().filter(is_told).collect();
+            kept.push(Chosen { family: of.family, pieces });
+        }
+        kept
+    }
+}
+
+/// A current of the other sign.
+fn turned_round(joint: usize) -> Option<Fitted> {
+    Some(Fitted {
+        effect: find("current_sign")?,
+        joint: Some(joint),
+        coordinates: vec![1.0],
+        parameters: vec![1.0],
+        deviations: vec![0.0],
+        significance: f64::INFINITY,
+    })
+}
+
+impl Judged {
+    /// Takes back what leaves most of what is clearly missed on data that took no part; whether there
+    /// was some.
+    pub(super) fn withdraw_idle(&mut self, graded: &Shrink) -> bool {
+        let is_idle = |said: &Said| {
+            let at = |joint: usize| said.joints.is_empty() || said.joints.contains(&joint);
+            let joints = graded.joints.iter().enumerate().filter(|(joint, _)| at(*joint));
+            let [before, after] = joints.fold([0.0; 2], |sum, (_, of)| {
+                let [before, after] = beyond_error(of);
+                [sum[0] + before, sum[1] + after]
+            });
+            said.effect.id != FADING && after > CLEARLY && after > LEFT * before
+        };
+        let (idle, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_idle);
+        self.effects = kept;
+        if idle.is_empty() {
+            return false;
+        }
+        for said in &idle {
+            let why = "leaves most of what is missed on the held-out data";
+            self.reasons.insert(0, format!("{}: {why}", said.effect.id));
+        }
+        self.candidates.extend(idle);
+        self.verdict = if self.effects.is_empty() { Verdict::Unknown } else { Verdict::Partial };
+        true
+    }
+}
+
+/// Mean squares that are missed without effects and with them, of what a right model may miss.
+fn beyond_error(of: &JointGap) -> [f64; 2] {
+    let variance = of.noise.powi(2) + (ERROR * of.torque).powi(2);
+    [of.refit, of.refit_plus_effect].map(|rms| rms * rms / variance.max(f64::MIN_POSITIVE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names that stay asserted of joints 1 and 2, of gaps with and without them.
+    fn kept(gaps: [[f64; 2]; 2]) -> (Vec<&'static str>, Verdict) {
+        let said = |id: &str, joint: usize| {
+            let effect = find(id)?;
+            let class = vec![effect.id];
+            let (joints, parameters) = (vec![joint], Vec::new());
+            let [probability, share, nats, size] = [1.0; 4];
+            Some(Said { effect, joints, class, probability, parameters, share, nats, size })
+        };
+        let mut judged = Judged {
+            verdict: Verdict::Effect,
+            effects: [said("stribeck", 0), said("cable", 1)].into_iter().flatten().collect(),
+            candidates: Vec::new(),
+            anything: Vec::new(),
+            reasons: Vec::new(),
+        };
+        let joints = gaps.map(|[refit, refit_plus_effect]| JointGap {
+            noise: 0.1,
+            torque: 20.0,
+            model: refit,
+            refit,
+            refit_plus_effect,
+        });
+        judged.withdraw_idle(&Shrink { joints: joints.to_vec(), ..Shrink::default() });
+        (judged.effects.iter().map(|said| said.effect.id).collect(), judged.verdict)
+    }
+
+    #[test]
+    fn effects_that_take_off_nothing_are_withdrawn() {
+        assert_eq!(kept([[3.0, 1.5], [4.0, 1.0]]), (vec!["stribeck", "cable"], Verdict::Effect));
+        assert_eq!(kept([[3.0, 2.9], [4.0, 1.0]]), (vec!["cable"], Verdict::Partial));
+        assert_eq!(kept([[3.0, 2.9], [4.0, 5.0]]), (vec![], Verdict::Unknown));
+        // What any model misses need not be taken off.
+        assert_eq!(kept([[0.3, 0.3], [4.0, 1.0]]), (vec!["stribeck", "cable"], Verdict::Effect));
+    }
+}

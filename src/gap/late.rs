@@ -1,0 +1,165 @@
+//! A delay or a lag of what is logged.
+
+use crate::effects::{Response, find};
+
+use super::diagnosis::{Said, Verdict};
+use super::judged::{Judged, LESSER, parameters};
+use super::polish::Fitted;
+
+/// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].
+const FORMS: f64 = 0.1;
+const TICKS: f64 = 1e-4;
+/// How many steps it is late at least, in a log that does not tell its noise.
+const STEPS: f64 = 1.0;
+
+/// Which one it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Delay,
+    Lag,
+}
+
+/// A delay or a lag that was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Late {
+    pub(super) kind: Kind,
+    /// Joint, from 0; `None` of all.
+    pub joint: Option<usize>,
+    pub(super) value: f64,
+    pub(super) sd: f64,
+    /// Logarithm of the odds that it brings.
+    pub nats: f64,
+}
+
+impl Late {
+    pub(super) fn none() -> Late {
+        Late { kind: Kind::Delay, joint: None, value: 0.0, sd: 0.0, nats: 0.0 }
+    }
+
+    /// Its id.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        match self.kind {
+            Kind::Delay => "time_delay",
+            Kind::Lag => "filter_lag",
+        }
+    }
+
+    /// As an effect.
+    #[must_use]
+    pub fn fitted(&self) -> Option<Fitted> {
+        let of = self.joint.map_or(0.0, |joint| joint as f64 + 1.0);
+        Some(Fitted {
+            effect: find(self.id())?,
+            joint: self.joint,
+            coordinates: vec![self.value, of],
+            parameters: vec![self.value, of],
+            deviations: vec![self.deviation(), 0.0],
+            significance: self.value.abs() / self.sd.max(1e-300),
+        })
+    }
+
+    pub(super) fn is_longer(&self, step: f64) -> bool {
+        self.value.abs() > STEPS * step
+    }
+
+    /// A filter has other forms than one pole, a clock is no better than it ticks.
+    fn deviation(&self) -> f64 {
+        self.sd.hypot(FORMS * self.value).hypot(TICKS)
+    }
+
+    pub(super) fn channels(&self, dof: usize) -> Vec<Response> {
+        let channel = match self.kind {
+            Kind::Delay => Response { delay: self.value, lag: 0.0 },
+            Kind::Lag => Response { delay: 0.0, lag: self.value },
+        };
+        let of = |joint: usize| self.joint.is_none_or(|own| own == joint);
+        (0..dof).map(|joint| if of(joint) { channel } else { Response::default() }).collect()
+    }
+}
+
+impl Judged {
+    /// A delay or a lag.
+    pub(super) fn assert_late(&mut self, late: &Late) {
+        let Some(fitted) = late.fitted() else { return };
+        let said = Said {
+            effect: fitted.effect,
+            joints: late.joint.into_iter().collect(),
+            class: vec!["time_delay", "filter_lag"],
+            probability: 1.0 / (1.0 + (-late.nats).exp()),
+            parameters: parameters(&[&fitted])[..1].to_vec(),
+            share: 1.0,
+            nats: late.nats,
+            size: 1.0,
+        };
+        // Where more is found at its joint that cannot be named, lateness is a part of that; so is a
+        // little of it beside what can be.
+        let beside = |all: &[Said], nats: f64| -> Option<&'static str> {
+            let joint = late.joint?;
+            let there = |of: &&Said| of.joints.is_empty() || of.joints.contains(&joint);
+            all.iter().filter(there).find(|of| of.nats > nats).map(|of| of.effect.id)
+        };
+        if let Some(other) = beside(&self.candidates, late.nats) {
+            self.reasons.push(format!("{}: less than {other}, which is not clear", late.id()));
+            self.candidates.push(said);
+            self.verdict =
+                if self.effects.is_empty() { Verdict::Unknown } else { Verdict::Partial };
+            return;
+        }
+        if let Some(other) = beside(&self.effects, late.nats / LESSER) {
+            self.reasons.push(format!("{}: little beside {other}", late.id()));
+            self.candidates.push(said);
+            return;
+        }
+        self.effects.push(said);
+        self.found_more();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of an effect at a joint that brings so many nats.
+    fn said(id: &str, joint: usize, nats: f64) -> Option<Said> {
+        Some(Said {
+            effect: find(id)?,
+            joints: vec![joint],
+            class: Vec::new(),
+            probability: 1.0,
+            parameters: Vec::new(),
+            share: 1.0,
+            nats,
+            size: 1.0,
+        })
+    }
+
+    /// Names that are asserted beside lateness of 100 nats, of one joint or of all.
+    fn asserted(
+        effect: Option<Said>,
+        candidate: Option<Said>,
+        joint: Option<usize>,
+    ) -> Vec<String> {
+        let mut judged = Judged {
+            verdict: Verdict::Effect,
+            effects: effect.into_iter().collect(),
+            candidates: candidate.into_iter().collect(),
+            anything: Vec::new(),
+            reasons: Vec::new(),
+        };
+        let late = Late { kind: Kind::Delay, joint, value: 0.003, sd: 1e-4, nats: 100.0 };
+        judged.assert_late(&late);
+        judged.effects.iter().map(|said| said.effect.id.to_owned()).collect()
+    }
+
+    #[test]
+    fn lateness_of_one_joint_may_be_a_part_of_more() {
+        let friction = |nats| said("stribeck", 2, nats);
+        assert_eq!(asserted(friction(300.0), None, Some(2)), ["stribeck", "time_delay"]);
+        assert_eq!(asserted(friction(3e4), None, Some(2)), ["stribeck"]);
+        assert_eq!(asserted(friction(3e4), None, Some(1)), ["stribeck", "time_delay"]);
+        assert_eq!(asserted(friction(3e4), None, None), ["stribeck", "time_delay"]);
+        assert!(asserted(None, friction(300.0), Some(2)).is_empty());
+        assert_eq!(asserted(None, friction(30.0), Some(2)), ["time_delay"]);
+    }
+}

@@ -1,0 +1,119 @@
+//! Power of simulated robots.
+
+use joulepath::gap::{PowerFound, Powers, diagnose_power};
+use joulepath::robot::Model;
+
+use crate::excited::{irb1600, normal};
+
+/// Rows of a log.
+const ROWS: usize = 800;
+/// Deviations by which a value may be off.
+const WITHIN: f64 = 4.0;
+
+/// Power of a motion: base, mechanical power and losses by joint, with a share of what is given back,
+/// some noise, and what else there is by row.
+fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let wave = |size: f64, random: &mut fastrand::Rng| -> Vec<f64> {
+        let terms: Vec<[f64; 3]> =
+            (1..6).map(|k| [k.into(), normal(random), normal(random)]).collect();
+        let at = |t: f64| -> f64 {
+            let of = |[k, a, b]: &[f64; 3]| a * (k * t).sin() + b * (k * t).cos();
+            size * terms.iter().map(of).sum::<f64>()
+        };
+        (0..ROWS).map(|row| at(std::f64::consts::TAU * row as f64 / ROWS as f64)).collect()
+    };
+    let sizes = [60.0, 80.0, 40.0, 6.0, 6.0, 3.0];
+    let qd: Vec<Vec<f64>> = sizes.iter().map(|_| wave(0.5, &mut random)).collect();
+    let tau: Vec<Vec<f64>> = sizes.iter().map(|size| wave(*size, &mut random)).collect();
+    let mut log = Powers { qd, tau, power: Vec::new() };
+    let model = robot();
+    for row in 0..ROWS {
+        let of_joint = |j: usize| log.tau[j][row] * log.qd[j][row] + LOSS * log.tau[j][row].powi(2);
+        let sum: f64 = (0..sizes.len()).map(of_joint).sum();
+        let share = if sum < 0.0 { model.drive.regeneration } else { 1.0 };
+        let noise = 0.2 * normal(&mut random);
+        log.power.push(150.0 + share * sum + more(&log, row, share) + noise);
+    }
+    log
+}
+
+/// Loss of each joint \[W/(Nm)²\].
+const LOSS: f64 = 2e-3;
+
+fn robot() -> Model {
+    let mut model = irb1600();
+    model.drive.regeneration = 0.5;
+    model
+}
+
+/// What is said where a robot takes more power than before.
+fn found(more: &dyn Fn(&Powers, usize, f64) -> f64) -> PowerFound {
+    let before = [log(1, &|_, _, _| 0.0), log(2, &|_, _, _| 0.0)];
+    let after = [log(3, more), log(4, more)];
+    let held = [log(5, more)];
+    diagnose_power(&robot(), &before, &after, &held, &|_| true).unwrap()
+}
+
+fn named(found: &PowerFound) -> Vec<(&'static str, Option<usize>)> {
+    found.effects.iter().map(|of| (of.effect.id, of.joint)).collect()
+}
+
+#[test]
+fn the_same_power_is_no_effect() {
+    let found = found(&|_, _, _| 0.0);
+    assert!(named(&found).is_empty() && !found.is_unknown);
+}
+
+#[test]
+fn losses_are_found_with_their_size() {
+    let loss = 4e-3;
+    let found = found(&|log, row, share| share * loss * log.tau[1][row].powi(2));
+    assert_eq!(named(&found), [("copper_loss", Some(1))]);
+    let of = &found.effects[0].parameters[0];
+    assert!((of.value - loss).abs() < WITHIN * of.sd, "{of:?}");
+    assert!(found.gap[2] < 0.1 * found.gap[1], "{:?}", found.gap);
+}
+
+/// An inverter has some resistance.
+#[test]
+fn of_a_joints_losses_one_is_told() {
+    let more = |log: &Powers, row: usize, share: f64| {
+        let tau = log.tau[1][row].abs();
+        share * (0.6 * tau + 2e-3 * tau * tau)
+    };
+    assert_eq!(named(&found(&more)), [("inverter_loss", Some(1))]);
+}
+
+#[test]
+fn two_losses_are_told() {
+    let more = |log: &Powers, row: usize, share: f64| 30.0 + share * 60.0 * log.qd[2][row].powi(2);
+    let mut told = named(&found(&more));
+    told.sort_unstable();
+    assert_eq!(told, [("base_load", None), ("iron_loss", Some(2))]);
+}
+
+/// What hangs on the link of the drives takes a part of what joints give back.
+#[test]
+fn a_load_on_the_link_of_the_drives_is_a_base_load() {
+    let found = found(&|_, _, share| 60.0 * share);
+    assert_eq!(named(&found), [("base_load", None)]);
+    assert_eq!(found.effects[0].class, ["base_load", "brake_power"]);
+    let of = &found.effects[0].parameters[0];
+    assert!((of.value - 60.0).abs() < WITHIN * of.sd, "{of:?}");
+}
+
+/// A reference of two kinds of losses is no better than half a percent.
+#[test]
+fn little_power_is_not_named() {
+    let found = found(&|log, row, share| share * 2e-5 * log.tau[1][row].powi(2));
+    assert!(named(&found).is_empty() && !found.is_unknown, "{:?}", found.gap);
+}
+
+/// What no loss explains is not named.
+#[test]
+fn other_power_is_unknown() {
+    let more = |_: &Powers, row: usize, _: f64| if row % 200 < 60 { 80.0 } else { 0.0 };
+    let found = found(&more);
+    assert!(named(&found).is_empty() && found.is_unknown);
+}
