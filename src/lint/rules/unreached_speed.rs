@@ -108,7 +108,7 @@ fn looks<'c>(context: &Context<'c>, step: usize) -> Option<Looks<'c>> {
     let each = record.duration / LOOKS as f64;
     let look = |i: usize| {
         let state = run.at(record.t_start + each * (i as f64 + 0.5));
-        let rate = leg.tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+        let rate = leg.tool.twist(model, &state.q, &state.qd);
         (state, rate.fixed_rows::<3>(0).norm())
     };
     let states = || (0..LOOKS).map(look).collect();
