@@ -105,7 +105,7 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
 
 /// Kinks nearer to each other than this are integrated over, s: on such a stretch they change the
 /// acceleration by too little to matter.
-const MIN_STEP: f64 = 0.006;
+const MIN_STEP: f64 = 0.002;
 
 /// The motion energy (without idle and brake parts) between two times of a motion.
 pub fn motion_energy(
@@ -143,11 +143,11 @@ pub fn motion_energy(
 }
 
 /// Longest step of the search for moments at which a joint turns, s.
-const LOOK: f64 = 0.04;
+const LOOK: f64 = 0.02;
 /// Most steps between two kinks: a motion so slow changes little in each.
 const MOST_LOOKS: f64 = 2000.0;
-/// Halvings of the search for such a moment: it is known to 40 µs.
-const HALVINGS: usize = 10;
+/// Halvings of the search for such a moment: it is known to 0.1 µs.
+const HALVINGS: usize = 18;
 
 /// Adds the moments at which a joint turns, where dry friction jumps.
 fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {

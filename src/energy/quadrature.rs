@@ -4,16 +4,16 @@
 //! points holds three that make a rule of degree 3; the difference of both tells whether an
 //! interval is too long.
 
-/// Longest interval, s.
-const LONGEST: f64 = 0.16;
+/// Longest interval, s: a kink near its end may be passed over.
+const LONGEST: f64 = 0.06;
 /// Most intervals of one stretch: what is so slow changes little in each.
 const MOST: f64 = 2000.0;
 /// An interval that is not halved, s.
-const FINE: f64 = 0.03;
+const FINE: f64 = 0.02;
 /// An interval in which no power bends, s.
-const SHORT: f64 = 0.01;
+const SHORT: f64 = 0.006;
 /// Difference of the two rules above which an interval is halved, J.
-const UNEVEN_J: f64 = 0.01;
+const UNEVEN_J: f64 = 0.001;
 /// The same below which the next interval is twice as long, J: the difference grows at least 32
 /// times where powers are smooth.
 const EVEN_J: f64 = UNEVEN_J / 32.0;
@@ -53,10 +53,10 @@ pub(super) fn integral<const N: usize>(
                 rule(&THREE, begin, h, &mut powers)
             };
             add(&mut sum, &part);
-            length = 2.0 * length;
+            length *= 2.0;
         } else {
             let (part, off) = judged(begin, h, &mut powers);
-            if off > UNEVEN_J && h > FINE {
+            if off > UNEVEN_J {
                 length = 0.5 * h;
                 continue;
             }
@@ -121,7 +121,7 @@ mod tests {
     fn smooth_powers_take_few_points() {
         let (sum, count) = counted(0.0, 1.0, |t| 500.0 * t.powi(3) - 80.0 * t + 3.0);
         assert!((sum - (125.0 - 40.0 + 3.0)).abs() < 1e-9, "{sum}");
-        assert!(count <= 35, "{count}");
+        assert!(count <= 90, "{count}");
     }
 
     #[test]
@@ -130,8 +130,8 @@ mod tests {
         for kink in [0.11, 0.29, 0.437, 0.5, 0.7723] {
             let (sum, count) = counted(0.0, 1.0, |t| 1e4 * (t - kink).max(0.0));
             let exact = 5e3 * (1.0 - kink) * (1.0 - kink);
-            assert!((sum - exact).abs() < 0.15, "{kink}: {sum} {exact}");
-            assert!(count <= 90, "{count}");
+            assert!((sum - exact).abs() < 0.05, "{kink}: {sum} {exact}");
+            assert!(count <= 130, "{count}");
         }
     }
 

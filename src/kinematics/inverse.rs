@@ -193,8 +193,10 @@ pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm
         };
         let theta1 = towards - opw.b.atan2(reach);
         let elbows = arm(opw, reach - opw.a1, centre.z - opw.c1)?;
-        let arm = |[theta2, theta3, elbow]: [f64; 3]| {
-            Arm { theta: [theta1, theta2, theta3], back, elbow }
+        let arm = |[theta2, theta3, elbow]: [f64; 3]| Arm {
+            theta: [theta1, theta2, theta3],
+            back,
+            elbow,
         };
         Ok(elbows.map(arm))
     })

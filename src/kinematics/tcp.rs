@@ -54,7 +54,12 @@ impl Tcp {
     /// Velocity of the TCP where the joints at `q` \[rad\] have the rates `qd`, per second or per
     /// unit of a path: linear \[m\] over angular \[rad\].
     #[must_use]
-    pub fn twist<const N: usize>(&self, model: &Model, q: &[f64; N], qd: &[f64; N]) -> Vector6<f64> {
+    pub fn twist<const N: usize>(
+        &self,
+        model: &Model,
+        q: &[f64; N],
+        qd: &[f64; N],
+    ) -> Vector6<f64> {
         self.twist_of(model, q, &model.kinematics.rotations(q), qd)
     }
 
