@@ -315,3 +315,26 @@ fn broken_programs_are_linted_too() {
         }
     }
 }
+
+/// The hook for pre-commit is told which files have changed; the rest of their program counts too.
+#[test]
+fn the_hook_looks_at_whole_programs() {
+    let hook = fs::read_to_string(".pre-commit-hooks.yaml").unwrap();
+    let field = |name: &str| hook.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
+    assert_eq!(field("pass_filenames:").trim(), "false");
+    let paths = field("args:").trim().trim_matches(['[', ']']);
+    let entry = field("entry:").trim().strip_prefix("joulepath ").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let data = "MODULE Data\n  CONST jointtarget jHome:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nENDMODULE\n";
+    let main =
+        "MODULE Cell\n  PROC main()\n    MoveAbsJ jHome,v500,fine,tool0;\n  ENDPROC\nENDMODULE\n";
+    fs::write(folder.path().join("Data.mod"), data).unwrap();
+    fs::write(folder.path().join("Cell.mod"), main).unwrap();
+    let args: Vec<&str> = entry.split_whitespace().chain([paths]).collect();
+    let output = joulepath(&args, folder.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert_eq!(text(&output.stdout), "");
+    // One of the files alone would be remarked on.
+    let alone = joulepath(&["lint", "Cell.mod", "--format", "concise"], folder.path());
+    assert!(text(&alone.stdout).contains("EW704"), "{}", text(&alone.stdout));
+}

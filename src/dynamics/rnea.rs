@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::robot::{Link, MAX_DOF, Model};
+use crate::robot::{Link, MAX_DOF, Model, Rotations};
 
 use super::GRAVITY;
 use super::data::Data;
@@ -41,22 +41,20 @@ pub fn rigid_bodies(
     qdd: &[f64],
 ) -> [f64; MAX_DOF] {
     let Some(loaded) = load.on(model) else { return [0.0; MAX_DOF] };
-    turn(model, data, q);
-    let [tau] = newton_euler(model, data, &loaded, [[qd, qdd]]);
+    data.rotation = model.kinematics.rotations(q);
+    let [tau] = newton_euler(model, &data.rotation, &loaded, [[qd, qdd]]);
     tau
 }
 
-/// [`rnea`] of several motions \[q̇, q̈\] from one position.
+/// [`rnea`] of several motions \[q̇, q̈\] from the position with these rotations of the joints.
 pub fn rnea_each<const N: usize>(
     model: &Model,
-    data: &mut Data,
     load: &Load,
-    q: &[f64],
+    rotations: &Rotations,
     motions: [[&[f64]; 2]; N],
 ) -> [[f64; MAX_DOF]; N] {
     let Some(loaded) = load.on(model) else { return [[0.0; MAX_DOF]; N] };
-    turn(model, data, q);
-    let mut torques = newton_euler(model, data, &loaded, motions);
+    let mut torques = newton_euler(model, rotations, &loaded, motions);
     for (tau, [_, qdd]) in torques.iter_mut().zip(motions) {
         for (sum, rotor) in tau.iter_mut().zip(rotor_torques(model, qdd)) {
             *sum += rotor;
@@ -75,19 +73,11 @@ fn links(model: &Model) -> usize {
     model.links.len().min(model.kinematics.joints.len()).min(MAX_DOF)
 }
 
-/// Keeps the rotation of each joint at `q`.
-fn turn(model: &Model, data: &mut Data, q: &[f64]) {
-    let q = model.kinematics.to_serial(q);
-    for (i, joint) in model.kinematics.joints.iter().enumerate().take(links(model)) {
-        data.rotation[i] = joint.rotation_at(q[i]);
-    }
-}
-
-/// The torques of motions \[q̇, q̈\] at the position that [`turn`] has kept, `loaded` being the last
+/// The torques of motions \[q̇, q̈\] at the position with these rotations, `loaded` being the last
 /// link. Link by link for all motions: no step of one waits for a step of another.
 fn newton_euler<const N: usize>(
     model: &Model,
-    data: &Data,
+    rotations: &Rotations,
     loaded: &Link,
     motions: [[&[f64]; 2]; N],
 ) -> [[f64; MAX_DOF]; N] {
@@ -107,7 +97,7 @@ fn newton_euler<const N: usize>(
     for i in 0..=last {
         let joint = &joints[i];
         let link = if i == last { loaded } else { &model.links[i] };
-        let r = data.rotation[i];
+        let r = rotations[i];
         let p = joint.translation;
         let axis = joint.axis.into_inner();
         let c = link.com;
@@ -144,8 +134,8 @@ fn newton_euler<const N: usize>(
         for k in 0..N {
             tau[k][i] = joint.axis.dot(&moments[i][k]);
             if i > 0 {
-                let force = data.rotation[i] * forces[i][k];
-                let moment = data.rotation[i] * moments[i][k] + joint.translation.cross(&force);
+                let force = rotations[i] * forces[i][k];
+                let moment = rotations[i] * moments[i][k] + joint.translation.cross(&force);
                 forces[i - 1][k] += force;
                 moments[i - 1][k] += moment;
             }

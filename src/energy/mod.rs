@@ -7,6 +7,7 @@
 pub mod account;
 pub mod parts;
 pub mod power;
+mod quadrature;
 pub mod trajectory;
 
 pub use account::{Account, account};

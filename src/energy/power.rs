@@ -1,6 +1,7 @@
 //! Power at one state of the robot, and its integral over a motion.
 
 use super::parts::EnergyParts;
+use super::quadrature::integral;
 use crate::dynamics::{
     Data, Load, Torque, gravity, kinetic_energy, motor_rates, motor_torques, potential_energy,
     torque,
@@ -102,16 +103,9 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
     })
 }
 
-/// Longest interval of the quadrature, s.
-const MAX_STEP: f64 = 0.02;
-/// Most intervals between two kinks: a motion so slow changes little in each.
-const MAX_STEPS: f64 = 2000.0;
 /// Kinks nearer to each other than this are integrated over, s: on such a stretch they change the
 /// acceleration by too little to matter.
 const MIN_STEP: f64 = 0.002;
-/// Gauss-Legendre with three points on [−1, 1]: exact up to degree 5.
-const GAUSS: [(f64, f64); 3] =
-    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// The motion energy (without idle and brake parts) between two times of a motion.
 pub fn motion_energy(
@@ -139,39 +133,32 @@ pub fn motion_energy(
     });
     let mut sum = EnergyParts { mechanical_j: after - before, ..EnergyParts::default() };
     for pair in knots.windows(2) {
-        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().clamp(1.0, MAX_STEPS);
-        let h = (pair[1] - pair[0]) / steps;
-        for i in 0..steps as usize {
-            let begin = pair[0] + h * i as f64;
-            for (x, w) in GAUSS {
-                let state = motion.at(begin + 0.5 * h * (1.0 + x));
-                let p = power(model, &mut data, load, &state);
-                let w = 0.5 * h * w;
-                sum += EnergyParts {
-                    friction_j: w * p.friction_w,
-                    copper_j: w * p.copper_w,
-                    drive_j: w * p.drive_w,
-                    ..EnergyParts::default()
-                };
-            }
-        }
+        let [friction_j, copper_j, drive_j] = integral(pair[0], pair[1], |t| {
+            let p = power(model, &mut data, load, &motion.at(t));
+            [p.friction_w, p.copper_w, p.drive_w]
+        });
+        sum += EnergyParts { friction_j, copper_j, drive_j, ..EnergyParts::default() };
     }
     sum
 }
 
-/// Halvings of the search for the moment at which a joint turns.
-const HALVINGS: usize = 40;
+/// Longest step of the search for moments at which a joint turns, s.
+const LOOK: f64 = 0.02;
+/// Most steps between two kinks: a motion so slow changes little in each.
+const MOST_LOOKS: f64 = 2000.0;
+/// Halvings of the search for such a moment: it is known to 0.1 µs.
+const HALVINGS: usize = 18;
 
 /// Adds the moments at which a joint turns, where dry friction jumps.
 fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
     let mut found = Vec::new();
-    let mut before = motion.at(knots[0]).qd;
+    let mut before = motion.rates(knots[0]);
     for pair in knots.windows(2) {
-        let steps = ((pair[1] - pair[0]) / MAX_STEP).ceil().clamp(1.0, MAX_STEPS);
+        let steps = ((pair[1] - pair[0]) / LOOK).ceil().clamp(1.0, MOST_LOOKS);
         let h = (pair[1] - pair[0]) / steps;
         for i in 0..steps as usize {
             let (a, b) = (pair[0] + h * i as f64, pair[0] + h * (i + 1) as f64);
-            let after = motion.at(b).qd;
+            let after = motion.rates(b);
             for j in 0..after.len() {
                 if before[j] * after[j] >= 0.0 {
                     continue;
@@ -179,7 +166,7 @@ fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
                 let (mut low, mut high) = (a, b);
                 for _ in 0..HALVINGS {
                     let middle = 0.5 * (low + high);
-                    let same = motion.at(middle).qd[j] * before[j] > 0.0;
+                    let same = motion.rates(middle)[j] * before[j] > 0.0;
                     *(if same { &mut low } else { &mut high }) = middle;
                 }
                 found.push(0.5 * (low + high));

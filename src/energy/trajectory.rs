@@ -107,7 +107,7 @@ impl Sampler<'_> {
         let motion: [&[f64]; 3] = [&state.q, &state.qd, &state.qdd];
         let electrical_w = power.map(|p| supply_w(model, &mut self.data, load, motion, &p));
         let tcp = tool.pose(&fk(model, &state.q)).translation.vector;
-        let rate = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+        let rate = tool.twist(model, &state.q, &state.qd);
         let tcp_speed = rate.fixed_rows::<3>(0).norm();
         let row = Sample { t, state, power, electrical_w, tcp: tcp.into(), tcp_speed, span };
         match self.rows.last_mut() {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-use crate::robot::{MAX_DOF, Model};
+use crate::robot::{MAX_DOF, Model, Rotations};
 
 /// Pose of tool0 in the base frame at the joint angles `q` \[rad\], one for each
 /// joint (a missing one is 0).
@@ -24,18 +24,29 @@ pub(super) struct Frames {
 
 impl Frames {
     pub(super) fn at(model: &Model, q: &[f64]) -> Frames {
-        let angles = model.kinematics.to_serial(q);
+        Frames::of(model, &model.kinematics.rotations(q))
+    }
+
+    /// With the rotation of each joint's frame in its parent's.
+    pub(super) fn of(model: &Model, rotations: &Rotations) -> Frames {
         let mut origin = [Vector3::zeros(); MAX_DOF];
         let mut axis = [Vector3::zeros(); MAX_DOF];
         let mut rotation = Matrix3::identity();
         let mut position = Vector3::zeros();
         for (i, joint) in model.kinematics.joints.iter().enumerate().take(MAX_DOF) {
             position += rotation * joint.translation;
-            rotation *= joint.rotation_at(angles[i]);
+            rotation *= rotations[i];
             origin[i] = position;
             axis[i] = rotation * joint.axis.into_inner();
         }
         Frames { origin, axis, last: rotation }
+    }
+
+    /// A point of tool0 in the base frame, both in m.
+    pub(super) fn point(&self, model: &Model, at: &Vector3<f64>) -> Vector3<f64> {
+        let last = model.dof.clamp(1, MAX_DOF) - 1;
+        let flange = &model.kinematics.flange;
+        self.origin[last] + self.last * (flange.rotation * at + flange.translation.vector)
     }
 
     /// Pose of tool0 in the base frame.

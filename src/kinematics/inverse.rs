@@ -62,13 +62,18 @@ pub(super) fn branches(
     if model.dof != 6 {
         return Err(IkError::NoInverse { robot: model.name.clone() });
     }
-    if !pose.to_homogeneous().iter().all(|entry| entry.is_finite()) {
+    if !is_finite(pose) {
         return Err(IkError::NotFinite);
     }
     match &model.kinematics.opw {
         Some(opw) => closed(model, opw, pose, q1),
         None => searched(model, pose),
     }
+}
+
+fn is_finite(pose: &Isometry3<f64>) -> bool {
+    let numbers = pose.translation.vector.iter().chain(pose.rotation.coords.iter());
+    numbers.into_iter().all(|number| number.is_finite())
 }
 
 fn searched(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<Branch>, IkError> {
@@ -93,25 +98,67 @@ fn closed(
     q1: f64,
 ) -> Result<Vec<Branch>, IkError> {
     let rotation = pose.rotation.to_rotation_matrix().into_inner();
-    let centre = pose.translation.vector - opw.c4 * rotation.column(2);
     let mut found = Vec::with_capacity(8);
-    let mut nearest: Option<(f64, Side)> = None;
-    for (facing, back) in facings(opw, &centre, q1).into_iter().zip([false, true]) {
-        match facing {
-            Ok(arms) => {
-                for Arm { theta, elbow } in arms {
-                    wrist(model, opw, &rotation, theta, |q, locked| {
-                        found.push(Branch { q, back, elbow, locked });
-                    });
-                }
-            }
-            Err(miss) if nearest.is_none_or(|best| miss.0 < best.0) => nearest = Some(miss),
-            Err(_) => {}
-        }
+    for arm in arms(opw, pose, &rotation, q1)?.into_iter().flatten() {
+        wrist(model, opw, &rotation, &arm, |branch| found.push(branch));
     }
-    match nearest {
-        Some((distance, side)) if found.is_empty() => Err(IkError::Unreachable { distance, side }),
-        _ => Ok(found),
+    Ok(found)
+}
+
+/// Hands the branches to `take` that may be nearer to `q_ref` than the least distance that it has
+/// returned: the wrist is worked out only where the first three joints are not farther already.
+/// Distances are sums of squares, whole turns aside.
+pub(super) fn near(
+    model: &Model,
+    opw: &Opw,
+    pose: &Isometry3<f64>,
+    q_ref: &[f64; 6],
+    mut take: impl FnMut(Branch) -> f64,
+) -> Result<(), IkError> {
+    if !is_finite(pose) {
+        return Err(IkError::NotFinite);
+    }
+    let rotation = pose.rotation.to_rotation_matrix().into_inner();
+    let mut arms = arms(opw, pose, &rotation, q_ref[0])?.map(|arm| {
+        arm.map(|arm| {
+            let [theta1, theta2, theta3] = arm.theta;
+            let q = to_joints(model, opw, [theta1, theta2, theta3, 0.0, 0.0, 0.0]);
+            let off = |j: usize| wrap(q[j] - q_ref[j]).powi(2);
+            ((0..3).map(off).sum::<f64>(), arm)
+        })
+    });
+    let distance = |arm: &Option<(f64, Arm)>| arm.map_or(f64::INFINITY, |(distance, _)| distance);
+    arms.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let mut least = f64::INFINITY;
+    for (distance, arm) in arms.into_iter().flatten() {
+        if distance > least {
+            break;
+        }
+        wrist(model, opw, &rotation, &arm, |branch| least = take(branch));
+    }
+    Ok(())
+}
+
+/// Every way in which the first three joints reach the wrist centre of a pose; `q1` as of
+/// [`branches`].
+fn arms(
+    opw: &Opw,
+    pose: &Isometry3<f64>,
+    rotation: &Matrix3<f64>,
+    q1: f64,
+) -> Result<[Option<Arm>; 4], IkError> {
+    let centre = pose.translation.vector - opw.c4 * rotation.column(2);
+    let [front, back] = facings(opw, &centre, q1);
+    match (front, back) {
+        (Err(a), Err(b)) => {
+            let (distance, side) = if b.0 < a.0 { b } else { a };
+            Err(IkError::Unreachable { distance, side })
+        }
+        (front, back) => {
+            let [a, b] = front.map_or([None; 2], |arms| arms.map(Some));
+            let [c, d] = back.map_or([None; 2], |arms| arms.map(Some));
+            Ok([a, b, c, d])
+        }
     }
 }
 
@@ -120,6 +167,8 @@ fn closed(
 pub(super) struct Arm {
     /// θ1 to θ3 \[rad\].
     pub(super) theta: [f64; 3],
+    /// Wrist centre behind axis 1.
+    back: bool,
     /// Signed elbow angle \[rad\].
     elbow: f64,
 }
@@ -136,7 +185,7 @@ pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm
         return [Err(miss), Err(miss)];
     }
     let radius = beyond_b.max(0.0).sqrt();
-    [radius, -radius].map(|reach| {
+    [(radius, false), (-radius, true)].map(|(reach, back)| {
         let towards = if centre.xy().norm() < ON_AXIS {
             opw.signs[0] * q1 - opw.offsets[0]
         } else {
@@ -144,7 +193,12 @@ pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm
         };
         let theta1 = towards - opw.b.atan2(reach);
         let elbows = arm(opw, reach - opw.a1, centre.z - opw.c1)?;
-        Ok(elbows.map(|[theta2, theta3, elbow]| Arm { theta: [theta1, theta2, theta3], elbow }))
+        let arm = |[theta2, theta3, elbow]: [f64; 3]| Arm {
+            theta: [theta1, theta2, theta3],
+            back,
+            elbow,
+        };
+        Ok(elbows.map(arm))
     })
 }
 
@@ -173,9 +227,11 @@ fn wrist(
     model: &Model,
     opw: &Opw,
     rotation: &Matrix3<f64>,
-    [theta1, theta2, theta3]: [f64; 3],
-    mut push: impl FnMut([f64; 6], Option<Locked>),
+    arm: &Arm,
+    mut push: impl FnMut(Branch),
 ) {
+    let Arm { theta: [theta1, theta2, theta3], back, elbow } = *arm;
+    let mut push = |q, locked| push(Branch { q, back, elbow, locked });
     let r = forearm([theta1, theta2, theta3]).matrix().transpose() * rotation;
     let sin = r.m13.hypot(r.m23);
     let theta5 = sin.atan2(r.m33);

@@ -1,8 +1,8 @@
 //! Geometric Jacobian and its derivative.
 
-use nalgebra::{Isometry3, SMatrix, Vector3};
+use nalgebra::{Isometry3, SMatrix, Vector3, Vector6};
 
-use crate::robot::{Coupling, Model};
+use crate::robot::{Coupling, Model, Rotations};
 
 use super::fk::Frames;
 
@@ -16,7 +16,7 @@ pub fn jacobian<const N: usize>(
     tool: &Isometry3<f64>,
 ) -> SMatrix<f64, 6, N> {
     let frames = Frames::at(model, q);
-    let tip = (frames.flange(model) * tool).translation.vector;
+    let tip = frames.point(model, &tool.translation.vector);
     let mut j = SMatrix::zeros();
     for i in 0..N.min(model.dof) {
         let linear = frames.axis[i].cross(&(tip - frames.origin[i]));
@@ -24,6 +24,26 @@ pub fn jacobian<const N: usize>(
     }
     couple(model, &mut j);
     j
+}
+
+/// Velocity of the origin of `tool` (pose in tool0), linear over angular, in the base frame.
+pub(super) fn twist(
+    model: &Model,
+    rotations: &Rotations,
+    qd: &[f64],
+    tool: &Isometry3<f64>,
+) -> Vector6<f64> {
+    let frames = Frames::of(model, rotations);
+    let rates = model.kinematics.to_serial(qd);
+    let tip = frames.point(model, &tool.translation.vector);
+    let mut moving = Vector3::zeros();
+    let mut turning = Vector3::zeros();
+    for (i, rate) in rates.iter().enumerate().take(model.dof) {
+        let turn = frames.axis[i] * *rate;
+        moving += turn.cross(&(tip - frames.origin[i]));
+        turning += turn;
+    }
+    Vector6::new(moving.x, moving.y, moving.z, turning.x, turning.y, turning.z)
 }
 
 /// Change of [`jacobian`] along the motion with joint velocities `qd`: J' with
@@ -59,7 +79,7 @@ pub(super) fn rate_of<const N: usize>(
     let frames = Frames::at(model, q);
     let rates = model.kinematics.to_serial(qd);
     let tip = match at {
-        Tip::Held(tool) => (frames.flange(model) * tool).translation.vector,
+        Tip::Held(tool) => frames.point(model, &tool.translation.vector),
         Tip::Fixed(point) => point,
     };
 

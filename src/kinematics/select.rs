@@ -8,7 +8,7 @@ use crate::robot::{Coupling, Model};
 
 use super::conf::{Conf, conf_of};
 use super::error::IkError;
-use super::inverse::{Branch, Locked, branches};
+use super::inverse::{Branch, Locked, branches, near};
 use super::limits::limits_ok;
 use super::numeric::refine;
 
@@ -76,7 +76,7 @@ pub fn ik_near(
         return Ok(q);
     }
     let mut best = (f64::INFINITY, *q_ref);
-    for branch in branches(model, pose, q_ref[0])? {
+    let mut take = |branch: Branch| {
         let mut q = branch.q;
         if let Some(locked) = branch.locked {
             q[3] = q_ref[3];
@@ -89,6 +89,15 @@ pub fn ik_near(
         }
         if distance < best.0 {
             best = (distance, q);
+        }
+        best.0
+    };
+    match &model.kinematics.opw {
+        Some(opw) if model.dof == 6 => near(model, opw, pose, q_ref, take)?,
+        _ => {
+            for branch in branches(model, pose, q_ref[0])? {
+                take(branch);
+            }
         }
     }
     limits_ok(model, &best.1)?;

@@ -1,11 +1,11 @@
 //! The tool centre point (TCP), on the robot or beside it.
 
-use nalgebra::{Isometry3, Matrix3, SMatrix, SVector};
+use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, Vector6};
 
-use crate::robot::Model;
+use crate::robot::{Model, Rotations};
 
 use super::fk::fk;
-use super::jacobian::{Tip, jacobian, rate_of};
+use super::jacobian::{Tip, jacobian, rate_of, twist};
 
 /// Where the TCP is fixed. Its pose is seen from the other side: from the base frame where
 /// the robot holds the tool, from tool0 where the tool stands still and the robot holds the
@@ -47,6 +47,35 @@ impl Tcp {
                 let flange = fk(model, q);
                 let into = flange.rotation.inverse().to_rotation_matrix().into_inner();
                 -turned(&into, &jacobian(model, q, &(flange.inverse() * tool)))
+            }
+        }
+    }
+
+    /// Velocity of the TCP where the joints at `q` \[rad\] have the rates `qd`, per second or per
+    /// unit of a path: linear \[m\] over angular \[rad\].
+    #[must_use]
+    pub fn twist<const N: usize>(
+        &self,
+        model: &Model,
+        q: &[f64; N],
+        qd: &[f64; N],
+    ) -> Vector6<f64> {
+        self.twist_of(model, q, &model.kinematics.rotations(q), qd)
+    }
+
+    /// The same with the rotations of the joints at `q`, where they are known.
+    #[must_use]
+    pub fn twist_of<const N: usize>(
+        &self,
+        model: &Model,
+        q: &[f64; N],
+        rotations: &Rotations,
+        qd: &[f64; N],
+    ) -> Vector6<f64> {
+        match self {
+            Tcp::Held(tool) => twist(model, rotations, qd, tool),
+            Tcp::Stationary(_) => {
+                self.jacobian(model, q) * SVector::<f64, N>::from_column_slice(qd)
             }
         }
     }

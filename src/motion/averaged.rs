@@ -148,6 +148,32 @@ impl Averaged {
         state
     }
 
+    /// The rates of the joints at `t`, rad/s: as of [`Averaged::at`] without the rest.
+    pub fn rates(&self, t: f64) -> Joints {
+        if t <= 0.0 || t >= self.duration || self.window == 0.0 || t >= self.closing.begin() {
+            return self.at(t).qd;
+        }
+        let mut qd = [0.0; DOF];
+        for (delay, c) in self.edges {
+            let q = self.turned(t - delay);
+            for j in 0..DOF {
+                qd[j] += c * q[j];
+            }
+        }
+        qd.map(|qd| if qd.abs() < STILL { 0.0 } else { qd })
+    }
+
+    /// q − q₀ before averaging.
+    fn turned(&self, t: f64) -> Joints {
+        if t <= 0.0 {
+            [0.0; DOF]
+        } else if t >= self.profile.duration() {
+            std::array::from_fn(|j| self.ends[1][j] - self.ends[0][j])
+        } else {
+            self.stretch(t).first(t)
+        }
+    }
+
     fn unaveraged(&self, t: f64) -> JointState {
         let stretch = self.stretch(t);
         let [_, q, qd] = stretch.at(t);

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
 use super::timing::limits::Row;
-use crate::dynamics::{Data, Load, rnea_each};
+use crate::dynamics::{Load, rnea_each};
 use crate::kinematics::Tcp;
 use crate::path::joint_path::{DOF, Extent, JointPath, PathPoint as PiecePoint, Piece, PieceKind};
 use crate::robot::Model;
@@ -174,6 +174,9 @@ pub fn grid(
 ) -> Result<PathGrid, GridError> {
     let zones = zones(path);
     let last = nodes.len().saturating_sub(1);
+    if last <= TOGETHER {
+        return PathGrid::new(nodes.to_vec(), ends(loaded, path, &zones, nodes, caps));
+    }
     let stretches: Vec<Vec<[PathPoint; 2]>> = (0..last)
         .into_par_iter()
         .step_by(TOGETHER)
@@ -193,7 +196,6 @@ fn ends(
     nodes: &[f64],
     caps: &[SpeedCap],
 ) -> Vec<[PathPoint; 2]> {
-    let mut data = Data::new();
     let mut zones = zones.iter().peekable();
     let mut ends = Vec::with_capacity(nodes.len());
     let mut last = None;
@@ -213,9 +215,9 @@ fn ends(
         let stretch = (piece.leg, piece.kind, limits.zone);
         let begin = match last {
             Some((before, end)) if before == stretch => end,
-            _ => point(loaded, &mut data, piece, pair[0], &limits),
+            _ => point(loaded, piece, pair[0], &limits),
         };
-        let end = point(loaded, &mut data, piece, pair[1], &limits);
+        let end = point(loaded, piece, pair[1], &limits);
         last = Some((stretch, end));
         ends.push([begin, end]);
     }
@@ -232,7 +234,6 @@ struct Bounds<'a> {
 
 fn point(
     Loaded { model, load }: Loaded<'_>,
-    data: &mut Data,
     piece: &Piece,
     s: f64,
     Bounds { cap, extent, zone }: &Bounds<'_>,
@@ -249,7 +250,8 @@ fn point(
             limit(at.q1[j].abs(), limits[j], SpeedBound::Joint);
         }
     }
-    let twist = extent.tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q1);
+    let rotations = model.kinematics.rotations(&at.q);
+    let twist = extent.tool.twist_of(model, &at.q, &rotations, &at.q1);
     let tcp_rate = twist.fixed_rows::<3>(0).norm();
     let turn_rate = twist.fixed_rows::<3>(3).norm();
     limit(tcp_rate, model.limits.tcp_speed.unwrap_or(f64::INFINITY), SpeedBound::Robot);
@@ -281,7 +283,7 @@ fn point(
     point.tcp_rows = tcp_rows(model, &at, &extent.tool, &twist, cap);
     if model.has_dynamics() {
         let motions: [[&[f64]; 2]; 3] = [[&[], &[]], [&[], &at.q1], [&at.q1, &at.q2]];
-        let [g, m, c] = rnea_each(model, data, load, &at.q, motions);
+        let [g, m, c] = rnea_each(model, load, &rotations, motions);
         point.g = std::array::from_fn(|j| g[j]);
         point.m = std::array::from_fn(|j| m[j] - g[j]);
         point.c = std::array::from_fn(|j| c[j] - g[j]);

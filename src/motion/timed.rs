@@ -54,6 +54,14 @@ impl TimedMotion {
         }
     }
 
+    /// The rates of the joints at `t`, rad/s.
+    pub fn rates(&self, t: f64) -> Joints {
+        match self {
+            TimedMotion::Path(_, timing) => timing.rates(t),
+            TimedMotion::Stream(stream) => stream.eval(t).1,
+        }
+    }
+
     /// Times between which every joint moves smoothly, from 0 to the duration.
     pub fn knots(&self) -> &[f64] {
         match self {

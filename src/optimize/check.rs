@@ -141,7 +141,7 @@ pub fn check(
                 .map_or(anywhere, |corridor| corridor.offset(&tool.pose(&fk(model, &q)), &mut at));
             result.deviation_m = result.deviation_m.max(offset.distance);
             result.deviation = result.deviation.max(offset.distance / offset.tolerance);
-            let rate = tool.jacobian(model, &q) * nalgebra::Vector6::from(qd);
+            let rate = tool.twist(model, &q, &qd);
             let speed = rate.fixed_rows::<3>(0).norm() / offset.ceiling;
             result.tcp_speed = result.tcp_speed.max(speed);
         }

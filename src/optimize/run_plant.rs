@@ -41,7 +41,7 @@ impl Plant for RunPlant<'_> {
         let tool = &task.run.legs[0].tool;
         let pose = tool.pose(&fk(task.model, q));
         let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
-        let rate = tool.jacobian(task.model, q) * nalgebra::Vector6::from(*qd);
+        let rate = tool.twist(task.model, q, qd);
         let speed = rate.fixed_rows::<3>(0).norm();
         let body = self.work.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));

@@ -96,6 +96,9 @@ pub enum Coupling {
     Parallelogram,
 }
 
+/// A rotation for each joint.
+pub type Rotations = [Matrix3<f64>; MAX_DOF];
+
 /// The chain from base to flange.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
@@ -127,6 +130,17 @@ impl Geometry {
             serial[2] -= serial[1];
         }
         serial
+    }
+
+    /// Rotation of each joint's frame in its parent's at the reported angles `q` \[rad\].
+    #[must_use]
+    pub fn rotations(&self, q: &[f64]) -> Rotations {
+        let angles = self.to_serial(q);
+        let mut rotations = [Matrix3::zeros(); MAX_DOF];
+        for ((rotation, joint), angle) in rotations.iter_mut().zip(&self.joints).zip(angles) {
+            *rotation = joint.rotation_at(angle);
+        }
+        rotations
     }
 
     /// The torques at the reported joints of those at the serial ones (the

@@ -40,7 +40,7 @@ pub use drive::{Brakes, Drive, Sharing, Standstill};
 pub use effect::{EffectParameters, Given};
 pub use error::RobotError;
 pub use friction::{Friction, Stribeck};
-pub use geometry::{Coupling, Geometry, Joint, OffsetWrist, Opw};
+pub use geometry::{Coupling, Geometry, Joint, OffsetWrist, Opw, Rotations};
 pub use law::{Law, LawState};
 pub use limits::{Limits, PositionIf};
 pub use link::Link;

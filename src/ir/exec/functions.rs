@@ -93,7 +93,7 @@ impl Executor<'_> {
 
     fn joint_position(&mut self, expr: &Expr) -> Value {
         let Some(q) = self.machine.joints() else {
-            return Value::unknown("the robot's position is not known here", expr.span);
+            return Value::unknown("CJointT depends on where the robot is", expr.span);
         };
         let joints = q.map(|x| Datum::Num(x.to_degrees())).to_vec();
         Value {

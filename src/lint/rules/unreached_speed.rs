@@ -10,7 +10,8 @@
 //!
 //! ## How the saving is computed
 //! The movement is laid on a time line with the largest predefined speed below the one that is
-//! reached; the joules count the base load of the longer time.
+//! reached; the joules count the base load of the longer time. That is done where what is above
+//! that speed, run at that speed instead, takes less.
 //!
 //! ## Example
 //! ```text
@@ -33,6 +34,11 @@ use super::super::edits::{fix, replace, slower};
 use super::super::finding::{Applicability, Finding};
 use super::super::weigh::Weighed;
 use super::racing_to_wait::{waits_behind, with_speed};
+use crate::dynamics::{Data, Load};
+use crate::energy::account::base;
+use crate::energy::power::power;
+use crate::motion::timed::JointState;
+use crate::robot::Model;
 
 rule!("EW202", "unreached-speed", Speed, Robot, Info, "unreached_speed.rs");
 
@@ -53,9 +59,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !site.is_plain() || waits_behind(context, index).is_some() {
             continue;
         }
-        let peaks = site.executions.iter().map(|step| peak(context, *step));
-        let Some(peaks) = peaks.collect::<Option<Vec<f64>>>() else { continue };
-        let reached = peaks.into_iter().fold(0.0, f64::max);
+        let looks = site.executions.iter().map(|step| looks(context, *step));
+        let Some(looks) = looks.collect::<Option<Vec<Looks<'_>>>>() else { continue };
+        let speeds = looks.iter().flat_map(|looks| &looks.states).map(|(_, speed)| *speed);
+        let reached = speeds.fold(0.0, f64::max);
         // What turns for longer than it moves is slow for that reason.
         let turns = |step: &usize| {
             context.record(*step).is_some_and(|(_, record, _)| record.pace.name() == TURNING)
@@ -64,6 +71,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             continue;
         }
         let Some((name, below)) = slower(BELOW * reached).next() else { continue };
+        if !context.model.is_some_and(|model| may_save(model, &looks, below)) {
+            continue;
+        }
         let weighed = context.weigh(&[site.stmt.span], &|step| with_speed(step, below));
         let Weighed::Saves(saving) = weighed else { continue };
         if saving.time_s < -LONGER {
@@ -83,15 +93,45 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Largest speed of the tool in one execution, m/s.
-fn peak(context: &Context<'_>, step: usize) -> Option<f64> {
+/// What is seen of one execution.
+struct Looks<'c> {
+    load: &'c Load,
+    /// Time that each look stands for, s.
+    each: f64,
+    /// States, with the speed of the tool, m/s.
+    states: Vec<(JointState, f64)>,
+}
+
+fn looks<'c>(context: &Context<'c>, step: usize) -> Option<Looks<'c>> {
     let (run, record, leg) = context.record(step)?;
     let model = context.model?;
-    let speed = |i: usize| {
-        let t = record.t_start + record.duration * (i as f64 + 0.5) / LOOKS as f64;
-        let state = run.at(t);
-        let rate = leg.tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
-        rate.fixed_rows::<3>(0).norm()
+    let each = record.duration / LOOKS as f64;
+    let look = |i: usize| {
+        let state = run.at(record.t_start + each * (i as f64 + 0.5));
+        let rate = leg.tool.twist(model, &state.q, &state.qd);
+        (state, rate.fixed_rows::<3>(0).norm())
     };
-    (run.problem.is_none()).then(|| (0..LOOKS).map(speed).fold(0.0, f64::max))
+    let states = || (0..LOOKS).map(look).collect();
+    run.problem.is_none().then(|| Looks { load: &run.load, each, states: states() })
+}
+
+/// Whether running at the speed `below` (m/s) where a movement is faster takes less than the longer
+/// time costs: seldom, and to lay it on a time line takes far longer than to find out.
+fn may_save(model: &Model, looks: &[Looks<'_>], below: f64) -> bool {
+    let mut data = Data::new();
+    let mut saved = 0.0;
+    for Looks { load, each, states } in looks {
+        for (state, speed) in states.iter().filter(|(_, speed)| *speed > below) {
+            let share = below / speed;
+            let qd = state.qd.map(|rate| rate * share);
+            let even = JointState { qd, ..JointState::rest(state.q) };
+            let [fast, slow] = [state, &even].map(|state| {
+                let power = power(model, &mut data, load, state);
+                power.friction_w + power.copper_w + power.drive_w
+            });
+            saved += each * (fast - slow / share);
+            saved -= base(model, each * (1.0 / share - 1.0)).energy_j();
+        }
+    }
+    saved > 0.0
 }

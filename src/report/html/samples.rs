@@ -55,7 +55,7 @@ pub(super) fn samples(model: &Model, run: &Run, corridor: Option<&Corridor>) -> 
         } else {
             holding_w(model, &run.load, &state.q).iter().sum()
         };
-        let rate = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+        let rate = tool.twist(model, &state.q, &state.qd);
         let pose = tool.pose(&fk(model, &state.q));
         rows.push(Sample {
             t,
