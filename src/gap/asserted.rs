@@ -78,9 +78,9 @@ fn turned_round(joint: usize) -> Option<Fitted> {
 }
 
 impl Judged {
-    /// Takes back what leaves most of what is clearly missed on data that took no part; whether there
-    /// was some.
-    pub(super) fn withdraw_idle(&mut self, graded: &Shrink) -> bool {
+    /// The same without what leaves most of what is clearly missed on data that took no part, if there
+    /// is some.
+    pub(super) fn without_idle(&self, graded: &Shrink) -> Option<Judged> {
         let is_idle = |said: &Said| {
             let at = |joint: usize| said.joints.is_empty() || said.joints.contains(&joint);
             let joints = graded.joints.iter().enumerate().filter(|(joint, _)| at(*joint));
@@ -90,18 +90,17 @@ impl Judged {
             });
             said.effect.id != FADING && after > CLEARLY && after > LEFT * before
         };
-        let (idle, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_idle);
-        self.effects = kept;
+        let mut less = self.clone();
+        let (idle, kept): (Vec<Said>, Vec<Said>) = less.effects.drain(..).partition(is_idle);
         if idle.is_empty() {
-            return false;
+            return None;
         }
-        for said in &idle {
-            let why = "leaves most of what is missed on the held-out data";
-            self.reasons.insert(0, format!("{}: {why}", said.effect.id));
-        }
-        self.candidates.extend(idle);
-        self.verdict = if self.effects.is_empty() { Verdict::Unknown } else { Verdict::Partial };
-        true
+        less.verdict = if kept.is_empty() { Verdict::Unknown } else { Verdict::Partial };
+        less.effects = kept;
+        let why = "leaves most of what is missed on the held-out data";
+        less.reasons.extend(idle.iter().map(|said| format!("{}: {why}", said.effect.id)));
+        less.candidates.extend(idle);
+        Some(less)
     }
 }
 
@@ -124,7 +123,7 @@ mod tests {
             let [probability, share, nats, size] = [1.0; 4];
             Some(Said { effect, joints, class, probability, parameters, share, nats, size })
         };
-        let mut judged = Judged {
+        let judged = Judged {
             verdict: Verdict::Effect,
             effects: [said("stribeck", 0), said("cable", 1)].into_iter().flatten().collect(),
             candidates: Vec::new(),
@@ -138,7 +137,8 @@ mod tests {
             refit,
             refit_plus_effect,
         });
-        judged.withdraw_idle(&Shrink { joints: joints.to_vec(), ..Shrink::default() });
+        let graded = Shrink { joints: joints.to_vec(), ..Shrink::default() };
+        let judged = judged.without_idle(&graded).unwrap_or(judged);
         (judged.effects.iter().map(|said| said.effect.id).collect(), judged.verdict)
     }
 

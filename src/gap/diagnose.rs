@@ -25,6 +25,9 @@ const ERRORS: [f64; 4] = [0.0015, 0.005, 0.015, 0.045];
 pub(super) const CLASS: f64 = 4.6;
 /// Share of the torques below which a model without a gap is right.
 const RIGHT: f64 = 0.02;
+/// What effects may leave of the logs that they were fitted to, to be there whatever they take off
+/// of other logs.
+const EXPLAINS: f64 = 0.35;
 /// What another sign has to bring.
 pub(super) const FLIP: f64 = 50.0;
 /// Correlation of a torque with the model's below which its sign may be the other one.
@@ -155,9 +158,13 @@ pub fn diagnose_telling(
         );
         improved = refit.clone();
         graded = graded_with(&improved);
-    } else if judged.withdraw_idle(&graded) {
-        improved = of_asserted(search.with_asserted(model, &found, &judged, &flipped));
-        graded = graded_with(&improved);
+    } else if let Some(less) = judged.without_idle(&graded) {
+        let plainer = of_asserted(search.with_asserted(model, &found, &less, &flipped));
+        // What explains most of the logs is there, however far its form holds beyond them.
+        if missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
+            (judged, improved) = (less, plainer);
+            graded = graded_with(&improved);
+        }
     }
     if judged.effects.is_empty() && 2 * excited(&train) < model.dof {
         judged.withdraw(
@@ -166,9 +173,9 @@ pub fn diagnose_telling(
         );
     }
     let mut verdict = judged.verdict;
-    let missed = graded.joints.iter().filter(|joint| joint.torque > 0.0);
-    let missed = missed.map(|joint| joint.model / joint.torque).fold(0.0, f64::max);
-    if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && missed < RIGHT {
+    let used = graded.joints.iter().filter(|joint| joint.torque > 0.0);
+    let most = used.map(|joint| joint.model / joint.torque).fold(0.0, f64::max);
+    if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && most < RIGHT {
         verdict = Verdict::NoGap;
     }
     calibrate(&mut judged.effects, &mut judged.candidates);
@@ -217,22 +224,24 @@ fn excited(records: &[Record<'_>]) -> usize {
 
 /// The second model where it misses no more of the records than the first one.
 fn better(records: &[Record<'_>], first: Improved, second: Improved) -> Improved {
-    let missed = |of: &Improved| -> f64 {
-        let means = records.iter().filter(|record| record.kind == RecordKind::Mean);
-        let of_joints = means.flat_map(|record| {
-            let predicted = predicted(record, &of.applied);
-            let relative = |joint: usize| {
-                let measured = &record.measured[joint];
-                let all = measured.iter().map(|x| x * x).sum::<f64>().max(1e-12);
-                let both = measured.iter().zip(&predicted[joint]);
-                both.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / all
-            };
-            (0..predicted.len()).map(relative).collect::<Vec<_>>()
-        });
-        of_joints.sum()
-    };
     // A sum that is no number is no better.
-    if missed(&second) <= missed(&first) { second } else { first }
+    if missed(records, &second) <= missed(records, &first) { second } else { first }
+}
+
+/// Squares that a model misses of the means, of what was measured, summed over the joints.
+fn missed(records: &[Record<'_>], of: &Improved) -> f64 {
+    let means = records.iter().filter(|record| record.kind == RecordKind::Mean);
+    let of_joints = means.flat_map(|record| {
+        let predicted = predicted(record, &of.applied);
+        let relative = |joint: usize| {
+            let measured = &record.measured[joint];
+            let all = measured.iter().map(|x| x * x).sum::<f64>().max(1e-12);
+            let both = measured.iter().zip(&predicted[joint]);
+            both.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / all
+        };
+        (0..predicted.len()).map(relative).collect::<Vec<_>>()
+    });
+    of_joints.sum()
 }
 
 /// Takes torques with the other sign where they are far more probable so: joints.

@@ -29,6 +29,9 @@ const OF_RISE: f64 = 0.4;
 /// Functions of time that were found, whose windows may be gated effects.
 pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
 
+/// Windows from which others are looked for.
+const STARTS: usize = 4;
+
 /// Effects with windows.
 pub(super) const GATED: [&str; 2] = ["brake_drag", "contact"];
 
@@ -72,6 +75,11 @@ pub(super) fn gated(
     pieces
 }
 
+/// Whether windows share no more than half of the shorter one.
+fn are_apart([a, b]: [f64; 2], [c, d]: [f64; 2]) -> bool {
+    b.min(d) - a.max(c) <= 0.5 * (b - a).min(d - c)
+}
+
 impl Search<'_, '_> {
     /// The best set of effects, from the one with a window that explains most by itself where nothing
     /// else does: what a coarse window leaves must not hide it.
@@ -82,8 +90,12 @@ impl Search<'_, '_> {
         self.table.limit(PARTS);
         self.weigh();
         let given = self.given(&[]);
-        let coarse: Vec<Found> =
-            families.into_iter().filter_map(|family| self.with(&given, &[], family)).collect();
+        let mut coarse: Vec<Found> = Vec::new();
+        for family in families {
+            let starts = self.starts(family);
+            let best = self.with(&given, &[], family).filter(|_| starts.is_empty());
+            coarse.extend(starts.into_iter().chain(best));
+        }
         let mut highest = PARTS;
         while highest < self.table.bins() {
             self.table.limit(highest);
@@ -110,6 +122,30 @@ impl Search<'_, '_> {
             }
             None => self.run(),
         }
+    }
+
+    /// The best windows of the robot in a family that are apart: from another one than the best of
+    /// those that are tried a better one may be reached.
+    fn starts(&self, family: usize) -> Vec<Found> {
+        let of_robot = self.families[family].joints.iter().filter(|(joint, _)| joint.is_none());
+        let alone = |piece: &usize| {
+            let chosen = vec![Chosen { family, pieces: vec![*piece] }];
+            Found { score: self.score(&chosen), chosen }
+        };
+        let mut all: Vec<Found> = of_robot.flat_map(|(_, pieces)| pieces).map(alone).collect();
+        all.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let window = |found: &Found| {
+            let shape = &self.table.pieces[found.chosen[0].pieces[0]].shape;
+            [shape[shape.len() - 3], shape[shape.len() - 2]]
+        };
+        let mut apart: Vec<Found> = Vec::new();
+        for found in all {
+            let is_apart = apart.iter().all(|other| are_apart(window(&found), window(other)));
+            if is_apart && apart.len() < STARTS {
+                apart.push(found);
+            }
+        }
+        apart
     }
 
     /// Moves the ends of windows of some pieces of a set as long as it helps.

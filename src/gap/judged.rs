@@ -64,6 +64,7 @@ const OF_MISSED: f64 = 0.8;
 const AT_JOINT: f64 = 0.5;
 
 /// What may be said of what was found.
+#[derive(Clone)]
 pub(super) struct Judged {
     pub(super) verdict: Verdict,
     pub(super) effects: Vec<Said>,

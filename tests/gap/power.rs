@@ -80,7 +80,7 @@ fn losses_are_found_with_their_size() {
 fn of_a_joints_losses_one_is_told() {
     let more = |log: &Powers, row: usize, share: f64| {
         let tau = log.tau[1][row].abs();
-        share * (0.6 * tau + 2e-3 * tau * tau)
+        share * (0.6 * tau + 2e-4 * tau * tau)
     };
     assert_eq!(named(&found(&more)), [("inverter_loss", Some(1))]);
 }
