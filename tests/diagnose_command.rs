@@ -131,6 +131,10 @@ fn wrong_input_is_refused() {
         (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
         (vec!["--robot", &robot, "--log", &log, "--period", "0"], "more than 0"),
         (vec!["--robot", &robot, "--log", "missing.csv"], "cannot read"),
+        (vec!["--robot", &robot, "--log", &log, "--heldout", &log], "is in --log too"),
+        (vec!["--robot", &robot, "--log", &log, "--baseline", &log], "is in --log too"),
+        (vec!["--robot", &robot, "--log", &log, "--out", &robot], "give another name"),
+        (vec!["--robot", &robot, "--log", &log, "--report", &log], "give another name"),
     ] {
         let output = joulepath(&[&["diagnose"], &args[..]].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

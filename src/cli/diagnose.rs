@@ -146,7 +146,35 @@ pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result
     Ok(report::json(&found, &basis))
 }
 
+/// No file that is read is written, and no log grades or is compared with itself.
+fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let within = |path: &Path, files: &[PathBuf]| {
+        real(path).is_some_and(|path| files.iter().any(|file| real(file).as_ref() == Some(&path)))
+    };
+    let robot = vec![PathBuf::from(&args.robot)];
+    let read = [&robot, &args.log, &args.heldout, &args.baseline];
+    for (option, written) in [("--out", &args.out), ("--report", &args.report)] {
+        if let Some(path) = written
+            && read.iter().any(|files| within(path, files))
+        {
+            bail!("{option} {}: this file is read; give another name", path.display());
+        }
+    }
+    for (option, files) in [("--heldout", &args.heldout), ("--baseline", &args.baseline)] {
+        if let Some(path) = files.iter().find(|path| within(path, &args.log)) {
+            bail!(
+                "{option} {}: this file is in --log too; give a log that takes no part there, or \
+                 leave {option} out",
+                path.display()
+            );
+        }
+    }
+    Ok(())
+}
+
 fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+    check_paths(args)?;
     let model = effects::load(&args.robot)?;
     ready(&model, Use::Predict)?;
     let map = ColumnMap::parse(&args.map)?;

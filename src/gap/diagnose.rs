@@ -11,10 +11,10 @@ use super::diagnosis::{Diagnosis, Verdict};
 use super::gated::{OF_TIME, gated};
 use super::heldout::{Shrink, predicted, shrink};
 use super::improved::Improved;
-use super::judged::{LEAST_NATS, judged};
+use super::judged::{Judged, LEAST_NATS, judged};
 use super::nuisance::Trust;
 use super::phase::Phase;
-use super::places::places;
+use super::places::{places, places_missed};
 use super::record::{Record, RecordKind};
 use super::search::{Chosen, Found, Search};
 use super::table::{Table, nuisances};
@@ -35,6 +35,8 @@ const OPPOSITE: f64 = -0.3;
 
 /// Share of a joint's torque that no model of this robot misses.
 const HOPELESS: f64 = 0.4;
+/// Correlation with the model's below which torques are hardly those of this robot.
+const ALIKE: f64 = 0.5;
 /// Range \[rad\] and share of the rows in which a joint has to move.
 const FAR: f64 = 0.05;
 const OFTEN: f64 = 0.1;
@@ -149,8 +151,13 @@ pub fn diagnose_telling(
     };
     let graded_with = |of: &Improved| shrink(held, [model, &refit.applied, &of.applied]);
     let mut improved = of_asserted(asserted);
+    if improved.written == refit.written {
+        judged.doubt_late_joint();
+    }
     let mut graded = graded_with(&improved);
-    if settings.trust != Trust::Unknown && is_hopeless(&graded) {
+    let is_foreign =
+        || is_hopeless(&graded) || is_unlike(&train) || is_other_body(&graded, &judged);
+    if settings.trust != Trust::Unknown && is_foreign() {
         judged.withdraw(
             Verdict::Unknown,
             "the torques are hardly those of this robot: check --robot, the order of the joints \
@@ -180,7 +187,11 @@ pub fn diagnose_telling(
     }
     calibrate(&mut judged.effects, &mut judged.candidates);
     let asserted: Vec<&'static str> = judged.effects.iter().map(|said| said.effect.id).collect();
-    let places = places(&train, model, [&refit, &improved], &asserted);
+    let places = if asserted.is_empty() && verdict == Verdict::Unknown {
+        places_missed(&train, &refit)
+    } else {
+        places(&train, model, [&refit, &improved], &asserted)
+    };
     Diagnosis {
         verdict,
         places,
@@ -204,6 +215,24 @@ fn is_hopeless(graded: &Shrink) -> bool {
         used.clone().filter(|joint| joint.refit_plus_effect > HOPELESS * joint.torque).count();
     let used = used.count();
     used > 0 && 2 * hopeless >= used
+}
+
+/// Whether most joints' torques are far from the nominal model's, and other bodies explain more than
+/// the effects do.
+fn is_other_body(graded: &Shrink, judged: &Judged) -> bool {
+    let used = graded.joints.iter().filter(|joint| joint.torque > 0.0);
+    let far = used.clone().filter(|joint| joint.model > HOPELESS * joint.torque).count();
+    let bodies = judged.candidates.iter().filter(|said| said.effect.id == "link_parameters");
+    let bodies = bodies.map(|said| said.nats).fold(0.0, f64::max);
+    let lesser = judged.effects.iter().any(|said| said.nats < bodies);
+    lesser && 3 * far >= 2 * used.count()
+}
+
+/// Whether most joints' torques have little to do with those of the model.
+fn is_unlike(records: &[Record<'_>]) -> bool {
+    let dof = records.first().map_or(0, |record| record.motion.model.dof);
+    let foreign = (0..dof).filter(|joint| correlation(records, *joint) < ALIKE).count();
+    dof > 0 && 2 * foreign >= dof
 }
 
 /// Joints that move far and often enough to show something.

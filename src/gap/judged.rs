@@ -33,7 +33,7 @@ const CLEARLY: f64 = 0.001;
 const CLEAR: f64 = 30.0;
 /// A joint at which an effect is so much smaller than at another one is not told.
 const OF_LARGEST: f64 = 0.15;
-/// Effects at once, and what each has to bring of what the first one does where there are more.
+/// Effects, or joints with a brake that drags, at once, and what each has to bring of what the first one does where there are more.
 const AT_ONCE: usize = 2;
 const OF_FIRST: f64 = 0.05;
 /// The same in a log that does not tell its noise.
@@ -390,6 +390,9 @@ fn refused(
     }
     if id == "ripple" && search.is_open() {
         return no("is there in any motor: a baseline would tell what changed".to_owned());
+    }
+    if GATED.contains(&id) && fitted.len() > AT_ONCE {
+        return open("is at more joints than let go too late at once".to_owned());
     }
     if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {
         return no("is no more than friction differs by from hour to hour".to_owned());

@@ -9,6 +9,8 @@ use super::polish::Fitted;
 /// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].
 const FORMS: f64 = 0.1;
 const TICKS: f64 = 1e-4;
+/// Ids of lateness.
+const OF_CLOCKS: [&str; 2] = ["time_delay", "filter_lag"];
 /// How many steps it is late at least, in a log that does not tell its noise.
 const STEPS: f64 = 1.0;
 
@@ -85,7 +87,7 @@ impl Judged {
         let said = Said {
             effect: fitted.effect,
             joints: late.joint.into_iter().collect(),
-            class: vec!["time_delay", "filter_lag"],
+            class: OF_CLOCKS.to_vec(),
             probability: 1.0 / (1.0 + (-late.nats).exp()),
             parameters: parameters(&[&fitted])[..1].to_vec(),
             share: 1.0,
@@ -113,6 +115,19 @@ impl Judged {
         }
         self.effects.push(said);
         self.found_more();
+    }
+
+    /// Takes back lateness of one joint with which a model misses no less.
+    pub(super) fn doubt_late_joint(&mut self) {
+        let is_late = |said: &Said| OF_CLOCKS.contains(&said.effect.id) && !said.joints.is_empty();
+        let (late, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_late);
+        self.effects = kept;
+        for said in late {
+            self.reasons.push(format!("{}: the logs are missed no less with it", said.effect.id));
+            self.candidates.push(said);
+            self.verdict =
+                if self.effects.is_empty() { Verdict::Unknown } else { Verdict::Partial };
+        }
     }
 }
 
@@ -150,6 +165,23 @@ mod tests {
         let late = Late { kind: Kind::Delay, joint, value: 0.003, sd: 1e-4, nats: 100.0 };
         judged.assert_late(&late);
         judged.effects.iter().map(|said| said.effect.id.to_owned()).collect()
+    }
+
+    #[test]
+    fn lateness_without_use_is_taken_back() {
+        for (joint, kept) in [(Some(2), 0), (None, 1)] {
+            let mut judged = Judged {
+                verdict: Verdict::ParametersOnly,
+                effects: Vec::new(),
+                candidates: Vec::new(),
+                anything: Vec::new(),
+                reasons: Vec::new(),
+            };
+            let late = Late { kind: Kind::Lag, joint, value: 0.003, sd: 1e-4, nats: 100.0 };
+            judged.assert_late(&late);
+            judged.doubt_late_joint();
+            assert_eq!((judged.effects.len(), judged.candidates.len()), (kept, 1 - kept));
+        }
     }
 
     #[test]

@@ -34,6 +34,37 @@ pub(super) fn places(
     places
 }
 
+/// Shares of the joints, and of their regimes, in what a model misses.
+pub(super) fn places_missed(records: &[Record<'_>], model: &Improved) -> Vec<Place> {
+    let records: Vec<&Record<'_>> =
+        records.iter().filter(|record| record.kind == RecordKind::Mean).collect();
+    let Some(first) = records.first() else { return Vec::new() };
+    let n = first.motion.model.dof;
+    let pieces = Pieces::new(&records, n);
+    let missed =
+        pieces.squares(|record| difference(&record.measured, &predicted(record, &model.applied)));
+    let mut of_joint = vec![0.0; n];
+    for ((joint, quantity, _), missed) in pieces.places.iter().zip(&missed) {
+        of_joint[*joint] += if *quantity == Quantity::Speed { *missed } else { 0.0 };
+    }
+    let sum = of_joint.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let whole = of_joint.iter().enumerate().map(|(joint, missed)| Place {
+        joint: Some(joint),
+        regime: "all".to_owned(),
+        share: missed / sum,
+        ..Place::default()
+    });
+    let of_pieces =
+        pieces.places.iter().zip(&missed).map(|((joint, quantity, ends), missed)| Place {
+            joint: Some(*joint),
+            regime: regime(*quantity, *ends),
+            share: missed / sum,
+            span: (*quantity == Quantity::Time).then_some(*ends),
+            ..Place::default()
+        });
+    whole.chain(of_pieces).collect()
+}
+
 /// Shares of the joints.
 fn of_joints(
     records: &[&Record<'_>],

@@ -10,15 +10,15 @@ mod simulated;
 use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
 use joulepath::effects::{ALL, find as effect};
 use joulepath::gap::{
-    Diagnosis, Improved, PARAMETERS, Quantity, Record, Settings, Trust, Verdict, attribution,
-    common_factor, diagnose, predicted, shapes,
+    Diagnosis, Improved, PARAMETERS, Place, Quantity, Record, Settings, Trust, Verdict,
+    attribution, common_factor, diagnose, predicted, shapes,
 };
 use joulepath::identify::Samples;
 use joulepath::robot::Model;
 
 use nalgebra::{DMatrix, DVector};
 
-use excited::irb1600;
+use excited::{irb1600, normal};
 use simulated::{Robot, spread};
 
 /// Deviations by which a parameter may be off.
@@ -281,6 +281,24 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
         }
     });
     assert_eq!((other.verdict, named(&other)), (Verdict::Unknown, Vec::new()));
+    // Torques without any motion in them have smooth parts, but not those of a robot.
+    let noise = diagnosed(&|samples| {
+        let mut random = fastrand::Rng::with_seed(9);
+        let noise: Vec<f64> = (0..1000).map(|_| 20.0 * normal(&mut random)).collect();
+        for block in &mut samples.blocks {
+            for of_joint in &mut block.tau {
+                of_joint.iter_mut().zip(&noise).for_each(|(tau, noise)| *tau = *noise);
+            }
+        }
+    });
+    assert_eq!((noise.verdict, named(&noise)), (Verdict::Unknown, Vec::new()));
+    // What is missed is shown where nothing is known of it.
+    let whole = |joint: usize| {
+        let is_whole = |of: &&Place| of.joint == Some(joint) && of.regime == "all";
+        noise.places.iter().find(is_whole).unwrap().share
+    };
+    let shares: f64 = (0..nominal.dof).map(whole).sum();
+    assert!((shares - 1.0).abs() < 1e-9 && (0..nominal.dof).all(|joint| whole(joint) > 0.01));
     let still = diagnosed(&|samples| {
         for block in &mut samples.blocks {
             for joint in 0..4 {
