@@ -38,7 +38,23 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     let limit = motion.model.limits.torque.as_ref().map(|of| of[joint]);
     let largest = limit.unwrap_or_else(|| tau.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let largest = largest.max(1e-9);
-    let [error, exponent] = [values[0], if values[1] > 0.0 { values[1] } else { CUBIC }];
-    let series = tau.iter().map(|x| error * x * (x.abs() / largest).powf(exponent));
+    let series = tau.iter().map(|x| x * gain(x / largest, values));
     vec![(joint, series.collect())]
+}
+
+/// Gain less 1 at a share of the largest torque, of error and exponent.
+fn gain(share: f64, values: &[f64]) -> f64 {
+    let exponent = if values[1] > 0.0 { values[1] } else { CUBIC };
+    values[0] * share.abs().powf(exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_an_exponent_the_curve_is_cubic() {
+        assert_eq!(gain(-0.5, &[0.2, 0.0]), gain(0.5, &[0.2, 2.0]));
+        assert_eq!(gain(-0.5, &[0.2, 1.0]), 0.1);
+    }
 }

@@ -38,10 +38,9 @@ impl Search<'_, '_> {
         let late = self.late.filter(|late| is_said(late.id()));
         polished.effects.extend(late.and_then(|late| late.fitted()));
         polished.effects.extend(flipped.iter().filter_map(|joint| turned_round(*joint)));
-        let is_same = polished.effects.is_empty();
         let improved =
             || Improved::new(model, &self.table.mixing, &polished.parameters, &polished.effects);
-        (!is_same).then(improved)
+        (!polished.effects.is_empty()).then(improved)
     }
 
     /// What is asserted of a set: what is not is not in the model, so that its parameters are those
@@ -116,20 +115,9 @@ mod tests {
 
     /// Names that stay asserted of joints 1 and 2, of gaps with and without them.
     fn kept(gaps: [[f64; 2]; 2]) -> (Vec<&'static str>, Verdict) {
-        let said = |id: &str, joint: usize| {
-            let effect = find(id)?;
-            let class = vec![effect.id];
-            let (joints, parameters) = (vec![joint], Vec::new());
-            let [probability, share, nats, size] = [1.0; 4];
-            Some(Said { effect, joints, class, probability, parameters, share, nats, size })
-        };
-        let judged = Judged {
-            verdict: Verdict::Effect,
-            effects: [said("stribeck", 0), said("cable", 1)].into_iter().flatten().collect(),
-            candidates: Vec::new(),
-            anything: Vec::new(),
-            reasons: Vec::new(),
-        };
+        let effects = ["stribeck", "cable"].into_iter().filter_map(find).enumerate();
+        let effects = effects.map(|(joint, effect)| Said::alone(effect, vec![joint], 1.0));
+        let judged = Judged::of(effects.collect(), Vec::new());
         let joints = gaps.map(|[refit, refit_plus_effect]| JointGap {
             noise: 0.1,
             torque: 20.0,

@@ -329,3 +329,33 @@ fn joints_of_time(search: &Search<'_, '_>, found: &Found) -> Vec<usize> {
     joints.dedup();
     joints
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::effects::find;
+
+    use super::super::diagnosis::Said;
+    use super::super::heldout::JointGap;
+    use super::*;
+
+    /// Whether joints are another body's of which `far` of six are missed by half, an effect bringing
+    /// 100 nats.
+    fn is_other(far: usize, bodies: f64) -> bool {
+        let joint = |k| JointGap {
+            torque: 10.0,
+            model: if k < far { 5.0 } else { 1.0 },
+            ..JointGap::default()
+        };
+        let graded = Shrink { joints: (0..6).map(joint).collect(), ..Shrink::default() };
+        let said = |id: &str, nats| find(id).map(|effect| Said::alone(effect, vec![0], nats));
+        let effects = said("stribeck", 100.0).into_iter().collect();
+        let candidates = said("link_parameters", bodies).into_iter().collect();
+        is_other_body(&graded, &Judged::of(effects, candidates))
+    }
+
+    #[test]
+    fn effects_beside_another_body_are_none() {
+        assert!(is_other(4, 200.0));
+        assert!(!is_other(3, 200.0) && !is_other(4, 50.0));
+    }
+}

@@ -90,6 +90,22 @@ pub struct Said {
     pub size: f64,
 }
 
+impl Said {
+    /// Of an effect that has its channel to itself and cannot be taken for another one.
+    pub(super) fn alone(effect: &'static Effect, joints: Vec<usize>, nats: f64) -> Said {
+        Said {
+            effect,
+            joints,
+            class: vec![effect.id],
+            probability: 1.0 / (1.0 + (-nats).exp()),
+            parameters: Vec::new(),
+            share: 1.0,
+            nats,
+            size: 1.0,
+        }
+    }
+}
+
 /// A smooth function that explains what no law does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anything {
@@ -162,14 +178,10 @@ impl Diagnosis {
         let effects = if trusted { found.effects.as_slice() } else { &[] };
         for of in effects {
             self.effects.push(Said {
-                effect: of.effect,
-                joints: of.joint.into_iter().collect(),
                 class: of.class.clone(),
                 probability: asserted(of.nats),
                 parameters: of.parameters.clone(),
-                share: 1.0,
-                nats: of.nats,
-                size: 1.0,
+                ..Said::alone(of.effect, of.joint.into_iter().collect(), of.nats)
             });
         }
         self.channels.push(("power", "W", found.gap));
@@ -180,14 +192,10 @@ impl Diagnosis {
     pub fn add_runs(&mut self, found: &RunFound) {
         for of in &found.effects {
             self.effects.push(Said {
-                effect: of.effect,
-                joints: Vec::new(),
                 class: of.class.clone(),
                 probability: asserted(of.nats),
                 parameters: of.parameters.clone(),
-                share: 1.0,
-                nats: of.nats,
-                size: 1.0,
+                ..Said::alone(of.effect, Vec::new(), of.nats)
             });
             if of.movement.is_some() {
                 self.places.push(Place {

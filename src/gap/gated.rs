@@ -93,8 +93,10 @@ impl Search<'_, '_> {
         let mut coarse: Vec<Found> = Vec::new();
         for family in families {
             let starts = self.starts(family);
-            let best = self.with(&given, &[], family).filter(|_| starts.is_empty());
-            coarse.extend(starts.into_iter().chain(best));
+            if starts.is_empty() {
+                coarse.extend(self.with(&given, &[], family));
+            }
+            coarse.extend(starts);
         }
         let mut highest = PARTS;
         while highest < self.table.bins() {

@@ -33,10 +33,12 @@ const CLEARLY: f64 = 0.001;
 const CLEAR: f64 = 30.0;
 /// A joint at which an effect is so much smaller than at another one is not told.
 const OF_LARGEST: f64 = 0.15;
-/// Effects, or joints with a brake that drags, at once, and what each has to bring of what the first one does where there are more.
+/// Effects at once, and what each has to bring of what the first one does where there are more.
 const AT_ONCE: usize = 2;
 const OF_FIRST: f64 = 0.05;
-/// The same in a log that does not tell its noise.
+/// Joints at which brakes drag at once.
+const BRAKES: usize = 2;
+/// What each has to bring of what the first one does in a log that does not tell its noise.
 const OF_FIRST_OPEN: f64 = 0.3;
 /// Share of what two effects at a joint bring that the lesser one needs.
 pub(super) const LESSER: f64 = 0.15;
@@ -74,6 +76,12 @@ pub(super) struct Judged {
 }
 
 impl Judged {
+    /// With these effects and candidates and nothing else.
+    pub(super) fn of(effects: Vec<Said>, candidates: Vec<Said>) -> Judged {
+        let verdict = if effects.is_empty() { Verdict::ParametersOnly } else { Verdict::Effect };
+        Judged { verdict, effects, candidates, anything: Vec::new(), reasons: Vec::new() }
+    }
+
     /// Of two effects at one joint the lesser one is the other's form where it brings little of
     /// what both do.
     fn demote_lesser(&mut self, search: &Search<'_, '_>, found: &Found) {
@@ -173,16 +181,7 @@ impl Judged {
         let Some(effect) = find("current_sign") else { return };
         match self.effects.iter_mut().find(|said| said.effect.id == effect.id) {
             Some(said) => said.joints.push(joint),
-            None => self.effects.push(Said {
-                effect,
-                joints: vec![joint],
-                class: vec![effect.id],
-                probability: 1.0,
-                parameters: Vec::new(),
-                share: 1.0,
-                nats: FLIP,
-                size: 1.0,
-            }),
+            None => self.effects.push(Said::alone(effect, vec![joint], FLIP)),
         }
         self.found_more();
     }
@@ -195,13 +194,7 @@ pub(super) fn judged(
     polished: Option<&Polished>,
     chance: f64,
 ) -> Judged {
-    let mut judged = Judged {
-        verdict: Verdict::ParametersOnly,
-        effects: Vec::new(),
-        candidates: Vec::new(),
-        anything: Vec::new(),
-        reasons: Vec::new(),
-    };
+    let mut judged = Judged::of(Vec::new(), Vec::new());
     let Some(polished) = polished else { return judged };
     let mut drops: Vec<f64> = (0..found.chosen.len())
         .map(|k| {
@@ -391,7 +384,7 @@ fn refused(
     if id == "ripple" && search.is_open() {
         return no("is there in any motor: a baseline would tell what changed".to_owned());
     }
-    if GATED.contains(&id) && fitted.len() > AT_ONCE {
+    if GATED.contains(&id) && fitted.len() > BRAKES {
         return open("is at more joints than let go too late at once".to_owned());
     }
     if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {

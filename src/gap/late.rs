@@ -85,14 +85,9 @@ impl Judged {
     pub(super) fn assert_late(&mut self, late: &Late) {
         let Some(fitted) = late.fitted() else { return };
         let said = Said {
-            effect: fitted.effect,
-            joints: late.joint.into_iter().collect(),
             class: OF_CLOCKS.to_vec(),
-            probability: 1.0 / (1.0 + (-late.nats).exp()),
             parameters: parameters(&[&fitted])[..1].to_vec(),
-            share: 1.0,
-            nats: late.nats,
-            size: 1.0,
+            ..Said::alone(fitted.effect, late.joint.into_iter().collect(), late.nats)
         };
         // Where more is found at its joint that cannot be named, lateness is a part of that; so is a
         // little of it beside what can be.
@@ -135,33 +130,13 @@ impl Judged {
 mod tests {
     use super::*;
 
-    /// What is said of an effect at a joint that brings so many nats.
-    fn said(id: &str, joint: usize, nats: f64) -> Option<Said> {
-        Some(Said {
-            effect: find(id)?,
-            joints: vec![joint],
-            class: Vec::new(),
-            probability: 1.0,
-            parameters: Vec::new(),
-            share: 1.0,
-            nats,
-            size: 1.0,
-        })
-    }
-
     /// Names that are asserted beside lateness of 100 nats, of one joint or of all.
     fn asserted(
         effect: Option<Said>,
         candidate: Option<Said>,
         joint: Option<usize>,
     ) -> Vec<String> {
-        let mut judged = Judged {
-            verdict: Verdict::Effect,
-            effects: effect.into_iter().collect(),
-            candidates: candidate.into_iter().collect(),
-            anything: Vec::new(),
-            reasons: Vec::new(),
-        };
+        let mut judged = Judged::of(effect.into_iter().collect(), candidate.into_iter().collect());
         let late = Late { kind: Kind::Delay, joint, value: 0.003, sd: 1e-4, nats: 100.0 };
         judged.assert_late(&late);
         judged.effects.iter().map(|said| said.effect.id.to_owned()).collect()
@@ -170,13 +145,7 @@ mod tests {
     #[test]
     fn lateness_without_use_is_taken_back() {
         for (joint, kept) in [(Some(2), 0), (None, 1)] {
-            let mut judged = Judged {
-                verdict: Verdict::ParametersOnly,
-                effects: Vec::new(),
-                candidates: Vec::new(),
-                anything: Vec::new(),
-                reasons: Vec::new(),
-            };
+            let mut judged = Judged::of(Vec::new(), Vec::new());
             let late = Late { kind: Kind::Lag, joint, value: 0.003, sd: 1e-4, nats: 100.0 };
             judged.assert_late(&late);
             judged.doubt_late_joint();
@@ -186,7 +155,7 @@ mod tests {
 
     #[test]
     fn lateness_of_one_joint_may_be_a_part_of_more() {
-        let friction = |nats| said("stribeck", 2, nats);
+        let friction = |nats| Some(Said::alone(find("stribeck")?, vec![2], nats));
         assert_eq!(asserted(friction(300.0), None, Some(2)), ["stribeck", "time_delay"]);
         assert_eq!(asserted(friction(3e4), None, Some(2)), ["stribeck"]);
         assert_eq!(asserted(friction(3e4), None, Some(1)), ["stribeck", "time_delay"]);

@@ -227,28 +227,28 @@ pub fn diagnose_power(
 ) -> Option<PowerFound> {
     let reference = Reference::new(model, baseline)?;
     let causes = causes(model.dof, reference.given_back, may);
-    let search = Search::new(&reference, &causes, train)?;
-    let chosen = search.forward();
-    let values = search.evidence.estimate(&chosen)?;
+    let weighing = Weighing::new(&reference, &causes, train)?;
+    let chosen = weighing.forward();
+    let values = weighing.evidence.estimate(&chosen)?;
     let added: Vec<(&Cause, f64)> =
         chosen.iter().zip(values.mean.iter()).map(|(k, value)| (&causes[*k], *value)).collect();
     let [before, after] = reference.left(train, &added);
-    let noise = search.variance;
+    let noise = weighing.variance;
     let explained = (before - after) / (before - noise).max(noise);
     let is_unknown = !chosen.is_empty() && explained < EXPLAINS;
     let sds = values.covariance.diagonal().map(f64::sqrt);
     let told = if is_unknown { &[][..] } else { &chosen };
     let effects = told.iter().zip(values.mean.iter().zip(sds.iter()));
     let effects: Vec<PowerEffect> =
-        effects.map(|(k, (value, sd))| search.effect(&chosen, *k, *value, *sd)).collect();
+        effects.map(|(k, (value, sd))| weighing.effect(&chosen, *k, *value, *sd)).collect();
     let [before, after] = reference.left(held, if is_unknown { &[] } else { &added });
     let rms = |mean: f64| (mean - reference.variance).max(0.0).sqrt();
     let gap = [reference.variance.sqrt(), rms(before), rms(after)];
     Some(PowerFound { effects, is_unknown, gap })
 }
 
-/// What is weighed against each other.
-struct Search<'a> {
+/// Causes that are weighed against each other.
+struct Weighing<'a> {
     causes: &'a [Cause],
     evidence: Evidence,
     /// Variance of noise and of the reference's own error \[W²\].
@@ -258,8 +258,12 @@ struct Search<'a> {
     sizes: Vec<f64>,
 }
 
-impl Search<'_> {
-    fn new<'a>(reference: &Reference, causes: &'a [Cause], train: &[Powers]) -> Option<Search<'a>> {
+impl Weighing<'_> {
+    fn new<'a>(
+        reference: &Reference,
+        causes: &'a [Cause],
+        train: &[Powers],
+    ) -> Option<Weighing<'a>> {
         let count = rows(train).count();
         let of_reference = reference.loss.len() + 1;
         let width = 1 + of_reference + causes.len();
@@ -287,7 +291,7 @@ impl Search<'_> {
         let sds = DVector::from_iterator(causes.len(), sds);
         let means = DVector::zeros(causes.len());
         let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0, count);
-        (count > 0).then_some(Search { causes, evidence, variance, power, sizes })
+        (count > 0).then_some(Weighing { causes, evidence, variance, power, sizes })
     }
 
     /// The causes that bring enough, the strongest first.

@@ -212,6 +212,22 @@ fn two_effects_are_told() {
     assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
 }
 
+/// Brakes do not let go too late at four joints at once.
+#[test]
+fn brakes_at_most_joints_are_none() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let brake = effect("brake_drag").unwrap();
+    let window = [4.0, 7.0, 10.0];
+    let coordinates = [20.0, 20.0, 2.0, 1.0].map(|drag| [&[drag], window.as_slice()].concat());
+    let joints = [0, 2, 3, 4].into_iter().zip(&coordinates);
+    let effects: Vec<_> = joints.map(|(joint, of)| (brake, joint, of.as_slice())).collect();
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
+    assert!(named(&found).is_empty(), "{:?}", named(&found));
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects[..1], noise: 0.003 });
+    assert_eq!(named(&found), [("brake_drag", vec![1])]);
+}
+
 /// Two forces in two windows: one is told, for what its form leaves has a window too.
 #[test]
 fn of_windows_one_is_told() {
@@ -293,12 +309,19 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
     });
     assert_eq!((noise.verdict, named(&noise)), (Verdict::Unknown, Vec::new()));
     // What is missed is shown where nothing is known of it.
+    let push = diagnosed(&|samples| {
+        for block in &mut samples.blocks {
+            for (tau, q) in block.tau[1].iter_mut().zip(&block.q[4]) {
+                *tau += 25.0 * (2.0 * q + 0.5).sin();
+            }
+        }
+    });
+    assert_eq!((push.verdict, named(&push)), (Verdict::Unknown, Vec::new()));
     let whole = |joint: usize| {
         let is_whole = |of: &&Place| of.joint == Some(joint) && of.regime == "all";
-        noise.places.iter().find(is_whole).unwrap().share
+        push.places.iter().find(is_whole).unwrap().share
     };
-    let shares: f64 = (0..nominal.dof).map(whole).sum();
-    assert!((shares - 1.0).abs() < 1e-9 && (0..nominal.dof).all(|joint| whole(joint) > 0.01));
+    assert!(whole(1) > 0.5, "{}", whole(1));
     let still = diagnosed(&|samples| {
         for block in &mut samples.blocks {
             for joint in 0..4 {
