@@ -18,10 +18,10 @@ use super::logs::{Read, Reader, Ready, read_all};
 use super::output;
 use crate::effects::{self, ALL, Effect};
 use crate::gap::{
-    Diagnosis, Phase, Record, Settings, Trust, Verdict, common_factor, diagnose_power,
-    diagnose_runs, diagnose_telling,
+    Diagnosis, Logs, Phase, Record, Settings, Trust, Verdict, common_factor, diagnose_logs,
+    diagnose_power, diagnose_runs,
 };
-use crate::identify::Hints;
+use crate::identify::{Hints, Samples};
 use crate::log::{Channel, ColumnMap};
 use crate::report::diagnose as report;
 use crate::report::html::diagnose_report;
@@ -245,7 +245,17 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         wanted.clone()
     };
     let settings = Settings { trust, effects: of_torque };
-    let mut found = of_logs(&model, &train, &held, &settings, &progress(args.quiet));
+    let compared = if of_runs.is_some() { &[][..] } else { &before };
+    let mut found = of_logs(&model, [&train, &held, compared], &settings, &progress(args.quiet));
+    for said in found.before.iter().flatten() {
+        basis.notes.push(format!("{}: in the baseline already", report::called(said)));
+    }
+    if !compared.is_empty() && found.before.is_none() {
+        basis.notes.push(
+            "the baseline is not compared with the torques: log it as often repeated as the others"
+                .into(),
+        );
+    }
     if let Some(of) = &of_power {
         found.add_power(of);
     }
@@ -279,21 +289,19 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
 
 fn of_logs(
     model: &Model,
-    train: &[Ready],
-    held: &[Ready],
+    [train, held, before]: [&[Ready]; 3],
     settings: &Settings,
     progress: &ProgressBar,
 ) -> Diagnosis {
-    let records = |logs: &[Ready]| -> Vec<Record<'_>> {
-        logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
-    };
-    let graded = if held.is_empty() { records(train) } else { records(held) };
     let tell = |phase: Phase| {
         let before = Phase::ALL.iter().position(|of| *of == phase);
         progress.set_position(before.unwrap_or(0) as u64);
         progress.set_message(phase.name());
     };
-    let found = diagnose_telling(model, records(train), &graded, settings, &tell);
+    let [train, held, before]: [Vec<&Samples>; 3] =
+        [train, held, before].map(|logs| logs.iter().map(|log| &log.samples).collect());
+    let logs = Logs { train: &train, held: &held, before: &before };
+    let found = diagnose_logs(model, logs, settings, &tell);
     progress.finish_and_clear();
     found
 }

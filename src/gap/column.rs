@@ -71,8 +71,11 @@ fn added(
     if !is_of_time(effect) {
         return match record.kind {
             RecordKind::Mean => effect.added(&record.motion, joint, values),
-            RecordKind::Drift => Vec::new(),
+            RecordKind::Drift | RecordKind::Before => Vec::new(),
         };
+    }
+    if record.kind == RecordKind::Before {
+        return Vec::new();
     }
     let mut moved = record.motion.clone();
     let mut sum: Vec<(usize, Vec<f64>)> = Vec::new();

@@ -49,7 +49,7 @@ pub struct Settings {
     pub effects: Vec<&'static Effect>,
 }
 
-/// Diagnoses the records `train`, graded by `held`.
+/// Diagnoses the records `train`, graded by `held`, where `model` is compared, too.
 #[must_use]
 pub fn diagnose(
     model: &Model,
@@ -70,6 +70,8 @@ pub fn diagnose_telling(
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
     tell(Phase::Channel);
+    // With a baseline the robot was more than the model has.
+    let believed = train.first().map_or(model, |record| record.motion.model);
     let flipped = flip(&mut train, settings);
     let table = Table::new(&train, &settings.effects, settings.trust, Vec::new());
     let mut search = Search::new(&train, table, settings.trust, ERRORS[0]);
@@ -84,7 +86,7 @@ pub fn diagnose_telling(
     search.choose_channel(errors, &may);
     search.match_excess(&[]);
     let none = search.evidence.parameters(&[], &DVector::zeros(0));
-    let refit = Improved::new(model, &search.table.mixing, &none, &[]);
+    let refit = Improved::new(believed, &search.table.mixing, &none, &[]);
     tell(Phase::Search);
     let chance = search.reached_by_chance();
     let mut found = search.run_late_or_not(errors);
@@ -138,11 +140,11 @@ pub fn diagnose_telling(
     for joint in &flipped {
         judged.assert_flipped(*joint);
     }
-    let asserted = search.with_asserted(model, &found, &judged, &flipped);
+    let asserted = search.with_asserted(believed, &found, &judged, &flipped);
     tell(Phase::Grading);
     // What a robot can have may be far from what was fitted: nothing is written that misses more
     // than before of what it was fitted to.
-    let refit = better(&train, Improved::same(model), refit);
+    let refit = better(&train, Improved::same(believed), refit);
     // Flipped torques were turned round for the fit: they are no measure of a model that flips.
     let of_asserted = |asserted: Option<Improved>| match asserted {
         Some(improved) if flipped.is_empty() => better(&train, refit.clone(), improved),
@@ -166,7 +168,7 @@ pub fn diagnose_telling(
         improved = refit.clone();
         graded = graded_with(&improved);
     } else if let Some(less) = judged.without_idle(&graded) {
-        let plainer = of_asserted(search.with_asserted(model, &found, &less, &flipped));
+        let plainer = of_asserted(search.with_asserted(believed, &found, &less, &flipped));
         // What explains most of the logs is there, however far its form holds beyond them.
         if missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
             (judged, improved) = (less, plainer);
@@ -190,7 +192,7 @@ pub fn diagnose_telling(
     let places = if asserted.is_empty() && verdict == Verdict::Unknown {
         places_missed(&train, &refit)
     } else {
-        places(&train, model, [&refit, &improved], &asserted)
+        places(&train, believed, [&refit, &improved], &asserted)
     };
     Diagnosis {
         verdict,
@@ -205,6 +207,7 @@ pub fn diagnose_telling(
         improved,
         reasons: judged.reasons,
         channels: Vec::new(),
+        before: None,
     }
 }
 
@@ -295,7 +298,7 @@ fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
             table.flip(joint);
         }
     }
-    for record in train {
+    for record in train.iter_mut().filter(|record| record.kind != RecordKind::Before) {
         for joint in &flipped {
             record.measured[*joint].iter_mut().for_each(|x| *x = -*x);
         }

@@ -163,6 +163,8 @@ pub struct Diagnosis {
     pub reasons: Vec<String>,
     /// Rms gaps of other channels: name, unit; noise, before, after.
     pub channels: Vec<(&'static str, &'static str, [f64; 3])>,
+    /// Effects that a baseline has already; `None` where it is not compared with.
+    pub before: Option<Vec<Said>>,
 }
 
 impl Diagnosis {

@@ -97,7 +97,8 @@ pub(super) const OF_DRIFT: [&str; 2] = ["drift_with_position", "drift_with_load"
 /// One piece for each thing that torques of a joint may depend on.
 #[must_use]
 pub(super) fn generic(records: &[Record<'_>], joint: usize) -> Vec<Piece> {
-    let extents: Vec<Extent> = records.iter().map(|record| extent(&record.motion, joint)).collect();
+    let now = records.iter().filter(|record| record.kind != RecordKind::Before);
+    let extents: Vec<Extent> = now.map(|record| extent(&record.motion, joint)).collect();
     let size = records.first().map_or(0.0, |of| SIZE * of.motion.scale(joint).torque[0]);
     // One function for all motions, so one range for all.
     let largest = |of: fn(&Extent) -> f64| extents.iter().map(of).fold(1e-9, f64::max);
@@ -143,8 +144,9 @@ fn column(
     let series = records
         .iter()
         .map(|record| {
-            let of_drift = OF_DRIFT.contains(&kind.id);
-            if of_drift != (record.kind == RecordKind::Drift) {
+            let acts =
+                if OF_DRIFT.contains(&kind.id) { RecordKind::Drift } else { RecordKind::Mean };
+            if record.kind != acts {
                 return Vec::new();
             }
             let motion = &record.motion;

@@ -138,7 +138,7 @@ impl Common {
                     ]
                 })
                 .collect(),
-            means: records.iter().filter(|record| record.kind == RecordKind::Mean).count(),
+            means: records.iter().filter(|record| record.kind != RecordKind::Drift).count(),
         }
     }
 }
@@ -186,7 +186,7 @@ pub(super) fn nuisance(
         }
     }
     let series = match record.kind {
-        RecordKind::Mean => of_parameters(motion, &mixing),
+        RecordKind::Mean | RecordKind::Before => of_parameters(motion, &mixing),
         // No parameter changes from repetition to repetition.
         RecordKind::Drift => vec![Vec::new(); count],
     };
@@ -232,7 +232,7 @@ fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, 
 fn without_model(record: &Record<'_>, common: &Common, place: usize, of: &mut Nuisance) {
     let motion = &record.motion;
     let n = motion.model.dof;
-    let is_mean = record.kind == RecordKind::Mean;
+    let is_mean = record.kind != RecordKind::Drift;
     let push = |of: &mut Nuisance, name: &str, joint: usize, there: bool, series: Vec<f64>| {
         of.names.push(format!("joint {} {name}", joint + 1));
         of.deviations.push(1.0);

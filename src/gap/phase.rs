@@ -3,6 +3,8 @@
 /// A phase of a diagnosis, in the order in which they come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
+    /// What a baseline shows.
+    Baseline,
     /// Signs, delays, the model's own error.
     Channel,
     /// Effects are looked for.
@@ -17,13 +19,20 @@ pub enum Phase {
 
 impl Phase {
     /// All of them.
-    pub const ALL: [Phase; 5] =
-        [Phase::Channel, Phase::Search, Phase::Windows, Phase::Shapes, Phase::Grading];
+    pub const ALL: [Phase; 6] = [
+        Phase::Baseline,
+        Phase::Channel,
+        Phase::Search,
+        Phase::Windows,
+        Phase::Shapes,
+        Phase::Grading,
+    ];
 
     /// In words.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Phase::Baseline => "the robot as it was before",
             Phase::Channel => "signs, delays and the error of the model",
             Phase::Search => "effects that explain the gap",
             Phase::Windows => "effects that come and go",

@@ -1,6 +1,6 @@
 //! A log ready to be compared with the model.
 
-use crate::effects::Motion;
+use crate::effects::{Motion, of_the_whole_motion};
 use crate::identify::{Block, Samples, Source};
 use crate::log::LowPass;
 use crate::robot::Model;
@@ -35,6 +35,8 @@ pub enum RecordKind {
     Mean,
     /// How repetitions drift: their weighted sum, the weights a line about 0.
     Drift,
+    /// A mean from when the model was believed true: nothing that is looked for is in it.
+    Before,
 }
 
 /// Mean torques of a motion, how well they are known, and what the model says.
@@ -87,7 +89,11 @@ impl<'a> Record<'a> {
             let series = [block.q.clone(), block.qd.clone(), block.qdd.clone()];
             let begins = block.t.first().copied().unwrap_or(0.0);
             let t = block.t.iter().map(|t| t - begins).collect();
-            let motion = Motion::new(model, t, series, &rest, closed);
+            let mut motion = Motion::new(model, t, series, &rest, closed);
+            let of_motion = of_the_whole_motion(&motion);
+            for (to, added) in motion.torque.iter_mut().zip(of_motion) {
+                to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
+            }
             let windows = Windows::new(&motion, &rest, highest);
             let spread = samples.repetitions.as_deref();
             records.push(windows.mean(motion.clone(), block.tau.clone(), spread, [begins, period]));
@@ -98,6 +104,16 @@ impl<'a> Record<'a> {
             }
         }
         records
+    }
+
+    /// The records of a baseline: those of its means.
+    #[must_use]
+    pub fn before(model: &'a Model, samples: &Samples) -> Vec<Record<'a>> {
+        let means = Record::all(model, samples).into_iter();
+        means
+            .filter(|record| record.kind == RecordKind::Mean)
+            .map(|record| Record { kind: RecordKind::Before, ..record })
+            .collect()
     }
 
     /// Whether a joint moves at an instant, so that its torque counts.

@@ -82,7 +82,9 @@ impl Rows {
         }
         let series = |number: usize, k: usize| -> Option<Vec<f64>> {
             match (k, kind) {
-                (0, RecordKind::Mean) => Some(records[number].motion.torque[joint].clone()),
+                (0, RecordKind::Mean | RecordKind::Before) => {
+                    Some(records[number].motion.torque[joint].clone())
+                }
                 (0, RecordKind::Drift) => None,
                 (k, _) if k <= parameters => of_parameter(number, k - 1).cloned(),
                 (k, _) => of_column(number, k - 1 - parameters).cloned(),
@@ -132,7 +134,7 @@ impl Rows {
     }
 
     pub(super) fn flip(&mut self, joint: usize) {
-        if joint == self.joint {
+        if joint == self.joint && self.kind != RecordKind::Before {
             self.measured.iter_mut().for_each(|x| *x = -*x);
             for (row, measured) in self.measured.iter().enumerate() {
                 self.values[(row, 0)] += 2.0 * measured;
@@ -148,7 +150,9 @@ impl Rows {
         channels: &[Response],
         is_used: impl Fn(usize) -> bool,
     ) {
-        let channel = channels.get(self.joint).copied().unwrap_or_default();
+        // What is late now was not before.
+        let known = channels.get(self.joint).filter(|_| self.kind != RecordKind::Before);
+        let channel = known.copied().unwrap_or_default();
         for (k, series) in self.plain.iter().enumerate() {
             if !is_used(self.reached[k]) {
                 continue;

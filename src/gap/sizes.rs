@@ -27,7 +27,9 @@ pub(super) fn fades(search: &Search<'_, '_>, of: &Fitted) -> bool {
 
 /// Times of the first and the last repetition, by the clock of the logs \[s\].
 fn times(search: &Search<'_, '_>) -> [f64; 2] {
-    let times = search.records.iter().flat_map(|record| record.times.iter().map(|(t, _)| *t));
+    // A baseline has its own clock.
+    let now = search.records.iter().filter(|record| record.kind != RecordKind::Before);
+    let times = now.flat_map(|record| record.times.iter().map(|(t, _)| *t));
     times.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], t| [first.min(t), last.max(t)])
 }
 
@@ -35,7 +37,7 @@ fn times(search: &Search<'_, '_>) -> [f64; 2] {
 pub(super) fn noise(search: &Search<'_, '_>, joint: Option<usize>) -> f64 {
     let of = |record: &Record<'_>| {
         let variance = record.variance[joint.unwrap_or(0)];
-        variance * if record.kind == RecordKind::Mean { record.repetitions as f64 } else { 1.0 }
+        variance * if record.kind == RecordKind::Drift { 1.0 } else { record.repetitions as f64 }
     };
     BELOW_NOISE * search.records.iter().map(of).fold(0.0, f64::max).sqrt()
 }

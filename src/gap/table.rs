@@ -112,7 +112,7 @@ impl Table {
     pub(super) fn of(records: &[Record<'_>], all: Vec<Piece>, nuisances: &[Nuisance]) -> Table {
         let n = records.first().map_or(0, |record| record.motion.model.dof);
         let columns: Vec<&Column> = all.iter().flat_map(|piece| &piece.columns).collect();
-        let kinds = [RecordKind::Mean, RecordKind::Drift];
+        let kinds = [RecordKind::Mean, RecordKind::Drift, RecordKind::Before];
         let joints = (0..kinds.len() * n)
             .into_par_iter()
             .map(|i| {
@@ -389,7 +389,7 @@ fn add(gram: &mut DMatrix<f64>, part: &DMatrix<f64>, places: &[usize]) {
 
 /// The parameters' columns of each record.
 pub(super) fn nuisances(records: &[Record<'_>], trust: Trust) -> Vec<Nuisance> {
-    let is_mean = |record: &&Record<'_>| record.kind == RecordKind::Mean;
+    let is_mean = |record: &&Record<'_>| record.kind != RecordKind::Drift;
     let common = Common::new(records);
     records
         .par_iter()

@@ -175,32 +175,42 @@ pub(super) fn sentence(verdict: Verdict) -> &'static str {
     }
 }
 
+/// An effect and its joints.
+#[must_use]
+pub fn called(of: &Said) -> String {
+    let joints: Vec<String> = of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
+    let place = match joints.len() {
+        0 => "the robot".to_owned(),
+        _ => format!("joint {}", joints.join(", ")),
+    };
+    format!("{} of {place}", of.effect.title)
+}
+
+/// The same with how probable it is.
+fn weighed(of: &Said) -> String {
+    format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
+}
+
 /// For people.
 #[must_use]
 pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}", sentence(found.verdict));
-    for (title, all) in [("found", &found.effects), ("considered", &found.candidates)] {
-        for of in all {
-            let joints: Vec<String> =
-                of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
-            let place = match joints.len() {
-                0 => "the robot".to_owned(),
-                _ => format!("joint {}", joints.join(", ")),
-            };
-            let _ = writeln!(
-                out,
-                "\n{title}: {} of {place}, probability {:.2}, {:.0} nats",
-                of.effect.title, of.probability, of.nats
-            );
-            if of.class.len() > 1 {
-                let _ = writeln!(out, "  cannot be told apart: {}", of.class.join(", "));
-            }
-            for parameter in &of.parameters {
-                let (name, value, sd) = (&parameter.name, parameter.value, parameter.sd);
-                let _ = writeln!(out, "  {name:<20} {value:>12.5} ± {sd:.5} {}", parameter.unit);
-            }
+    for of in &found.effects {
+        let _ = writeln!(out, "\nfound: {}", weighed(of));
+        if of.class.len() > 1 {
+            let _ = writeln!(out, "  cannot be told apart: {}", of.class.join(", "));
         }
+        for parameter in &of.parameters {
+            let (name, value, sd) = (&parameter.name, parameter.value, parameter.sd);
+            let _ = writeln!(out, "  {name:<20} {value:>12.5} ± {sd:.5} {}", parameter.unit);
+        }
+    }
+    if !found.candidates.is_empty() {
+        out.push('\n');
+    }
+    for of in &found.candidates {
+        let _ = writeln!(out, "considered: {}", weighed(of));
     }
     for of in &found.anything {
         let joint = of.joint.map_or_else(String::new, |joint| format!(" of joint {}", joint + 1));

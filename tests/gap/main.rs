@@ -8,10 +8,10 @@ mod power;
 mod simulated;
 
 use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
-use joulepath::effects::{ALL, find as effect};
+use joulepath::effects::{ALL, Effect, find as effect};
 use joulepath::gap::{
-    Diagnosis, Improved, PARAMETERS, Place, Quantity, Record, Settings, Trust, Verdict,
-    attribution, common_factor, diagnose, predicted, shapes,
+    Diagnosis, Improved, Logs, PARAMETERS, Place, Quantity, Record, Settings, Trust, Verdict,
+    attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
 };
 use joulepath::identify::Samples;
 use joulepath::robot::Model;
@@ -55,6 +55,41 @@ fn healthy_robots_have_no_effect() {
     assert!(matches!(found.verdict, Verdict::ParametersOnly | Verdict::NoGap));
     // The parameters were off, and are so no more.
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+}
+
+/// What is not the model's is no change where a baseline has it; what was not there is.
+#[test]
+fn of_a_baseline_only_changes_are_told() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 3);
+    let [load, friction] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
+    let mut body = [0.0; 10];
+    body[0] = 1.5;
+    body[3] = 0.15;
+    (body[4], body[5], body[6]) = (0.02, 0.02, 0.005);
+    let both: [(&Effect, usize, &[f64]); 2] = [(load, 0, &body), (friction, 1, &[8.0, 0.1])];
+    let logged = |effects, seed| Robot { model: &truth, effects, noise: 0.005 }.samples(seed);
+    let before = logged(&both[..1], 4);
+    let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
+    for (effects, told) in [(&both[..1], vec![]), (&both[..], vec![("stribeck", vec![2])])] {
+        let now = [1, 2, 3].map(|seed| logged(effects, seed));
+        let [train, held, before] = [&[&now[0], &now[1]][..], &[&now[2]], &[&before]];
+        let found = diagnose_logs(&nominal, Logs { train, held, before }, &settings, &|_| {});
+        assert_eq!(named(&found), told);
+        let known: Vec<&str> = found.before.iter().flatten().map(|of| of.effect.id).collect();
+        assert_eq!(known, ["payload"]);
+        // The model has both.
+        assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
+        let held = &Record::all(&nominal, &now[2])[0];
+        let said = predicted(held, &found.improved.applied);
+        let left = |joint: usize| -> f64 {
+            let squares = held.measured[joint].iter().zip(&said[joint]);
+            let squares = squares.map(|(measured, said)| (measured - said).powi(2));
+            (squares.sum::<f64>() / held.motion.len() as f64).sqrt()
+                / held.motion.scale(joint).torque[1]
+        };
+        assert!((0..nominal.dof).all(|joint| left(joint) < 0.01));
+    }
 }
 
 #[test]
