@@ -26,9 +26,10 @@ const OF_STRONGEST: f64 = 0.01;
 pub(super) const LEAST_NATS: f64 = 8.0;
 /// The same of what changes with time, as all friction does a little.
 const LEAST_OF_TIME: f64 = 25.0;
-/// Share of its joint's torque that an effect has to have, and where it brings as many nats and
-/// is no smooth torque, which models miss anyway.
-const RELEVANT: f64 = 0.01;
+/// Share of its joint's torque that an effect has to have, the same in a log that does not tell its
+/// noise, and where it brings as many nats and is no smooth torque, which models miss anyway.
+const RELEVANT: f64 = 0.005;
+const RELEVANT_OPEN: f64 = 0.01;
 const CLEARLY: f64 = 0.001;
 const CLEAR: f64 = 30.0;
 /// A joint at which an effect is so much smaller than at another one is not told.
@@ -248,9 +249,13 @@ pub(super) fn judged(
                 };
                 let matter: Vec<&Fitted> = all_of.iter().copied().filter(tells).collect();
                 let fitted = if matter.is_empty() { all_of } else { matter };
-                let fades = effect.id == "warm_up";
-                let least = if fades { LEAST_OF_TIME } else { LEAST_NATS };
-                let least = least.max(OF_STRONGEST * strongest).max(chance);
+                // How repetitions drift is measured by itself, whatever else there is.
+                let least = if effect.id == "warm_up" {
+                    LEAST_OF_TIME
+                } else {
+                    LEAST_NATS.max(OF_STRONGEST * strongest)
+                };
+                let least = least.max(chance);
                 let (class, probability) = if drops[k] < least && form[k] == 0.0 {
                     (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
                 } else {
@@ -368,7 +373,11 @@ fn refused(
     }
     // The form of a filter leaves something wherever torques jump.
     let may_be_small = said.nats > CLEAR && !SMOOTH.contains(&id) && search.late.is_none();
-    let relevant = if may_be_small { CLEARLY } else { RELEVANT };
+    let relevant = match (may_be_small, search.is_open()) {
+        (true, _) => CLEARLY,
+        (false, true) => RELEVANT_OPEN,
+        (false, false) => RELEVANT,
+    };
     if said.size < relevant {
         return no(format!("is less than {} % of the torque", 100.0 * relevant));
     }
