@@ -160,6 +160,10 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
         {
             bail!("{option} {}: this file is read; give another name", path.display());
         }
+        // What takes a while is not to fail at its end.
+        if let Some(path) = written {
+            output::stage(path, &[]).with_context(|| option.to_owned())?;
+        }
     }
     for (option, files) in [("--heldout", &args.heldout), ("--baseline", &args.baseline)] {
         if let Some(path) = files.iter().find(|path| within(path, &args.log)) {
@@ -330,7 +334,8 @@ fn wanted(list: Option<&str>) -> anyhow::Result<Vec<&'static Effect>> {
         if effects::find(id).is_none() {
             let near = nearest(id, ALL.iter().map(|effect| effect.id));
             let meant = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
-            bail!("--effects {id}: no effect has this id{meant}");
+            let ids: Vec<&str> = ALL.iter().map(|effect| effect.id).collect();
+            bail!("--effects {id}: no effect has this id{meant}; there are {}", ids.join(", "));
         }
         named.push(id);
     }

@@ -29,6 +29,9 @@ pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
     if std::fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly()) {
         anyhow::bail!("'{}' is read-only; make it writable to have it changed", path.display());
     }
+    if path.is_dir() {
+        anyhow::bail!("'{}' is a folder; name a file in it", path.display());
+    }
     let folder = parent(path);
     let closed = || {
         format!(

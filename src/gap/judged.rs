@@ -396,6 +396,9 @@ fn refused(
     if GATED.contains(&id) && fitted.len() > BRAKES {
         return open("is at more joints than let go too late at once".to_owned());
     }
+    if id == "torque_constant" && 2 * fitted.len() > search.dof() {
+        return open("is at most joints: other masses or another unit".to_owned());
+    }
     if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {
         return no("is no more than friction differs by from hour to hour".to_owned());
     }

@@ -19,7 +19,8 @@ use super::table::Table;
 const FAMILY: f64 = 3.0;
 const JOINT: f64 = 1.2;
 /// Effects, and what is left of them without what makes them special.
-const PLAINER: [(&str, &str); 6] = [
+const PLAINER: [(&str, &str); 7] = [
+    ("brake_drag", "friction_level"),
     ("link_parameters", "payload"),
     ("cable", "torque_offset"),
     ("gravity_spring", "torque_offset"),

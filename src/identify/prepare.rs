@@ -199,6 +199,7 @@ fn thinned(section: &Section) -> Section {
         start: section.time(filter.half),
         step,
         series: section.series.iter().map(of).collect(),
+        lost: Vec::new(),
     }
 }
 

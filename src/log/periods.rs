@@ -205,12 +205,30 @@ pub fn averaged(section: &Section, periods: &Periods, joints: usize) -> Averaged
     let samples = (periods.period / section.step).round().max(2.0) as usize;
     let step = periods.period / samples as f64;
     let start = section.time(periods.first);
-    let at = |series: &[f64], repetition: usize, k: usize| {
+    let place = |repetition: usize, k: usize| {
         let t = start + periods.period * repetition as f64 + step * k as f64;
-        sample(series, (t - section.start) / section.step)
+        (t - section.start) / section.step
     };
+    let is_lost = |r: usize, k: usize| {
+        section.lost.binary_search(&(place(r, k).round().max(0.0) as usize)).is_ok()
+    };
+    let lost: Vec<Vec<usize>> =
+        (0..samples).map(|k| (0..periods.count).filter(|r| is_lost(*r, k)).collect()).collect();
     let repetitions = |series: &[f64]| -> Vec<Vec<f64>> {
-        (0..periods.count).map(|r| (0..samples).map(|k| at(series, r, k)).collect()).collect()
+        let of = |r: usize| (0..samples).map(|k| sample(series, place(r, k))).collect();
+        let mut all: Vec<Vec<f64>> = (0..periods.count).map(of).collect();
+        // The other repetitions know a lost sample better than those around it.
+        for (k, lost) in lost.iter().enumerate() {
+            if lost.is_empty() || lost.len() == periods.count {
+                continue;
+            }
+            let known = (0..periods.count).filter(|r| !lost.contains(r)).map(|r| all[r][k]);
+            let mean = known.sum::<f64>() / (periods.count - lost.len()) as f64;
+            for r in lost {
+                all[*r][k] = mean;
+            }
+        }
+        all
     };
     let mean_of = |all: &[Vec<f64>]| -> Vec<f64> {
         let n = all.len() as f64;
@@ -361,7 +379,7 @@ mod tests {
             })
             .collect();
         let torque = q.iter().enumerate().map(|(i, q)| 3.0 * q + (i % 2) as f64).collect();
-        Section { start: 0.0, step: STEP, series: vec![q, torque] }
+        Section { start: 0.0, step: STEP, series: vec![q, torque], lost: Vec::new() }
     }
 
     #[test]
@@ -387,6 +405,21 @@ mod tests {
             }
         }
         assert_eq!(found.spread[0].len(), 5);
+    }
+
+    #[test]
+    fn what_one_repetition_lost_the_others_know() {
+        let mut log = log();
+        let periods = Periods { period: 5.0, first: 320, count: 5 };
+        let whole = averaged(&log, &periods, 1);
+        for k in [400, 401, 900] {
+            log.series[1][k] += 20.0;
+            log.lost.push(k);
+        }
+        let found = averaged(&log, &periods, 1);
+        let all = found.mean[0].iter().zip(&whole.mean[0]);
+        assert!(all.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) < 1e-9);
+        assert!(found.spread[0].iter().flatten().all(|x| x.abs() < 1e-9));
     }
 
     #[test]

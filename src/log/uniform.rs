@@ -4,6 +4,8 @@
 const GAP: f64 = 3.5;
 /// Share of an interval by which a sample may miss its place on the grid.
 const JITTER: f64 = 0.02;
+/// Share of an interval within which there has to be a sample, so that a place is not lost.
+const LOST: f64 = 0.5;
 
 /// Samples of several series at equal intervals, without a gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +16,8 @@ pub struct Section {
     pub step: f64,
     /// The series, all of the same length.
     pub series: Vec<Vec<f64>>,
+    /// Samples that the log has not: they come from those around them.
+    pub lost: Vec<usize>,
 }
 
 impl Section {
@@ -70,11 +74,45 @@ fn section(t: &[f64], series: &[&[f64]]) -> Section {
     let count = if duration > 0.0 { intervals as usize + 1 } else { t.len().min(1) };
     let on_grid = |(i, t): (usize, &f64)| (t - start - step * i as f64).abs() <= JITTER * step;
     let even = t.len() == count && t.iter().enumerate().all(on_grid);
-    let series = series
-        .iter()
-        .map(|x| if even { x.to_vec() } else { interpolated(t, x, start, step, count) })
-        .collect();
-    Section { start, step, series }
+    let as_logged = || series.iter().map(|x| x.to_vec()).collect();
+    if even {
+        return Section { start, step, series: as_logged(), lost: Vec::new() };
+    }
+    let between: Vec<Vec<f64>> =
+        series.iter().map(|x| interpolated(t, x, start, step, count)).collect();
+    if is_clock_uneven(series, &between) {
+        let step = duration / (t.len() - 1).max(1) as f64;
+        return Section { start, step, series: as_logged(), lost: Vec::new() };
+    }
+    let mut lost = Vec::new();
+    let mut after = 0;
+    for k in 0..count {
+        let at = start + step * k as f64;
+        while after < t.len() && t[after] < at - LOST * step {
+            after += 1;
+        }
+        if t.get(after).is_none_or(|t| *t > at + LOST * step) {
+            lost.push(k);
+        }
+    }
+    Section { start, step, series: between, lost }
+}
+
+/// Whether samples are even and only their times are not: they are smoother as they are logged than
+/// between the times.
+fn is_clock_uneven(series: &[&[f64]], between: &[Vec<f64>]) -> bool {
+    let odds = |(logged, between): (&&[f64], &Vec<f64>)| {
+        let [logged, between] = [logged, between.as_slice()].map(roughness);
+        if logged > 0.0 && between > 0.0 { (logged / between).ln() } else { 0.0 }
+    };
+    series.iter().zip(between).map(odds).sum::<f64>() < 0.0
+}
+
+/// Mean square of fourth differences, which noise has and motion hardly.
+fn roughness(x: &[f64]) -> f64 {
+    let squares =
+        x.windows(5).map(|x| (x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4]).powi(2));
+    squares.sum::<f64>() / x.len() as f64
 }
 
 /// `x` at `count` times from `start` on.
@@ -125,6 +163,25 @@ mod tests {
         for (i, x) in found[0].series[0].iter().enumerate() {
             assert!((x - cubic(found[0].time(i))).abs() < EXACT);
         }
+    }
+
+    #[test]
+    fn even_samples_of_an_uneven_clock_stay_and_uneven_ones_do_not() {
+        let wave = |t: f64| (3.0 * t).sin();
+        let even: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
+        let uneven: Vec<f64> =
+            (0..200).map(|i| 0.01 * f64::from(i) + 0.003 * (1.7 * f64::from(i)).sin()).collect();
+        let [of_even, of_uneven] =
+            [&even, &uneven].map(|t| -> Vec<f64> { t.iter().map(|t| wave(*t)).collect() });
+        assert_eq!(sections(&uneven, &[&of_even])[0].series[0], of_even);
+        assert_ne!(sections(&uneven, &[&of_uneven])[0].series[0], of_uneven);
+    }
+
+    #[test]
+    fn samples_that_are_missing_are_lost() {
+        let t: Vec<f64> =
+            (0..50).filter(|i| ![7, 20, 21].contains(i)).map(|i| 0.01 * f64::from(i)).collect();
+        assert_eq!(sections(&t, &[&t])[0].lost, [7, 20, 21]);
     }
 
     #[test]

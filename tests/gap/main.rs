@@ -263,6 +263,21 @@ fn brakes_at_most_joints_are_none() {
     assert_eq!(named(&found), [("brake_drag", vec![1])]);
 }
 
+/// Motors do not all differ: other masses do, or another unit.
+#[test]
+fn torque_constants_of_most_joints_are_none() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let constant = effect("torque_constant").unwrap();
+    let effects: Vec<(&Effect, usize, &[f64])> =
+        (0..nominal.dof).map(|joint| (constant, joint, &[0.2][..])).collect();
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
+    assert_eq!((found.verdict, named(&found)), (Verdict::Unknown, Vec::new()));
+    let found =
+        diagnosed(&nominal, &Robot { model: &truth, effects: &effects[1..2], noise: 0.003 });
+    assert_eq!(named(&found), [("torque_constant", vec![2])]);
+}
+
 /// Two forces in two windows: one is told, for what its form leaves has a window too.
 #[test]
 fn of_windows_one_is_told() {
