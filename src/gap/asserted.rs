@@ -16,6 +16,9 @@ const OF_PARAMETERS: [&str; 4] = ["link_parameters", "friction_level", "rotor_in
 /// sure.
 const ERROR: f64 = 0.005;
 const CLEARLY: f64 = 50.0;
+/// The same for an effect that is less probable than this.
+const LIKELY: f64 = 0.5;
+const DOUBTED: f64 = 10.0;
 /// What may be left of that with an effect which explains it.
 const LEFT: f64 = 0.6;
 /// An effect that fades from repetition to repetition, so that means do not show it.
@@ -76,6 +79,13 @@ fn turned_round(joint: usize) -> Option<Fitted> {
     })
 }
 
+impl Said {
+    /// Whether it is more probable than not.
+    pub(super) fn is_likely(&self) -> bool {
+        self.probability >= LIKELY
+    }
+}
+
 impl Judged {
     /// The same without what leaves most of what is clearly missed on data that took no part, if there
     /// is some.
@@ -87,7 +97,8 @@ impl Judged {
                 let [before, after] = beyond_error(of);
                 [sum[0] + before, sum[1] + after]
             });
-            said.effect.id != FADING && after > CLEARLY && after > LEFT * before
+            let clearly = if said.is_likely() { CLEARLY } else { DOUBTED };
+            said.effect.id != FADING && after > clearly && after > LEFT * before
         };
         let mut less = self.clone();
         let (idle, kept): (Vec<Said>, Vec<Said>) = less.effects.drain(..).partition(is_idle);

@@ -7,9 +7,9 @@ use crate::robot::Model;
 
 use super::calibration::calibrate;
 use super::column::Owner;
-use super::diagnosis::{Diagnosis, Verdict};
+use super::diagnosis::{Anything, Diagnosis, Said, Verdict};
 use super::gated::{OF_TIME, gated};
-use super::heldout::{Shrink, predicted, shrink};
+use super::heldout::{JointGap, Shrink, predicted, shrink};
 use super::improved::Improved;
 use super::judged::{Judged, LEAST_NATS, judged};
 use super::nuisance::Trust;
@@ -23,6 +23,8 @@ use super::table::{Table, nuisances};
 const ERRORS: [f64; 4] = [0.0015, 0.005, 0.015, 0.045];
 /// Odds below which two explanations cannot be told apart: 1 to 100.
 pub(super) const CLASS: f64 = 4.6;
+/// Share of a joint's torque below which functions of no law are the model's own error.
+const SMALL: f64 = 0.005;
 /// Share of the torques below which a model without a gap is right.
 const RIGHT: f64 = 0.02;
 /// What effects may leave of the logs that they were fitted to, to be there whatever they take off
@@ -169,8 +171,10 @@ pub fn diagnose_telling(
         graded = graded_with(&improved);
     } else if let Some(less) = judged.without_idle(&graded) {
         let plainer = of_asserted(search.with_asserted(believed, &found, &less, &flipped));
-        // What explains most of the logs is there, however far its form holds beyond them.
-        if missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
+        // What explains most of the logs is there, however far its form holds beyond them, unless it
+        // is doubtful anyway.
+        let is_likely = judged.effects.iter().all(Said::is_likely);
+        if !is_likely || missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
             (judged, improved) = (less, plainer);
             graded = graded_with(&improved);
         }
@@ -186,6 +190,15 @@ pub fn diagnose_telling(
     let most = used.map(|joint| joint.model / joint.torque).fold(0.0, f64::max);
     if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && most < RIGHT {
         verdict = Verdict::NoGap;
+    }
+    // No model is right to the last digit.
+    if verdict == Verdict::Unknown && !judged.anything.is_empty() {
+        let left = shrink(&train, [believed, &refit.applied, &refit.applied]).joints;
+        let is_small = |of: &JointGap| of.refit < SMALL * of.torque;
+        let is_small = |of: &Anything| of.joint.is_some_and(|joint| is_small(&left[joint]));
+        if judged.anything.iter().all(is_small) {
+            verdict = Verdict::ParametersOnly;
+        }
     }
     calibrate(&mut judged.effects, &mut judged.candidates);
     let asserted: Vec<&'static str> = judged.effects.iter().map(|said| said.effect.id).collect();
@@ -337,8 +350,6 @@ fn joints_of_time(search: &Search<'_, '_>, found: &Found) -> Vec<usize> {
 mod tests {
     use crate::effects::find;
 
-    use super::super::diagnosis::Said;
-    use super::super::heldout::JointGap;
     use super::*;
 
     /// Whether joints are another body's of which `far` of six are missed by half, an effect bringing

@@ -8,7 +8,7 @@ use super::search::{Chosen, Found, Search};
 const FORM: f64 = 0.65;
 /// The same where the functions are of what the law is of: friction that depends on the position
 /// alone is friction over the position, in whatever form.
-const OWN_FORM: f64 = 0.02;
+const OWN_FORM: f64 = 0.3;
 /// Laws of what functions are of.
 const OWN: [(&str, &[&str]); 4] = [
     ("time_and_sense", &["brake_drag"]),

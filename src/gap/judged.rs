@@ -27,22 +27,16 @@ pub(super) const LEAST_NATS: f64 = 8.0;
 /// The same of what changes with time, as all friction does a little.
 const LEAST_OF_TIME: f64 = 25.0;
 /// Share of its joint's torque that an effect has to have, the same in a log that does not tell its
-/// noise, and where it brings as many nats and is no smooth torque, which models miss anyway.
+/// noise or is late, and where it brings as many nats and is no smooth torque, which models miss
+/// anyway.
 const RELEVANT: f64 = 0.005;
 const RELEVANT_OPEN: f64 = 0.01;
 const CLEARLY: f64 = 0.001;
 const CLEAR: f64 = 30.0;
 /// A joint at which an effect is so much smaller than at another one is not told.
 const OF_LARGEST: f64 = 0.15;
-/// Effects at once, and what each has to bring of what the first one does where there are more.
-const AT_ONCE: usize = 2;
-const OF_FIRST: f64 = 0.05;
 /// Joints at which brakes drag at once.
 const BRAKES: usize = 2;
-/// What each has to bring of what the first one does in a log that does not tell its noise.
-const OF_FIRST_OPEN: f64 = 0.3;
-/// Share of what two effects at a joint bring that the lesser one needs.
-pub(super) const LESSER: f64 = 0.15;
 /// Probability below which an effect is not asserted, whatever it brings.
 const IMPROBABLE: f64 = 0.05;
 /// Spread of a parameter where functions follow the form, of the share that they have.
@@ -81,86 +75,6 @@ impl Judged {
     pub(super) fn of(effects: Vec<Said>, candidates: Vec<Said>) -> Judged {
         let verdict = if effects.is_empty() { Verdict::ParametersOnly } else { Verdict::Effect };
         Judged { verdict, effects, candidates, anything: Vec::new(), reasons: Vec::new() }
-    }
-
-    /// Of two effects at one joint the lesser one is the other's form where it brings little of
-    /// what both do.
-    fn demote_lesser(&mut self, search: &Search<'_, '_>, found: &Found) {
-        let family = |id: &str| {
-            found.chosen.iter().position(|of| search.families[of.family].owner.id() == id)
-        };
-        // Without the family at a place; of another one, without what it is at some joints.
-        let score_without = |gone: Option<usize>, less: Option<usize>, joints: &[usize]| {
-            let at_joints = |piece: &usize| {
-                let joint = search.table.pieces[*piece].joint;
-                joint.is_some_and(|joint| joints.contains(&joint))
-            };
-            let mut kept = Vec::new();
-            for (place, of) in found.chosen.iter().enumerate() {
-                let mut of = of.clone();
-                of.pieces.retain(|p| Some(place) != gone && !(Some(place) == less && at_joints(p)));
-                if !of.pieces.is_empty() {
-                    kept.push(of);
-                }
-            }
-            search.score(&kept)
-        };
-        let mut lesser: Vec<&str> = Vec::new();
-        for said in &self.effects {
-            for other in self.effects.iter().filter(|other| other.effect.id != said.effect.id) {
-                let both_there = said.joints.iter().all(|joint| other.joints.contains(joint));
-                let (Some(a), Some(b)) = (family(said.effect.id), family(other.effect.id)) else {
-                    continue;
-                };
-                if said.joints.is_empty() || !both_there {
-                    continue;
-                }
-                let joints = &said.joints;
-                let own = found.score - score_without(Some(a), None, joints);
-                let both = found.score - score_without(Some(a), Some(b), joints);
-                let other = found.score - score_without(None, Some(b), joints);
-                if own < LESSER * both && own < other {
-                    lesser.push(said.effect.id);
-                }
-            }
-        }
-        let (demoted, kept): (Vec<Said>, Vec<Said>) =
-            self.effects.drain(..).partition(|said| lesser.contains(&said.effect.id));
-        self.effects = kept;
-        self.candidates.extend(demoted);
-    }
-
-    /// Of two effects with windows the lesser one explains what the other one's form leaves.
-    fn demote_second_window(&mut self) {
-        let has_window = |said: &&Said| GATED.contains(&said.effect.id);
-        let nats = self.effects.iter().filter(has_window).map(|said| said.nats);
-        let most = nats.fold(0.0, f64::max);
-        let is_second = |said: &Said| has_window(&said) && said.nats < most;
-        let (second, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_second);
-        self.effects = kept;
-        self.candidates.extend(second);
-    }
-
-    /// More effects than can be at once are what none of them is; whether it is so.
-    fn demote_too_many(&mut self, search: &Search<'_, '_>) -> bool {
-        self.effects.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-        let Some(strongest) = self.effects.first().map(|said| said.nats) else { return false };
-        if search.is_open() {
-            // Real robots have a little of everything.
-            let strong =
-                self.effects.iter().filter(|said| said.nats > OF_FIRST_OPEN * strongest).count();
-            let lesser = self.effects.drain(strong.min(AT_ONCE)..);
-            self.candidates.extend(lesser);
-            return false;
-        }
-        if self.effects.len() <= AT_ONCE {
-            return false;
-        }
-        let strong = self.effects.iter().filter(|said| said.nats > OF_FIRST * strongest).count();
-        let clear = strong <= AT_ONCE;
-        let from = if clear { strong } else { 0 };
-        self.candidates.extend(self.effects.drain(from..));
-        !clear
     }
 
     /// Takes back what was asserted.
@@ -306,12 +220,7 @@ pub(super) fn judged(
         .filter(|of| OF_DRIFT.contains(&of.id) && !is_form(of))
         .filter_map(|of| of.joint)
         .collect();
-    // While friction fades, what it is at is a matter of when.
-    let fading = judged.effects.iter().any(|said| said.effect.id == "warm_up");
-    let (kept, levels): (Vec<Said>, Vec<Said>) =
-        judged.effects.drain(..).partition(|said| !fading || said.effect.id != "friction_level");
-    judged.effects = kept;
-    judged.candidates.extend(levels);
+    judged.demote_levels_that_fade();
     let (kept, doubtful): (Vec<Said>, Vec<Said>) = judged.effects.drain(..).partition(|said| {
         said.effect.id == "warm_up" || !said.joints.iter().any(|joint| drifting.contains(joint))
     });
@@ -372,11 +281,14 @@ fn refused(
         return open(format!("cannot be told from {}", said.class.join(", ")));
     }
     // The form of a filter leaves something wherever torques jump.
-    let may_be_small = said.nats > CLEAR && !SMOOTH.contains(&id) && search.late.is_none();
-    let relevant = match (may_be_small, search.is_open()) {
-        (true, _) => CLEARLY,
-        (false, true) => RELEVANT_OPEN,
-        (false, false) => RELEVANT,
+    let relevant = if search.late.is_some() {
+        RELEVANT_OPEN
+    } else if said.nats > CLEAR && !SMOOTH.contains(&id) {
+        CLEARLY
+    } else if search.is_open() {
+        RELEVANT_OPEN
+    } else {
+        RELEVANT
     };
     if said.size < relevant {
         return no(format!("is less than {} % of the torque", 100.0 * relevant));

@@ -2,8 +2,9 @@
 
 use crate::effects::{Response, find};
 
+use super::demoted::LESSER;
 use super::diagnosis::{Said, Verdict};
-use super::judged::{Judged, LESSER, parameters};
+use super::judged::{Judged, parameters};
 use super::polish::Fitted;
 
 /// How far the value depends on the filter's form, of itself, and on the clock of a controller \[s\].

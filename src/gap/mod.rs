@@ -10,6 +10,7 @@ mod calibration;
 mod chance;
 mod channel;
 mod column;
+mod demoted;
 mod diagnose;
 mod diagnosis;
 mod evidence;
