@@ -118,7 +118,7 @@ impl SpeedBounds<'_> {
         let piece = self.path.piece_at(s);
         let extent = self.path.extent(piece.leg);
         let programmed = self.caps[piece.leg].tcp * extent.extent / extent.length;
-        let q1 = piece.eval(s).q1;
+        let q1 = piece.rates(s);
         let joints = (0..DOF).map(|j| self.joints[j] / q1[j].abs()).fold(f64::INFINITY, f64::min);
         programmed.min(joints).powi(2)
     }
