@@ -47,6 +47,7 @@ pub fn rigid_bodies(
 }
 
 /// [`rigid_bodies`] in several states \[q, q̇, q̈\].
+#[inline]
 pub(super) fn rigid_bodies_each<const N: usize>(
     model: &Model,
     load: &Load,

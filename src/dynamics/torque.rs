@@ -33,6 +33,7 @@ pub fn torque(
 }
 
 /// [`torque`] in several states \[q, q̇, q̈\]: takes less than one after the other.
+#[inline]
 pub fn torque_each<const N: usize>(
     model: &Model,
     load: &Load,

@@ -49,6 +49,7 @@ pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3])
 }
 
 /// [`power`] in several states: takes less than one after the other.
+#[inline]
 fn power_each<const N: usize>(model: &Model, load: &Load, states: &[JointState; N]) -> [Power; N] {
     let lists = states.each_ref().map(|s| -> [&[f64]; 3] { [&s.q, &s.qd, &s.qdd] });
     let torques = torque_each(model, load, lists);
