@@ -47,8 +47,8 @@ pub(super) trait Powers<const N: usize> {
 /// The integrals of `powers` (W) over a stretch of time (s), J.
 pub(super) fn integral<const N: usize>(from: f64, to: f64, powers: &impl Powers<N>) -> [f64; N] {
     let mut sum = [0.0; N];
-    let longest = LONGEST.max((to - from) / MOST);
-    let (mut begin, mut length) = (from, FIRST.max((to - from) / MOST));
+    let [first, longest] = [FIRST, LONGEST].map(|most| most.max((to - from) / MOST));
+    let (mut begin, mut length) = (from, first);
     while begin < to {
         let left = to - begin;
         // Equal intervals on what is left: no short one at the end.
@@ -68,8 +68,8 @@ pub(super) fn integral<const N: usize>(from: f64, to: f64, powers: &impl Powers<
                 continue;
             }
             add(&mut sum, &part);
-            let quiet = h < FIRST || change * h < QUIET_J;
-            length = if off < EVEN_J && quiet { (2.0 * h).min(longest) } else { h };
+            let most = if change * h < QUIET_J { longest } else { first };
+            length = if off < EVEN_J { (2.0 * h).min(most).max(h) } else { h };
         }
         begin = if h < left { begin + h } else { to };
     }
