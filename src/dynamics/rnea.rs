@@ -3,7 +3,7 @@
 //! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 5, written
 //! out in vectors of three, each body in its own joint's frame.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::robot::{Link, MAX_DOF, Model, Rotations};
 
@@ -41,9 +41,25 @@ pub fn rigid_bodies(
     qdd: &[f64],
 ) -> [f64; MAX_DOF] {
     let Some(loaded) = load.on(model) else { return [0.0; MAX_DOF] };
-    data.rotation = model.kinematics.rotations(q);
-    let [tau] = newton_euler(model, &data.rotation, &loaded, [[qd, qdd]]);
+    model.kinematics.turn(q, &mut data.rotation);
+    let [tau] = newton_euler(model, [&data.rotation], &loaded, [[qd, qdd]]);
     tau
+}
+
+/// [`rigid_bodies`] in several states \[q, q̇, q̈\].
+#[inline]
+pub(super) fn rigid_bodies_each<const N: usize>(
+    model: &Model,
+    load: &Load,
+    states: [[&[f64]; 3]; N],
+) -> [[f64; MAX_DOF]; N] {
+    let Some(loaded) = load.on(model) else { return [[0.0; MAX_DOF]; N] };
+    let mut rotations = [[Matrix3::zeros(); MAX_DOF]; N];
+    for (rotations, [q, ..]) in rotations.iter_mut().zip(states) {
+        model.kinematics.turn(q, rotations);
+    }
+    let motions = states.map(|[_, qd, qdd]| [qd, qdd]);
+    newton_euler(model, rotations.each_ref(), &loaded, motions)
 }
 
 /// [`rnea`] of several motions \[q̇, q̈\] from the position with these rotations of the joints.
@@ -54,7 +70,7 @@ pub fn rnea_each<const N: usize>(
     motions: [[&[f64]; 2]; N],
 ) -> [[f64; MAX_DOF]; N] {
     let Some(loaded) = load.on(model) else { return [[0.0; MAX_DOF]; N] };
-    let mut torques = newton_euler(model, rotations, &loaded, motions);
+    let mut torques = newton_euler(model, [rotations; N], &loaded, motions);
     for (tau, [_, qdd]) in torques.iter_mut().zip(motions) {
         for (sum, rotor) in tau.iter_mut().zip(rotor_torques(model, qdd)) {
             *sum += rotor;
@@ -73,16 +89,19 @@ fn links(model: &Model) -> usize {
     model.links.len().min(model.kinematics.joints.len()).min(MAX_DOF)
 }
 
-/// The torques of motions \[q̇, q̈\] at the position with these rotations, `loaded` being the last
+/// The torques of motions \[q̇, q̈\] at positions with these rotations, `loaded` being the last
 /// link. Link by link for all motions: no step of one waits for a step of another.
 fn newton_euler<const N: usize>(
     model: &Model,
-    rotations: &Rotations,
+    rotations: [&Rotations; N],
     loaded: &Link,
     motions: [[&[f64]; 2]; N],
 ) -> [[f64; MAX_DOF]; N] {
     let geometry = &model.kinematics;
-    let rates = motions.map(|motion| motion.map(|values| geometry.to_serial(values)));
+    let mut rates = [[[0.0; MAX_DOF]; 2]; N];
+    for (rates, motion) in rates.iter_mut().zip(motions) {
+        *rates = [geometry.to_serial(motion[0]), geometry.to_serial(motion[1])];
+    }
     let joints = &geometry.joints;
     let last = links(model) - 1;
 
@@ -97,11 +116,11 @@ fn newton_euler<const N: usize>(
     for i in 0..=last {
         let joint = &joints[i];
         let link = if i == last { loaded } else { &model.links[i] };
-        let r = rotations[i];
         let p = joint.translation;
         let axis = joint.axis.into_inner();
         let c = link.com;
         for k in 0..N {
+            let r = &rotations[k][i];
             let [qd, qdd] = [rates[k][0][i], rates[k][1][i]];
             // Without speeds much of the sums is zero, without accelerations too nearly all.
             let [moves, starts] = motions[k].map(|list| !list.is_empty());
@@ -134,12 +153,16 @@ fn newton_euler<const N: usize>(
         for k in 0..N {
             tau[k][i] = joint.axis.dot(&moments[i][k]);
             if i > 0 {
-                let force = rotations[i] * forces[i][k];
-                let moment = rotations[i] * moments[i][k] + joint.translation.cross(&force);
+                let r = &rotations[k][i];
+                let force = r * forces[i][k];
+                let moment = r * moments[i][k] + joint.translation.cross(&force);
                 forces[i - 1][k] += force;
                 moments[i - 1][k] += moment;
             }
         }
     }
-    tau.map(|tau| geometry.from_serial_torque(tau))
+    for tau in &mut tau {
+        *tau = geometry.from_serial_torque(*tau);
+    }
+    tau
 }

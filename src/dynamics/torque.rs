@@ -7,7 +7,7 @@ use super::friction::{friction, sign};
 use super::laws::laws;
 use super::load::Load;
 use super::motor_side::{motor_rates, rotor_torques};
-use super::rnea::rigid_bodies;
+use super::rnea::{rigid_bodies, rigid_bodies_each};
 
 /// Torques at the joints \[Nm\].
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,22 @@ pub fn torque(
     qd: &[f64],
     qdd: &[f64],
 ) -> Torque {
-    let mut rigid = rigid_bodies(model, data, load, q, qd, qdd);
+    through_gears(model, [q, qd, qdd], rigid_bodies(model, data, load, q, qd, qdd))
+}
+
+/// [`torque`] in several states \[q, q̇, q̈\]: takes less than one after the other.
+#[inline]
+pub fn torque_each<const N: usize>(
+    model: &Model,
+    load: &Load,
+    states: [[&[f64]; 3]; N],
+) -> [Torque; N] {
+    let rigid = rigid_bodies_each(model, load, states);
+    std::array::from_fn(|k| through_gears(model, states[k], rigid[k]))
+}
+
+/// With the torques `rigid` of the rigid bodies.
+fn through_gears(model: &Model, [q, qd, qdd]: [&[f64]; 3], mut rigid: [f64; MAX_DOF]) -> Torque {
     let mut friction = friction(model, qd, &rigid);
     if !model.laws.is_empty() {
         let senses = motor_rates(model, qd).map(sign);

@@ -1,10 +1,10 @@
 //! Power at one state of the robot, and its integral over a motion.
 
 use super::parts::EnergyParts;
-use super::quadrature::integral;
+use super::quadrature::{Powers, integral};
 use crate::dynamics::{
     Data, Load, Torque, gravity, kinetic_energy, motor_rates, motor_torques, potential_energy,
-    torque,
+    torque, torque_each,
 };
 use crate::motion::timed::{JointState, TimedMotion};
 use crate::path::joint_path::Joints;
@@ -45,7 +45,18 @@ pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) ->
 /// The same for a robot of any number of joints, at position, velocity and acceleration.
 pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3]) -> Power {
     let [q, qd, qdd] = state;
-    let Torque { rigid, friction } = torque(model, data, load, q, qd, qdd);
+    of_torque(model, qd, &torque(model, data, load, q, qd, qdd))
+}
+
+/// [`power`] in several states: takes less than one after the other.
+#[inline]
+fn power_each<const N: usize>(model: &Model, load: &Load, states: &[JointState; N]) -> [Power; N] {
+    let lists = states.each_ref().map(|s| -> [&[f64]; 3] { [&s.q, &s.qd, &s.qdd] });
+    let torques = torque_each(model, load, lists);
+    std::array::from_fn(|k| of_torque(model, &states[k].qd, &torques[k]))
+}
+
+fn of_torque(model: &Model, qd: &[f64], Torque { rigid, friction }: &Torque) -> Power {
     let all = std::array::from_fn(|j| rigid[j] + friction[j]);
     let motor = motor_torques(model, all);
     let rates = motor_rates(model, qd);
@@ -105,7 +116,7 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
 
 /// Kinks nearer to each other than this are integrated over, s: on such a stretch they change the
 /// acceleration by too little to matter.
-const MIN_STEP: f64 = 0.002;
+const MIN_STEP: f64 = 0.004;
 
 /// The motion energy (without idle and brake parts) between two times of a motion.
 pub fn motion_energy(
@@ -115,7 +126,6 @@ pub fn motion_energy(
     from: f64,
     to: f64,
 ) -> EnergyParts {
-    let mut data = Data::new();
     let all = motion.knots();
     let inner = all.partition_point(|t| *t <= from)..all.partition_point(|t| *t < to);
     let mut knots = vec![from];
@@ -132,18 +142,32 @@ pub fn motion_energy(
         kinetic_energy(model, load, &q, &qd) + potential_energy(model, load, &q)
     });
     let mut sum = EnergyParts { mechanical_j: after - before, ..EnergyParts::default() };
+    let drawn = Drawn { model, load, motion };
     for pair in knots.windows(2) {
-        let [friction_j, copper_j, drive_j] = integral(pair[0], pair[1], |t| {
-            let p = power(model, &mut data, load, &motion.at(t));
-            [p.friction_w, p.copper_w, p.drive_w]
-        });
+        let [friction_j, copper_j, drive_j, _] = integral(pair[0], pair[1], &drawn);
         sum += EnergyParts { friction_j, copper_j, drive_j, ..EnergyParts::default() };
     }
     sum
 }
 
-/// Longest step of the search for moments at which a joint turns, s.
-const LOOK: f64 = 0.02;
+/// Friction, copper and drive loss, and the rigid power: where that changes its sign, what the
+/// drive loses has a kink.
+struct Drawn<'a> {
+    model: &'a Model,
+    load: &'a Load,
+    motion: &'a TimedMotion,
+}
+
+impl Powers<4> for Drawn<'_> {
+    fn at<const K: usize>(&self, times: [f64; K]) -> [[f64; 4]; K] {
+        let powers = power_each(self.model, self.load, &times.map(|t| self.motion.at(t)));
+        powers.map(|p| [p.friction_w, p.copper_w, p.drive_w, p.rigid_w])
+    }
+}
+
+/// Longest step of the search for moments at which a joint turns, s: between two kinks no joint
+/// turns twice in it by a way that counts.
+const LOOK: f64 = 0.06;
 /// Most steps between two kinks: a motion so slow changes little in each.
 const MOST_LOOKS: f64 = 2000.0;
 /// Halvings of the search for such a moment: it is known to 0.1 µs.

@@ -4,19 +4,24 @@
 //! points holds three that make a rule of degree 3; the difference of both tells whether an
 //! interval is too long.
 
-/// Longest interval, s: a kink near its end may be passed over.
-const LONGEST: f64 = 0.06;
+/// Longest interval at first, s: a kink near its end may be passed over.
+const FIRST: f64 = 0.06;
+/// Longest interval where powers hardly change, s.
+const LONGEST: f64 = 0.24;
+/// Change of a power (W) on an interval times its length (s) up to which the next one may be
+/// longer, J: a kink as steep as that, passed over near an end, is worth a thousandth of it.
+const QUIET_J: f64 = 4.0;
 /// Most intervals of one stretch: what is so slow changes little in each.
 const MOST: f64 = 2000.0;
 /// An interval that is not halved, s.
-const FINE: f64 = 0.02;
-/// An interval in which no power bends, s.
-const SHORT: f64 = 0.006;
-/// Difference of the two rules above which an interval is halved, J.
-const UNEVEN_J: f64 = 0.001;
-/// The same below which the next interval is twice as long, J: the difference grows at least 32
-/// times where powers are smooth.
-const EVEN_J: f64 = UNEVEN_J / 32.0;
+const FINE: f64 = 0.024;
+/// An interval that two points do for, s.
+const SHORT: f64 = 0.01;
+/// Difference of the two rules above which an interval is halved, J: that of the finer rule from
+/// the integral is far smaller.
+const UNEVEN_J: f64 = 0.01;
+/// The same below which the next interval is twice as long, J.
+const EVEN_J: f64 = 0.5 * UNEVEN_J;
 
 /// Points on [−1, 1] with their weights.
 const TWO: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
@@ -33,35 +38,38 @@ const FIVE: [(f64, f64); 5] = [
 const OUTER: f64 = 1.0 / (3.0 * 0.906_179_845_938_664 * 0.906_179_845_938_664);
 const CUBIC: [f64; 5] = [OUTER, 0.0, 2.0 - 2.0 * OUTER, 0.0, OUTER];
 
+/// N powers over time, W.
+pub(super) trait Powers<const N: usize> {
+    /// At some times, s.
+    fn at<const K: usize>(&self, times: [f64; K]) -> [[f64; N]; K];
+}
+
 /// The integrals of `powers` (W) over a stretch of time (s), J.
-pub(super) fn integral<const N: usize>(
-    from: f64,
-    to: f64,
-    mut powers: impl FnMut(f64) -> [f64; N],
-) -> [f64; N] {
+pub(super) fn integral<const N: usize>(from: f64, to: f64, powers: &impl Powers<N>) -> [f64; N] {
     let mut sum = [0.0; N];
-    let longest = LONGEST.max((to - from) / MOST);
-    let (mut begin, mut length) = (from, longest);
+    let [first, longest] = [FIRST, LONGEST].map(|most| most.max((to - from) / MOST));
+    let (mut begin, mut length) = (from, first);
     while begin < to {
         let left = to - begin;
         // Equal intervals on what is left: no short one at the end.
         let h = left / (left / length).ceil();
         if h <= FINE {
             let part = if h <= SHORT {
-                rule(&TWO, begin, h, &mut powers)
+                rule(&TWO, begin, h, powers)
             } else {
-                rule(&THREE, begin, h, &mut powers)
+                rule(&THREE, begin, h, powers)
             };
             add(&mut sum, &part);
             length *= 2.0;
         } else {
-            let (part, off) = judged(begin, h, &mut powers);
+            let Judged { part, off, change } = judged(begin, h, powers);
             if off > UNEVEN_J {
                 length = 0.5 * h;
                 continue;
             }
             add(&mut sum, &part);
-            length = if off < EVEN_J { (2.0 * h).min(longest) } else { h };
+            let most = if change * h < QUIET_J { longest } else { first };
+            length = if off < EVEN_J { (2.0 * h).min(most).max(h) } else { h };
         }
         begin = if h < left { begin + h } else { to };
     }
@@ -74,47 +82,75 @@ fn add<const N: usize>(sum: &mut [f64; N], part: &[f64; N]) {
     }
 }
 
-fn rule<const N: usize>(
-    points: &[(f64, f64)],
+fn rule<const N: usize, const K: usize>(
+    points: &[(f64, f64); K],
     begin: f64,
     h: f64,
-    powers: &mut impl FnMut(f64) -> [f64; N],
+    powers: &impl Powers<N>,
 ) -> [f64; N] {
     let mut sum = [0.0; N];
-    for (x, w) in points {
-        add(&mut sum, &powers(begin + 0.5 * h * (1.0 + x)).map(|power| 0.5 * h * w * power));
+    let values = powers.at(points.map(|(x, _)| begin + 0.5 * h * (1.0 + x)));
+    for (power, (_, w)) in values.into_iter().zip(points) {
+        add(&mut sum, &power.map(|power| 0.5 * h * w * power));
     }
     sum
 }
 
-/// The rule with five points, and by how much the other one differs, J.
-fn judged<const N: usize>(
-    begin: f64,
-    h: f64,
-    powers: &mut impl FnMut(f64) -> [f64; N],
-) -> ([f64; N], f64) {
-    let mut sum = [0.0; N];
+/// What the rule with five points says.
+struct Judged<const N: usize> {
+    /// The integrals, J.
+    part: [f64; N],
+    /// By how much the other rule differs, J.
+    off: f64,
+    /// The largest change of a power between the points, W.
+    change: f64,
+}
+
+fn judged<const N: usize>(begin: f64, h: f64, powers: &impl Powers<N>) -> Judged<N> {
+    let mut part = [0.0; N];
     let mut off = [0.0; N];
-    for ((x, w), cubic) in FIVE.iter().zip(CUBIC) {
-        let power = powers(begin + 0.5 * h * (1.0 + x));
-        add(&mut sum, &power.map(|power| 0.5 * h * w * power));
-        add(&mut off, &power.map(|power| 0.5 * h * (w - cubic) * power));
+    let mut least = [f64::INFINITY; N];
+    let mut most = [f64::NEG_INFINITY; N];
+    let values = powers.at(FIVE.map(|(x, _)| begin + 0.5 * h * (1.0 + x)));
+    for ((power, (_, w)), cubic) in values.into_iter().zip(FIVE).zip(CUBIC) {
+        for (i, power) in power.into_iter().enumerate() {
+            part[i] += 0.5 * h * w * power;
+            off[i] += 0.5 * h * (w - cubic) * power;
+            least[i] = least[i].min(power);
+            most[i] = most[i].max(power);
+        }
     }
-    (sum, off.iter().map(|off| off.abs()).sum())
+    let off = off.iter().map(|off| off.abs()).sum();
+    let change = (0..N).map(|i| most[i] - least[i]).fold(0.0, f64::max);
+    Judged { part, off, change }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
+
+    /// Powers that count how often they are asked for.
+    struct Counted<F>(F, Cell<usize>);
+
+    impl<const N: usize, F: Fn(f64) -> [f64; N]> Powers<N> for Counted<F> {
+        fn at<const K: usize>(&self, times: [f64; K]) -> [[f64; N]; K] {
+            self.1.set(self.1.get() + K);
+            times.map(&self.0)
+        }
+    }
 
     /// Value and number of evaluations.
     fn counted(from: f64, to: f64, power: impl Fn(f64) -> f64) -> (f64, usize) {
-        let mut count = 0;
-        let [sum] = integral(from, to, |t| {
-            count += 1;
-            [power(t)]
-        });
-        (sum, count)
+        beside(from, to, |t| [power(t), 0.0])
+    }
+
+    /// The same of the first of two powers.
+    fn beside(from: f64, to: f64, powers: impl Fn(f64) -> [f64; 2]) -> (f64, usize) {
+        let counted = Counted(powers, Cell::new(0));
+        let [sum, _] = integral(from, to, &counted);
+        (sum, counted.1.get())
     }
 
     #[test]
@@ -126,9 +162,10 @@ mod tests {
 
     #[test]
     fn kinks_are_looked_at_closely() {
-        // Power that turns from braking to driving at 10 kW/s.
+        // What is lost of a power that turns from braking to driving at 10 kW/s.
         for kink in [0.11, 0.29, 0.437, 0.5, 0.7723] {
-            let (sum, count) = counted(0.0, 1.0, |t| 1e4 * (t - kink).max(0.0));
+            let driving = |t: f64| 1e4 * (t - kink);
+            let (sum, count) = beside(0.0, 1.0, |t| [driving(t).max(0.0), driving(t)]);
             let exact = 5e3 * (1.0 - kink) * (1.0 - kink);
             assert!((sum - exact).abs() < 0.05, "{kink}: {sum} {exact}");
             assert!(count <= 130, "{count}");

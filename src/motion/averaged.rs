@@ -218,6 +218,7 @@ impl Averaged {
     }
 
     /// ∫ (q − q₀), q − q₀ and q̇ before averaging.
+    #[inline]
     fn source(&self, t: f64) -> [Joints; 3] {
         if t <= 0.0 {
             return [[0.0; DOF]; 3];

@@ -32,6 +32,7 @@ impl Quintics {
     }
 
     /// Values, first and second derivatives at `t`.
+    #[inline]
     pub(super) fn at(&self, t: f64) -> [Joints; 3] {
         let x = t - self.begin;
         let [c0, c1, c2, c3, c4, c5] = &self.coefficients;
@@ -50,6 +51,7 @@ impl Quintics {
     }
 
     /// First derivatives at `t`.
+    #[inline]
     pub(super) fn first(&self, t: f64) -> Joints {
         let x = t - self.begin;
         let [_, c1, c2, c3, c4, c5] = &self.coefficients;

@@ -118,7 +118,7 @@ impl SpeedBounds<'_> {
         let piece = self.path.piece_at(s);
         let extent = self.path.extent(piece.leg);
         let programmed = self.caps[piece.leg].tcp * extent.extent / extent.length;
-        let q1 = piece.eval(s).q1;
+        let q1 = piece.rates(s);
         let joints = (0..DOF).map(|j| self.joints[j] / q1[j].abs()).fold(f64::INFINITY, f64::min);
         programmed.min(joints).powi(2)
     }
@@ -197,8 +197,8 @@ fn ends(
     caps: &[SpeedCap],
 ) -> Vec<[PathPoint; 2]> {
     let mut zones = zones.iter().peekable();
-    let mut ends = Vec::with_capacity(nodes.len());
-    let mut last = None;
+    let mut ends: Vec<[PathPoint; 2]> = Vec::with_capacity(nodes.len());
+    let mut before = None;
     for pair in nodes.windows(2) {
         let middle = 0.5 * (pair[0] + pair[1]);
         while zones.peek().is_some_and(|(_, end)| *end < middle) {
@@ -213,13 +213,12 @@ fn ends(
         };
         // Within a leg and a zone a path is smooth: a node looks the same from both sides.
         let stretch = (piece.leg, piece.kind, limits.zone);
-        let begin = match last {
-            Some((before, end)) if before == stretch => end,
+        let begin = match ends.last() {
+            Some([_, end]) if before == Some(stretch) => *end,
             _ => point(loaded, piece, pair[0], &limits),
         };
-        let end = point(loaded, piece, pair[1], &limits);
-        last = Some((stretch, end));
-        ends.push([begin, end]);
+        before = Some(stretch);
+        ends.push([begin, point(loaded, piece, pair[1], &limits)]);
     }
     ends
 }

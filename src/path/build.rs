@@ -350,10 +350,10 @@ impl Builder<'_> {
         while to - x > NOWHERE {
             let h = step.min(to - x);
             let b = self.curve_point(leg, curve, x + h, &a.q)?;
-            let middle = self.curve_point(leg, curve, x + 0.5 * h, &a.q)?;
+            let middle = self.solve(leg, &curve.eval(x + 0.5 * h), &a.q, x + 0.5 * h)?;
             let piece = Piece::hermite((0.0, h), leg.index, kind, &a, &b);
             let got = piece.eval(0.5 * h).q;
-            let error = (0..DOF).map(|j| (got[j] - middle.q[j]).abs()).fold(0.0, f64::max);
+            let error = (0..DOF).map(|j| (got[j] - middle[j]).abs()).fold(0.0, f64::max);
             if error > PIECE_TOLERANCE && h > MIN_PIECE {
                 step = 0.5 * h;
                 continue;

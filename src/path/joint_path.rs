@@ -92,6 +92,17 @@ impl Piece {
         q
     }
 
+    /// dq/ds at s, which must lie in the piece.
+    pub fn rates(&self, s: f64) -> Joints {
+        let u = (s - self.s) / self.length;
+        let mut q1 = [0.0; DOF];
+        for (q1, [_, c1, c2, c3, c4, c5]) in q1.iter_mut().zip(&self.coefficients) {
+            let rest = 3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5);
+            *q1 = (c1 + u * (2.0 * c2 + u * rest)) / self.length;
+        }
+        q1
+    }
+
     /// Values at s, which must lie in the piece.
     pub fn eval(&self, s: f64) -> PathPoint {
         let h = self.length;

@@ -30,6 +30,7 @@ pub struct Joint {
 impl Joint {
     /// Rotation of the joint's frame in the parent's frame at the angle `q` \[rad\].
     #[must_use]
+    #[inline]
     pub fn rotation_at(&self, q: f64) -> Matrix3<f64> {
         let (sin, cos) = q.sin_cos();
         let a = &self.axis;
@@ -45,6 +46,10 @@ impl Joint {
             v.z * a.y + sin * a.x,
             cos + v.z * a.z,
         );
+        // Most chains are drawn with frames that are parallel at angle 0.
+        if *self.rotation.matrix() == Matrix3::identity() {
+            return turn;
+        }
         self.rotation.matrix() * turn
     }
 }
@@ -135,12 +140,18 @@ impl Geometry {
     /// Rotation of each joint's frame in its parent's at the reported angles `q` \[rad\].
     #[must_use]
     pub fn rotations(&self, q: &[f64]) -> Rotations {
-        let angles = self.to_serial(q);
         let mut rotations = [Matrix3::zeros(); MAX_DOF];
+        self.turn(q, &mut rotations);
+        rotations
+    }
+
+    /// The same into memory that is there.
+    #[inline]
+    pub fn turn(&self, q: &[f64], rotations: &mut Rotations) {
+        let angles = self.to_serial(q);
         for ((rotation, joint), angle) in rotations.iter_mut().zip(&self.joints).zip(angles) {
             *rotation = joint.rotation_at(angle);
         }
-        rotations
     }
 
     /// The torques at the reported joints of those at the serial ones (the

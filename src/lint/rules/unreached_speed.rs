@@ -37,7 +37,9 @@ use super::racing_to_wait::{waits_behind, with_speed};
 use crate::dynamics::{Data, Load};
 use crate::energy::account::base;
 use crate::energy::power::power;
+use crate::motion::pace::Pace;
 use crate::motion::timed::JointState;
+use crate::motion::timing::grid::SpeedBound;
 use crate::robot::Model;
 
 rule!("EW202", "unreached-speed", Speed, Robot, Info, "unreached_speed.rs");
@@ -57,6 +59,14 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
         let Some(speed) = site.facts.speed else { continue };
         if !site.is_plain() || waits_behind(context, index).is_some() {
+            continue;
+        }
+        // What is programmed is reached where it sets the pace.
+        let programmed = |step: &usize| {
+            let pace = context.record(*step).map(|(_, record, _)| record.pace);
+            pace == Some(Pace::Speed(SpeedBound::Programmed))
+        };
+        if site.executions.iter().any(programmed) {
             continue;
         }
         let looks = site.executions.iter().map(|step| looks(context, *step));

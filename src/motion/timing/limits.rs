@@ -123,20 +123,27 @@ pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item
     joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
 }
 
-/// The rows of one place that a profile within the others can reach, where b is at most `b_max`.
+/// Hands `take` the rows of one place that a profile within the others can reach, where b is at
+/// most `b_max`.
 pub(crate) fn binding_rows(
     point: &PathPoint,
     limits: &PathLimits,
     b_max: f64,
-) -> impl Iterator<Item = Row> {
+    mut take: impl FnMut(&Row),
+) {
     let accelerations: [Row; DOF] = std::array::from_fn(|j| acceleration_row(point, limits, j));
-    let torques: [Row; DOF] = std::array::from_fn(|j| torque_row(point, limits, j));
     let bounds = accelerations.iter().map(|row| acceleration_bound(row, b_max));
     // A hair of room for the tolerance on the others.
     let u_max = bounds.fold(f64::INFINITY, f64::min) * 1.001;
     let root = b_max.sqrt();
-    let all = accelerations.into_iter().chain(torques).chain(point.tcp_rows);
-    all.filter(move |row| row.largest(u_max, b_max, root) > 1.0)
+    let mut see = |row: &Row| {
+        if row.largest(u_max, b_max, root) > 1.0 {
+            take(row);
+        }
+    };
+    accelerations.iter().for_each(&mut see);
+    (0..DOF).for_each(|j| see(&torque_row(point, limits, j)));
+    point.tcp_rows.iter().for_each(see);
 }
 
 /// What a row limits.

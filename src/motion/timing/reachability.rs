@@ -219,12 +219,12 @@ impl Stages {
             let per_u = 0.5 / grid.delta(k);
             for (end, point) in pair.iter().enumerate() {
                 let b_max = stages.b_max[k + end];
-                for Row { u, b, root, constant } in binding_rows(point, limits, b_max) {
+                binding_rows(point, limits, b_max, |Row { u, b, root, constant }| {
                     let (mut x, mut y) = (-per_u * u, per_u * u);
                     *(if end == 0 { &mut x } else { &mut y }) += b;
-                    stages.viscous |= root != 0.0;
-                    stages.rows.push(StageRow { end, x, y, root, constant });
-                }
+                    stages.viscous |= *root != 0.0;
+                    stages.rows.push(StageRow { end, x, y, root: *root, constant: *constant });
+                });
             }
             stages.first.push(stages.rows.len());
         }
