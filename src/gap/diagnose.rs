@@ -37,7 +37,7 @@ const OPPOSITE: f64 = -0.3;
 
 /// Share of a joint's torque that no model of this robot misses.
 const HOPELESS: f64 = 0.4;
-/// Correlation with the model's below which torques are hardly those of this robot.
+/// Correlation with the best model's below which torques are hardly those of this robot.
 const ALIKE: f64 = 0.5;
 /// Range \[rad\] and share of the rows in which a joint has to move.
 const FAR: f64 = 0.05;
@@ -160,7 +160,7 @@ pub fn diagnose_telling(
     }
     let mut graded = graded_with(&improved);
     let is_foreign =
-        || is_hopeless(&graded) || is_unlike(&train) || is_other_body(&graded, &judged);
+        || is_hopeless(&graded) || is_unlike(&train, &improved) || is_other_body(&graded, &judged);
     if settings.trust != Trust::Unknown && is_foreign() {
         judged.withdraw(
             Verdict::Unknown,
@@ -244,11 +244,12 @@ fn is_other_body(graded: &Shrink, judged: &Judged) -> bool {
     lesser && 3 * far >= 2 * used.count()
 }
 
-/// Whether most joints' torques have little to do with those of the model.
-fn is_unlike(records: &[Record<'_>]) -> bool {
-    let dof = records.first().map_or(0, |record| record.motion.model.dof);
-    let foreign = (0..dof).filter(|joint| correlation(records, *joint) < ALIKE).count();
-    dof > 0 && 2 * foreign >= dof
+/// Whether most joints' torques have little to do with those of the best model.
+fn is_unlike(records: &[Record<'_>], best: &Improved) -> bool {
+    let alike = correlations(records, |record| predicted(record, &best.applied));
+    // Torques that are flipped were turned round.
+    let foreign = alike.iter().filter(|of| of.abs() < ALIKE).count();
+    !alike.is_empty() && 2 * foreign >= alike.len()
 }
 
 /// Joints that move far and often enough to show something.
@@ -301,7 +302,8 @@ fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
     let mut table = Table::of(train, Vec::new(), &nuisances);
     let error = ERRORS[ERRORS.len() - 1];
     let mut null = table.evidence(error).null;
-    for joint in (0..dof).filter(|joint| correlation(train, *joint) < OPPOSITE) {
+    let alike = correlations(train, |record| record.motion.torque.clone());
+    for joint in (0..dof).filter(|joint| alike[*joint] < OPPOSITE) {
         table.flip(joint);
         let other = table.evidence(error).null;
         if other > null + FLIP {
@@ -319,17 +321,22 @@ fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
     flipped
 }
 
-/// Correlation of a joint's measured torques with the model's.
-fn correlation(records: &[Record<'_>], joint: usize) -> f64 {
-    let (mut product, mut squares) = (0.0, [1e-12; 2]);
+/// Correlations of the joints' measured torques with those that a model says.
+fn correlations(records: &[Record<'_>], says: impl Fn(&Record<'_>) -> Vec<Vec<f64>>) -> Vec<f64> {
+    let dof = records.first().map_or(0, |record| record.motion.model.dof);
+    let mut sums = vec![[0.0; 3]; dof];
     for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
-        for (x, y) in record.measured[joint].iter().zip(&record.motion.torque[joint]) {
-            product += x * y;
-            squares[0] += x * x;
-            squares[1] += y * y;
+        for (sums, (measured, said)) in
+            sums.iter_mut().zip(record.measured.iter().zip(says(record)))
+        {
+            for (x, y) in measured.iter().zip(said) {
+                sums[0] += x * y;
+                sums[1] += x * x;
+                sums[2] += y * y;
+            }
         }
     }
-    product / (squares[0] * squares[1]).sqrt()
+    sums.iter().map(|[product, x, y]| product / (x * y).sqrt().max(1e-12)).collect()
 }
 
 /// Joints of functions of time that were found.

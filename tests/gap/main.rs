@@ -263,6 +263,28 @@ fn brakes_at_most_joints_are_none() {
     assert_eq!(named(&found), [("brake_drag", vec![1])]);
 }
 
+/// A load may be so heavy that torques have little to do with those of the bare robot.
+#[test]
+fn heavy_loads_are_no_other_robot() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 6);
+    let [mass, x, y, z] = [15.0, -0.4, 0.4, 0.4];
+    let moments = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
+    let body: Vec<f64> = [1.0, x, y, z].iter().chain(&moments).map(|of| mass * of).collect();
+    let effects: [(&Effect, usize, &[f64]); 1] = [(effect("payload").unwrap(), 0, &body)];
+    let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
+    let samples = robot.samples(1);
+    let record = &Record::all(&nominal, &samples)[0];
+    let foreign = |joint: &usize| {
+        let (of, said) = (&record.measured[*joint], &record.motion.torque[*joint]);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        product(of, said) < 0.5 * (product(of, of) * product(said, said)).sqrt()
+    };
+    assert!(2 * (0..nominal.dof).filter(foreign).count() >= nominal.dof);
+    let found = diagnosed(&nominal, &robot);
+    assert_eq!(named(&found), [("payload", vec![])], "{:?} {:?}", found.reasons, found.shrink.joints);
+}
+
 /// Motors do not all differ: other masses do, or another unit.
 #[test]
 fn torque_constants_of_most_joints_are_none() {
