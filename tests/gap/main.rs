@@ -282,7 +282,7 @@ fn heavy_loads_are_no_other_robot() {
     };
     assert!(2 * (0..nominal.dof).filter(foreign).count() >= nominal.dof);
     let found = diagnosed(&nominal, &robot);
-    assert_eq!(named(&found), [("payload", vec![])], "{:?} {:?}", found.reasons, found.shrink.joints);
+    assert_eq!(named(&found), [("payload", vec![])], "{:?}", found.reasons);
 }
 
 /// Motors do not all differ: other masses do, or another unit.
