@@ -128,13 +128,19 @@ fn add(model: &mut Model, now: &Friction, fitted: &Fitted) {
     };
     for (parameter, value) in effect.parameters.iter().zip(values) {
         let value = value.clamp(parameter.bounds[0], parameter.bounds[1]);
-        let friction = match (effect.id, parameter.name, fitted.joint) {
+        // As much as there is may be gone.
+        let there = match (effect.id, parameter.name, fitted.joint) {
             ("friction_level", "coulomb", Some(joint)) => model.friction.coulomb[joint],
             ("friction_level", "viscous", Some(joint)) => model.friction.viscous[joint],
             ("stribeck", "stiction", Some(joint)) => now.coulomb[joint],
+            ("wrist_coupling", "coulomb", _) => model.friction.coulomb[dof - 1],
+            ("wrist_coupling", "viscous", _) => model.friction.viscous[dof - 1],
+            ("wrist_coupling", "inertia", _) => {
+                model.motors.as_ref().map_or(0.0, |motors| motors.reflected_inertia(dof - 1))
+            }
             _ => f64::INFINITY,
         };
-        let value = value.max(-friction);
+        let value = value.max(-there);
         let values = &mut model.effects[at].values;
         let Some((_, given)) = values.iter_mut().find(|(name, _)| name == parameter.name) else {
             continue;

@@ -72,10 +72,8 @@ impl Table {
         more: Vec<Piece>,
     ) -> Table {
         let n = records.first().map_or(0, |record| record.motion.model.dof);
-        // What the last link has more is what it carries, unless repetitions tell them apart by
-        // how well each fits.
-        let carries = records.iter().any(|record| record.repetitions < 2)
-            && effects.iter().any(|effect| effect.id == "payload");
+        // What the last link has more is what it carries.
+        let carries = effects.iter().any(|effect| effect.id == "payload");
         let is_load = |effect: &Effect, joint: usize| {
             carries && effect.id == "link_parameters" && joint + 1 == n
         };
