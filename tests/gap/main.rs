@@ -10,8 +10,8 @@ mod simulated;
 use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
 use joulepath::effects::{ALL, Effect, find as effect};
 use joulepath::gap::{
-    Diagnosis, Improved, Logs, PARAMETERS, Place, Quantity, Record, Settings, Trust, Verdict,
-    attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
+    Diagnosis, Fitted, Improved, Logs, PARAMETERS, Place, Quantity, Record, Settings, Trust,
+    Verdict, attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
 };
 use joulepath::identify::Samples;
 use joulepath::robot::Model;
@@ -283,6 +283,26 @@ fn heavy_loads_are_no_other_robot() {
     assert!(2 * (0..nominal.dof).filter(foreign).count() >= nominal.dof);
     let found = diagnosed(&nominal, &robot);
     assert_eq!(named(&found), [("payload", vec![])], "{:?}", found.reasons);
+}
+
+/// Of friction and of a rotor no more can be gone than there is; the coupling stays.
+#[test]
+fn a_wrist_loses_no_more_than_it_has() {
+    let nominal = irb1600();
+    let change = vec![-0.4, -1e3, -1e3, -1e3];
+    let fitted = Fitted {
+        effect: effect("wrist_coupling").unwrap(),
+        joint: None,
+        coordinates: change.clone(),
+        parameters: change,
+        deviations: vec![0.1; 4],
+        significance: 10.0,
+    };
+    let none = DMatrix::zeros(0, 0);
+    let improved = Improved::new(&nominal, &none, &DVector::zeros(0), &[fitted]).applied;
+    assert!((improved.wrist.coupling - nominal.wrist.coupling + 0.4).abs() < 1e-12);
+    assert_eq!([improved.friction.coulomb[5], improved.friction.viscous[5]], [0.0; 2]);
+    assert!(improved.motors.unwrap().rotor_inertia[5].abs() < 1e-12);
 }
 
 /// Motors do not all differ: other masses do, or another unit.
