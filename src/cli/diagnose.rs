@@ -160,10 +160,6 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
         {
             bail!("{option} {}: this file is read; give another name", path.display());
         }
-        // What takes a while is not to fail at its end.
-        if let Some(path) = written {
-            output::stage(path, &[]).with_context(|| option.to_owned())?;
-        }
     }
     for (option, files) in [("--heldout", &args.heldout), ("--baseline", &args.baseline)] {
         if let Some(path) = files.iter().find(|path| within(path, &args.log)) {
@@ -248,6 +244,10 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     } else {
         wanted.clone()
     };
+    // What takes a while is not to fail at its end.
+    for path in args.out.iter().chain(&args.report) {
+        output::stage(path, &[])?;
+    }
     let settings = Settings { trust, effects: of_torque };
     let compared = if of_runs.is_some() { &[][..] } else { &before };
     let mut found = of_logs(&model, [&train, &held, compared], &settings, &progress(args.quiet));

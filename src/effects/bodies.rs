@@ -9,6 +9,9 @@ use crate::robot::Link;
 /// `frame`, in its axes. The body may have a moment without a mass.
 #[must_use]
 pub fn added(link: &Link, frame: &Isometry3<f64>, body: &[f64]) -> Link {
+    if body.iter().all(|x| *x == 0.0) {
+        return link.clone();
+    }
     let to = frame.to_homogeneous();
     let own = pseudo_inertia(&link_parameters(link));
     let sum = link_of(&body_parameters(&(own + to * pseudo_inertia(body) * to.transpose())));

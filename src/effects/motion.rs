@@ -147,10 +147,9 @@ impl<'a> Motion<'a> {
             let mut senses = [0.0; MAX_DOF];
             senses.iter_mut().zip(&self.senses).for_each(|(to, of)| *to = of[row]);
             if model.wrist.coupling != self.model.wrist.coupling {
-                // Another motor 6 turns back at other times.
-                let rate = motor_rates(model, &qd[..n])[n - 1];
-                let resting = rate.abs() <= self.rest.get(n - 1).copied().unwrap_or(0.0);
-                senses[n - 1] = if resting { 0.0 } else { sense(rate) };
+                // Another motor 6 turns back at other times. There its torques count, so that
+                // the likely sense is better than none.
+                senses[n - 1] = sense(motor_rates(model, &qd[..n])[n - 1]);
             }
             let tau = rnea(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
             let gear = rigid_bodies(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);

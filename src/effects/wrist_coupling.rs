@@ -2,7 +2,7 @@
 
 use crate::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, free, linear, shape};
+use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, free, linear, shaped};
 
 /// Coupling of the wrist.
 pub(super) const WRIST_COUPLING: Effect = Effect {
@@ -19,7 +19,8 @@ pub(super) const WRIST_COUPLING: Effect = Effect {
         free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint"),
     ],
     coordinates: &[
-        shape(|_| vec![-1.0, -0.5, 0.5, 0.75, 1.0]),
+        // Torques jump where the motor turns back, so that they have no tangent.
+        Coordinate { role: Role::Choice(|_| TRIED.to_vec()), usual: shaped },
         linear(|of| 0.3 * of.coulomb),
         linear(|of| 0.3 * of.viscous),
         linear(|of| 0.2 * of.rotor),
@@ -31,6 +32,9 @@ pub(super) const WRIST_COUPLING: Effect = Effect {
     experiment: ["--variant wrist", "axis 5 alone, 5 and 6 against each other"],
     form: Form::Model(change),
 };
+
+/// Changes of the coupling that are tried first.
+const TRIED: [f64; 8] = [-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0];
 
 fn change(model: &mut Model, _: usize, values: &[f64]) {
     model.wrist.coupling += values[0];

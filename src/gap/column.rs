@@ -68,14 +68,10 @@ fn added(
     joint: usize,
     values: &[f64],
 ) -> Vec<(usize, Vec<f64>)> {
-    if !is_of_time(effect) {
-        return match record.kind {
-            RecordKind::Mean => effect.added(&record.motion, joint, values),
-            RecordKind::Drift | RecordKind::Before => Vec::new(),
-        };
-    }
-    if record.kind == RecordKind::Before {
-        return Vec::new();
+    match (record.kind, is_of_time(effect)) {
+        (RecordKind::Mean, false) => return effect.added(&record.motion, joint, values),
+        (RecordKind::Drift, false) | (RecordKind::Before, _) => return Vec::new(),
+        (RecordKind::Mean | RecordKind::Drift, true) => {}
     }
     let mut moved = record.motion.clone();
     let mut sum: Vec<(usize, Vec<f64>)> = Vec::new();

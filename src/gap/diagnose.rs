@@ -6,7 +6,7 @@ use crate::effects::Effect;
 use crate::robot::Model;
 
 use super::calibration::calibrate;
-use super::column::Owner;
+use super::column::{Owner, pieces};
 use super::diagnosis::{Anything, Diagnosis, Said, Verdict};
 use super::gated::{OF_TIME, gated};
 use super::heldout::{JointGap, Shrink, predicted, shrink};
@@ -75,26 +75,17 @@ pub fn diagnose_telling(
     // With a baseline the robot was more than the model has.
     let believed = train.first().map_or(model, |record| record.motion.model);
     let flipped = flip(&mut train, settings);
-    let table = Table::new(&train, &settings.effects, settings.trust, Vec::new());
-    let mut search = Search::new(&train, table, settings.trust, ERRORS[0]);
-    let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
-    if settings.effects.is_empty() {
-        // Nothing is to be found, not even a function of anything.
-        search.banned = search.families.iter().map(|family| family.owner.id()).collect();
+    let mut searched = search(&train, settings, believed, tell);
+    let coupling = searched.search.rounded_coupling(&searched.found);
+    if let Some(coupling) = coupling {
+        drop(searched);
+        for record in &mut train {
+            record.leave_out_turns(coupling);
+        }
+        searched = search(&train, settings, believed, tell);
     }
-    // What a log that does not repeat misses is matched, not chosen.
-    search.match_excess(&[]);
-    let errors = if search.is_open() { &ERRORS[..1] } else { &ERRORS[..] };
-    search.choose_channel(errors, &may);
-    search.match_excess(&[]);
-    let none = search.evidence.parameters(&[], &DVector::zeros(0));
-    let refit = Improved::new(believed, &search.table.mixing, &none, &[]);
-    tell(Phase::Search);
-    let chance = search.reached_by_chance();
-    let mut found = search.run_late_or_not(errors);
-    if search.lower_error(&mut found, errors) {
-        found = search.run_from(found);
-    }
+    let Searched { mut search, mut found, chance, refit } = searched;
+    let errors = errors(&search);
     let of_time = joints_of_time(&search, &found);
     if !of_time.is_empty() {
         tell(Phase::Windows);
@@ -290,6 +281,51 @@ fn missed(records: &[Record<'_>], of: &Improved) -> f64 {
     of_joints.sum()
 }
 
+/// What a first search found.
+struct Searched<'r> {
+    search: Search<'r, 'r>,
+    found: Found,
+    /// Nats that chance reaches.
+    chance: f64,
+    /// The model without effects.
+    refit: Improved,
+}
+
+/// The best set of effects and functions.
+fn search<'r>(
+    train: &'r [Record<'r>],
+    settings: &Settings,
+    believed: &Model,
+    tell: &dyn Fn(Phase),
+) -> Searched<'r> {
+    let table = Table::new(train, &settings.effects, settings.trust, Vec::new());
+    let mut search = Search::new(train, table, settings.trust, ERRORS[0]);
+    let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
+    if settings.effects.is_empty() {
+        // Nothing is to be found, not even a function of anything.
+        search.banned = search.families.iter().map(|family| family.owner.id()).collect();
+    }
+    // What a log that does not repeat misses is matched, not chosen.
+    search.match_excess(&[]);
+    let errors = errors(&search);
+    search.choose_channel(errors, &may);
+    search.match_excess(&[]);
+    let none = search.evidence.parameters(&[], &DVector::zeros(0));
+    let refit = Improved::new(believed, &search.table.mixing, &none, &[]);
+    tell(Phase::Search);
+    let chance = search.reached_by_chance();
+    let mut found = search.run_late_or_not(errors);
+    if search.lower_error(&mut found, errors) {
+        found = search.run_from(found);
+    }
+    Searched { search, found, chance, refit }
+}
+
+/// Errors that are tried.
+fn errors(search: &Search<'_, '_>) -> &'static [f64] {
+    if search.is_open() { &ERRORS[..1] } else { &ERRORS }
+}
+
 /// Takes torques with the other sign where they are far more probable so: joints.
 fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
     let may = settings.effects.iter().any(|effect| effect.id == "current_sign");
@@ -299,13 +335,21 @@ fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
         return flipped;
     }
     let nuisances = nuisances(train, settings.trust);
-    let mut table = Table::of(train, Vec::new(), &nuisances);
+    // A load that weighs more than a small wrist turns its torques round, too.
+    let load = settings.effects.iter().find(|effect| effect.id == "payload");
+    let load = load.map_or_else(Vec::new, |load| pieces(load, train, dof.saturating_sub(1)));
+    let mut table = Table::of(train, load, &nuisances);
     let error = ERRORS[ERRORS.len() - 1];
-    let mut null = table.evidence(error).null;
+    let weighed = |table: &Table| {
+        let evidence = table.evidence(error);
+        let all: Vec<usize> = (0..table.means.len()).collect();
+        evidence.null + evidence.gain(&all)
+    };
+    let mut null = weighed(&table);
     let alike = correlations(train, |record| record.motion.torque.clone());
     for joint in (0..dof).filter(|joint| alike[*joint] < OPPOSITE) {
         table.flip(joint);
-        let other = table.evidence(error).null;
+        let other = weighed(&table);
         if other > null + FLIP {
             null = other;
             flipped.push(joint);

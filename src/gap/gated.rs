@@ -17,10 +17,6 @@ const SHARP: f64 = 0.0625;
 const FINEST: f64 = 0.02;
 const OF_ROW: f64 = 0.25;
 
-/// An effect whose shape is a coupling, and twice the first step of that.
-pub(super) const COUPLING: &str = "wrist_coupling";
-const OF_COUPLING: f64 = 0.4;
-
 /// An effect whose force may grow, the longest rise and twice the first step of that.
 const CONTACT: &str = "contact";
 const MOST_RISE: f64 = 0.5;
@@ -155,14 +151,16 @@ impl Search<'_, '_> {
         let columns = self.columns(set);
         let all: Vec<usize> = (0..columns.len()).collect();
         for piece in pieces.iter().copied() {
+            if self.is_coupling(piece) {
+                self.couple(set, piece);
+                continue;
+            }
             let placed = &self.table.pieces[piece];
             let Owner::Effect(effect) = placed.owner else { continue };
             let count = placed.shape.len();
             let has_window =
                 GATED.contains(&effect.id) && placed.shape[count - 2] > placed.shape[count - 3];
-            // Where another motor turns back is no smooth function of the coupling.
-            let is_coupling = effect.id == COUPLING;
-            if !has_window && !is_coupling {
+            if !has_window {
                 continue;
             }
             let mut best = placed.shape.clone();
@@ -175,29 +173,36 @@ impl Search<'_, '_> {
                 .records
                 .first()
                 .map_or(0.0, |record| record.motion.step() * record.motion.len() as f64);
-            let part = if is_coupling { OF_COUPLING } else { lasts / PARTS as f64 };
-            let mut moved: Vec<(usize, f64)> = if is_coupling {
-                vec![(0, part)]
-            } else {
-                vec![(count - 3, part), (count - 2, part)]
-            };
+            let part = lasts / PARTS as f64;
+            let (start, end) = (count - 3, count - 2);
+            let mut alone = vec![vec![(start, part)], vec![(end, part)]];
+            let mut together =
+                vec![vec![(start, part), (end, part)], vec![(start, part), (end, -part)]];
             if effect.id == CONTACT {
-                moved.push((count - 4, OF_RISE));
+                let rise = count - 4;
+                alone.push(vec![(rise, OF_RISE)]);
+                together.push(vec![(rise, OF_RISE), (start, -part), (end, part)]);
             }
-            let mut reach = if self.sharp.contains(&piece) { SHARP } else { BLUNT };
+            together.extend(alone.clone());
+            let first = if self.sharp.contains(&piece) { SHARP } else { BLUNT };
             // A row more or less inside of a window is seen.
             let row = OF_ROW * self.records.first().map_or(0.0, |of| of.motion.step()) / part;
-            let finest = if is_coupling { FINEST } else { FINEST.min(row) };
-            while reach > finest {
-                let mut improved = false;
-                for (of, unit) in moved.iter().copied() {
-                    for step in [-reach * unit, reach * unit] {
+            let finest = FINEST.min(row);
+            // Ends alone lead far; together they leave where one end alone is no better.
+            for ways in [alone, together] {
+                let mut reach = first;
+                while reach > finest {
+                    let mut improved = false;
+                    let steps = ways.iter().flat_map(|way| [(way, -reach), (way, reach)]);
+                    for (way, step) in steps {
                         let mut shape = best.clone();
-                        shape[of] += step;
+                        for (of, unit) in way {
+                            shape[*of] += step * unit;
+                        }
                         if effect.id == CONTACT {
                             shape[count - 4] = shape[count - 4].clamp(0.0, MOST_RISE);
                         }
-                        if has_window && shape[count - 2] - shape[count - 3] < FINEST * part {
+                        if shape[end] - shape[start] < FINEST * part {
                             continue;
                         }
                         self.reshape(&[(piece, shape.clone())]);
@@ -208,9 +213,9 @@ impl Search<'_, '_> {
                             (most, best, improved) = (gain, shape, true);
                         }
                     }
-                }
-                if !improved {
-                    reach *= 0.5;
+                    if !improved {
+                        reach *= 0.5;
+                    }
                 }
             }
             self.reshape(&[(piece, best)]);

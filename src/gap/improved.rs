@@ -13,6 +13,9 @@ use super::possible::{possible, possible_load};
 pub(super) const OF_LOG: [&str; 4] =
     ["apparent_torque", "encoder_offset", "torque_offset", "torque_constant"];
 
+/// An effect that is a body.
+pub(super) const LOAD: &str = "payload";
+
 /// A model as it is written, and as it predicts.
 #[derive(Clone, Debug)]
 pub struct Improved {
@@ -122,11 +125,11 @@ fn add(model: &mut Model, now: &Friction, fitted: &Fitted) {
         model.effects.push(empty(effect, dof));
         model.effects.len() - 1
     });
-    let values = match effect.id {
-        "payload" => &possible_load(model, effect, &fitted.parameters),
-        _ => &fitted.parameters,
-    };
-    for (parameter, value) in effect.parameters.iter().zip(values) {
+    if effect.id == LOAD {
+        carry(model, at, fitted);
+        return;
+    }
+    for (parameter, value) in effect.parameters.iter().zip(&fitted.parameters) {
         let value = value.clamp(parameter.bounds[0], parameter.bounds[1]);
         // As much as there is may be gone.
         let there = match (effect.id, parameter.name, fitted.joint) {
@@ -154,6 +157,25 @@ fn add(model: &mut Model, now: &Friction, fitted: &Fitted) {
             }
         }
     }
+}
+
+/// Adds a load to what is carried: masses and moments add up, centres do not.
+fn carry(model: &mut Model, at: usize, fitted: &Fitted) {
+    let effect = fitted.effect;
+    let carried = |name: &str| {
+        let listed = model.effects[at].values.iter().find(|(of, _)| of == name);
+        listed.map_or(0.0, |(_, given)| if let Given::Robot(value) = given { *value } else { 0.0 })
+    };
+    let carried: Vec<f64> = effect.parameters.iter().map(|of| carried(of.name)).collect();
+    let carried = effect.coordinates_of(&carried);
+    let both: Vec<f64> = carried.iter().zip(&fitted.coordinates).map(|(a, b)| a + b).collect();
+    let both = possible_load(model, effect, &effect.parameters_of(&both));
+    model.effects[at].values = effect
+        .parameters
+        .iter()
+        .zip(both)
+        .map(|(parameter, value)| (parameter.name.to_owned(), Given::Robot(value)))
+        .collect();
 }
 
 fn empty(effect: &Effect, dof: usize) -> EffectParameters {

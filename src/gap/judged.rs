@@ -45,6 +45,10 @@ const FORM_SPREAD: f64 = 0.5;
 const LEAST_SPREAD: f64 = 0.03;
 /// Friction at breakaway below this share of Coulomb friction is a form of that.
 const OF_COULOMB: f64 = 0.1;
+/// Share by which torque constants are off in any drive.
+const OF_CONSTANT: f64 = 0.01;
+/// A contact that is shorter is a jump of something else \[s\].
+const TOUCH: f64 = 0.05;
 /// An effect that is so many times what the model misses is there against others.
 const CANCELS: f64 = 3.0;
 const SMOOTH: [&str; 6] = [
@@ -310,6 +314,12 @@ fn refused(
     }
     if id == "torque_constant" && 2 * fitted.len() > search.dof() {
         return open("is at most joints: other masses or another unit".to_owned());
+    }
+    if id == "torque_constant" && said.size < OF_CONSTANT {
+        return no("is no more than constants are off by".to_owned());
+    }
+    if id == "contact" && fitted.iter().all(|of| of.parameters[2] - of.parameters[1] < TOUCH) {
+        return open("is over before anything is touched".to_owned());
     }
     if id == "warm_up" && !fitted.iter().any(|of| fades(search, of)) {
         return no("is no more than friction differs by from hour to hour".to_owned());

@@ -1,4 +1,4 @@
-//! From logs to a verdict.
+//! From logs, and those of a baseline, to a verdict.
 
 use crate::identify::Samples;
 use crate::robot::Model;
@@ -31,12 +31,14 @@ pub fn diagnose_logs(
     settings: &Settings,
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
-    tell(Phase::Baseline);
     // Repetitions tell their noise; a log without them cannot be weighed against one with them.
     let repeats = |log: &Samples| log.repetitions.is_some();
     let comparable = |log: &Samples| logs.train.iter().all(|of| repeats(of) == repeats(log));
     let before: Vec<&Samples> = logs.before.iter().copied().filter(|log| comparable(log)).collect();
-    let known = (!before.is_empty()).then(|| robot_of(model, &before, settings));
+    let known = (!before.is_empty()).then(|| {
+        tell(Phase::Baseline);
+        robot_of(model, &before, settings)
+    });
     let believed = known.as_ref().map_or(model, |known| &known.improved.applied);
     let held = if logs.held.is_empty() { logs.train } else { logs.held };
     let mut train = all(believed, logs.train);

@@ -6,7 +6,8 @@ use crate::effects::{Effect, Role};
 
 use super::column::{Owner, Piece, columns_at};
 use super::evidence::Estimate;
-use super::gated::COUPLING;
+use super::improved::LOAD;
+use super::load::body_near;
 use super::record::Record;
 use super::search::{Chosen, Search};
 use super::table::Placed;
@@ -19,7 +20,7 @@ const STAYS: f64 = 0.1;
 const STEP: f64 = 0.5;
 /// A shape may be this many times beyond the tried values.
 const BEYOND: f64 = 2.0;
-/// Rounds in which friction is held at no less than nothing.
+/// Rounds in which friction is held at no less than nothing, and a load is held to be a body.
 const BOUNDED: usize = 3;
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
@@ -38,7 +39,7 @@ pub struct Fitted {
     /// Their standard deviations.
     pub deviations: Vec<f64>,
     /// The largest of its linear coordinates over their deviation; infinite where the effect
-    /// has none.
+    /// acts without them.
     pub significance: f64,
 }
 
@@ -70,8 +71,7 @@ impl Search<'_, '_> {
     /// Whether tangents bring a piece to a better shape.
     fn has_shape(&self, piece: usize) -> bool {
         let Owner::Effect(effect) = self.table.pieces[piece].owner else { return false };
-        effect.id != COUPLING
-            && effect.coordinates.iter().any(|of| matches!(of.role, Role::Shape(_)))
+        effect.coordinates.iter().any(|of| matches!(of.role, Role::Shape(_)))
     }
 
     /// A set at its best shapes; the table has them then.
@@ -173,16 +173,33 @@ impl Search<'_, '_> {
         let brought: Vec<usize> = (0..self.table.pieces.len()).filter(is_brought).collect();
         let before = (self.table.means.clone(), self.table.sds.clone());
         let mut polished: Option<Polished> = None;
+        let mut held: Option<(Vec<f64>, f64)> = None;
         for _ in 0..BOUNDED {
             let evidence = self.table.evidence_of(self.error, columns);
             let all: Vec<usize> = (0..columns.len()).collect();
             let Some(estimate) = evidence.estimate(&all) else { break };
             let mut effects = Vec::new();
+            let mut bodies = Vec::new();
             for number in pieces.iter().chain(&brought) {
                 let placed = &self.table.pieces[*number];
                 let Owner::Effect(effect) = placed.owner else { continue };
                 let (coordinates, spread) = estimated(placed, effect, columns, &estimate);
-                effects.push(of(effect, placed.joint, &coordinates, &spread));
+                let mut fitted = of(effect, placed.joint, &coordinates, &spread);
+                if acts_alone(placed, effect) {
+                    fitted.significance = f64::INFINITY;
+                }
+                if let Some(free) = &held
+                    && effect.id == LOAD
+                {
+                    // What holds it tells nothing of how well it is known.
+                    (fitted.deviations, fitted.significance) = free.clone();
+                } else if effect.id == LOAD
+                    && let Some(body) = body_near(&coordinates, &spread)
+                {
+                    bodies.push((*number, body));
+                    held = Some((fitted.deviations.clone(), fitted.significance));
+                }
+                effects.push(fitted);
             }
             let gained = evidence.gain(&all);
             let bounded =
@@ -193,12 +210,25 @@ impl Search<'_, '_> {
                 parameters: evidence.parameters(&all, &estimate.mean),
                 misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
             });
-            if !self.bound_friction(of, pieces, &brought) {
+            let is_load_held = !bodies.is_empty();
+            for (number, body) in bodies {
+                self.hold(number, &body);
+            }
+            if !self.bound_friction(of, pieces, &brought) && !is_load_held {
                 break;
             }
         }
         (self.table.means, self.table.sds) = before;
         polished
+    }
+
+    /// Holds a piece at linear coordinates.
+    fn hold(&mut self, number: usize, coordinates: &[f64]) {
+        let placed = &self.table.pieces[number];
+        for ((column, shape), value) in placed.columns.clone().zip(&placed.shape).zip(coordinates) {
+            self.table.means[column] = value / shape;
+            self.table.sds[column] = 0.0;
+        }
     }
 
     /// Holds friction that came out below nothing at nothing; whether there was some.
@@ -282,6 +312,14 @@ fn shaped(placed: &Placed, shape: Vec<f64>, records: &[Record<'_>]) -> Piece {
         Owner::Generic(id) => super::generic::named(id, records, placed.joint.unwrap_or(0)),
     };
     Piece { owner: placed.owner, joint: placed.joint, shape, choices: placed.choices, columns }
+}
+
+/// Whether an effect acts by its shape, its linear coordinates being nothing.
+fn acts_alone(placed: &Placed, effect: &Effect) -> bool {
+    let is_linear = |role: &Role| matches!(role, Role::Linear);
+    let roles = || effect.coordinates.iter().map(|coordinate| coordinate.role);
+    let shapes = roles().filter(|role| matches!(role, Role::Shape(_))).count();
+    placed.columns.len() > roles().filter(is_linear).count() * (1 + shapes)
 }
 
 /// The joint that stands for the robot.

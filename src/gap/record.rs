@@ -90,6 +90,7 @@ impl<'a> Record<'a> {
             let begins = block.t.first().copied().unwrap_or(0.0);
             let t = block.t.iter().map(|t| t - begins).collect();
             let mut motion = Motion::new(model, t, series, &rest, closed);
+            // What the model lists of the whole motion is the model's.
             let of_motion = of_the_whole_motion(&motion);
             for (to, added) in motion.torque.iter_mut().zip(of_motion) {
                 to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
@@ -114,6 +115,18 @@ impl<'a> Record<'a> {
             .filter(|record| record.kind == RecordKind::Mean)
             .map(|record| Record { kind: RecordKind::Before, ..record })
             .collect()
+    }
+
+    /// Leaves out when motor 6 of a wrist that is coupled by so much more nearly rests: nobody
+    /// knows which way it turns.
+    pub(super) fn leave_out_turns(&mut self, coupling: f64) {
+        let Motion { model, qd, rest, .. } = &self.motion;
+        let coupled = model.wrist.coupling + coupling;
+        for row in 0..self.motion.len() {
+            if (qd[5][row] + coupled * qd[4][row]).abs() <= rest[5] {
+                (self.window[4][row], self.window[5][row]) = (0.0, 0.0);
+            }
+        }
     }
 
     /// Whether a joint moves at an instant, so that its torque counts.

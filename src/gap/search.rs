@@ -42,6 +42,8 @@ const QUICK: usize = 2;
 
 /// A log that does not repeat and is shorter says nothing of temperatures \[s\].
 const WARMS: f64 = 120.0;
+/// Friction by a power of the speed.
+const POWER_LAW: &str = "nonlinear_viscous";
 /// Its friction at breakaway is bounded by the friction at speed.
 pub(super) const STRIBECK: &str = "stribeck";
 /// Deviations beyond the bounds of a parameter that cannot be.
@@ -299,7 +301,8 @@ impl<'a, 'm> Search<'a, 'm> {
     fn without_impossible(&mut self, mut found: Found) -> Found {
         let bounded = |piece: &usize| match self.table.pieces[*piece].owner {
             Owner::Effect(effect) => {
-                effect.id == STRIBECK || effect.parameters.iter().any(Parameter::is_bounded)
+                [STRIBECK, POWER_LAW].contains(&effect.id)
+                    || effect.parameters.iter().any(Parameter::is_bounded)
             }
             Owner::Generic(_) => false,
         };
@@ -360,6 +363,10 @@ impl<'a, 'm> Search<'a, 'm> {
     pub(super) fn cannot_be(&self, polished: &Polished, of: &Fitted, deviations: f64) -> bool {
         if of.is_impossible(deviations) {
             return true;
+        }
+        if let (POWER_LAW, [coefficient, exponent]) = (of.effect.id, of.parameters.as_slice()) {
+            // What falls fastest from rest is the friction of starting.
+            return *exponent < 1.0 && *coefficient < -deviations * of.deviations[0];
         }
         let (STRIBECK, Some(joint)) = (of.effect.id, of.joint) else { return false };
         // Some greases rub less at rest than at speed, down to nothing. Where the noise is known

@@ -37,7 +37,7 @@ pub(super) const BODY: f64 = 1e-9;
 
 /// What may be changed, each with its prior.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Piece {
+pub(crate) enum Piece {
     /// Ten parameters of a rigid body, in the order of
     /// [`link_parameters`](crate::dynamics::link_parameters).
     Body(Matrix4<f64>),
@@ -57,7 +57,7 @@ impl Piece {
 }
 
 /// The data: |factor (combination · π − beta)|² more than the least sum of squares.
-pub(super) struct Target<'a> {
+pub(crate) struct Target<'a> {
     /// G.
     pub combination: &'a DMatrix<f64>,
     /// R, in units of the noise.
@@ -70,7 +70,7 @@ pub(super) struct Target<'a> {
 
 impl Target<'_> {
     /// The sum of squares of parameters.
-    pub(super) fn squares(&self, point: &DVector<f64>) -> f64 {
+    pub(crate) fn squares(&self, point: &DVector<f64>) -> f64 {
         self.least + (self.factor * (self.combination * point - self.beta)).norm_squared()
     }
 }
@@ -78,7 +78,7 @@ impl Target<'_> {
 /// The parameters, piece after piece; `None` where no point was found, which takes a prior
 /// that is not positive definite.
 #[must_use]
-pub(super) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVector<f64>> {
+pub(crate) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVector<f64>> {
     let through = target.factor * target.combination;
     let goal = target.factor * target.beta;
     let mut point = start(pieces);

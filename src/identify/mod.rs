@@ -31,6 +31,7 @@ mod wrist;
 
 pub use clean::cleaned;
 pub use clocks::synchronised;
+pub(crate) use consistent::{Piece, Target, consistent};
 pub use descent::{Descent, by_descent};
 pub use equations::{Equations, Instant, Known, Layout};
 pub use error::IdentifyError;

@@ -4,6 +4,8 @@
 const GAP: f64 = 3.5;
 /// Share of an interval by which a sample may miss its place on the grid.
 const JITTER: f64 = 0.02;
+/// An interval longer than the usual one by this factor has lost a sample, however uneven the clock.
+const LOSES: f64 = 1.75;
 /// Share of an interval within which there has to be a sample, so that a place is not lost.
 const LOST: f64 = 0.5;
 
@@ -80,7 +82,8 @@ fn section(t: &[f64], series: &[&[f64]]) -> Section {
     }
     let between: Vec<Vec<f64>> =
         series.iter().map(|x| interpolated(t, x, start, step, count)).collect();
-    if is_clock_uneven(series, &between) {
+    let is_whole = t.windows(2).all(|pair| pair[1] - pair[0] < LOSES * usual);
+    if is_whole && is_clock_uneven(series, &between) {
         let step = duration / (t.len() - 1).max(1) as f64;
         return Section { start, step, series: as_logged(), lost: Vec::new() };
     }
@@ -175,6 +178,12 @@ mod tests {
             [&even, &uneven].map(|t| -> Vec<f64> { t.iter().map(|t| wave(*t)).collect() });
         assert_eq!(sections(&uneven, &[&of_even])[0].series[0], of_even);
         assert_ne!(sections(&uneven, &[&of_uneven])[0].series[0], of_uneven);
+        // Where samples are missing, as they are logged they are at other times.
+        let keep = |x: &[f64]| -> Vec<f64> {
+            x.iter().enumerate().filter(|(k, _)| k % 40 != 20).map(|(_, x)| *x).collect()
+        };
+        let [t, kept] = [&uneven, &of_even].map(|x| keep(x));
+        assert_ne!(sections(&t, &[&kept])[0].series[0], kept);
     }
 
     #[test]

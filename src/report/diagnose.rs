@@ -237,8 +237,12 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     }
     for (name, of) in [("all", &found.shrink.total), ("by effect", &found.shrink.by_effect)] {
         let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
-        let change = if value < 0.0 { "the gap grows: shrinks" } else { "the gap shrinks" };
-        let _ = writeln!(out, "{change}, {name}: {value:.1} % ({low:.1} to {high:.1})");
+        let _ = if value < 0.0 {
+            let [value, low, high] = [-value, -high, -low];
+            writeln!(out, "the gap grows, {name}: {value:.1} % ({low:.1} to {high:.1})")
+        } else {
+            writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})")
+        };
     }
     if let Some((why, command)) = next(found, basis) {
         let _ = writeln!(out, "next: {why}\n  {command}");

@@ -14,7 +14,7 @@ use joulepath::gap::{
     Verdict, attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
 };
 use joulepath::identify::Samples;
-use joulepath::robot::Model;
+use joulepath::robot::{Given, Model};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,8 +28,13 @@ const SAME_TORQUES: f64 = 1e-2;
 /// A row of a log \[s\], and how far a force may be off, of itself.
 const ROW: f64 = 0.01;
 const OF_FORCE: f64 = 0.05;
+/// Error of a coupling.
+const OF_COUPLING: f64 = 0.005;
 /// Part of the gap that a found effect takes off.
 const SHRINKS: f64 = 0.5;
+
+/// Mass, first and second moments of a load at the flange \[kg, kg m, kg m²\].
+const LOAD: [f64; 10] = [1.5, 0.0, 0.0, 0.15, 0.02, 0.02, 0.005, 0.0, 0.0, 0.0];
 
 fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
     let samples = [1, 2, 3].map(|seed| robot.samples(seed));
@@ -63,11 +68,7 @@ fn of_a_baseline_only_changes_are_told() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
     let [load, friction] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
-    let mut body = [0.0; 10];
-    body[0] = 1.5;
-    body[3] = 0.15;
-    (body[4], body[5], body[6]) = (0.02, 0.02, 0.005);
-    let both: [(&Effect, usize, &[f64]); 2] = [(load, 0, &body), (friction, 1, &[8.0, 0.1])];
+    let both: [(&Effect, usize, &[f64]); 2] = [(load, 0, &LOAD), (friction, 1, &[8.0, 0.1])];
     let logged = |effects, seed| Robot { model: &truth, effects, noise: 0.005 }.samples(seed);
     let before = logged(&both[..1], 4);
     let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
@@ -187,9 +188,9 @@ fn contacts_are_found_with_their_windows() {
     let contact = effect("contact").unwrap();
     for rise in [0.0, 0.35] {
         let coordinates = [30.0, -40.0, 12.0, rise, 2.636, 3.792, 10.0];
-        let robot = Robot { model: &truth, effects: &[(contact, 0, &coordinates)], noise: 0.002 };
+        let robot = Robot { model: &truth, effects: &[(contact, 0, &coordinates)], noise: 5e-4 };
         let found = diagnosed(&nominal, &robot);
-        assert_eq!(named(&found), [("contact", vec![])], "{rise}");
+        assert_eq!(named(&found), [("contact", vec![])], "{rise} {:?}", found.reasons);
         let value = |name: &str| {
             found.effects[0].parameters.iter().find(|of| of.name == name).unwrap().value
         };
@@ -199,6 +200,33 @@ fn contacts_are_found_with_their_windows() {
             assert!((value(name) - expected).abs() < ROW, "{rise} {name} {}", value(name));
         }
     }
+}
+
+/// Where motor 6 turns back each row is known so well that only the right coupling explains it.
+#[test]
+fn couplings_of_wrists_are_found_to_the_row() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let effects = [(effect("wrist_coupling").unwrap(), 5, [-0.254, 0.0, 0.0, 0.0].as_slice())];
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 5e-4 });
+    assert_eq!(named(&found), [("wrist_coupling", vec![])], "{:?}", found.reasons);
+    let coupling = found.effects[0].parameters[0].value;
+    assert!((coupling + 0.254).abs() < OF_COUPLING, "{coupling}");
+}
+
+/// A load on the other side of axis 5 than the flange turns the torques of that round, too.
+#[test]
+fn heavy_loads_are_no_other_sign() {
+    let mut nominal = irb1600();
+    nominal.links[5].com.z = -0.15;
+    let truth = spread(&nominal, 3);
+    let mut load = LOAD;
+    load.iter_mut().for_each(|x| *x *= 5.0);
+    let effects = [(effect("payload").unwrap(), 5, load.as_slice())];
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.002 });
+    assert_eq!(named(&found), [("payload", vec![])], "{:?}", found.reasons);
+    let mass = &found.effects[0].parameters[0];
+    assert!((mass.value - load[0]).abs() < WITHIN * mass.sd, "{mass:?}");
 }
 
 /// A motor's curve may bend sooner than with the cube of its torque.
@@ -236,11 +264,7 @@ fn two_effects_are_told() {
     let nominal = irb1600();
     let truth = spread(&nominal, 6);
     let [payload, stribeck] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
-    let mut body = [0.0; 10];
-    body[0] = 1.5;
-    body[3] = 0.15;
-    (body[4], body[5], body[6]) = (0.02, 0.02, 0.005);
-    let effects = [(payload, 0, body.as_slice()), (stribeck, 1, [8.0, 0.1].as_slice())];
+    let effects = [(payload, 0, LOAD.as_slice()), (stribeck, 1, [8.0, 0.1].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
     let mut told = named(&found);
     told.sort();
@@ -303,6 +327,30 @@ fn a_wrist_loses_no_more_than_it_has() {
     assert!((improved.wrist.coupling - nominal.wrist.coupling + 0.4).abs() < 1e-12);
     assert_eq!([improved.friction.coulomb[5], improved.friction.viscous[5]], [0.0; 2]);
     assert!(improved.motors.unwrap().rotor_inertia[5].abs() < 1e-12);
+}
+
+/// Masses and first moments of what hangs on the flange add up, centres do not.
+#[test]
+fn a_load_comes_on_top_of_the_one_that_is_listed() {
+    let payload = effect("payload").unwrap();
+    let fitted = Fitted {
+        effect: payload,
+        joint: None,
+        coordinates: LOAD.to_vec(),
+        parameters: payload.parameters_of(&LOAD),
+        deviations: vec![0.1; LOAD.len()],
+        significance: 10.0,
+    };
+    let none = DMatrix::zeros(0, 0);
+    let loaded = |model: &Model| {
+        Improved::new(model, &none, &DVector::zeros(0), std::slice::from_ref(&fitted)).written
+    };
+    let twice = loaded(&loaded(&irb1600()));
+    for (name, expected) in [("mass", 2.0 * LOAD[0]), ("com_z", LOAD[3] / LOAD[0])] {
+        let (_, given) = twice.effects[0].values.iter().find(|(of, _)| of == name).unwrap();
+        let Given::Robot(value) = given else { panic!("{given:?}") };
+        assert!((value - expected).abs() < 1e-12, "{name} {value}");
+    }
 }
 
 /// Motors do not all differ: other masses do, or another unit.
