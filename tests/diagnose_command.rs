@@ -115,7 +115,7 @@ fn wrong_input_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     case(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (robot, log) = (at("nominal.toml"), at("log-1.csv"));
+    let (robot, log, itself) = (at("nominal.toml"), at("log-1.csv"), at(""));
     let few = at("few.csv");
     let text = fs::read_to_string(&log).unwrap();
     let five: Vec<String> = text
@@ -135,6 +135,7 @@ fn wrong_input_is_refused() {
         (vec!["--robot", &robot, "--log", &log, "--baseline", &log], "is in --log too"),
         (vec!["--robot", &robot, "--log", &log, "--out", &robot], "give another name"),
         (vec!["--robot", &robot, "--log", &log, "--report", &log], "give another name"),
+        (vec!["--robot", &robot, "--log", &log, "--out", &itself], "name a file in it"),
     ] {
         let output = joulepath(&[&["diagnose"], &args[..]].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

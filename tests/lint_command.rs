@@ -180,6 +180,20 @@ fn nobody_has_to_read_on() {
     }
 }
 
+/// Without a robot nobody knows joules: none are not 0 J.
+#[test]
+fn statistics_tell_joules_where_there_are_some() {
+    let folder = folder("EW102_stop_in_line.mod");
+    let last = |args: &[&str]| {
+        let args = [&["lint", ".", "--statistics", "--select", "EW102"], args].concat();
+        let table = text(&joulepath(&args, folder.path()).stderr);
+        let row = table.lines().find(|line| line.trim_start().starts_with("EW102")).unwrap();
+        row.split_whitespace().last().unwrap().to_owned()
+    };
+    assert_eq!(last(&[]), "-");
+    assert!(last(&ROBOT).parse::<f64>().unwrap() > 1.0);
+}
+
 #[test]
 fn what_has_no_joules_is_told() {
     let folder = folder("EW102_stop_in_line.mod");

@@ -51,20 +51,18 @@ impl Search<'_, '_> {
             shape[0] = coupling;
             shape
         };
-        let is_known = self.sharp.contains(&piece);
-        let (mut centre, mut step) = (shape[0], APART);
-        let mut highest = LOWEST;
-        let mut count = STEPS;
-        if is_known {
-            (step, highest) = (FINEST, usize::MAX);
+        let (mut centre, mut step, mut count, mut highest) = if self.sharp.contains(&piece) {
+            (shape[0], FINEST, STEPS, usize::MAX)
         } else {
-            (centre, count) = (0.0, (LARGEST / APART) as i32);
-        }
+            (0.0, APART, (LARGEST / APART) as i32, LOWEST)
+        };
         loop {
             self.table.limit(highest);
             let mut evidence = self.table.evidence_of(self.error, &columns);
             let mut best: Option<(f64, f64)> = None;
-            for coupling in (-count..=count).map(|k| centre + step * f64::from(k)) {
+            // Without a change there is nothing to change.
+            let tried = (-count..=count).map(|k| centre + step * f64::from(k));
+            for coupling in tried.filter(|coupling| coupling.abs() > 0.5 * FINEST) {
                 self.reshape(&[(piece, with(coupling))]);
                 evidence.replace(&self.table.products_of(self.error, &columns, own.clone()));
                 let gain = evidence.gain(&all);

@@ -17,6 +17,9 @@ const SHARP: f64 = 0.0625;
 const FINEST: f64 = 0.02;
 const OF_ROW: f64 = 0.25;
 
+/// Nats that a step has to bring.
+const LEAST: f64 = 0.01;
+
 /// An effect whose force may grow, the longest rise and twice the first step of that.
 const CONTACT: &str = "contact";
 const MOST_RISE: f64 = 0.5;
@@ -209,7 +212,7 @@ impl Search<'_, '_> {
                         let products = self.table.products_of(self.error, &columns, own.clone());
                         evidence.replace(&products);
                         let gain = evidence.gain(&all);
-                        if gain > most {
+                        if gain > most + LEAST {
                             (most, best, improved) = (gain, shape, true);
                         }
                     }

@@ -1,6 +1,6 @@
 //! What hangs on the flange is a body.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
 
 use crate::dynamics::{RIGID, link_of, link_parameters, pseudo_inertia};
 use crate::identify::{Piece, Target, consistent};
@@ -9,8 +9,12 @@ use crate::robot::Link;
 /// Radius of the ball from which a body is looked for \[m\].
 const RADIUS: f64 = 0.1;
 
+/// Squares of deviations from which on what differs is no body.
+const CHANGED: f64 = 500.0;
+
 /// The body (mass, first moments, moments) nearest to what was fitted of one, measured by what is
-/// known of it; a body with a negative mass is one that is gone. `None` where it is one already.
+/// known of it; a body with a negative mass is one that is gone. `None` where it is one already,
+/// or far from any.
 pub(super) fn body_near(fitted: &[f64], covariance: &DMatrix<f64>) -> Option<Vec<f64>> {
     let is_body = |sense: f64| {
         let body: Vec<f64> = fitted.iter().map(|x| sense * x).collect();
@@ -31,12 +35,14 @@ pub(super) fn body_near(fitted: &[f64], covariance: &DMatrix<f64>) -> Option<Vec
         let found = consistent(&[Piece::Body(ball(fitted[0].abs().max(sds[0])))], &target)?;
         Some((target.squares(&found), (sense * found).as_slice().to_vec()))
     };
+    // One tool in the place of another one is no body more.
     let both = [near(1.0), near(-1.0)].into_iter().flatten();
-    both.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, body)| body)
+    let near = both.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    near.filter(|(squares, _)| *squares < CHANGED).map(|(_, body)| body)
 }
 
 /// A ball at the flange.
-fn ball(mass: f64) -> nalgebra::Matrix4<f64> {
+fn ball(mass: f64) -> Matrix4<f64> {
     let inertia = Matrix3::identity() * (0.4 * mass * RADIUS * RADIUS);
     pseudo_inertia(&link_parameters(&Link { mass, com: Vector3::zeros(), inertia }))
 }

@@ -221,7 +221,9 @@ fn heavy_loads_are_no_other_sign() {
     nominal.links[5].com.z = -0.15;
     let truth = spread(&nominal, 3);
     let mut load = LOAD;
-    load.iter_mut().for_each(|x| *x *= 5.0);
+    for x in &mut load {
+        *x *= 5.0;
+    }
     let effects = [(effect("payload").unwrap(), 5, load.as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.002 });
     assert_eq!(named(&found), [("payload", vec![])], "{:?}", found.reasons);

@@ -72,19 +72,22 @@ pub fn summary(report: &Report) -> String {
     out
 }
 
-/// Findings by rule, and those that save most.
+/// Findings by rule, `-` where no joules are known, and those that save most.
 #[must_use]
 pub fn statistics(report: &Report, files: &[SourceFile]) -> String {
-    let mut by_rule: BTreeMap<(&str, &str), (usize, f64)> = BTreeMap::new();
+    let mut by_rule: BTreeMap<(&str, &str), (usize, Option<f64>)> = BTreeMap::new();
     for finding in &report.findings {
         let entry = by_rule.entry((finding.rule.code, finding.rule.name)).or_default();
         entry.0 += 1;
-        entry.1 += finding.saving.map_or(0.0, |saving| saving.energy_j);
+        if let Some(saving) = &finding.saving {
+            *entry.1.get_or_insert(0.0) += saving.energy_j;
+        }
     }
     let rows: Vec<Vec<String>> = by_rule
         .into_iter()
         .map(|((code, name), (count, joules))| {
-            vec![code.to_owned(), name.to_owned(), count.to_string(), format!("{joules:.1}")]
+            let joules = joules.map_or("-".to_owned(), |joules| format!("{joules:.1}"));
+            vec![code.to_owned(), name.to_owned(), count.to_string(), joules]
         })
         .collect();
     let columns = [
