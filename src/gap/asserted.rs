@@ -4,6 +4,7 @@ use crate::effects::find;
 use crate::robot::Model;
 
 use super::diagnosis::{Said, Verdict};
+use super::gated::GATED;
 use super::heldout::{JointGap, Shrink};
 use super::improved::Improved;
 use super::judged::Judged;
@@ -23,6 +24,8 @@ const DOUBTED: f64 = 10.0;
 const LEFT: f64 = 0.6;
 /// An effect that fades from repetition to repetition, so that means do not show it.
 const FADING: &str = "warm_up";
+/// Deviations by which the held-out gap has to grow for what was found to be wrong: 1 in 10 by chance.
+const GROWS: f64 = 1.28;
 
 impl Search<'_, '_> {
     /// The model with the asserted effects, if there are some; the torques of joints that are flipped
@@ -114,6 +117,15 @@ impl Judged {
     }
 }
 
+impl Judged {
+    /// Whether data that took no part is missed more with the effects than without them, and these
+    /// would have to be there, too.
+    pub(super) fn is_refuted(&self, graded: &Shrink) -> bool {
+        let of_its_time = |said: &Said| said.effect.id == FADING || GATED.contains(&said.effect.id);
+        !self.effects.iter().any(of_its_time) && graded.by_effect.below_zero() > GROWS
+    }
+}
+
 /// Mean squares that are missed without effects and with them, of what a right model may miss.
 fn beyond_error(of: &JointGap) -> [f64; 2] {
     let variance = of.noise.powi(2) + (ERROR * of.torque).powi(2);
@@ -122,6 +134,8 @@ fn beyond_error(of: &JointGap) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use crate::gap::interval::Interval;
+
     use super::*;
 
     /// Names that stay asserted of joints 1 and 2, of gaps with and without them.
@@ -148,5 +162,20 @@ mod tests {
         assert_eq!(kept([[3.0, 2.9], [4.0, 5.0]]), (vec![], Verdict::Unknown));
         // What any model misses need not be taken off.
         assert_eq!(kept([[0.3, 0.3], [4.0, 1.0]]), (vec!["stribeck", "cable"], Verdict::Effect));
+    }
+
+    #[test]
+    fn effects_with_which_more_is_missed_are_refuted() {
+        let is_refuted = |id: &str, value: f64, high: f64| {
+            let said = find(id).map(|effect| Said::alone(effect, vec![0], 1.0));
+            let by_effect = Interval { value, low: 2.0 * value - high, high };
+            let graded = Shrink { by_effect, ..Shrink::default() };
+            Judged::of(said.into_iter().collect(), Vec::new()).is_refuted(&graded)
+        };
+        assert!(is_refuted("flux_weakening", -0.26, -0.11));
+        assert!(is_refuted("torque_offset", -0.75, 0.14));
+        // What may be chance, and what need not be there at another time.
+        assert!(!is_refuted("torque_offset", -0.2, 0.3) && !is_refuted("cable", 0.3, 0.4));
+        assert!(!is_refuted("contact", -0.26, -0.11) && !is_refuted("warm_up", -0.26, -0.11));
     }
 }

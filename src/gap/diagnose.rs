@@ -170,6 +170,14 @@ pub fn diagnose_telling(
             graded = graded_with(&improved);
         }
     }
+    if judged.is_refuted(&graded) {
+        judged.withdraw(
+            Verdict::Unknown,
+            "data that took no part is missed more with what was found than without it",
+        );
+        improved = refit.clone();
+        graded = graded_with(&improved);
+    }
     if judged.effects.is_empty() && 2 * excited(&train) < model.dof {
         judged.withdraw(
             Verdict::NotExcited,

@@ -16,6 +16,14 @@ pub struct Interval {
     pub high: f64,
 }
 
+impl Interval {
+    /// How many deviations the value is below 0.
+    pub(super) fn below_zero(&self) -> f64 {
+        let x = logarithm(self.value);
+        NORMAL * x / (x - logarithm(self.high)).max(f64::MIN_POSITIVE)
+    }
+}
+
 /// Deviation of x from motion to motion, the median of the cases of `examples/shrink_coverage.rs`;
 /// less where models hardly differ.
 const OF_MOTIONS: f64 = 0.25;
@@ -78,5 +86,16 @@ mod tests {
         // Models that are the same are so in any motion.
         let same = interval(0.0, &[0.0; 10], 5);
         assert_eq!([same.low, same.high], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn deviations_below_zero() {
+        let of = |value, spread: f64| {
+            let drawn: Vec<f64> =
+                (0..100).map(|k| value + spread * f64::from(k - 50) / 50.0).collect();
+            interval(value, &drawn, 20).below_zero()
+        };
+        assert!(of(0.2, 0.1) < 0.0 && of(-0.3, 0.1) > 1.28 && of(-0.3, 1.0) < 1.28);
+        assert!(of(0.0, 0.0).abs() < 1e-9);
     }
 }
