@@ -164,8 +164,9 @@ pub fn diagnose_telling(
         let plainer = of_asserted(search.with_asserted(believed, &found, &less, &flipped));
         // What explains most of the logs is there, however far its form holds beyond them, unless it
         // is doubtful anyway.
-        let is_likely = judged.effects.iter().all(Said::is_likely);
-        if !is_likely || missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
+        let is_doubtful =
+            judged.leaves_far_more(&graded) || !judged.effects.iter().all(Said::is_likely);
+        if is_doubtful || missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
             (judged, improved) = (less, plainer);
             graded = graded_with(&improved);
         }

@@ -4,7 +4,7 @@ use crate::dynamics::Load;
 use crate::effects::{Motion, of_the_whole_motion};
 use crate::robot::Model;
 
-use super::interval::{Interval, interval};
+use super::interval::{Interval, growth, interval};
 use super::record::{REST, Record, RecordKind};
 
 /// Blocks into which a motion is cut for intervals: as long as what a model misses in it remembers.
@@ -29,6 +29,8 @@ pub struct JointGap {
     pub refit: f64,
     /// By that with the effects.
     pub refit_plus_effect: f64,
+    /// Deviations over draws of blocks by which the effects let the gap grow \[1\].
+    pub growth: f64,
 }
 
 /// The gap, joint by joint, and how far it shrinks.
@@ -40,6 +42,8 @@ pub struct Shrink {
     pub total: Interval,
     /// Of the effects alone.
     pub by_effect: Interval,
+    /// Deviations over draws of blocks by which the effects let the gap of all grow \[1\].
+    pub growth: f64,
 }
 
 /// Sums of squares of a joint in a block: measured, missed by each of three models; noise; rows.
@@ -61,26 +65,33 @@ pub fn shrink(records: &[Record<'_>], models: [&Model; 3]) -> Shrink {
         }
     }
     let all: Vec<usize> = (0..blocks.len()).collect();
-    let joints = pooled(&blocks, &all, n);
+    let mut joints = pooled(&blocks, &all, n);
     let of = |joints: &[JointGap]| [shrunk(joints, |of| of.model), shrunk(joints, |of| of.refit)];
     let [total, by_effect] = of(&joints);
     let mut random = fastrand::Rng::with_seed(1);
     let mut drawn: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+    let mut of_joints: Vec<Vec<f64>> = vec![Vec::new(); n];
     for _ in 0..DRAWS {
         let draw: Vec<usize> =
             (0..blocks.len()).map(|_| random.usize(0..blocks.len().max(1))).collect();
-        for (to, value) in drawn.iter_mut().zip(of(&pooled(&blocks, &draw, n))) {
+        let drawn_joints = pooled(&blocks, &draw, n);
+        for (to, value) in drawn.iter_mut().zip(of(&drawn_joints)) {
             to.push(value);
         }
+        for (to, joint) in of_joints.iter_mut().zip(&drawn_joints) {
+            to.push(shrunk(std::slice::from_ref(joint), |of| of.refit));
+        }
     }
-    let [total, by_effect] = [total, by_effect]
-        .into_iter()
-        .zip(drawn)
-        .map(|(value, drawn)| interval(value, &drawn, blocks.len()))
-        .collect::<Vec<_>>()
-        .try_into()
-        .unwrap_or_default();
-    Shrink { joints, total, by_effect }
+    for (joint, drawn) in joints.iter_mut().zip(&of_joints) {
+        let own = shrunk(std::slice::from_ref(joint), |of| of.refit);
+        joint.growth = growth(own, drawn, blocks.len());
+    }
+    Shrink {
+        joints,
+        total: interval(total, &drawn[0], blocks.len()),
+        by_effect: interval(by_effect, &drawn[1], blocks.len()),
+        growth: growth(by_effect, &drawn[1], blocks.len()),
+    }
 }
 
 /// The torques that a log of the record's motion would show by a model.
@@ -167,6 +178,7 @@ fn pooled(blocks: &[Vec<Sums>], chosen: &[usize], n: usize) -> Vec<JointGap> {
                 model: rms(1),
                 refit: rms(2),
                 refit_plus_effect: rms(3),
+                growth: 0.0,
             }
         })
         .collect()

@@ -3,7 +3,8 @@
 //! With x = ln(1 − shrink) the half width is √((t·s)² + (z·m)²): s the deviation of x over draws of
 //! long blocks (H. Künsch, "The jackknife and the bootstrap for general stationary observations",
 //! Annals of Statistics 17, 1989), t Student's for so few of them, and m how much x differs from
-//! one motion of a kind to another, which a single log cannot show.
+//! one motion of a kind to another, which a single log cannot show. The upper side is wider: what
+//! is left of a gap also holds what robots do differently from hour to hour.
 
 /// A share with its 95 % interval \[1\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,17 +17,12 @@ pub struct Interval {
     pub high: f64,
 }
 
-impl Interval {
-    /// How many deviations the value is below 0.
-    pub(super) fn below_zero(&self) -> f64 {
-        let x = logarithm(self.value);
-        NORMAL * x / (x - logarithm(self.high)).max(f64::MIN_POSITIVE)
-    }
-}
-
-/// Deviation of x from motion to motion, the median of the cases of `examples/shrink_coverage.rs`;
-/// less where models hardly differ.
-const OF_MOTIONS: f64 = 0.25;
+/// Deviation of x from motion to motion, with which intervals of `examples/shrink_coverage.rs` hold
+/// what is achieved as often as they say, and the x below which models differ too little for it.
+const OF_MOTIONS: f64 = 0.3;
+const ALIKE: f64 = 0.1;
+/// Width of the upper side, of the lower one's.
+const ABOVE: f64 = 1.5;
 /// What is left of a gap at least: beyond it noise decides.
 const LEFT: f64 = 1e-3;
 /// 97.5 % of a normal distribution lie below.
@@ -37,6 +33,20 @@ const DEVIATION: [f64; 2] = [0.1587, 0.8413];
 /// The interval of `value`, with what it became when `blocks` blocks were drawn.
 pub(super) fn interval(value: f64, drawn: &[f64], blocks: usize) -> Interval {
     let x = logarithm(value);
+    let half =
+        half_of_draws(value, drawn, blocks).hypot(NORMAL * OF_MOTIONS * (x.abs() / ALIKE).min(1.0));
+    let end = |x: f64| 1.0 - x.exp();
+    Interval { value, low: end(x + half).min(value), high: end(x - ABOVE * half).max(value) }
+}
+
+/// How many deviations over the draws a gap grows by where the shrink is below 0.
+pub(super) fn growth(value: f64, drawn: &[f64], blocks: usize) -> f64 {
+    NORMAL * logarithm(value) / half_of_draws(value, drawn, blocks).max(f64::MIN_POSITIVE)
+}
+
+/// Half of the width in x that the draws tell.
+fn half_of_draws(value: f64, drawn: &[f64], blocks: usize) -> f64 {
+    let x = logarithm(value);
     let mut all: Vec<f64> = drawn.iter().map(|value| logarithm(*value)).collect();
     all.sort_by(f64::total_cmp);
     let at = |share: f64| {
@@ -45,9 +55,7 @@ pub(super) fn interval(value: f64, drawn: &[f64], blocks: usize) -> Interval {
     };
     let count = blocks.max(2) as f64;
     let spread = 0.5 * (at(DEVIATION[1]) - at(DEVIATION[0])) * (count / (count - 1.0)).sqrt();
-    let half = (student(count - 1.0) * spread).hypot(NORMAL * OF_MOTIONS * x.abs().min(1.0));
-    let end = |x: f64| 1.0 - x.exp();
-    Interval { value, low: end(x + half).min(value), high: end(x - half).max(value) }
+    student(count - 1.0) * spread
 }
 
 fn logarithm(value: f64) -> f64 {
@@ -89,11 +97,11 @@ mod tests {
     }
 
     #[test]
-    fn deviations_below_zero() {
+    fn growth_is_in_deviations_of_the_draws() {
         let of = |value, spread: f64| {
             let drawn: Vec<f64> =
                 (0..100).map(|k| value + spread * f64::from(k - 50) / 50.0).collect();
-            interval(value, &drawn, 20).below_zero()
+            growth(value, &drawn, 20)
         };
         assert!(of(0.2, 0.1) < 0.0 && of(-0.3, 0.1) > 1.28 && of(-0.3, 1.0) < 1.28);
         assert!(of(0.0, 0.0).abs() < 1e-9);

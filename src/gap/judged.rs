@@ -20,8 +20,10 @@ const SIGNIFICANT: f64 = 3.0;
 const BEYOND: f64 = 3.0;
 /// What a function of time may still bring beside a gated effect, of what that does.
 const LEFT: f64 = 0.3;
-/// What an effect has to bring, of what the strongest does.
+/// What an effect has to bring, of what the strongest does that has another form than its law's at
+/// the same joint, if it is no body's.
 const OF_STRONGEST: f64 = 0.01;
+const OF_BODIES: [&str; 2] = ["payload", "link_parameters"];
 /// What an effect has to bring.
 pub(super) const LEAST_NATS: f64 = 8.0;
 /// The same of what changes with time, as all friction does a little.
@@ -51,6 +53,8 @@ const OF_CONSTANT: f64 = 0.01;
 const TOUCH: f64 = 0.05;
 /// An effect that is so many times what the model misses is there against others.
 const CANCELS: f64 = 3.0;
+/// Change of a joint's friction.
+const LEVEL: &str = "friction_level";
 const SMOOTH: [&str; 6] = [
     "torque_offset",
     "cable",
@@ -136,7 +140,6 @@ pub(super) fn judged(
     let mut followed: Vec<Option<usize>> = Vec::new();
     let mut refusal = false;
     let late = search.late.map_or(0.0, |late| late.nats);
-    let strongest = drops.iter().copied().fold(late, f64::max);
     let all: f64 = drops.iter().map(|drop| drop.max(0.0)).sum::<f64>().max(1e-12);
     for (k, chosen) in found.chosen.iter().enumerate() {
         let family = &search.families[chosen.family];
@@ -171,14 +174,18 @@ pub(super) fn judged(
                 let least = if effect.id == "warm_up" {
                     LEAST_OF_TIME
                 } else {
+                    let strongest = search.strongest_there(found, k, &drops).max(late);
                     LEAST_NATS.max(OF_STRONGEST * strongest)
                 };
                 let least = least.max(chance);
-                let (class, probability) = if drops[k] < least && form[k] == 0.0 {
+                let (mut class, probability) = if drops[k] < least && form[k] == 0.0 {
                     (vec![effect.id], 1.0 / (1.0 + (-drops[k]).exp()))
                 } else {
                     rivals(search, found, k, form[k])
                 };
+                if fitted.iter().any(|of| drags_always(of)) && !class.contains(&LEVEL) {
+                    class.push(LEVEL);
+                }
                 let said = Said {
                     effect,
                     joints: fitted.iter().filter_map(|of| of.joint).collect(),
@@ -258,6 +265,24 @@ pub(super) fn judged(
         (true, true) => Verdict::ParametersOnly,
     };
     judged
+}
+
+impl Search<'_, '_> {
+    /// The most that one of the set brings, `place` among them, that acts at a joint of `place`; a body
+    /// has no other form than its law's, which `place` could be a part of.
+    fn strongest_there(&self, found: &Found, place: usize, drops: &[f64]) -> f64 {
+        let joints = |of: &Chosen| -> Vec<Option<usize>> {
+            of.pieces.iter().map(|piece| self.table.pieces[*piece].joint).collect()
+        };
+        let own = joints(&found.chosen[place]);
+        let acts_there = |of: &Chosen| {
+            let id = self.families[of.family].owner.id();
+            let there = joints(of).iter().any(|joint| joint.is_none() || own.contains(joint));
+            !OF_BODIES.contains(&id) && (there || own.contains(&None))
+        };
+        let there = found.chosen.iter().zip(drops).filter(|(of, _)| acts_there(of));
+        there.map(|(_, drop)| *drop).fold(0.0, f64::max)
+    }
 }
 
 /// Why an effect is not asserted.
@@ -386,6 +411,11 @@ fn matters(search: &Search<'_, '_>, polished: &Polished, of: &Fitted) -> bool {
     }
     size(search, of.effect, &[of]) >= CLEARLY
         && !(is_ripple && of.parameters[0] < noise(search, of.joint))
+}
+
+/// Whether it is a brake that drags all the time, which is Coulomb friction as any other.
+fn drags_always(of: &Fitted) -> bool {
+    of.effect.id == "brake_drag" && of.parameters[2] <= of.parameters[1]
 }
 
 /// What cannot be told from the effect, and how probable it is.
