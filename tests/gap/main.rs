@@ -37,11 +37,15 @@ const SHRINKS: f64 = 0.5;
 const LOAD: [f64; 10] = [1.5, 0.0, 0.0, 0.15, 0.02, 0.02, 0.005, 0.0, 0.0, 0.0];
 
 fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
+    diagnosed_by(nominal, robot, ALL.iter().collect())
+}
+
+fn diagnosed_by(nominal: &Model, robot: &Robot<'_>, effects: Vec<&'static Effect>) -> Diagnosis {
     let samples = [1, 2, 3].map(|seed| robot.samples(seed));
     let records = |which: &[usize]| -> Vec<Record<'_>> {
         which.iter().flat_map(|k| Record::all(nominal, &samples[*k])).collect()
     };
-    let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
+    let settings = Settings { trust: Trust::Commissioned, effects };
     diagnose(nominal, records(&[0, 1]), &records(&[2]), &settings)
 }
 
@@ -273,6 +277,37 @@ fn two_effects_are_told() {
     assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
 }
 
+/// A body has no other form that a weak effect could be; one at another joint is none of that.
+#[test]
+fn weak_effects_beside_strong_ones_are_told() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 6);
+    let [payload, stribeck, spot] =
+        ["payload", "stribeck", "position_friction"].map(|id| effect(id).unwrap());
+    let load = LOAD.map(|of| 4.0 * of);
+    let weak = (stribeck, 1, [2.5, 0.1].as_slice());
+    for strong in [(payload, 0, load.as_slice()), (spot, 0, [40.0, 10.0].as_slice())] {
+        let robot = Robot { model: &truth, effects: &[strong, weak], noise: 0.0005 };
+        let found = diagnosed(&nominal, &robot);
+        assert!(named(&found).contains(&("stribeck", vec![2])), "{:?}", named(&found));
+    }
+}
+
+/// A brake that drags all the time is Coulomb friction.
+#[test]
+fn a_brake_that_never_lets_go_is_friction() {
+    let nominal = irb1600();
+    let truth = spread(&nominal, 5);
+    let effects = [(effect("brake_drag").unwrap(), 0, [30.0, 0.0, 0.0, 0.0].as_slice())];
+    let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
+    let found = diagnosed_by(
+        &nominal,
+        &robot,
+        vec![effect("brake_drag").unwrap(), effect("warm_up").unwrap()],
+    );
+    assert_eq!(found.effects[0].class, ["brake_drag", "friction_level"]);
+}
+
 /// Brakes do not let go too late at four joints at once.
 #[test]
 fn brakes_at_most_joints_are_none() {
@@ -375,7 +410,7 @@ fn torque_constants_of_most_joints_are_none() {
 fn of_windows_one_is_told() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
-    let [contact, brake] = ["contact", "brake_drag"].map(|id| effect(id).unwrap());
+    let [contact, brake] = ["contact", "position_friction"].map(|id| effect(id).unwrap());
     let effects = [
         (contact, 0, [60.0, 0.0, 20.0, 0.0, 2.0, 4.0, 10.0].as_slice()),
         (brake, 4, [1.0, 6.0, 8.0, 10.0].as_slice()),
