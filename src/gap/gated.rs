@@ -187,10 +187,33 @@ impl Search<'_, '_> {
                 together.push(vec![(rise, OF_RISE), (start, -part), (end, part)]);
             }
             together.extend(alone.clone());
-            let first = if self.sharp.contains(&piece) { SHARP } else { BLUNT };
+            let is_sharp = self.sharp.contains(&piece);
+            let first = if is_sharp { SHARP } else { BLUNT };
             // A row more or less inside of a window is seen.
             let row = OF_ROW * self.records.first().map_or(0.0, |of| of.motion.step()) / part;
             let finest = FINEST.min(row);
+            let mut gain_of = |shape: &[f64]| {
+                if shape[end] - shape[start] < FINEST * part {
+                    return f64::NEG_INFINITY;
+                }
+                self.reshape(&[(piece, shape.to_vec())]);
+                let products = self.table.products_of(self.error, &columns, own.clone());
+                evidence.replace(&products);
+                evidence.gain(&all)
+            };
+            // Where another end is better there may be none between.
+            let far = if is_sharp { 0 } else { (1.0 / BLUNT) as usize * PARTS };
+            for of in [end, start] {
+                let from = best.clone();
+                for step in 0..far {
+                    let mut shape = from.clone();
+                    shape[of] = (step + of - start) as f64 * BLUNT * part;
+                    let gain = gain_of(&shape);
+                    if gain > most + LEAST {
+                        (most, best) = (gain, shape);
+                    }
+                }
+            }
             // Ends alone lead far; together they leave where one end alone is no better.
             for ways in [alone, together] {
                 let mut reach = first;
@@ -205,13 +228,7 @@ impl Search<'_, '_> {
                         if effect.id == CONTACT {
                             shape[count - 4] = shape[count - 4].clamp(0.0, MOST_RISE);
                         }
-                        if shape[end] - shape[start] < FINEST * part {
-                            continue;
-                        }
-                        self.reshape(&[(piece, shape.clone())]);
-                        let products = self.table.products_of(self.error, &columns, own.clone());
-                        evidence.replace(&products);
-                        let gain = evidence.gain(&all);
+                        let gain = gain_of(&shape);
                         if gain > most + LEAST {
                             (most, best, improved) = (gain, shape, true);
                         }

@@ -6,6 +6,7 @@ use crate::effects::{Effect, Role};
 
 use super::column::{Owner, Piece, columns_at};
 use super::evidence::Estimate;
+use super::gated::GATED;
 use super::improved::LOAD;
 use super::load::body_near;
 use super::record::Record;
@@ -67,6 +68,9 @@ pub struct Polished {
     pub misfit: f64,
 }
 
+/// Bins of the frequencies that tell what a window holds.
+const SLOW: usize = 80;
+
 impl Search<'_, '_> {
     /// Whether tangents bring a piece to a better shape.
     fn has_shape(&self, piece: usize) -> bool {
@@ -78,7 +82,17 @@ impl Search<'_, '_> {
     pub fn polish(&mut self, set: &[Chosen]) -> Option<Polished> {
         let pieces: Vec<usize> = set.iter().flat_map(|of| of.pieces.clone()).collect();
         self.bring_to_best(set, &pieces);
-        self.fitted(&pieces, &self.columns(set))
+        let has_window = |of: &Chosen| GATED.contains(&self.families[of.family].owner.id());
+        if !set.iter().any(has_window) {
+            return self.fitted(&pieces, &self.columns(set));
+        }
+        // How sharply a window ends no law tells, so what is in it is told by its slow part.
+        self.table.limit(SLOW);
+        self.weigh();
+        let fitted = self.fitted(&pieces, &self.columns(set));
+        self.table.limit(usize::MAX);
+        self.weigh();
+        fitted
     }
 
     /// Improves the shapes of some pieces of a set by new tangents until they stay.
