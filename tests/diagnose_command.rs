@@ -110,6 +110,45 @@ fn regimes_add_up(places: &Value) {
     }
 }
 
+/// Of one log alone the last repetitions grade.
+#[test]
+fn of_one_log_the_last_cycles_are_held_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = Settings { cycles: 5, period_s: 4.0, ..Settings::new(5) };
+    let made = blind::case(&settings, 3).unwrap();
+    for name in ["nominal.toml", "log-1.csv"] {
+        let (_, text) = made.files.iter().find(|(other, _)| other == name).unwrap();
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let noisy = |from: f64| {
+        let path = folder.path().join("log-1.csv");
+        let text = fs::read_to_string(&path).unwrap();
+        let lines = text.lines().map(|line| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let (Ok(t), Ok(torque)) = (fields[0].parse::<f64>(), fields[7].parse::<f64>())
+                && t >= from
+            {
+                fields[7] = (torque + 5.0).to_string();
+            }
+            fields.join(",")
+        });
+        let other = folder.path().join(format!("log-{from}.csv"));
+        fs::write(&other, lines.collect::<Vec<_>>().join("\n")).unwrap();
+        other.display().to_string()
+    };
+    let gap = |log: &str| {
+        let robot = folder.path().join("nominal.toml").display().to_string();
+        let common = ["diagnose", "--robot", &robot, "--period", "4", "--format", "json"];
+        let output = joulepath(&[&common[..], &["--effects", "ripple", "--log", log]].concat());
+        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(value["gap"][0]["heldout"], "cycles");
+        value["gap"][0]["per_joint"][0]["model"].as_f64().unwrap()
+    };
+    // What is added to the last repetition is held out, what is added to the one before is not.
+    let [none, last] = [f64::MAX, 16.0].map(|from| gap(&noisy(from)));
+    assert!((last - none).abs() > 1.0, "{none} {last}");
+}
+
 #[test]
 fn wrong_input_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -126,6 +165,8 @@ fn wrong_input_is_refused() {
         })
         .collect();
     fs::write(&few, five.join("\n")).unwrap();
+    let (copy, page, program) = (at("copy.csv"), at("page.html"), at("missing.mod"));
+    fs::write(&copy, &text).unwrap();
     for (args, way_out) in [
         (vec!["--robot", &robot, "--log", &few], "q1 to q6"),
         (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
@@ -136,6 +177,10 @@ fn wrong_input_is_refused() {
         (vec!["--robot", &robot, "--log", &log, "--out", &robot], "give another name"),
         (vec!["--robot", &robot, "--log", &log, "--report", &log], "give another name"),
         (vec!["--robot", &robot, "--log", &log, "--out", &itself], "name a file in it"),
+        (vec!["--robot", &robot, "--log", &log, &log], "is given twice"),
+        (vec!["--robot", &robot, "--log", &log, "--heldout", &copy], "the same log as --log"),
+        (vec!["--robot", &robot, "--log", &log, "--out", &page, "--report", &page], "another name"),
+        (vec!["--robot", &robot, "--log", &log, "--program", &program], "missing.mod"),
     ] {
         let output = joulepath(&[&["diagnose"], &args[..]].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

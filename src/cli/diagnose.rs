@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
-use super::logs::{Read, Reader, Ready, read_all};
+use super::logs::{Read, Reader, Ready, held_out, read_all};
 use super::output;
 use crate::effects::{self, ALL, Effect};
 use crate::gap::{
@@ -161,6 +161,16 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
             bail!("{option} {}: this file is read; give another name", path.display());
         }
     }
+    if let (Some(model), Some(page)) = (&args.out, &args.report)
+        && (model == page || real(model).is_some_and(|model| Some(model) == real(page)))
+    {
+        bail!("--report {}: --out writes this file; give another name", page.display());
+    }
+    for (number, path) in args.log.iter().enumerate() {
+        if within(path, &args.log[..number]) {
+            bail!("--log {}: this file is given twice; give it once", path.display());
+        }
+    }
     for (option, files) in [("--heldout", &args.heldout), ("--baseline", &args.baseline)] {
         if let Some(path) = files.iter().find(|path| within(path, &args.log)) {
             bail!(
@@ -206,19 +216,39 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         heldout: "file".to_owned(),
         ..report::Basis::default()
     };
-    if held.is_empty() {
+    for other in &held {
+        if let Some(same) = train.iter().find(|of| of.record.1 == other.record.1) {
+            bail!(
+                "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
+                 --heldout out",
+                other.record.0,
+                same.record.0
+            );
+        }
+    }
+    if held.is_empty() && train.len() > 1 {
         "trajectory".clone_into(&mut basis.heldout);
-        held.extend(if train.len() > 1 { train.pop() } else { None });
+        held.extend(train.pop());
+    } else if held.is_empty() {
+        "cycles".clone_into(&mut basis.heldout);
+        let [first, last] = held_out(&model, &train[0])?;
+        (train, held) = (vec![first], vec![last]);
     }
     let records = |logs: &[Ready]| -> Vec<Record<'_>> {
         logs.iter().flat_map(|log| Record::all(&model, &log.samples)).collect()
     };
     if let Some(factor) = common_factor(&records(&train), trust) {
         bail!(
-            "the torques of all joints are {factor:.3} times those of the model: give torques in Nm              at the joints, currents as i1… in A, or the --robot that was logged"
+            "the torques of all joints are {factor:.3} times those of the model: give torques in Nm \
+             at the joints, currents as i1… in A, or the --robot that was logged"
         );
     }
     let before = read(&args.baseline)?;
+    let lines = match &args.program {
+        Some(program) => channels::lines(program, &args.robot)
+            .with_context(|| format!("--program {}", program.display()))?,
+        None => Vec::new(),
+    };
     let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
     let of_power = diagnose_power(
         &model,
@@ -265,14 +295,16 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     }
     if let Some(of) = &of_runs {
         found.add_runs(of);
-        if let Some(program) = &args.program {
-            let lines = channels::lines(program, &args.robot)
-                .with_context(|| format!("--program {}", program.display()))?;
-            for place in &mut found.places {
-                let movement = place.movement.and_then(|movement| movement.checked_sub(1));
-                place.line = movement.and_then(|movement| lines.get(movement).cloned());
-            }
+        for place in &mut found.places {
+            let movement = place.movement.and_then(|movement| movement.checked_sub(1));
+            place.line = movement.and_then(|movement| lines.get(movement).cloned());
         }
+    } else if args.program.is_some() {
+        basis.notes.push(
+            "--program tells nothing of these logs: give logs and a --baseline whose column `cmd` has \
+             the number of the movement that runs"
+                .into(),
+        );
     }
     if let Some(path) = &args.out {
         output::write(path, to_toml(&found.improved.written).as_bytes())

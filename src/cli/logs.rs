@@ -15,6 +15,11 @@ use crate::identify::{
 use crate::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
 use crate::robot::Model;
 
+/// Share of a log that is held out where there is no other one, and repetitions of which none can
+/// be.
+const HELD_OUT: f64 = 0.3;
+const LEAST_CYCLES: usize = 3;
+
 /// A log that was read.
 pub struct Read {
     /// Its path as given.
@@ -129,6 +134,36 @@ impl Reader<'_> {
             weight: weight.map(|(factor, _)| factor),
         })
     }
+}
+
+/// A log without its last part, which is held out: the last of its repetitions, or of the whole.
+///
+/// # Errors
+/// A part is too short.
+pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
+    let t = of.log.time();
+    let (begins, ends) = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(0.0));
+    let (at, period) = match of.samples.source {
+        Source::Periodic { period, periods, .. } if periods > LEAST_CYCLES => {
+            let held = (HELD_OUT * periods as f64) as usize;
+            (begins + period * (periods - held.max(1)) as f64, Some(period))
+        }
+        _ => (ends - HELD_OUT * (ends - begins), None),
+    };
+    let cutoff = match of.samples.source {
+        Source::Filtered { cutoff } => Some(cutoff),
+        Source::Periodic { .. } | Source::Logged => None,
+    };
+    let (first, last): (Vec<usize>, Vec<usize>) = (0..t.len()).partition(|row| t[*row] < at);
+    let part = |rows: &[usize]| -> anyhow::Result<Ready> {
+        let log = of.log.of_rows(rows);
+        let torque = torques(model, &log)?;
+        let samples = prepare(&log, &torque.tau, Hints { period, cutoff })?;
+        let (record, origin) = (of.record.clone(), of.origin.clone());
+        Ok(Ready { record, samples, origin, log, weight: of.weight })
+    };
+    let shown = &of.record.0;
+    Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
 }
 
 /// Reads logs; halves of one run become one.

@@ -29,17 +29,54 @@ pub(super) const PRESLIDING: Effect = Effect {
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let coulomb = motion.scale(joint).coulomb;
     let step = motion.step();
-    let senses = &motion.senses[joint];
+    let (senses, rates) = (&motion.senses[joint], &motion.rates[joint]);
     let mut z = senses.first().copied().unwrap_or(0.0);
     let mut series = vec![0.0; motion.len()];
     // What was before the first row is known after one round.
     for _ in 0..if motion.closed { 2 } else { 1 } {
+        let mut before = if motion.closed { rates.last() } else { rates.first() };
         for (row, to) in series.iter_mut().enumerate() {
-            let rate = motion.rates[joint][row];
-            let towards = if rate == 0.0 { z } else { rate.signum() };
-            z = towards + (z - towards) * (-rate.abs() * step / values[0].max(1e-9)).exp();
+            for (rate, path) in paths(before.copied().unwrap_or(0.0), rates[row], step) {
+                let towards = if rate == 0.0 { z } else { rate.signum() };
+                z = towards + (z - towards) * (-path / values[0].max(1e-9)).exp();
+            }
+            before = Some(&rates[row]);
             *to = if senses[row] == 0.0 { 0.0 } else { coulomb * (z - senses[row]) };
         }
     }
     motion.at_joints(joint, series)
+}
+
+/// The way of each rate from one row to the next, the rate being a line between them.
+fn paths(first: f64, last: f64, step: f64) -> [(f64, f64); 2] {
+    if first * last >= 0.0 {
+        let rate = if last == 0.0 { first } else { last };
+        return [(rate, 0.5 * (first + last).abs() * step), (last, 0.0)];
+    }
+    let both = first.abs() + last.abs();
+    [first, last].map(|rate| (rate, 0.5 * rate * rate / both * step))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The way between two rows is as long as that between many.
+    #[test]
+    fn ways_do_not_depend_on_the_step() {
+        for (first, last) in [(0.2, 0.5), (0.2, -0.5), (-0.1, 0.0), (0.0, 0.3)] {
+            let of =
+                |count: usize| {
+                    let at = |k: usize| first + (last - first) * k as f64 / count as f64;
+                    let all = (0..count).flat_map(|k| paths(at(k), at(k + 1), 1.0 / count as f64));
+                    all.fold([0.0; 2], |[back, on], (rate, path)| {
+                        if rate < 0.0 { [back + path, on] } else { [back, on + path] }
+                    })
+                };
+            let [one, many] = [of(1), of(1000)];
+            for (one, many) in one.into_iter().zip(many) {
+                assert!((one - many).abs() < 1e-9, "{first} {last}: {one} {many}");
+            }
+        }
+    }
 }

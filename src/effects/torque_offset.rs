@@ -11,7 +11,7 @@ pub(super) const TORQUE_OFFSET: Effect = Effect {
     law: "τ = offset",
     source: "B. Armstrong-Hélouvry et al., Automatica 30, 1994: asymmetric Coulomb friction is the same while a joint moves",
     parameters: &[free("offset", "Nm", "added to the logged torque")],
-    coordinates: &[linear(|of| 0.05 * of.torque[1])],
+    coordinates: &[linear(|of| 0.1 * of.torque[1])],
     published: None,
     joints: every,
     brings: &[],

@@ -22,8 +22,14 @@ const LIKELY: f64 = 0.5;
 const DOUBTED: f64 = 10.0;
 /// What may be left of that with an effect which explains it.
 const LEFT: f64 = 0.6;
+/// How many times a joint's gap may grow by what acts on the whole robot.
+const FAR_WORSE: f64 = 3.0;
+/// The same with lateness of one joint, which takes a little off most joints' logs.
+const OF_LATE: f64 = 0.8;
 /// Mean square beyond which what is left is of something else.
 const FAR_MORE: f64 = 500.0;
+/// An effect that joints show without others of their own being any of its matter.
+const LOAD: &str = "payload";
 /// An effect that fades from repetition to repetition, so that means do not show it.
 const FADING: &str = "warm_up";
 /// Deviations by which the held-out gap has to grow for what was found to be wrong: 1 in 10 by chance.
@@ -49,6 +55,24 @@ impl Search<'_, '_> {
         let improved =
             || Improved::new(model, &self.table.mixing, &polished.parameters, &polished.effects);
         (!polished.effects.is_empty()).then(improved)
+    }
+
+    /// The model with the changes of parameters that were found and are not asserted, if there are some.
+    pub(super) fn with_parameters(
+        &mut self,
+        model: &Model,
+        found: &Found,
+        judged: &Judged,
+    ) -> Option<Improved> {
+        let mut kept = self.asserted(found, judged);
+        let is_said = |id: &str| judged.effects.iter().any(|said| said.effect.id == id);
+        kept.retain(|of| !is_said(self.families[of.family].owner.id()));
+        if kept.is_empty() {
+            return None;
+        }
+        self.match_spread(&kept);
+        let polished = self.polish(&kept)?;
+        Some(Improved::new(model, &self.table.mixing, &polished.parameters, &polished.effects))
     }
 
     /// What is asserted of a set: what is not is not in the model, so that its parameters are those
@@ -103,7 +127,11 @@ impl Judged {
         let is_idle = |said: &Said| {
             let [before, after] = said.missed(graded);
             let clearly = if said.is_likely() { CLEARLY } else { DOUBTED };
-            said.effect.id != FADING && after > clearly && after > LEFT * before
+            if said.is_late_joint() {
+                return after > OF_LATE * before;
+            }
+            let is_left = after > clearly && after > LEFT * before;
+            said.effect.id != FADING && is_left && !(said.effect.id == LOAD && takes_off(graded))
         };
         let mut less = self.clone();
         let (idle, kept): (Vec<Said>, Vec<Said>) = less.effects.drain(..).partition(is_idle);
@@ -143,17 +171,34 @@ impl Judged {
         self.effects.iter().any(leaves)
     }
 
-    /// Whether data that took no part is missed more with the effects than without them, by all joints
-    /// or also by those of an effect, and these would have to be there, too.
+    /// Whether data that took no part is missed more with the effects than without them, by all joints,
+    /// also by those of an effect, or clearly by one joint though all have it, and they would have to be
+    /// there, too.
     pub(super) fn is_refuted(&self, graded: &Shrink) -> bool {
         let at_its_joints = |said: &Said| {
             let all: f64 = said.joints.iter().map(|joint| graded.joints[*joint].growth).sum();
             all > GROWS * said.joints.len() as f64
         };
-        let grows =
-            graded.growth > GROWS || graded.growth > 0.0 && self.effects.iter().any(at_its_joints);
+        // What acts on the whole robot lets no joint be missed far more than by the model as it was.
+        let worsens = |of: &JointGap| {
+            let [_, after] = beyond_error(of);
+            after > CLEARLY && of.refit_plus_effect > FAR_WORSE * of.model
+        };
+        let is_of_all = self.effects.iter().any(|said| said.joints.is_empty());
+        let grows = graded.growth > GROWS
+            || graded.growth > 0.0 && self.effects.iter().any(at_its_joints)
+            || is_of_all && graded.joints.iter().any(worsens);
         grows && !self.effects.iter().any(Said::is_of_its_time)
     }
+}
+
+/// Whether effects take most of what is clearly missed off a joint.
+fn takes_off(graded: &Shrink) -> bool {
+    let is_less = |of: &JointGap| {
+        let [before, after] = beyond_error(of);
+        before > DOUBTED && after <= LEFT * before
+    };
+    graded.joints.iter().any(is_less)
 }
 
 /// Mean squares that are missed without effects and with them, of what a right model may miss.
@@ -191,6 +236,60 @@ mod tests {
         assert_eq!(kept([[3.0, 2.9], [4.0, 5.0]]), (vec![], Verdict::Unknown));
         // What any model misses need not be taken off.
         assert_eq!(kept([[0.3, 0.3], [4.0, 1.0]]), (vec!["stribeck", "cable"], Verdict::Effect));
+    }
+
+    #[test]
+    fn a_load_is_there_where_it_takes_most_off_some_joint() {
+        let kept = |id: &str, gaps: [[f64; 2]; 2]| {
+            let said = find(id).map(|effect| Said::alone(effect, Vec::new(), 1.0));
+            let judged = Judged::of(said.into_iter().collect(), Vec::new());
+            let joints = gaps.map(|[refit, refit_plus_effect]| JointGap {
+                noise: 0.1,
+                refit,
+                refit_plus_effect,
+                ..JointGap::default()
+            });
+            let graded = Shrink { joints: joints.to_vec(), ..Shrink::default() };
+            judged.without_idle(&graded).is_none()
+        };
+        let gaps = [[5.0, 4.9], [0.6, 0.1]];
+        assert!(kept("payload", gaps) && !kept("base_tilt", gaps));
+        assert!(!kept("payload", [[5.0, 4.9], [0.6, 0.6]]));
+    }
+
+    #[test]
+    fn lateness_of_a_joint_takes_something_off_other_logs() {
+        let kept = |joints: Vec<usize>, after: f64| {
+            let said = find("filter_lag").map(|effect| Said::alone(effect, joints, 1.0));
+            let judged = Judged::of(said.into_iter().collect(), Vec::new());
+            let joint = JointGap {
+                noise: 0.1,
+                refit: 0.2,
+                refit_plus_effect: after,
+                ..JointGap::default()
+            };
+            let graded = Shrink { joints: vec![joint], ..Shrink::default() };
+            judged.without_idle(&graded).is_none()
+        };
+        assert!(kept(vec![0], 0.1) && !kept(vec![0], 0.199) && kept(vec![], 0.199));
+    }
+
+    #[test]
+    fn what_acts_on_all_joints_makes_none_far_worse() {
+        let is_refuted = |id: &str, joints: Vec<usize>, after: f64| {
+            let said = find(id).map(|effect| Said::alone(effect, joints, 1.0));
+            let far = JointGap {
+                noise: 0.1,
+                model: 1.0,
+                refit: 4.0,
+                refit_plus_effect: after,
+                ..JointGap::default()
+            };
+            let graded = Shrink { joints: vec![far], growth: -1.0, ..Shrink::default() };
+            Judged::of(said.into_iter().collect(), Vec::new()).is_refuted(&graded)
+        };
+        assert!(is_refuted("base_tilt", vec![], 4.0) && !is_refuted("base_tilt", vec![], 2.0));
+        assert!(!is_refuted("stribeck", vec![0], 4.0));
     }
 
     #[test]

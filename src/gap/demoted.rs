@@ -10,7 +10,7 @@ const AT_ONCE: usize = 2;
 const OF_FIRST: f64 = 0.05;
 /// What each has to bring of what the first one does in a log that does not tell its noise.
 const OF_FIRST_OPEN: f64 = 0.3;
-/// What fading friction brings, of what its level does, so that they make up for each other.
+/// What fading friction is, of its level, so that they make up for each other.
 const OF_LEVEL: f64 = 0.5;
 /// Share of what two effects at a joint bring that the lesser one needs.
 pub(super) const LESSER: f64 = 0.15;
@@ -103,13 +103,15 @@ impl Judged {
         let fading: Vec<Said> = all.filter(|said| said.effect.id == "warm_up").cloned().collect();
         let fades = |level: &Said| {
             fading.iter().any(|said| {
-                said.nats > OF_LEVEL * level.nats
+                said.size > OF_LEVEL * level.size
                     && said.joints.iter().any(|joint| level.joints.contains(joint))
             })
         };
         let is_level = |said: &Said| said.effect.id == "friction_level" && fades(said);
         let (levels, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_level);
         self.effects = kept;
+        let why = "friction_level: friction that fades makes up for it";
+        self.reasons.extend(levels.iter().map(|_| why.to_owned()));
         self.candidates.extend(levels);
     }
 }
@@ -120,21 +122,22 @@ mod tests {
 
     use super::*;
 
-    /// Effects that stay beside fading friction of joint 1 that brings 50 nats and is not asserted.
-    fn kept(id: &str, joint: usize, nats: f64) -> usize {
-        let said = |id: &str, joint, nats| {
-            find(id).map(|effect| Said::alone(effect, vec![joint], nats)).into_iter().collect()
+    /// Effects that stay beside fading friction of joint 1 that is half of the torque.
+    fn kept(id: &str, joint: usize, size: f64) -> usize {
+        let said = |id: &str, joint, size| {
+            let said = find(id).map(|effect| Said::alone(effect, vec![joint], 50.0));
+            said.map(|said| Said { size, ..said }).into_iter().collect()
         };
-        let mut judged = Judged::of(said(id, joint, nats), said("warm_up", 0, 50.0));
+        let mut judged = Judged::of(said(id, joint, size), said("warm_up", 0, 0.5));
         judged.demote_levels_that_fade();
         judged.effects.len()
     }
 
     #[test]
     fn levels_that_fading_friction_makes_up_for_are_none() {
-        assert_eq!(kept("friction_level", 0, 60.0), 0);
-        assert_eq!(kept("friction_level", 1, 60.0), 1);
-        assert_eq!(kept("friction_level", 0, 600.0), 1);
-        assert_eq!(kept("stribeck", 0, 60.0), 1);
+        assert_eq!(kept("friction_level", 0, 0.6), 0);
+        assert_eq!(kept("friction_level", 1, 0.6), 1);
+        assert_eq!(kept("friction_level", 0, 1.2), 1);
+        assert_eq!(kept("stribeck", 0, 0.6), 1);
     }
 }

@@ -9,6 +9,7 @@ use super::calibration::calibrate;
 use super::column::{Owner, pieces};
 use super::diagnosis::{Anything, Diagnosis, Said, Verdict};
 use super::gated::{OF_TIME, gated};
+use super::generic::OF_DRIFT;
 use super::heldout::{JointGap, Shrink, predicted, shrink};
 use super::improved::Improved;
 use super::judged::{Judged, LEAST_NATS, judged};
@@ -133,23 +134,30 @@ pub fn diagnose_telling(
     for joint in &flipped {
         judged.assert_flipped(*joint);
     }
+    let of_parameters = search.with_parameters(believed, &found, &judged);
     let asserted = search.with_asserted(believed, &found, &judged, &flipped);
     tell(Phase::Grading);
     // What a robot can have may be far from what was fitted: nothing is written that misses more
     // than before of what it was fitted to.
-    let refit = better(&train, Improved::same(believed), refit);
+    let none = better(&train, Improved::same(believed), refit);
+    let with_parameters = |changed: Option<Improved>| match changed {
+        Some(changed) if flipped.is_empty() => better(&train, none.clone(), changed),
+        _ => none.clone(),
+    };
+    let mut refit = with_parameters(of_parameters);
     // Flipped torques were turned round for the fit: they are no measure of a model that flips.
-    let of_asserted = |asserted: Option<Improved>| match asserted {
+    let of_asserted = |asserted: Option<Improved>, refit: &Improved| match asserted {
         Some(improved) if flipped.is_empty() => better(&train, refit.clone(), improved),
         Some(improved) => improved,
         None => refit.clone(),
     };
-    let graded_with = |of: &Improved| shrink(held, [model, &refit.applied, &of.applied]);
-    let mut improved = of_asserted(asserted);
+    let graded_with =
+        |of: &Improved, refit: &Improved| shrink(held, [model, &refit.applied, &of.applied]);
+    let mut improved = of_asserted(asserted, &refit);
     if improved.written == refit.written {
         judged.doubt_late_joint();
     }
-    let mut graded = graded_with(&improved);
+    let mut graded = graded_with(&improved, &refit);
     let is_foreign =
         || is_hopeless(&graded) || is_unlike(&train, &improved) || is_other_body(&graded, &judged);
     if settings.trust != Trust::Unknown && is_foreign() {
@@ -159,16 +167,18 @@ pub fn diagnose_telling(
              and the units",
         );
         improved = refit.clone();
-        graded = graded_with(&improved);
+        graded = graded_with(&improved, &refit);
     } else if let Some(less) = judged.without_idle(&graded) {
-        let plainer = of_asserted(search.with_asserted(believed, &found, &less, &flipped));
+        let of_less = with_parameters(search.with_parameters(believed, &found, &less));
+        let asserted = search.with_asserted(believed, &found, &less, &flipped);
+        let plainer = of_asserted(asserted, &of_less);
         // What explains most of the logs is there, however far its form holds beyond them, unless it
         // is doubtful anyway.
         let is_doubtful =
             judged.leaves_far_more(&graded) || !judged.effects.iter().all(Said::is_likely);
         if is_doubtful || missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
-            (judged, improved) = (less, plainer);
-            graded = graded_with(&improved);
+            (judged, improved, refit) = (less, plainer, of_less);
+            graded = graded_with(&improved, &refit);
         }
     }
     if judged.is_refuted(&graded) {
@@ -177,7 +187,7 @@ pub fn diagnose_telling(
             "data that took no part is missed more with what was found than without it",
         );
         improved = refit.clone();
-        graded = graded_with(&improved);
+        graded = graded_with(&improved, &refit);
     }
     if judged.effects.is_empty() && 2 * excited(&train) < model.dof {
         judged.withdraw(
@@ -192,7 +202,8 @@ pub fn diagnose_telling(
         verdict = Verdict::NoGap;
     }
     // No model is right to the last digit.
-    if verdict == Verdict::Unknown && !judged.anything.is_empty() {
+    let drifts = judged.anything.iter().any(|of| OF_DRIFT.contains(&of.id));
+    if verdict == Verdict::Unknown && !judged.anything.is_empty() && !drifts {
         let left = shrink(&train, [believed, &refit.applied, &refit.applied]).joints;
         let is_small = |of: &JointGap| of.refit < SMALL * of.torque;
         let is_small = |of: &Anything| of.joint.is_some_and(|joint| is_small(&left[joint]));

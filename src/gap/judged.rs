@@ -166,7 +166,9 @@ pub(super) fn judged(
                 let largest = all_of.iter().map(|of| size(search, effect, &[of]));
                 let least = OF_LARGEST * largest.fold(0.0, f64::max);
                 let tells = |of: &&Fitted| {
-                    matters(search, polished, of) && size(search, effect, &[of]) >= least
+                    matters(search, polished, of)
+                        && of.significance >= SIGNIFICANT
+                        && size(search, effect, &[of]) >= least
                 };
                 let matter: Vec<&Fitted> = all_of.iter().copied().filter(tells).collect();
                 let fitted = if matter.is_empty() { all_of } else { matter };

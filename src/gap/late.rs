@@ -81,6 +81,13 @@ impl Late {
     }
 }
 
+impl Said {
+    /// Whether it is lateness of one joint.
+    pub(super) fn is_late_joint(&self) -> bool {
+        OF_CLOCKS.contains(&self.effect.id) && !self.joints.is_empty()
+    }
+}
+
 impl Judged {
     /// A delay or a lag.
     pub(super) fn assert_late(&mut self, late: &Late) {
@@ -115,8 +122,8 @@ impl Judged {
 
     /// Takes back lateness of one joint with which a model misses no less.
     pub(super) fn doubt_late_joint(&mut self) {
-        let is_late = |said: &Said| OF_CLOCKS.contains(&said.effect.id) && !said.joints.is_empty();
-        let (late, kept): (Vec<Said>, Vec<Said>) = self.effects.drain(..).partition(is_late);
+        let (late, kept): (Vec<Said>, Vec<Said>) =
+            self.effects.drain(..).partition(Said::is_late_joint);
         self.effects = kept;
         for said in late {
             self.reasons.push(format!("{}: the logs are missed no less with it", said.effect.id));

@@ -2,6 +2,7 @@
 //! of the baseline.
 
 use crate::effects::{Effect, find};
+use crate::log::median_step;
 use crate::robot::Model;
 
 use super::diagnosis::Estimated;
@@ -183,7 +184,9 @@ pub fn diagnose_runs(
         }
     }
     for (k, (change, sd)) in waited.iter().enumerate() {
-        if *change > (BEYOND * sd).max(WAITS) {
+        // A wait begins and ends at a row.
+        let rows = 2.0 * train.first().map_or(0.0, |run| median_step(&run.t));
+        if *change > (BEYOND * sd).max(WAITS).max(rows) {
             let nats = 0.5 * (change / sd).powi(2);
             let movement = Some(pairs[k].1.number);
             push(&mut found, "program_wait", vec!["program_wait"], *change, *sd, movement, nats);

@@ -53,15 +53,7 @@ pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
         .enumerate()
         .filter_map(|(i, why)| Some(Rejected { row: log.rows[i], reason: why? }))
         .collect();
-    let of = |x: &Vec<f64>| kept.iter().map(|i| x[*i]).collect();
-    let log = Log {
-        channels: log.channels.clone(),
-        values: log.values.iter().map(of).collect(),
-        rows: kept.iter().map(|i| log.rows[*i]).collect(),
-        rejected: log.rejected.clone(),
-        degrees: log.degrees.clone(),
-    };
-    (log, rejected)
+    (log.of_rows(&kept), rejected)
 }
 
 /// Single angles far off their neighbours.

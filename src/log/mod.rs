@@ -101,6 +101,19 @@ impl Log {
         self.column(Channel::Time).unwrap_or(&[])
     }
 
+    /// The same with some rows only, by their places.
+    #[must_use]
+    pub fn of_rows(&self, kept: &[usize]) -> Log {
+        let of = |x: &Vec<f64>| kept.iter().map(|row| x[*row]).collect();
+        Log {
+            channels: self.channels.clone(),
+            values: self.values.iter().map(of).collect(),
+            rows: kept.iter().map(|row| self.rows[*row]).collect(),
+            rejected: self.rejected.clone(),
+            degrees: self.degrees.clone(),
+        }
+    }
+
     /// Number of joints whose positions are logged.
     #[must_use]
     pub fn joints(&self) -> usize {

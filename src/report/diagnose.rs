@@ -206,6 +206,11 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
             let _ = writeln!(out, "  {name:<20} {value:>12.5} ± {sd:.5} {}", parameter.unit);
         }
     }
+    for of in &found.places {
+        if let Some((file, line)) = &of.line {
+            let _ = writeln!(out, "  {file}:{line}, {:.0} % of it", 100.0 * of.share);
+        }
+    }
     if !found.candidates.is_empty() {
         out.push('\n');
     }
