@@ -29,7 +29,7 @@ mod unlogged;
 mod workspace;
 
 pub use case::{Case, Settings, case};
-pub use grade::{Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Wrong, grade};
+pub use grade::{Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Wrong, grade, is_of};
 pub use label::{HeldOut, Kind, Label, TrueParameter, Truth};
 pub use plant::torque;
 pub use seal::{KEY, SEALS, SealError, Sealed, open, seal};

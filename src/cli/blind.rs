@@ -17,7 +17,7 @@ use serde_json::Value;
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::blind::{self, Asked, Case, FAMILY, Grades, KEY, Kind, Label, SEALS, Sealed, Settings};
+use crate::blind::{self, Asked, Case, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
 use crate::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade what was said of them.
@@ -160,11 +160,11 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
     let labels = blind::open(&sealed)?;
     if let Some(id) = &args.leave_out
-        && id != FAMILY
-        && !labels.iter().any(|label| label.effects.iter().any(|truth| truth.id == *id))
+        && !labels.iter().any(|label| blind::is_of(label, id))
     {
         bail!(
-            "--leave-out {id}: no case has this effect; name one that the examination has, or {FAMILY}"
+            "--leave-out {id}: no case has this effect alone; name one that the examination has, or \
+             {FAMILY}"
         );
     }
     let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
@@ -208,11 +208,11 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
 
 /// Effects that the library is without for a case; none where the case is not asked for.
 fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
-    let ids = || label.effects.iter().map(|truth| truth.id.as_str());
     match left_out {
-        Some(FAMILY) if label.kind == Kind::One => ids().flat_map(family).copied().collect(),
-        Some(id) if ids().any(|of| of == id) => vec![id],
-        _ => Vec::new(),
+        Some(id) if !blind::is_of(label, id) => Vec::new(),
+        Some(FAMILY) => label.effects.iter().flat_map(|of| family(&of.id)).copied().collect(),
+        Some(id) => vec![id],
+        None => Vec::new(),
     }
 }
 
@@ -237,7 +237,15 @@ fn read(path: &Path) -> anyhow::Result<String> {
 }
 
 fn table(grades: &Grades) -> String {
-    let mut text = format!("{} cases\n\n", grades.cases);
+    let mut text = format!("{} cases", grades.cases);
+    if grades.undetectable > 0 {
+        let _ = write!(
+            text,
+            ", {} show too little of their effects to be asked for",
+            grades.undetectable
+        );
+    }
+    text.push_str("\n\n");
     let mut columns: Vec<&str> =
         grades.confusion.values().flat_map(|row| row.keys().copied()).collect();
     columns.sort_unstable();

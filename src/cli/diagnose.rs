@@ -234,6 +234,7 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         let [first, last] = held_out(&model, &train[0])?;
         (train, held) = (vec![first], vec![last]);
     }
+    basis.graded = held.iter().map(|of| of.record.0.clone()).collect();
     let records = |logs: &[Ready]| -> Vec<Record<'_>> {
         logs.iter().flat_map(|log| Record::all(&model, &log.samples)).collect()
     };
@@ -264,6 +265,8 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         &channels::runs(&held),
         &may,
     );
+    // Those of the logs have been told.
+    let told = reader.notes.len();
     basis.notes = reader.notes;
     // Without a mean there is no noise to weigh effects by.
     let of_torque = if of_runs.is_some() {
@@ -317,7 +320,7 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         let page = diagnose_report(&model.name, &found, &basis, &pictures)?;
         output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
     }
-    for text in &basis.notes {
+    for text in &basis.notes[told..] {
         common::note(args.quiet, text);
     }
     Ok((found, basis))

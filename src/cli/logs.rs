@@ -198,6 +198,9 @@ pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Re
 
 fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
     let shown = path.display().to_string();
+    if path.is_dir() {
+        bail!("{shown}: this is a folder; give the log files in it one by one");
+    }
     let file = File::open(path)
         .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
     let mut stream = Hashed { stream: file, hash: Sha256::new() };

@@ -140,4 +140,15 @@ mod tests {
         assert_eq!(kept("friction_level", 0, 1.2), 1);
         assert_eq!(kept("stribeck", 0, 0.6), 1);
     }
+
+    #[test]
+    fn of_two_windows_the_one_of_more_evidence_stays() {
+        let said = |id: &str, nats| find(id).map(|effect| Said::alone(effect, vec![0], nats));
+        let all = [("brake_drag", 40.0), ("contact", 90.0), ("stribeck", 20.0)];
+        let mut judged =
+            Judged::of(all.iter().filter_map(|(id, nats)| said(id, *nats)).collect(), Vec::new());
+        judged.demote_second_window();
+        let ids: Vec<&str> = judged.effects.iter().map(|said| said.effect.id).collect();
+        assert_eq!(ids, ["contact", "stribeck"]);
+    }
 }

@@ -201,40 +201,43 @@ impl Search<'_, '_> {
                 evidence.replace(&products);
                 evidence.gain(&all)
             };
-            // Where another end is better there may be none between.
-            let far = if is_sharp { 0 } else { (1.0 / BLUNT) as usize * PARTS };
-            for of in [end, start] {
-                let from = best.clone();
-                for step in 0..far {
-                    let mut shape = from.clone();
-                    shape[of] = (step + of - start) as f64 * BLUNT * part;
-                    let gain = gain_of(&shape);
-                    if gain > most + LEAST {
-                        (most, best) = (gain, shape);
+            let mut reaches = Some(first);
+            while let Some(first) = reaches.take() {
+                // Ends alone lead far; together they leave where one end alone is no better.
+                for ways in [&alone, &together] {
+                    let mut reach = first;
+                    while reach > finest {
+                        let mut improved = false;
+                        let steps = ways.iter().flat_map(|way| [(way, -reach), (way, reach)]);
+                        for (way, step) in steps {
+                            let mut shape = best.clone();
+                            for (of, unit) in way {
+                                shape[*of] += step * unit;
+                            }
+                            if effect.id == CONTACT {
+                                shape[count - 4] = shape[count - 4].clamp(0.0, MOST_RISE);
+                            }
+                            let gain = gain_of(&shape);
+                            if gain > most + LEAST {
+                                (most, best, improved) = (gain, shape, true);
+                            }
+                        }
+                        if !improved {
+                            reach *= 0.5;
+                        }
                     }
                 }
-            }
-            // Ends alone lead far; together they leave where one end alone is no better.
-            for ways in [alone, together] {
-                let mut reach = first;
-                while reach > finest {
-                    let mut improved = false;
-                    let steps = ways.iter().flat_map(|way| [(way, -reach), (way, reach)]);
-                    for (way, step) in steps {
-                        let mut shape = best.clone();
-                        for (of, unit) in way {
-                            shape[*of] += step * unit;
-                        }
-                        if effect.id == CONTACT {
-                            shape[count - 4] = shape[count - 4].clamp(0.0, MOST_RISE);
-                        }
+                // Where another end is better there may be none between.
+                let far = if is_sharp { 0 } else { (1.0 / BLUNT) as usize * PARTS };
+                for of in [end, start] {
+                    let from = best.clone();
+                    for step in 0..far {
+                        let mut shape = from.clone();
+                        shape[of] = (step + of - start) as f64 * BLUNT * part;
                         let gain = gain_of(&shape);
                         if gain > most + LEAST {
-                            (most, best, improved) = (gain, shape, true);
+                            (most, best, reaches) = (gain, shape, Some(BLUNT));
                         }
-                    }
-                    if !improved {
-                        reach *= 0.5;
                     }
                 }
             }

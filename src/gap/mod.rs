@@ -47,6 +47,7 @@ mod units;
 
 pub use attribution::{Attribution, Cell, PARAMETERS, attribution};
 pub use bins::Quantity;
+pub use calibration::{COUNTED, EXAMINED};
 pub use column::{Column, Owner, Piece};
 pub use diagnose::{Settings, diagnose, diagnose_telling};
 pub use diagnosis::{Anything, Diagnosis, Estimated, Place, Said, Verdict};

@@ -61,6 +61,12 @@ pub enum LogError {
         /// Why.
         reason: String,
     },
+    /// Bytes that are no text.
+    #[error("the file is {what}: give it as CSV or Parquet")]
+    NoText {
+        /// What it looks like.
+        what: &'static str,
+    },
     /// A file that can't be read to its end.
     #[error("the file can't be read to its end ({reason})")]
     Stream {

@@ -82,6 +82,9 @@ pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError
     stream.by_ref().take(HEAD).read_to_end(&mut head).map_err(broken)?;
     let parquet = head.starts_with(b"PAR1");
     if !parquet && !utf16::is_utf16(&head) {
+        if let Some(what) = no_text(&head) {
+            return Err(LogError::NoText { what });
+        }
         return csv::read_rows(&head, stream, map);
     }
     stream.read_to_end(&mut head).map_err(broken)?;
@@ -92,6 +95,17 @@ pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError
     return parquet::read_parquet(&head, map);
     #[cfg(not(feature = "parquet"))]
     Err(LogError::Parquet { reason: "this build does not read them".into() })
+}
+
+/// What a file is that begins so and is no text.
+fn no_text(head: &[u8]) -> Option<&'static str> {
+    const PACKED: [&[u8]; 4] =
+        [&[0x1f, 0x8b], b"PK\x03\x04", b"\xfd7zXZ", &[0x28, 0xb5, 0x2f, 0xfd]];
+    if PACKED.iter().any(|magic| head.starts_with(magic)) {
+        return Some("packed");
+    }
+    let mut header = head.split(|byte| *byte == b'\n');
+    header.next().is_some_and(|row| row.contains(&0)).then_some("no text")
 }
 
 impl Log {

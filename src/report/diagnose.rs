@@ -13,6 +13,8 @@ pub struct Basis {
     pub robot: String,
     /// What was held out: `file`, `trajectory` or `cycles`.
     pub heldout: String,
+    /// The logs that it is of.
+    pub graded: Vec<String>,
     /// Where the model went.
     pub model: String,
     /// What else a reader has to know.

@@ -26,6 +26,8 @@ const BINS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0];
 pub struct Grades {
     /// Cases that were graded.
     pub cases: usize,
+    /// Those of them whose logs show their effects too little for them to be asked for.
+    pub undetectable: usize,
     /// What was left out of the library, where something was.
     pub left_out: Option<String>,
     /// For each truth, how often a diagnosis came to what; detectable ones only.
@@ -88,6 +90,15 @@ pub struct Bin {
     pub high: f64,
 }
 
+impl Bin {
+    /// Of `of` effects in an interval, `hits` of them there.
+    #[must_use]
+    pub fn new([from, to]: [f64; 2], stated: f64, hits: usize, of: usize) -> Bin {
+        let [low, high] = wilson::interval(hits, of);
+        Bin { from, to, stated, hits, of, low, high }
+    }
+}
+
 /// A case with a wrong name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Wrong {
@@ -138,6 +149,7 @@ pub fn grade(
     };
     Ok(Grades {
         cases: scores.len(),
+        undetectable: scores.len() - confusion.values().flat_map(BTreeMap::values).sum::<usize>(),
         left_out: left_out.map(str::to_owned),
         confusion,
         rates,
@@ -149,8 +161,9 @@ pub fn grade(
     })
 }
 
-/// Whether a case is one of an effect, under any of its names.
-fn is_of(label: &Label, id: &str) -> bool {
+/// Whether a case is one of an effect alone, of any effect of the torque where that is [`FAMILY`].
+#[must_use]
+pub fn is_of(label: &Label, id: &str) -> bool {
     match label.kind {
         Kind::One if id == FAMILY => true,
         Kind::One | Kind::Power | Kind::Motion => label.effects.iter().any(|truth| truth.id == id),
@@ -267,9 +280,8 @@ fn reliability(scores: &[Score]) -> Vec<Bin> {
                 .collect();
             let of = within.len();
             let hits = within.iter().filter(|(_, hit)| *hit).count();
-            let [low, high] = wilson::interval(hits, of);
             let stated = within.iter().map(|(p, _)| p).sum::<f64>() / of.max(1) as f64;
-            Bin { from, to, stated, hits, of, low, high }
+            Bin::new([from, to], stated, hits, of)
         })
         .collect()
 }

@@ -5,7 +5,12 @@ use tera::{Context, Tera};
 
 use super::ReportError;
 use super::format::{INTERVAL, fixed};
-use crate::gap::{Attribution, Diagnosis, Interval, Place, Profile, Quantity, Said, Shape, Trace};
+use super::reliability::reliability;
+use crate::blind::Bin;
+use crate::gap::{
+    Attribution, COUNTED, Diagnosis, EXAMINED, Interval, Place, Profile, Quantity, Said, Shape,
+    Trace,
+};
 use crate::report::diagnose::{Basis, next, sentence};
 use crate::report::svg::{Curve, Plot, Size};
 
@@ -132,7 +137,7 @@ pub fn diagnose_report(
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", robot);
     context.insert("verdict", sentence(found.verdict));
-    context.insert("heldout", &basis.heldout);
+    context.insert("heldout", &heldout(basis));
     context.insert("cards", &cards(found));
     context.insert("notes", &basis.notes);
     context.insert("effects", &asserted.chain(considered).collect::<Vec<_>>());
@@ -147,26 +152,42 @@ pub fn diagnose_report(
     context.insert("sources", &pictures.sources);
     context.insert("shapes", &pictures.shapes.iter().map(shape).collect::<Vec<_>>());
     context.insert("residuals", &residuals(pictures));
+    context.insert("examined", &EXAMINED);
+    context.insert("reliability", &reliability(&COUNTED.map(counted)));
     context.insert("error", &fixed(100.0 * found.error, 2));
     context.insert("model", &basis.model);
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
         ("report.css", include_str!("../../../templates/report.css")),
+        ("reliability.html", include_str!("../../../templates/reliability.html.tera")),
         ("diagnose.html", include_str!("../../../templates/diagnose.html.tera")),
     ])?;
     Ok(tera.render("diagnose.html", &context)?)
 }
 
+/// What took no part.
+fn heldout(basis: &Basis) -> String {
+    let logs = basis.graded.join(", ");
+    match basis.heldout.as_str() {
+        "cycles" => format!("the last part of {logs}"),
+        _ => logs,
+    }
+}
+
 fn cards(found: &Diagnosis) -> Vec<Card> {
-    let card = |name, of: &Interval| Card {
+    let card = |name: &'static str, of: &Interval| Card {
         name,
         value: format!("{} %", fixed(100.0 * of.value, 1)),
         note: format!("95 %: {} to {} %", fixed(100.0 * of.low, 1), fixed(100.0 * of.high, 1)),
     };
-    vec![
-        card("the gap shrinks, refit and effects", &found.shrink.total),
-        card("of this by the effects", &found.shrink.by_effect),
-    ]
+    let total = ("the gap shrinks, refit and effects", &found.shrink.total);
+    let by_effect = ("of this by the effects", &found.shrink.by_effect);
+    let told = if found.effects.is_empty() { &[total][..] } else { &[total, by_effect] };
+    told.iter().map(|(name, of)| card(name, of)).collect()
+}
+
+fn counted([from, to, stated, hits, of]: [f64; 5]) -> Bin {
+    Bin::new([from, to], stated, hits as usize, of as usize)
 }
 
 fn effect(of: &Said, asserted: bool) -> EffectRow {

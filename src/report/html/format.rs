@@ -16,6 +16,11 @@ pub(super) fn fixed(x: f64, decimals: usize) -> String {
     }
 }
 
+/// A share as %, to a tenth.
+pub(super) fn percent(share: f64) -> String {
+    fixed(100.0 * share, 1)
+}
+
 /// s, to the millisecond.
 pub(super) fn seconds(x: f64) -> String {
     fixed(x, 3)

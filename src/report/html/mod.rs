@@ -8,6 +8,7 @@ mod grades;
 mod identify;
 mod movements;
 mod proof;
+mod reliability;
 mod samples;
 mod segments;
 mod simulation;
