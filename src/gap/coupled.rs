@@ -10,6 +10,9 @@ use super::search::{Chosen, Found, Search};
 /// An effect whose shape is a coupling.
 pub(super) const COUPLING: &str = "wrist_coupling";
 
+/// Laws of what is there where a joint turns back.
+pub(super) const OF_TURNS: [&str; 2] = ["stribeck", "presliding"];
+
 /// Frequencies that are looked at first; twice as many each time.
 const LOWEST: usize = 20;
 /// The largest coupling that is looked for, and how far those are apart that are looked at first.
@@ -27,14 +30,18 @@ impl Search<'_, '_> {
         matches!(self.table.pieces[piece].owner, Owner::Effect(effect) if effect.id == COUPLING)
     }
 
-    /// The coupling of a set that leaves functions of the wrist, if it has one: friction that does
-    /// not jump where the motor turns back.
+    /// The coupling of a set that leaves functions or laws of slow motion of the wrist, if it has one:
+    /// friction that does not jump where the motor turns back.
     pub(super) fn rounded_coupling(&self, found: &Found) -> Option<f64> {
         let pieces = || found.chosen.iter().flat_map(|of| of.pieces.iter().copied());
         let of = pieces().find(|piece| self.is_coupling(*piece))?;
         let is_left = |piece: usize| {
             let piece = &self.table.pieces[piece];
-            matches!(piece.owner, Owner::Generic(_)) && matches!(piece.joint, Some(4 | 5))
+            let is_of_turns = match piece.owner {
+                Owner::Generic(_) => true,
+                Owner::Effect(effect) => OF_TURNS.contains(&effect.id),
+            };
+            is_of_turns && matches!(piece.joint, Some(4 | 5))
         };
         pieces().any(is_left).then(|| self.table.pieces[of].shape[0])
     }

@@ -7,6 +7,7 @@ use crate::robot::Model;
 
 use super::calibration::calibrate;
 use super::column::{Owner, pieces};
+use super::coupled::OF_TURNS;
 use super::diagnosis::{Anything, Diagnosis, Said, Verdict};
 use super::gated::{OF_TIME, gated};
 use super::generic::OF_DRIFT;
@@ -78,11 +79,16 @@ pub fn diagnose_telling(
     let flipped = flip(&mut train, settings);
     let mut searched = search(&train, settings, believed, tell);
     let coupling = searched.search.rounded_coupling(&searched.found);
+    // What is there at turns can't be told without them.
+    let is_of_moving = |effect: &&'static Effect| !OF_TURNS.contains(&effect.id);
+    let effects = settings.effects.iter().copied().filter(is_of_moving).collect();
+    let (of_moving, mut settings) = (Settings { effects, ..*settings }, settings);
     if let Some(coupling) = coupling {
         drop(searched);
         for record in &mut train {
             record.leave_out_turns(coupling);
         }
+        settings = &of_moving;
         searched = search(&train, settings, believed, tell);
     }
     let Searched { mut search, mut found, chance, refit } = searched;

@@ -7,6 +7,8 @@ use crate::robot::Model;
 
 use super::spectrum::Spectrum;
 
+/// Share of the fastest rate below which friction that does not jump changes its sense.
+const ROUNDED: f64 = 0.06;
 /// Rate below which a joint counts as at rest \[rad/s\]: its friction has no sense.
 pub(super) const REST: f64 = 0.02;
 /// Neighbours over which the power of noise is averaged.
@@ -117,13 +119,17 @@ impl<'a> Record<'a> {
             .collect()
     }
 
-    /// Leaves out when motor 6 of a wrist that is coupled by so much more nearly rests: nobody
-    /// knows which way it turns.
+    /// Leaves out when motor 6 of a wrist that is coupled by so much more nearly rests, as it is or
+    /// as it was taken to be: nobody knows which way it turns.
     pub(super) fn leave_out_turns(&mut self, coupling: f64) {
         let Motion { model, qd, rest, .. } = &self.motion;
-        let coupled = model.wrist.coupling + coupling;
+        let fastest = qd[5].iter().fold(0.0, |most: f64, rate| rate.abs().max(most));
+        let slow = rest[5].max(ROUNDED * fastest);
+        let turns = |coupling: f64, row: usize| {
+            (qd[5][row] + (model.wrist.coupling + coupling) * qd[4][row]).abs() <= slow
+        };
         for row in 0..self.motion.len() {
-            if (qd[5][row] + coupled * qd[4][row]).abs() <= rest[5] {
+            if turns(coupling, row) || turns(0.0, row) {
                 (self.window[4][row], self.window[5][row]) = (0.0, 0.0);
             }
         }
