@@ -49,10 +49,9 @@ pub(super) fn displaced(
     {
         series[joint].iter_mut().zip(less).for_each(|(x, less)| *x -= less);
     }
-    let rigid = |motion: &Motion<'_>| motion.rigid(motion.model, &Load::none());
-    let (before, after) = (rigid(motion), rigid(&moved));
-    let difference = |(after, before): (Vec<f64>, Vec<f64>)| {
+    let after = moved.rigid(motion.model, &Load::none());
+    let difference = |(after, before): (Vec<f64>, &Vec<f64>)| {
         after.iter().zip(before).map(|(a, b)| a - b).collect::<Vec<f64>>()
     };
-    after.into_iter().zip(before).map(difference).enumerate().collect()
+    after.into_iter().zip(motion.bodies()).map(difference).enumerate().collect()
 }

@@ -1,5 +1,7 @@
 //! A motion, and what the model does in it.
 
+use std::sync::OnceLock;
+
 use crate::dynamics::{
     Data, Load, apparent_torques, friction_of_senses, laws, motor_rates, motor_torques,
     rigid_bodies, rnea, sense,
@@ -38,6 +40,10 @@ pub struct Motion<'a> {
     pub gear: Vec<Vec<f64>>,
     /// Torques that a log shows, by the model \[Nm\].
     pub torque: Vec<Vec<f64>>,
+    /// Torques of the rigid bodies, once they are asked for.
+    bodies: OnceLock<Vec<Vec<f64>>>,
+    /// By joint, inertias of what it turns, once they are asked for.
+    inertia: [OnceLock<Vec<f64>>; MAX_DOF],
 }
 
 impl<'a> Motion<'a> {
@@ -65,6 +71,8 @@ impl<'a> Motion<'a> {
             senses: empty(),
             gear: empty(),
             torque: Vec::new(),
+            bodies: OnceLock::new(),
+            inertia: Default::default(),
         };
         let mut data = Data::new();
         for row in 0..rows {
@@ -87,6 +95,12 @@ impl<'a> Motion<'a> {
         }
         motion.torque = motion.torques_of(model, &Load::none());
         motion
+    }
+
+    /// Lets the gears carry what another model says.
+    pub fn carry(&mut self, other: &Model) {
+        let series = [self.q.clone(), self.qd.clone(), self.qdd.clone()];
+        self.gear = Motion::new(other, self.t.clone(), series, &self.rest, self.closed).gear;
     }
 
     /// Number of rows.
@@ -182,6 +196,33 @@ impl<'a> Motion<'a> {
             torques.iter_mut().zip(tau).for_each(|(to, tau)| to.push(tau));
         }
         torques
+    }
+
+    /// Torques of the model's rigid bodies without the rotors, of the motion as it was made \[Nm\].
+    pub(super) fn bodies(&self) -> &[Vec<f64>] {
+        self.bodies.get_or_init(|| self.rigid(self.model, &Load::none()))
+    }
+
+    /// Inertia of what a joint turns, of the motion as it was made \[kg m²\].
+    pub(super) fn inertias(&self, joint: usize) -> &[f64] {
+        self.inertia[joint].get_or_init(|| self.turned(joint))
+    }
+
+    fn turned(&self, joint: usize) -> Vec<f64> {
+        let mut data = Data::new();
+        let n = self.model.dof;
+        let inertia = |row| {
+            let [q, ..] = self.state(row);
+            let mut unit = [0.0; MAX_DOF];
+            let none = [0.0; MAX_DOF];
+            let mut torque = |qdd: &[f64]| {
+                rigid_bodies(self.model, &mut data, &Load::none(), &q[..n], &none[..n], qdd)[joint]
+            };
+            let weight = torque(&none[..n]);
+            unit[joint] = 1.0;
+            torque(&unit[..n]) - weight
+        };
+        (0..self.len()).map(inertia).collect()
     }
 
     /// A torque of a motor, over its gear ratio, at the joints that it turns.

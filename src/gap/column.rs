@@ -116,21 +116,22 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
             })
             .collect();
     }
-    let choices = shapes.len();
     let of = match effect.of {
         crate::effects::Of::Joint => Some(joint),
         crate::effects::Of::Robot => None,
     };
-    shapes
-        .into_iter()
-        .map(|shape| Piece {
-            owner: Owner::Effect(effect),
-            joint: of,
-            columns: columns(effect, records, joint, &shape, &tried),
-            choices,
-            shape,
-        })
-        .collect()
+    let piece = |shape: Vec<f64>| Piece {
+        owner: Owner::Effect(effect),
+        joint: of,
+        columns: columns(effect, records, joint, &shape, &tried),
+        choices: 0,
+        shape,
+    };
+    let mut pieces: Vec<Piece> =
+        shapes.into_iter().map(piece).filter(|piece| !piece.columns.is_empty()).collect();
+    let choices = pieces.len();
+    pieces.iter_mut().for_each(|piece| piece.choices = choices);
+    pieces
 }
 
 /// Columns of an effect at a shape of its own.

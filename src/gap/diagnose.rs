@@ -77,6 +77,7 @@ pub fn diagnose_telling(
     // With a baseline the robot was more than the model has.
     let believed = train.first().map_or(model, |record| record.motion.model);
     let flipped = flip(&mut train, settings);
+    carry(&mut train, settings, believed);
     let mut searched = search(&train, settings, believed, tell);
     let coupling = searched.search.rounded_coupling(&searched.found);
     // What is there at turns can't be told without them.
@@ -389,6 +390,20 @@ fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
         }
     }
     flipped
+}
+
+/// Lets the gears carry what the refitted model says: laws of the load go by what is there.
+fn carry(train: &mut [Record<'_>], settings: &Settings, believed: &Model) {
+    if settings.trust == Trust::Commissioned {
+        return;
+    }
+    let table = Table::of(train, Vec::new(), &nuisances(train, settings.trust));
+    let evidence = table.evidence(ERRORS[ERRORS.len() - 1]);
+    let none = evidence.parameters(&[], &DVector::zeros(0));
+    let refit = Improved::new(believed, &table.mixing, &none, &[]);
+    for record in train.iter_mut() {
+        record.motion.carry(&refit.applied);
+    }
 }
 
 /// Correlations of the joints' measured torques with those that a model says.
