@@ -10,7 +10,9 @@ pub(super) const BACKLASH: Effect = Effect {
     channel: Channel::Torque,
     of: Of::Joint,
     title: "Backlash",
-    law: "width 0: τ = −τ_L until the motor has turned by gap after each change of the sign of τ_L; else q_link = q − gap/2·tanh(τ_L/width)",
+    law: "width, stiffness 0: τ = −τ_L until the motor has turned by gap after each change of the sign of τ_L; \
+          width > 0: q_link = q − gap/2·tanh(τ_L/width); stiffness k > 0: q_link = q − δ, \
+          M·δ̈ + 0.8·√(k·M)·δ̇ + k·(δ − δ within ±gap/2) = τ_L",
     source: "M. Nordin, P.-O. Gutman, Controlling mechanical systems with backlash: a survey, Automatica 38, 2002",
     parameters: &[
         bounded("gap", "rad", "angle of the gap at the joint", [1e-5, 0.1]),
@@ -51,7 +53,8 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
         return if width > 0.0 {
             Vec::new()
         } else {
-            displaced(motion, joint, &caught(motion, joint, gap, stiffness))
+            let gear = Gear { gap, stiffness, step: motion.step(), closed: motion.closed };
+            displaced(motion, joint, &gear.caught(&motion.gear[joint], motion.inertias(joint)))
         };
     }
     if width > 0.0 {
@@ -60,41 +63,6 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
         return displaced(motion, joint, &behind);
     }
     crossed(motion, joint, gap)
-}
-
-/// Share of critical damping of a gear at a side.
-const DAMPING: f64 = 0.4;
-/// Largest product of eigenfrequency and step of the integration, and steps in a row at most.
-const FINEST: f64 = 0.3;
-const MOST_STEPS: f64 = 400.0;
-
-/// How far the link is behind \[rad\] that falls through the gap and is caught by a gear that gives.
-fn caught(motion: &Motion<'_>, joint: usize, gap: f64, stiffness: f64) -> Vec<f64> {
-    let inertia = motion.inertias(joint);
-    let load = &motion.gear[joint];
-    let rows = motion.len();
-    let spring = |x: f64| stiffness * (x - x.clamp(-0.5 * gap, 0.5 * gap));
-    let lightest = inertia.iter().copied().fold(f64::INFINITY, f64::min).max(1e-9);
-    let steps = ((stiffness / lightest).sqrt() * motion.step() / FINEST).ceil().clamp(1.0, MOST_STEPS);
-    let h = motion.step() / steps;
-    let at_rest = |tau: f64| tau / stiffness + 0.5 * gap * tau.signum();
-    let (mut x, mut v) = (load.first().map_or(0.0, |tau| at_rest(*tau)), 0.0);
-    let mut behind = vec![0.0; rows];
-    for _ in 0..if motion.closed { 2 } else { 1 } {
-        for row in 0..rows {
-            behind[row] = x;
-            let next = if row + 1 < rows { row + 1 } else if motion.closed { 0 } else { row };
-            // What would swing faster than the finest step is heavier.
-            let mass = inertia[row].max(stiffness * (h / FINEST).powi(2));
-            let damper = 2.0 * DAMPING * (stiffness * mass).sqrt();
-            for k in 0..steps as usize {
-                let pull = load[row] + (load[next] - load[row]) * k as f64 / steps;
-                v = (v + h * (pull - spring(x)) / mass) / (1.0 + h * damper / mass);
-                x += h * v;
-            }
-        }
-    }
-    behind
 }
 
 /// The gear carries nothing while its gap is crossed.
@@ -115,4 +83,94 @@ fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)
         }
     }
     motion.at_joints(joint, series)
+}
+
+/// Share of critical damping of a gear at a side.
+const DAMPING: f64 = 0.4;
+/// Largest product of eigenfrequency and step of the integration, and steps in a row at most.
+const FINEST: f64 = 0.3;
+const MOST_STEPS: f64 = 400.0;
+
+/// A gear with a gap that gives at its sides.
+struct Gear {
+    gap: f64,
+    stiffness: f64,
+    step: f64,
+    closed: bool,
+}
+
+impl Gear {
+    /// How far the link is behind \[rad\] that falls through the gap and is caught, by its load \[Nm\]
+    /// and its inertia \[kg m²\].
+    fn caught(&self, load: &[f64], inertia: &[f64]) -> Vec<f64> {
+        let Gear { gap, stiffness, step, closed } = *self;
+        let rows = load.len();
+        let spring = |x: f64| stiffness * (x - x.clamp(-0.5 * gap, 0.5 * gap));
+        let lightest = inertia.iter().copied().fold(f64::INFINITY, f64::min).max(1e-9);
+        let steps = ((stiffness / lightest).sqrt() * step / FINEST).ceil().clamp(1.0, MOST_STEPS);
+        let h = step / steps;
+        let at_rest = |tau: &f64| tau / stiffness + 0.5 * gap * tau.signum();
+        let (mut x, mut v) = (load.first().map_or(0.0, at_rest), 0.0);
+        let mut behind = vec![0.0; rows];
+        // Of what repeats the second time has no transient left.
+        for _ in 0..if closed { 2 } else { 1 } {
+            for row in 0..rows {
+                behind[row] = x;
+                let last = if closed { 0 } else { row };
+                let next = if row + 1 < rows { row + 1 } else { last };
+                // What would swing faster than the finest step is heavier.
+                let mass = inertia[row].max(stiffness * (h / FINEST).powi(2));
+                let damper = 2.0 * DAMPING * (stiffness * mass).sqrt();
+                for k in 0..steps as usize {
+                    let pull = load[row] + (load[next] - load[row]) * k as f64 / steps;
+                    v = (v + h * (pull - spring(x)) / mass) / (1.0 + h * damper / mass);
+                    x += h * v;
+                }
+            }
+        }
+        behind
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    const INERTIA: f64 = 5.0;
+    const STIFFNESS: f64 = 2e4;
+    const LOAD: f64 = 100.0;
+
+    /// Furthest behind under a load that swings `ratio` times as fast as the gear would.
+    fn furthest(gap: f64, ratio: f64) -> f64 {
+        let period = TAU / (ratio * (STIFFNESS / INERTIA).sqrt());
+        let (count, cycles) = (4000, 8.0);
+        let gear = Gear {
+            gap,
+            stiffness: STIFFNESS,
+            step: cycles * period / f64::from(count),
+            closed: true,
+        };
+        let load: Vec<f64> = (0..count)
+            .map(|row| LOAD * (cycles * TAU * f64::from(row) / f64::from(count)).sin())
+            .collect();
+        let behind = gear.caught(&load, &vec![INERTIA; load.len()]);
+        behind.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+    }
+
+    /// Without a gap it is a damped oscillator; slowly, a gap adds half of its width.
+    #[test]
+    fn links_fall_through_the_gap_and_swing() {
+        let still = LOAD / STIFFNESS;
+        for ratio in [0.05, 0.5, 1.5] {
+            let r2: f64 = ratio * ratio;
+            let expected = still / ((1.0 - r2).powi(2) + 4.0 * DAMPING.powi(2) * r2).sqrt();
+            let found = furthest(0.0, ratio);
+            assert!((found / expected - 1.0).abs() < 0.02, "{ratio}: {found} {expected}");
+        }
+        let gap = 4e-3;
+        let more = furthest(gap, 0.01) - still;
+        assert!((more / (0.5 * gap) - 1.0).abs() < 0.02, "{more}");
+    }
 }

@@ -41,11 +41,14 @@ fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
 }
 
 fn diagnosed_by(nominal: &Model, robot: &Robot<'_>, effects: Vec<&'static Effect>) -> Diagnosis {
+    trusting(nominal, robot, Settings { trust: Trust::Commissioned, effects })
+}
+
+fn trusting(nominal: &Model, robot: &Robot<'_>, settings: Settings) -> Diagnosis {
     let samples = [1, 2, 3].map(|seed| robot.samples(seed));
     let records = |which: &[usize]| -> Vec<Record<'_>> {
         which.iter().flat_map(|k| Record::all(nominal, &samples[*k])).collect()
     };
-    let settings = Settings { trust: Trust::Commissioned, effects };
     diagnose(nominal, records(&[0, 1]), &records(&[2]), &settings)
 }
 
@@ -204,6 +207,21 @@ fn contacts_are_found_with_their_windows() {
             assert!((value(name) - expected).abs() < ROW, "{rise} {name} {}", value(name));
         }
     }
+}
+
+/// Gears go by the load that is there, not by that of a model whose masses are wrong.
+#[test]
+fn backlash_is_told_of_models_that_are_far_off() {
+    let nominal = irb1600();
+    let mut truth = spread(&nominal, 5);
+    for (link, factor) in truth.links.iter_mut().zip([1.0, 1.4, 0.6, 1.5, 0.5, 1.5]) {
+        link.mass *= factor;
+    }
+    let effects = [(effect("backlash").unwrap(), 2, [0.005, 0.0, 1e5].as_slice())];
+    let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
+    let settings = Settings { trust: Trust::Cad, effects: ALL.iter().collect() };
+    let found = trusting(&nominal, &robot, settings);
+    assert_eq!(named(&found), [("backlash", vec![3])], "{:?}", found.reasons);
 }
 
 /// Where motor 6 turns back each row is known so well that only the right coupling explains it.
