@@ -130,7 +130,9 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
     let mut pieces: Vec<Piece> =
         shapes.into_iter().map(piece).filter(|piece| !piece.columns.is_empty()).collect();
     let choices = pieces.len();
-    pieces.iter_mut().for_each(|piece| piece.choices = choices);
+    for piece in &mut pieces {
+        piece.choices = choices;
+    }
     pieces
 }
 

@@ -41,15 +41,15 @@ fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
 }
 
 fn diagnosed_by(nominal: &Model, robot: &Robot<'_>, effects: Vec<&'static Effect>) -> Diagnosis {
-    trusting(nominal, robot, Settings { trust: Trust::Commissioned, effects })
+    trusting(nominal, robot, &Settings { trust: Trust::Commissioned, effects })
 }
 
-fn trusting(nominal: &Model, robot: &Robot<'_>, settings: Settings) -> Diagnosis {
+fn trusting(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosis {
     let samples = [1, 2, 3].map(|seed| robot.samples(seed));
     let records = |which: &[usize]| -> Vec<Record<'_>> {
         which.iter().flat_map(|k| Record::all(nominal, &samples[*k])).collect()
     };
-    diagnose(nominal, records(&[0, 1]), &records(&[2]), &settings)
+    diagnose(nominal, records(&[0, 1]), &records(&[2]), settings)
 }
 
 /// Names with their joints, from 1.
@@ -220,7 +220,7 @@ fn backlash_is_told_of_models_that_are_far_off() {
     let effects = [(effect("backlash").unwrap(), 2, [0.005, 0.0, 1e5].as_slice())];
     let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
     let settings = Settings { trust: Trust::Cad, effects: ALL.iter().collect() };
-    let found = trusting(&nominal, &robot, settings);
+    let found = trusting(&nominal, &robot, &settings);
     assert_eq!(named(&found), [("backlash", vec![3])], "{:?}", found.reasons);
 }
 
