@@ -396,6 +396,20 @@ fn generated_cases_are_graded() {
     hostile(&out, shown);
 }
 
+/// Of a pair neither effect is left out.
+#[test]
+fn of_pairs_nothing_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = short(13);
+    let pairs = (1..200).map(|number| blind::case(&settings, number).unwrap());
+    let pair = pairs.into_iter().find(|case| case.label.kind == Kind::Two).unwrap();
+    let sealed = blind::seal(&[(pair.label.clone(), pair.salt)]).unwrap();
+    fs::write(folder.path().join(blind::KEY), sealed.key).unwrap();
+    fs::write(folder.path().join(blind::SEALS), sealed.seals).unwrap();
+    let (shown, id) = (folder.path().to_str().unwrap(), &pair.label.effects[0].id);
+    refused(&["blind", "grade", shown, "--leave-out", id], "no case has this effect alone");
+}
+
 /// Without its family an effect is looked for anew, and none of the family is named.
 #[test]
 fn families_are_left_out() {

@@ -74,15 +74,16 @@ fn case(seed: u64, number: usize) -> Case {
     blind::case(&settings, number).unwrap()
 }
 
-/// Holds the claims for a case of the examination that has the effect.
-fn of_case(seed: u64, number: usize, id: &str) {
+/// Holds the claims for a case of the examination that has the effect: the shrink, %.
+fn of_case(seed: u64, number: usize, id: &str) -> f64 {
     let case = case(seed, number);
     assert!(case.label.effects.iter().any(|truth| truth.id == id), "{:?}", case.label.effects);
-    holds(&case, id);
+    holds(&case, id)
 }
 
-/// Diagnoses a case with one effect in the library, and holds its claims against `predict`.
-fn holds(case: &Case, id: &str) {
+/// Diagnoses a case with one effect in the library, and holds its claims against `predict`: the
+/// shrink, %.
+fn holds(case: &Case, id: &str) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in &case.files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -119,6 +120,7 @@ fn holds(case: &Case, id: &str) {
     let shrink = 100.0 * (1.0 - (sums[1] / sums[0]).sqrt());
     let claimed = gap["shrink_percent"]["value"].as_f64().unwrap();
     assert!((shrink - claimed).abs() <= OF_SHRINK, "{id}: claimed {claimed} %, {shrink} %");
+    claimed
 }
 
 #[test]
@@ -166,6 +168,14 @@ fn of_a_tilted_base() {
 #[test]
 fn of_a_coupled_wrist() {
     of_case(13, 38, "wrist_coupling");
+}
+
+/// Friction of motor 6 that changes its sense over a few per cent of its rate: rows at which it turns
+/// so slowly tell nothing of its coupling.
+#[test]
+fn of_a_coupled_wrist_whose_friction_is_rounded() {
+    let shrink = of_case(13, 1, "wrist_coupling");
+    assert!(shrink > 75.0, "{shrink}");
 }
 
 #[test]

@@ -149,6 +149,26 @@ fn of_one_log_the_last_cycles_are_held_out() {
     assert!((last - none).abs() > 1.0, "{none} {last}");
 }
 
+/// A period that the motion does not have is told, and the one that it has is used.
+#[test]
+fn wrong_periods_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    case(folder.path());
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (robot, log, held) = (at("nominal.toml"), at("log-1.csv"), at("heldout.csv"));
+    let logs = ["diagnose", "--robot", &robot, "--log", &log, "--heldout", &held];
+    let rest = ["--effects", "ripple", "--format", "json", "--period"];
+    let diagnosed = |period: &str| joulepath(&[&logs[..], &rest, &[period]].concat());
+    let [right, wrong] = ["4", "2.9"].map(diagnosed);
+    let message = String::from_utf8_lossy(&wrong.stderr).into_owned();
+    let told = "--period 2.9: the motion repeats every 4.0000 s; that was used";
+    assert!(message.contains(told), "{message}");
+    let gap = |output: &Output| -> Value {
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()["gap"].clone()
+    };
+    assert_eq!(gap(&right), gap(&wrong));
+}
+
 #[test]
 fn wrong_input_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -167,11 +187,17 @@ fn wrong_input_is_refused() {
     fs::write(&few, five.join("\n")).unwrap();
     let (copy, page, program) = (at("copy.csv"), at("page.html"), at("missing.mod"));
     fs::write(&copy, &text).unwrap();
+    let (packed, binary) = (at("log-1.csv.gz"), at("log-1.mat"));
+    fs::write(&packed, [0x1f, 0x8b, 8, 0]).unwrap();
+    fs::write(&binary, b"MATLAB\x00\x01,t,q1").unwrap();
     for (args, way_out) in [
         (vec!["--robot", &robot, "--log", &few], "q1 to q6"),
         (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
         (vec!["--robot", &robot, "--log", &log, "--period", "0"], "more than 0"),
         (vec!["--robot", &robot, "--log", "missing.csv"], "cannot read"),
+        (vec!["--robot", &robot, "--log", &packed], "packed: give it as CSV"),
+        (vec!["--robot", &robot, "--log", &binary], "no text: give it as CSV"),
+        (vec!["--robot", &robot, "--log", &itself], "this is a folder"),
         (vec!["--robot", &robot, "--log", &log, "--heldout", &log], "is in --log too"),
         (vec!["--robot", &robot, "--log", &log, "--baseline", &log], "is in --log too"),
         (vec!["--robot", &robot, "--log", &log, "--out", &robot], "give another name"),

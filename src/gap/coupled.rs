@@ -9,6 +9,8 @@ use super::search::{Chosen, Found, Search};
 
 /// An effect whose shape is a coupling.
 pub(super) const COUPLING: &str = "wrist_coupling";
+/// Joints that it couples.
+pub(super) const OF_WRIST: [usize; 2] = [4, 5];
 
 /// Laws of what is there where a joint turns back.
 pub(super) const OF_TURNS: [&str; 2] = ["stribeck", "presliding"];
@@ -41,7 +43,7 @@ impl Search<'_, '_> {
                 Owner::Generic(_) => true,
                 Owner::Effect(effect) => OF_TURNS.contains(&effect.id),
             };
-            is_of_turns && matches!(piece.joint, Some(4 | 5))
+            is_of_turns && piece.joint.is_some_and(|joint| OF_WRIST.contains(&joint))
         };
         pieces().any(is_left).then(|| self.table.pieces[of].shape[0])
     }

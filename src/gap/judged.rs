@@ -3,6 +3,7 @@
 use crate::effects::find;
 
 use super::column::Owner;
+use super::coupled::{COUPLING, OF_WRIST};
 use super::diagnose::{CLASS, FLIP};
 use super::diagnosis::{Anything, Estimated, Said, Verdict};
 use super::gated::{GATED, OF_TIME};
@@ -190,7 +191,11 @@ pub(super) fn judged(
                 }
                 let said = Said {
                     effect,
-                    joints: fitted.iter().filter_map(|of| of.joint).collect(),
+                    joints: if effect.id == COUPLING {
+                        OF_WRIST.to_vec()
+                    } else {
+                        fitted.iter().filter_map(|of| of.joint).collect()
+                    },
                     class,
                     probability,
                     parameters: of_form(parameters(&fitted), form[k]),
@@ -274,6 +279,9 @@ impl Search<'_, '_> {
     /// has no other form than its law's, which `place` could be a part of.
     fn strongest_there(&self, found: &Found, place: usize, drops: &[f64]) -> f64 {
         let joints = |of: &Chosen| -> Vec<Option<usize>> {
+            if self.families[of.family].owner.id() == COUPLING {
+                return OF_WRIST.map(Some).to_vec();
+            }
             of.pieces.iter().map(|piece| self.table.pieces[*piece].joint).collect()
         };
         let own = joints(&found.chosen[place]);

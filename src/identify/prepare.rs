@@ -128,8 +128,10 @@ fn differentiated(
     let step = longest.step;
     let known = hints.period.or_else(|| of_cycles(log));
     let positions: Vec<&[f64]> = longest.series[..joints].iter().map(Vec::as_slice).collect();
+    // A motion that does not repeat as was said may repeat otherwise.
+    let found = |known| find_periods(&positions, step, known);
     if hints.cutoff.is_none()
-        && let Some(periods) = find_periods(&positions, step, known)
+        && let Some(periods) = found(known).or_else(|| known.and_then(|_| found(None)))
     {
         let mut samples = periodic(longest, &periods, joints, resting);
         let start = samples.blocks[0].t[0];
