@@ -35,17 +35,20 @@ impl Search<'_, '_> {
     /// The coupling of a set that leaves functions or laws of slow motion of the wrist, if it has one:
     /// friction that does not jump where the motor turns back.
     pub(super) fn rounded_coupling(&self, found: &Found) -> Option<f64> {
-        let pieces = || found.chosen.iter().flat_map(|of| of.pieces.iter().copied());
-        let of = pieces().find(|piece| self.is_coupling(*piece))?;
-        let is_left = |piece: usize| {
-            let piece = &self.table.pieces[piece];
-            let is_of_turns = match piece.owner {
-                Owner::Generic(_) => true,
-                Owner::Effect(effect) => OF_TURNS.contains(&effect.id),
+        let mut pieces = found.chosen.iter().flat_map(|of| of.pieces.iter().copied());
+        let of = pieces.find(|piece| self.is_coupling(*piece))?;
+        // What is left at other joints, too, is no matter of the wrist.
+        let is_left = |of: &&Chosen| {
+            let at_wrist = |piece: &usize| {
+                self.table.pieces[*piece].joint.is_some_and(|joint| OF_WRIST.contains(&joint))
             };
-            is_of_turns && piece.joint.is_some_and(|joint| OF_WRIST.contains(&joint))
+            of.pieces.iter().all(at_wrist)
+                && match self.families[of.family].owner {
+                    Owner::Generic(_) => true,
+                    Owner::Effect(effect) => OF_TURNS.contains(&effect.id),
+                }
         };
-        pieces().any(is_left).then(|| self.table.pieces[of].shape[0])
+        found.chosen.iter().any(|of| is_left(&of)).then(|| self.table.pieces[of].shape[0])
     }
 
     /// Brings the coupling of a piece of a set to its best value.
