@@ -45,7 +45,8 @@ impl Search<'_, '_> {
             of.pieces.iter().all(at_wrist)
                 && match self.families[of.family].owner {
                     Owner::Generic(_) => true,
-                    Owner::Effect(effect) => OF_TURNS.contains(&effect.id),
+                    // A log that does not repeat knows no row so well that turns rule the fit.
+                    Owner::Effect(effect) => !self.is_open() && OF_TURNS.contains(&effect.id),
                 }
         };
         found.chosen.iter().any(|of| is_left(&of)).then(|| self.table.pieces[of].shape[0])

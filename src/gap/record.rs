@@ -124,7 +124,7 @@ impl<'a> Record<'a> {
     pub(super) fn leave_out_turns(&mut self, coupling: f64) {
         let Motion { model, qd, rest, .. } = &self.motion;
         let fastest = qd[5].iter().fold(0.0, |most: f64, rate| rate.abs().max(most));
-        let slow = rest[5].max(ROUNDED * fastest);
+        let slow = if self.motion.closed { rest[5].max(ROUNDED * fastest) } else { rest[5] };
         let turns = |coupling: f64, row: usize| {
             (qd[5][row] + (model.wrist.coupling + coupling) * qd[4][row]).abs() <= slow
         };
