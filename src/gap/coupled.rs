@@ -37,12 +37,10 @@ impl Search<'_, '_> {
     pub(super) fn rounded_coupling(&self, found: &Found) -> Option<f64> {
         let mut pieces = found.chosen.iter().flat_map(|of| of.pieces.iter().copied());
         let of = pieces.find(|piece| self.is_coupling(*piece))?;
-        // What is left at other joints, too, is no matter of the wrist.
+        // What is strongest at another joint, the first one of a family, is no matter of the wrist.
         let is_left = |of: &&Chosen| {
-            let at_wrist = |piece: &usize| {
-                self.table.pieces[*piece].joint.is_some_and(|joint| OF_WRIST.contains(&joint))
-            };
-            of.pieces.iter().all(at_wrist)
+            let joint = of.pieces.first().and_then(|piece| self.table.pieces[*piece].joint);
+            joint.is_some_and(|joint| OF_WRIST.contains(&joint))
                 && match self.families[of.family].owner {
                     Owner::Generic(_) => true,
                     // A log that does not repeat knows no row so well that turns rule the fit.
