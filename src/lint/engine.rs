@@ -102,7 +102,10 @@ pub struct Examined {
 /// Looks at all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
-    examine(job).report
+    let read = read(job, &Kept::default());
+    // No cycle is kept: those of a plant's programs would fill the memory.
+    let report = |unit: &Group| one(job, unit, &read).0;
+    merged(units(job, &read).par_iter().map(report).collect())
 }
 
 /// Looks at all programs, and gives their cycles too.
@@ -125,22 +128,24 @@ pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut Kept) -> Examined {
 }
 
 fn examine_units(job: &Job<'_>, units: &[Group], read: &[Arc<Read>]) -> Examined {
-    let results: Vec<(Report, Option<Cycle>)> =
-        units.par_iter().map(|unit| one(job, unit, read)).collect();
-    let mut report = Report::default();
-    let mut cycles = Vec::with_capacity(results.len());
-    for (result, cycle) in results {
-        report.findings.extend(result.findings);
-        report.unresolved += result.unresolved;
-        if let Some(energy) = result.cycle_energy_j {
-            *report.cycle_energy_j.get_or_insert(0.0) += energy;
-        }
-        cycles.push(cycle);
-    }
-    report.findings.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.rule.code));
-    report.findings.dedup_by(|a, b| a.span == b.span && a.rule.code == b.rule.code);
+    let (reports, cycles) = units.par_iter().map(|unit| one(job, unit, read)).unzip();
     let programs = units.iter().map(|unit| unit.files.clone()).collect();
-    Examined { report, cycles, programs }
+    Examined { report: merged(reports), cycles, programs }
+}
+
+/// The reports of all programs as one.
+fn merged(reports: Vec<Report>) -> Report {
+    let mut all = Report::default();
+    for report in reports {
+        all.findings.extend(report.findings);
+        all.unresolved += report.unresolved;
+        if let Some(energy) = report.cycle_energy_j {
+            *all.cycle_energy_j.get_or_insert(0.0) += energy;
+        }
+    }
+    all.findings.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.rule.code));
+    all.findings.dedup_by(|a, b| a.span == b.span && a.rule.code == b.rule.code);
+    all
 }
 
 fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
