@@ -180,12 +180,12 @@ impl Effect {
     ) -> Vec<(usize, Vec<f64>)> {
         match self.form {
             Form::Model(change) => {
-                let mut changed = motion.model.clone();
+                let mut changed = motion.there().clone();
                 change(&mut changed, joint, coordinates);
                 let after = motion.torques_of(&changed, &Load::none());
                 after
                     .into_iter()
-                    .zip(&motion.torque)
+                    .zip(motion.shown())
                     .map(|(after, before)| after.iter().zip(before).map(|(a, b)| a - b).collect())
                     .enumerate()
                     .collect()

@@ -49,7 +49,7 @@ pub(super) fn displaced(
     {
         series[joint].iter_mut().zip(less).for_each(|(x, less)| *x -= less);
     }
-    let after = moved.rigid(motion.model, &Load::none());
+    let after = moved.rigid(motion.there(), &Load::none());
     let difference = |(after, before): (Vec<f64>, &Vec<f64>)| {
         after.iter().zip(before).map(|(a, b)| a - b).collect::<Vec<f64>>()
     };

@@ -1,6 +1,6 @@
 //! A motion, and what the model does in it.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::dynamics::{
     Data, Load, apparent_torques, friction_of_senses, laws, motor_rates, motor_torques,
@@ -40,6 +40,10 @@ pub struct Motion<'a> {
     pub gear: Vec<Vec<f64>>,
     /// Torques that a log shows, by the model \[Nm\].
     pub torque: Vec<Vec<f64>>,
+    /// The model with the bodies that are there, where these are others.
+    carried: Option<Arc<Model>>,
+    /// Torques that a log shows by that model, once they are asked for.
+    shown: OnceLock<Vec<Vec<f64>>>,
     /// Torques of the rigid bodies, once they are asked for.
     bodies: OnceLock<Vec<Vec<f64>>>,
     /// By joint, inertias of what it turns, once they are asked for.
@@ -71,6 +75,8 @@ impl<'a> Motion<'a> {
             senses: empty(),
             gear: empty(),
             torque: Vec::new(),
+            carried: None,
+            shown: OnceLock::new(),
             bodies: OnceLock::new(),
             inertia: Default::default(),
         };
@@ -101,6 +107,23 @@ impl<'a> Motion<'a> {
     pub fn carry(&mut self, other: &Model) {
         let series = [self.q.clone(), self.qd.clone(), self.qdd.clone()];
         self.gear = Motion::new(other, self.t.clone(), series, &self.rest, self.closed).gear;
+    }
+
+    /// Lets all laws go by the bodies of another model.
+    pub fn go_by(&mut self, other: &Model) {
+        self.carry(other);
+        self.carried = Some(Arc::new(Model { links: other.links.clone(), ..self.model.clone() }));
+        (self.shown, self.bodies, self.inertia) = Default::default();
+    }
+
+    /// The model with the bodies that are there.
+    pub(super) fn there(&self) -> &Model {
+        self.carried.as_deref().unwrap_or(self.model)
+    }
+
+    /// Torques that a log of the motion shows by that model, effects of the whole motion left out.
+    pub(super) fn shown(&self) -> &[Vec<f64>] {
+        self.shown.get_or_init(|| self.torques_of(self.there(), &Load::none()))
     }
 
     /// Number of rows.
@@ -198,9 +221,9 @@ impl<'a> Motion<'a> {
         torques
     }
 
-    /// Torques of the model's rigid bodies without the rotors, of the motion as it was made \[Nm\].
+    /// Torques of the rigid bodies that are there without the rotors, of the motion as it was made \[Nm\].
     pub(super) fn bodies(&self) -> &[Vec<f64>] {
-        self.bodies.get_or_init(|| self.rigid(self.model, &Load::none()))
+        self.bodies.get_or_init(|| self.rigid(self.there(), &Load::none()))
     }
 
     /// Inertia of what a joint turns, of the motion as it was made \[kg m²\].
@@ -216,7 +239,8 @@ impl<'a> Motion<'a> {
             let mut unit = [0.0; MAX_DOF];
             let none = [0.0; MAX_DOF];
             let mut torque = |qdd: &[f64]| {
-                rigid_bodies(self.model, &mut data, &Load::none(), &q[..n], &none[..n], qdd)[joint]
+                rigid_bodies(self.there(), &mut data, &Load::none(), &q[..n], &none[..n], qdd)
+                    [joint]
             };
             let weight = torque(&none[..n]);
             unit[joint] = 1.0;

@@ -2,6 +2,8 @@
 //! no library has all of, and a function that follows the form exactly wins against the law.
 
 use super::column::Owner;
+use super::improved::LOAD;
+use super::load::OF_BODIES;
 use super::search::{Chosen, Found, Search};
 
 /// Share of what functions at a joint explain that a law has to explain by itself.
@@ -195,11 +197,14 @@ impl Search<'_, '_> {
         let base = self.score(&rest);
         let own = self.score(&less) - base;
         let given = self.given(&rest);
+        // Without the load they would go by other bodies.
+        let is_loaded = self.is_loaded && self.families[chosen.family].owner.id() == LOAD;
         let mut class = Vec::new();
         for (number, family) in self.families.iter().enumerate() {
             let Owner::Effect(effect) = family.owner else { continue };
             if number == chosen.family
                 || NO_LAWS.contains(&effect.id)
+                || is_loaded && OF_BODIES.contains(&effect.id)
                 || rest.iter().any(|of| of.family == number)
             {
                 continue;

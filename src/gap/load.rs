@@ -1,16 +1,48 @@
-//! What hangs on the flange is a body.
+//! What hangs on the flange is a body, and other laws go by it.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
 
 use crate::dynamics::{RIGID, link_of, link_parameters, pseudo_inertia};
 use crate::identify::{Piece, Target, consistent};
-use crate::robot::Link;
+use crate::robot::{Link, Model};
+
+use super::improved::{Improved, LOAD};
+use super::polish::Polished;
+use super::search::{Chosen, Found, Search};
+
+/// What a load has to bring for other laws to go by it.
+const HEAVY: f64 = 1000.0;
+/// Laws that go by the bodies that are there.
+pub(super) const OF_BODIES: [&str; 7] = [
+    "backlash",
+    "base_tilt",
+    "elasticity",
+    "encoder_offset",
+    "gear_efficiency",
+    "load_friction",
+    "torque_constant",
+];
 
 /// Radius of the ball from which a body is looked for \[m\].
 const RADIUS: f64 = 0.1;
 
 /// Squares of deviations from which on what differs is no body.
 const CHANGED: f64 = 500.0;
+
+impl Search<'_, '_> {
+    /// The model with the load of a set, where that is heavy and not all that the set has.
+    pub(super) fn loaded(&mut self, found: &Found, believed: &Model) -> Option<Model> {
+        let is_load = |of: &&Chosen| self.families[of.family].owner.id() == LOAD;
+        let rest: Vec<Chosen> = found.chosen.iter().filter(|of| !is_load(of)).cloned().collect();
+        let has_both = !rest.is_empty() && rest.len() < found.chosen.len();
+        if !has_both || found.score - self.score(&rest) < HEAVY {
+            return None;
+        }
+        let Polished { mut effects, parameters, .. } = self.polish(&found.chosen)?;
+        effects.retain(|of| of.effect.id == LOAD);
+        Some(Improved::new(believed, &self.table.mixing, &parameters, &effects).applied)
+    }
+}
 
 /// The body (mass, first moments, moments) nearest to what was fitted of one, measured by what is
 /// known of it; a body with a negative mass is one that is gone. `None` where it is one already,

@@ -8,7 +8,7 @@ mod power;
 mod simulated;
 
 use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
-use joulepath::effects::{ALL, Effect, find as effect};
+use joulepath::effects::{ALL, Effect, find as effect, with_body};
 use joulepath::gap::{
     Diagnosis, Fitted, Improved, Logs, PARAMETERS, Place, Quantity, Record, Settings, Trust,
     Verdict, attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
@@ -251,6 +251,20 @@ fn heavy_loads_are_no_other_sign() {
     assert_eq!(named(&found), [("payload", vec![])], "{:?}", found.reasons);
     let mass = &found.effects[0].parameters[0];
     assert!((mass.value - load[0]).abs() < WITHIN * mass.sd, "{mass:?}");
+}
+
+/// What hangs on the flange leans with the base.
+#[test]
+fn a_leaning_base_is_told_under_a_heavy_load() {
+    let nominal = irb1600();
+    let mut truth = spread(&nominal, 5);
+    let load = LOAD.map(|x| 15.0 * x);
+    truth.links[5] = with_body(&truth.links[5], &nominal.kinematics.flange, &load);
+    let effects = [(effect("base_tilt").unwrap(), 0, [0.1, -0.06].as_slice())];
+    let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 5e-4 });
+    let mut named = named(&found);
+    named.sort_unstable();
+    assert_eq!(named, [("base_tilt", vec![]), ("payload", vec![])], "{:?}", found.reasons);
 }
 
 /// A motor's curve may bend sooner than with the cube of its torque.
