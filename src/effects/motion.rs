@@ -116,6 +116,12 @@ impl<'a> Motion<'a> {
         (self.shown, self.bodies, self.inertia) = Default::default();
     }
 
+    /// Whether laws go by the bodies of another model.
+    #[must_use]
+    pub fn has_other_bodies(&self) -> bool {
+        self.carried.is_some()
+    }
+
     /// The model with the bodies that are there.
     pub(super) fn there(&self) -> &Model {
         self.carried.as_deref().unwrap_or(self.model)

@@ -98,7 +98,6 @@ pub fn diagnose_telling(
             record.motion.go_by(&loaded);
         }
         searched = search(&train, settings, believed, tell);
-        searched.search.is_loaded = true;
     }
     let Searched { mut search, mut found, chance, refit } = searched;
     let errors = errors(&search);
@@ -108,10 +107,8 @@ pub fn diagnose_telling(
         let more = gated(&settings.effects, &train, &of_time);
         let table = Table::new(&train, &settings.effects, settings.trust, more);
         let (error, channels, late) = (search.error, search.channels.clone(), search.late);
-        let is_loaded = search.is_loaded;
         search = Search::new(&train, table, settings.trust, error);
         search.late = late;
-        search.is_loaded = is_loaded;
         search.set_channels(&channels);
         search.match_excess(&[]);
         // With windows less may be the model's error.

@@ -198,7 +198,8 @@ impl Search<'_, '_> {
         let own = self.score(&less) - base;
         let given = self.given(&rest);
         // Without the load they would go by other bodies.
-        let is_loaded = self.is_loaded && self.families[chosen.family].owner.id() == LOAD;
+        let is_loaded = self.families[chosen.family].owner.id() == LOAD
+            && self.records.iter().any(|record| record.motion.has_other_bodies());
         let mut class = Vec::new();
         for (number, family) in self.families.iter().enumerate() {
             let Owner::Effect(effect) = family.owner else { continue };

@@ -79,8 +79,6 @@ pub struct Search<'a, 'm> {
     pub(super) channels: Vec<Response>,
     /// What they go through as an effect, if it is one.
     pub late: Option<Late>,
-    /// Whether laws go by what was found to hang on the flange.
-    pub(super) is_loaded: bool,
     /// Families that stay, though functions do all that they do.
     pub(super) kept: Vec<usize>,
     /// Whether some log does not tell its noise.
@@ -121,7 +119,6 @@ impl<'a, 'm> Search<'a, 'm> {
                 records.first().map_or(0, |record| record.motion.model.dof)
             ],
             late: None,
-            is_loaded: false,
             kept: Vec::new(),
             sharp: BTreeSet::new(),
             impossible: Vec::new(),
