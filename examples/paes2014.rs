@@ -9,8 +9,8 @@ use joulepath::dynamics::Load;
 use joulepath::energy::{EnergyParts, account};
 use joulepath::motion::timeline::{Run, What};
 use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::optimize::corridor::{Ceilings, Freedom};
 use joulepath::optimize::cost::Cost;
+use joulepath::optimize::freedom::Freedom;
 use joulepath::optimize::retime::{Goal, Task, retime};
 use joulepath::optimize::standstill::standing;
 use joulepath::retrofit::{Source, read_program};
@@ -119,8 +119,7 @@ fn points(moves: &[Vec<Measured<'_>>]) -> Vec<Point> {
 
 /// The time-optimal move on the path of D, and C at its times.
 fn computed(model: &Model, d: &Measured<'_>, fastest: Point) -> (Point, Vec<Option<Point>>) {
-    let freedom =
-        |deviation: f64| Freedom { ceilings: Ceilings::Robot, deviation, ..Freedom::none() };
+    let freedom = |deviation: f64| Freedom { deviation, ..Freedom::of_the_robot() };
     let (kept, free) = (freedom(0.0), freedom(ANYWHERE));
     let solve = |freedom: &Freedom, goal: Goal| {
         let task = Task {

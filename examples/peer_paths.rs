@@ -20,9 +20,9 @@ use joulepath::motion::stream::{Joints, Stream};
 use joulepath::motion::timing::grid::PathGrid;
 use joulepath::motion::timing::limits::PathLimits;
 use joulepath::motion::timing::reachability::time_optimal;
-use joulepath::optimize::corridor::{Ceilings, Freedom};
 use joulepath::optimize::cost::Cost;
 use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::freedom::{Bound, Freedom};
 use joulepath::optimize::path_grid;
 use joulepath::optimize::plant::{Plant, realise};
 use joulepath::optimize::retime::{Goal, Task, retime};
@@ -163,12 +163,12 @@ fn coefficients(grid: &PathGrid) -> Value {
 /// The time of the fastest stream, less settling, with its path; `None` without one.
 fn fastest_stream(case: &Case) -> Option<Value> {
     let (path, run) = (case.path()?, case.run());
-    let cap = |leg| SpeedCap { tcp: Ceilings::Programmed.of(case.movement(leg)), ..SpeedCap::NONE };
+    let cap = |leg| SpeedCap { tcp: case.movement(leg).line_speed(), ..SpeedCap::NONE };
     let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
     let loaded = Loaded { model: &case.model, load: &run.load };
     let nodes = path_grid::nodes(&case.model, path, &caps, JERK_INTERVALS);
     let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
-    let freedom = Freedom::none();
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let task = Task {
         model: &case.model,
         run,

@@ -17,9 +17,9 @@ use joulepath::motion::sampling::{Loaded, SpeedCap};
 use joulepath::motion::timed::TimedMotion;
 use joulepath::motion::timing::limits::PathLimits;
 use joulepath::motion::timing::refined::{Refined, time_optimal_between};
-use joulepath::optimize::corridor::{Ceilings, Freedom};
 use joulepath::optimize::cost::Cost;
 use joulepath::optimize::energy_program::minimize_energy;
+use joulepath::optimize::freedom::{Bound, Freedom};
 use joulepath::optimize::path_energy::evaluate;
 use joulepath::optimize::path_grid;
 use joulepath::optimize::retime::{Goal, Task, retime};
@@ -99,7 +99,7 @@ fn fastest(case: &Case) -> Option<(PathLimits, Refined)> {
     let (path, run) = (case.path()?, case.run());
     let limits = motion_limits(&case.model, 1.0);
     let limits = PathLimits::new(limits.acceleration, limits.torque).ok()?;
-    let cap = |leg| SpeedCap { tcp: Ceilings::Programmed.of(case.movement(leg)), ..SpeedCap::NONE };
+    let cap = |leg| SpeedCap { tcp: case.movement(leg).line_speed(), ..SpeedCap::NONE };
     let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
     let loaded = Loaded { model: &case.model, load: &run.load };
     let nodes = path_grid::nodes_with_edges(&case.model, path, &caps, INTERVALS);
@@ -112,7 +112,7 @@ fn fastest(case: &Case) -> Option<(PathLimits, Refined)> {
 /// the limit costs any controller.
 fn slowness(case: &Case) -> Option<f64> {
     let least = fastest(case)?.1.profile.duration();
-    let freedom = Freedom::none();
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
 }
@@ -127,7 +127,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let saved = |energy: f64| (first - energy) / first;
     let uniform = evaluate(grid, &fastest.scaled_to(time)?, &model).total();
     let best = minimize_energy(grid, &limits, &model, fastest, time).into_optimum()?;
-    let freedom = Freedom::none();
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let stream = retime(&task(case, &freedom), Goal::Exactly(time + run.settling)).ok();
     let realised = stream.map(|retiming| {
         let duration = retiming.stream.duration();
@@ -153,7 +153,7 @@ fn lateness(case: &Case) -> Option<f64> {
     let least = (0..DOF)
         .map(|j| seven_segments((run.end[j] - run.start[j]).abs(), v[j], a[j], jerk[j]))
         .fold(0.0, f64::max);
-    let freedom = Freedom::none();
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let fastest = retime(&task(case, &freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
 }

@@ -10,8 +10,8 @@ use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::optimize::check::Check;
-use joulepath::optimize::corridor::Freedom;
 use joulepath::optimize::cost::Cost;
+use joulepath::optimize::freedom::Freedom;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use joulepath::emit::Layout;
 use joulepath::motion::Options;
-use joulepath::optimize::corridor::Freedom;
 use joulepath::optimize::cost::Cost;
+use joulepath::optimize::freedom::Freedom;
 use joulepath::retrofit::{
     Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
 };

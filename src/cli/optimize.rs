@@ -16,8 +16,8 @@ use super::{listing, output};
 use crate::config::KeepOut;
 use crate::emit::Layout;
 use crate::kinematics::{self, Obstacle, Plane};
-use crate::optimize::corridor::{Ceilings, Freedom};
 use crate::optimize::cost::Cost;
+use crate::optimize::freedom::{Bound, Freedom};
 use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
@@ -93,6 +93,10 @@ pub struct OptimizeArgs {
     /// Let lines and arcs be faster than programmed.
     #[arg(long)]
     allow_faster_tcp: bool,
+
+    /// Let joints, and the tool in joint movements, be faster than in the original movements.
+    #[arg(long)]
+    allow_faster_joints: bool,
 
     /// Let joint movements leave their path, and lines and arcs whose statement has the comment
     /// `! joulepath: free` on its line.
@@ -275,7 +279,9 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         budget,
         spacing_s,
         freedom: Freedom {
-            ceilings: if args.allow_faster_tcp { Ceilings::Robot } else { Ceilings::Programmed },
+            tcp: bound(args.allow_faster_tcp),
+            joints: bound(args.allow_faster_joints),
+            loads: None,
             deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
             keep_out: job.config.keep_out.iter().map(obstacle).collect::<Result<_, _>>()?,
@@ -323,6 +329,11 @@ fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
             Ok(Obstacle::Plane(Plane { normal: normal / size, distance: distance / size }))
         }
     }
+}
+
+/// What bounds a speed that a flag sets free.
+fn bound(is_free: bool) -> Bound {
+    if is_free { Bound::Robot } else { Bound::Original }
 }
 
 /// How far free movements may leave their path, m.

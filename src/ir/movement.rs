@@ -232,6 +232,17 @@ pub struct Movement {
     pub locals: Vec<LocalValue>,
 }
 
+impl Movement {
+    /// The TCP speed that a line or arc states, m/s; infinite for a joint movement, along which it
+    /// holds on the average alone.
+    pub fn line_speed(&self) -> f64 {
+        match self.form {
+            MoveForm::Linear | MoveForm::Circular => self.speed.tcp.min(self.settings.speed_max),
+            _ => f64::INFINITY,
+        }
+    }
+}
+
 /// A movement that can't be worked out.
 #[derive(Clone, Debug)]
 pub struct Unresolved {

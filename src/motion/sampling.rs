@@ -7,14 +7,20 @@ use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
 use super::timing::limits::Row;
 use crate::dynamics::{Load, rnea_each};
 use crate::kinematics::Tcp;
-use crate::path::joint_path::{DOF, Extent, JointPath, PathPoint as PiecePoint, Piece, PieceKind};
+use crate::path::joint_path::{
+    DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
+};
 use crate::robot::Model;
 
 /// Limits that the program sets for one leg.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedCap {
-    /// TCP speed, m/s.
+    /// TCP speed, m/s; of a joint movement its mean.
     pub tcp: f64,
+    /// TCP speed at each instant, m/s.
+    pub peak: f64,
+    /// Joint speeds, rad/s.
+    pub joints: Joints,
     /// Reorientation speed, rad/s.
     pub orientation: f64,
     /// Share of the robot's accelerations.
@@ -29,6 +35,8 @@ impl SpeedCap {
     /// No limit but the robot's own.
     pub const NONE: SpeedCap = SpeedCap {
         tcp: f64::INFINITY,
+        peak: f64::INFINITY,
+        joints: [f64::INFINITY; DOF],
         orientation: f64::INFINITY,
         acceleration: 1.0,
         path_acceleration: [f64::INFINITY; 2],
@@ -249,6 +257,9 @@ fn point(
             limit(at.q1[j].abs(), limits[j], SpeedBound::Joint);
         }
     }
+    for j in 0..DOF {
+        limit(at.q1[j].abs(), cap.joints[j], SpeedBound::Joint);
+    }
     let rotations = model.kinematics.rotations(&at.q);
     let twist = extent.tool.twist_of(model, &at.q, &rotations, &at.q1);
     let tcp_rate = twist.fixed_rows::<3>(0).norm();
@@ -262,6 +273,7 @@ fn point(
         PieceKind::Cartesian | PieceKind::CartesianZone => (tcp_rate, turn_rate),
     };
     limit(programmed, cap.tcp, SpeedBound::Programmed);
+    limit(tcp_rate, cap.peak, SpeedBound::Programmed);
     limit(turn, cap.orientation, SpeedBound::Reorientation);
     if let Some(zone) = zone {
         // The interpolator takes at least one step in each zone: runs with z1 show it.

@@ -1,5 +1,6 @@
 //! What a stream really does, against every limit.
 
+use super::allowed::{Ceiling, Loads, speeds};
 use super::corridor::{Corridor, Offset};
 use super::keep_out::least_room;
 use super::plant::STILL;
@@ -96,32 +97,45 @@ impl Check {
     }
 }
 
-/// Checks the realised motion of a stream, in the corridor if it has one, towards where it is to
-/// end, and with the arm among what the cell keeps free.
+/// Where and how a stream may move.
+#[derive(Clone, Copy)]
+pub enum Room<'a> {
+    /// In the corridor of the movements that it stands for.
+    Corridor(&'a Corridor),
+    /// Anywhere, if joints bear no more than this.
+    Free(&'a Loads),
+}
+
+/// Checks the realised motion of a stream in its room, towards where it is to end, and with the arm
+/// among what the cell keeps free.
 pub fn check(
     model: &Model,
     load: &Load,
     tool: &Tcp,
     stream: &Stream,
-    corridor: Option<&Corridor>,
+    room: Room<'_>,
     end: &Joints,
     body: Option<&Body<'_>>,
 ) -> Check {
-    let limits = &model.limits;
-    let share = |values: &[f64], limit: &Option<Vec<f64>>| {
-        limit.as_ref().map_or(0.0, |limit| {
-            values.iter().zip(limit).map(|(x, l)| x.abs() / l).fold(0.0, f64::max)
-        })
+    let velocity = speeds(model);
+    let (corridor, loads) = match room {
+        Room::Corridor(corridor) => (Some(corridor), &corridor.allowed.loads),
+        Room::Free(loads) => (None, loads),
+    };
+    let share = |values: &[f64], limit: &Joints| {
+        let used = |(x, limit): (&f64, &f64)| if *x == 0.0 { 0.0 } else { x.abs() / limit };
+        values.iter().zip(limit).map(used).fold(0.0, f64::max)
     };
     let mut result = Check {
-        velocity: share(&stream.max_velocity(), &limits.velocity),
-        acceleration: share(&stream.max_acceleration(), &limits.acceleration),
-        jerk: share(&stream.max_jerk(), &limits.jerk),
+        velocity: share(&stream.max_velocity(), &velocity),
+        acceleration: share(&stream.max_acceleration(), &loads.acceleration),
+        jerk: share(&stream.max_jerk(), &loads.jerk),
         endpoint_error_rad: (0..DOF).map(|j| (stream.end()[j] - end[j]).abs()).fold(0.0, f64::max),
         intrusion_m: body.map_or(0.0, |body| (-least_room(model, body, stream)).max(0.0)),
         ..Check::none()
     };
-    let ceiling = limits.tcp_speed.unwrap_or(f64::INFINITY);
+    let tcp = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
+    let ceiling = Ceiling { tcp, joints: velocity };
     let anywhere = Offset { distance: 0.0, tolerance: f64::INFINITY, ceiling };
     let mut data = Data::new();
     let mut at = 0;
@@ -132,7 +146,7 @@ pub fn check(
             result.in_range &= limits_ok(model, &q).is_ok();
             let state = JointState { q, qd, qdd };
             let torque = if model.has_dynamics() {
-                share(&power(model, &mut data, load, &state).tau, &limits.torque)
+                share(&power(model, &mut data, load, &state).tau, &loads.torque)
             } else {
                 0.0
             };
@@ -142,8 +156,9 @@ pub fn check(
             result.deviation_m = result.deviation_m.max(offset.distance);
             result.deviation = result.deviation.max(offset.distance / offset.tolerance);
             let rate = tool.twist(model, &q, &qd);
-            let speed = rate.fixed_rows::<3>(0).norm() / offset.ceiling;
+            let speed = rate.fixed_rows::<3>(0).norm() / offset.ceiling.tcp;
             result.tcp_speed = result.tcp_speed.max(speed);
+            result.velocity = result.velocity.max(offset.ceiling.share(&qd));
         }
     }
     result

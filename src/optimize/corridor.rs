@@ -1,18 +1,15 @@
 //! Where a realised motion may be and how fast: the programmed path with its tolerances.
 
-use std::collections::BTreeSet;
-
 use nalgebra::{Isometry3, Vector4};
 
-use crate::ir::instructions::MoveForm;
-use crate::ir::movement::Movement;
-use crate::kinematics::{Obstacle, fk};
+use super::allowed::{Allowed, Ceiling};
+use super::freedom::Freedom;
+use crate::kinematics::fk;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::path::PieceKind;
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
-use crate::text::Span;
 
 /// Distance of the samples of the path, m.
 const SPACING: f64 = 0.002;
@@ -31,8 +28,8 @@ const WINDOW: (usize, usize) = (8, 24);
 #[derive(Clone, Copy, Debug)]
 struct Place {
     pose: Isometry3<f64>,
-    /// Largest TCP speed here, m/s.
-    ceiling: f64,
+    /// Largest speeds here.
+    ceiling: Ceiling,
     /// Largest distance from here, m.
     tolerance: f64,
 }
@@ -41,6 +38,8 @@ struct Place {
 #[derive(Clone, Debug)]
 pub struct Corridor {
     places: Vec<Place>,
+    /// What a stream in it may ask of the robot.
+    pub(super) allowed: Allowed,
 }
 
 /// How a pose lies to the corridor.
@@ -50,31 +49,29 @@ pub struct Offset {
     pub distance: f64,
     /// Allowed distance, m.
     pub tolerance: f64,
-    /// Largest TCP speed, m/s.
-    pub ceiling: f64,
+    /// Largest speeds.
+    pub ceiling: Ceiling,
 }
 
 impl Corridor {
     /// The corridor of a run along one path; `None` for streams.
     pub fn new(model: &Model, run: &Run, freedom: &Freedom) -> Option<Corridor> {
+        let allowed = Allowed::new(model, run, freedom);
         let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return None };
         let mut places = Vec::new();
-        let robot = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
         for piece in path.pieces() {
             let movement = &run.moves[piece.leg].movement;
             let zone = &run.legs[piece.leg].zone;
             let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
-            let ceilings = freedom.ceilings;
-            let (ceiling, tolerance) = match piece.kind {
-                PieceKind::Joint => (robot, JOINT_TOLERANCE),
-                PieceKind::Cartesian => (ceilings.of(movement).min(robot), LINE_TOLERANCE),
+            // A piece of a zone belongs to the leg before or after its corner: so does its ceiling.
+            let ceiling = allowed.moves[piece.leg];
+            let tolerance = match piece.kind {
+                PieceKind::Joint => JOINT_TOLERANCE,
+                PieceKind::Cartesian => LINE_TOLERANCE,
                 PieceKind::CartesianZone | PieceKind::JointZone => {
-                    // A piece of a zone belongs to the leg before or after its corner: so does its
-                    // ceiling.
                     let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
                     let size = if after { before.map_or(0.0, |z| z.tcp) } else { zone.tcp };
-                    let ceiling = ceilings.of(movement).min(robot);
-                    (ceiling, LINE_TOLERANCE.max(ZONE_TOLERANCE * size))
+                    LINE_TOLERANCE.max(ZONE_TOLERANCE * size)
                 }
             };
             // A corner is free where both of its movements are.
@@ -88,6 +85,9 @@ impl Corridor {
             let other = corner.and_then(|leg| run.moves.get(leg)).map(|record| &record.movement);
             let movements = std::iter::once(movement).chain(other);
             let free = movements.map(|movement| freedom.of(movement)).fold(f64::INFINITY, f64::min);
+            // In a corner joints come from the one speed to the other.
+            let beyond = corner.and_then(|leg| allowed.moves.get(leg)).unwrap_or(&ceiling);
+            let ceiling = Ceiling { joints: ceiling.max(beyond).joints, ..ceiling };
             let tolerance = tolerance.max(free);
             let extent = path.extent(piece.leg);
             let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
@@ -102,7 +102,7 @@ impl Corridor {
                 places.push(Place { pose, ceiling, tolerance });
             }
         }
-        Some(Corridor { places })
+        Some(Corridor { places, allowed })
     }
 
     /// The offset of a pose, searched near the place `from`, which is moved on.
@@ -119,15 +119,16 @@ impl Corridor {
         *from = best.1;
         let place = &self.places[best.1];
         // Between two stretches the more generous figure holds: they meet there.
-        let near = |f: fn(&Place) -> f64| {
-            let lo = best.1.saturating_sub(1);
-            let hi = (best.1 + 1).min(self.places.len() - 1);
-            f(place).max(f(&self.places[lo])).max(f(&self.places[hi]))
-        };
-        Offset { distance: best.0, tolerance: near(|p| p.tolerance), ceiling: near(|p| p.ceiling) }
+        let lo = &self.places[best.1.saturating_sub(1)];
+        let hi = &self.places[(best.1 + 1).min(self.places.len() - 1)];
+        Offset {
+            distance: best.0,
+            tolerance: place.tolerance.max(lo.tolerance).max(hi.tolerance),
+            ceiling: place.ceiling.max(&lo.ceiling).max(&hi.ceiling),
+        }
     }
 
-    /// The ceilings of all places, each lower one holding from `reach` (m) before it to as much
+    /// The TCP speeds of all places, each lower one holding from `reach` (m) before it to as much
     /// behind it and rising from there as a motion can that gains `acceleration` (m/s²): the
     /// same for a motion, but without steps.
     pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
@@ -136,7 +137,7 @@ impl Corridor {
         let mut eased: Vec<f64> = (0..=last)
             .map(|i| {
                 let around = i.saturating_sub(n)..=(i + n).min(last);
-                self.places[around].iter().map(|p| p.ceiling).fold(f64::INFINITY, f64::min)
+                self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
             })
             .collect();
         let step = |i: usize| {
@@ -151,6 +152,11 @@ impl Corridor {
             eased[i] = eased[i].min(rise(eased[i + 1], step(i)));
         }
         eased
+    }
+
+    /// The largest speeds at a place.
+    pub(super) fn ceiling(&self, place: usize) -> &Ceiling {
+        &self.places[place].ceiling
     }
 
     /// The distance of a pose over what is allowed there, and the value there of something given
@@ -214,63 +220,4 @@ impl Corridor {
 /// which orders them the same without the cost of the arc.
 fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
-}
-
-/// What a stream may do that its movements did not.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Freedom {
-    /// Which programmed speeds are ceilings.
-    pub ceilings: Ceilings,
-    /// How far free movements may leave their path, m; 0 where none is free.
-    pub deviation: f64,
-    /// Statements of lines, arcs and waits that the user made free; joint movements are.
-    pub freed: BTreeSet<Span>,
-    /// What arm and tool keep out of where they leave their path.
-    pub keep_out: Vec<Obstacle>,
-}
-
-impl Freedom {
-    /// None.
-    pub fn none() -> Freedom {
-        Freedom {
-            ceilings: Ceilings::Programmed,
-            deviation: 0.0,
-            freed: BTreeSet::new(),
-            keep_out: Vec::new(),
-        }
-    }
-
-    /// The same without leaving any path.
-    #[must_use]
-    pub fn strict(&self) -> Freedom {
-        Freedom { deviation: 0.0, ..self.clone() }
-    }
-
-    /// How far a movement may leave its path, m, more than the least that is always allowed.
-    pub fn of(&self, movement: &Movement) -> f64 {
-        let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
-        let free = joint || self.freed.contains(&movement.span);
-        if free { self.deviation } else { 0.0 }
-    }
-}
-
-/// Which programmed speeds are ceilings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ceilings {
-    /// Those of lines and arcs; joint movements are free within the robot's limits.
-    Programmed,
-    /// None but the robot's own.
-    Robot,
-}
-
-impl Ceilings {
-    /// The largest TCP speed of a movement, m/s.
-    pub fn of(self, movement: &Movement) -> f64 {
-        match (self, movement.form) {
-            (Ceilings::Programmed, MoveForm::Linear | MoveForm::Circular) => {
-                movement.speed.tcp.min(movement.settings.speed_max)
-            }
-            _ => f64::INFINITY,
-        }
-    }
 }

@@ -6,7 +6,7 @@ use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::robot::Model;
 
-use super::corridor::Freedom;
+use super::freedom::Freedom;
 
 /// Arm and tool of a run among what the cell keeps free; `None` where the run keeps to its path,
 /// which is the program's own choice, or where nothing is to be kept free.

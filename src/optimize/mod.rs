@@ -1,5 +1,6 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
+pub mod allowed;
 mod banded;
 mod banded_program;
 pub mod check;
@@ -10,6 +11,7 @@ pub mod cycle;
 mod energy_cones;
 pub mod energy_curve;
 pub mod energy_program;
+pub mod freedom;
 pub mod idle;
 pub mod keep_out;
 mod margins;

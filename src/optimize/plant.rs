@@ -4,7 +4,7 @@ use super::path_energy::{EnergyModel, EnergyParts};
 use crate::motion::stream::{DOF, Joints, Stream};
 
 /// Shares of the limits of a path.
-pub type PathShares = [f64; 3];
+pub type PathShares = [f64; 4];
 
 /// The robot that runs a stream.
 pub trait Plant {
@@ -32,9 +32,10 @@ pub trait Plant {
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// What else has a limit, over that limit: the speed of the tool, its distance from the path,
-    /// and how near arm and tool come to what the cell keeps free. `place` says where on its path the robot was a moment ago, and then where it is: a
-    /// path may cross itself.
+    /// What else has a limit, over that limit: the speed of the tool, that of the joints there, the
+    /// distance of the tool from the path, and how near arm and tool come to what the cell keeps
+    /// free. `place` says where on its path the robot was a moment ago, and then where it is: a path
+    /// may cross itself.
     fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> PathShares {
         PathShares::default()
     }

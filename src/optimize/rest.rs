@@ -3,7 +3,8 @@
 //! Holding power as in Paes et al. 2014, table 3; the way there and back has to cost less than it
 //! saves.
 
-use super::check::{Check, check};
+use super::allowed::Loads;
+use super::check::{Check, Room, check};
 use super::standstill::standing;
 use super::stream_rounding::{rounded_intervals, rounded_points};
 use crate::dynamics::Load;
@@ -28,6 +29,8 @@ pub struct Standstill<'a> {
     pub q: Joints,
     /// How long, s.
     pub duration: f64,
+    /// What the joints may bear.
+    pub loads: &'a Loads,
     /// Arm and tool among what the cell keeps free.
     pub body: Option<&'a Body<'a>>,
 }
@@ -111,11 +114,12 @@ fn trip(
     time: f64,
     spacing: f64,
 ) -> Result<Rest, Obstructed> {
-    let Standstill { model, load, tool, q, duration, body } = standstill;
+    let Standstill { model, load, tool, q, duration, loads, body } = standstill;
     let out = way(q, low, time, spacing).ok_or(Obstructed::Anyway)?;
     let back = way(out.end(), q, time, spacing).ok_or(Obstructed::Anyway)?;
-    let checked =
-        |stream: &Stream, end: &Joints| check(model, load, tool, stream, None, end, *body);
+    let checked = |stream: &Stream, end: &Joints| {
+        check(model, load, tool, stream, Room::Free(loads), end, *body)
+    };
     let check = checked(&out, low).max(&checked(&back, q));
     if check.intrusion_m > 0.0 || !check.in_range {
         return Err(Obstructed::Anyway);
@@ -164,12 +168,14 @@ mod tests {
         let model = robot::find("IRB1600-10/1.45").unwrap();
         let q = [0.0, 1.0, -0.4, 0.0, 0.5, 0.0];
         let (load, tool) = (Load::none(), Tcp::Held(Isometry3::identity()));
+        let loads = Loads::limits(&model);
         let standstill = |duration| Standstill {
             model: &model,
             load: &load,
             tool: &tool,
             q,
             duration,
+            loads: &loads,
             body: None,
         };
         let long = rest(&standstill(60.0), 0.5, 0.05).unwrap();

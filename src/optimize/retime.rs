@@ -4,10 +4,12 @@
 //! to it and checked as the controller will realise it. What breaks a limit
 //! tightens the margins and is tried again.
 
-use super::check::{Check, check};
-use super::corridor::{Corridor, Freedom, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::allowed::{Ceiling, Loads, speeds};
+use super::check::{Check, Room, check};
+use super::corridor::{Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
 use super::cost::Cost;
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
+use super::freedom::Freedom;
 use super::keep_out;
 use super::margins::Margins;
 use super::path_energy::EnergyModel;
@@ -24,7 +26,6 @@ use crate::dynamics::potential_energy;
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
 use crate::kinematics::{Body, fk};
-use crate::motion::controller::motion_limits;
 use crate::motion::sampling::{Loaded, SpeedCap};
 use crate::motion::stream::{LARGEST_ZONE, Stream};
 use crate::motion::timed::TimedMotion;
@@ -239,17 +240,9 @@ impl<'a> Work<'a> {
         let corridor =
             Corridor::new(task.model, task.run, task.freedom).ok_or(Reason::SharpCorner)?;
         let robot = task.model;
-        let list = |values: &Option<Vec<f64>>| -> Joints {
-            std::array::from_fn(|j| {
-                values.as_ref().and_then(|v| v.get(j)).copied().unwrap_or(f64::INFINITY)
-            })
-        };
         let (electrical, model) = (Cost::Electrical.model(robot), task.cost.model(robot));
-        let limits = StreamLimits {
-            velocity: list(&robot.limits.velocity),
-            acceleration: list(&robot.limits.acceleration),
-            jerk: list(&robot.limits.jerk),
-        };
+        let Loads { acceleration, jerk, .. } = corridor.allowed.loads;
+        let limits = StreamLimits { velocity: speeds(robot), acceleration, jerk };
         let lever = levers(robot, task.run);
         let body = keep_out::body(robot, task.run, task.freedom);
         Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
@@ -393,7 +386,8 @@ impl<'a> Work<'a> {
     fn check(&self, stream: &Stream) -> Check {
         let Task { model, run, .. } = self.task;
         let tool = &run.legs[0].tool;
-        check(model, &run.load, tool, stream, Some(&self.corridor), &run.end, self.body.as_ref())
+        let room = Room::Corridor(&self.corridor);
+        check(model, &run.load, tool, stream, room, &run.end, self.body.as_ref())
     }
 
     /// How far the motion may leave the path somewhere, m, before the polishing minds.
@@ -434,25 +428,22 @@ impl<'a> Work<'a> {
         margins: &Margins,
         intervals: usize,
     ) -> Result<(PathGrid, PathLimits), Reason> {
-        let caps: Vec<SpeedCap> = self
-            .task
-            .run
-            .moves
-            .iter()
-            .map(|record| SpeedCap {
-                tcp: margins.speed * self.task.freedom.ceilings.of(&record.movement),
-                orientation: f64::INFINITY,
-                ..SpeedCap::NONE
-            })
-            .collect();
+        let allowed = &self.corridor.allowed;
+        let cap = |ceiling: &Ceiling| SpeedCap {
+            peak: margins.speed * ceiling.tcp,
+            joints: ceiling.joints.map(|speed| margins.speed * speed),
+            ..SpeedCap::NONE
+        };
+        let caps: Vec<SpeedCap> = allowed.moves.iter().map(cap).collect();
         let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
         let nodes = path_grid::nodes(self.task.model, self.path, &caps, intervals);
         let no_grid = |why: String| Reason::NoStream(why);
         let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
-        let full = motion_limits(self.task.model, margins.load);
-        let limits = PathLimits::new(full.acceleration, full.torque.map(|x| x * margins.load))
-            .map_err(|error| no_grid(error.to_string()))?;
+        let [acceleration, torque] = [allowed.loads.acceleration, allowed.loads.torque]
+            .map(|limits| limits.map(|x| x * margins.load));
+        let limits =
+            PathLimits::new(acceleration, torque).map_err(|error| no_grid(error.to_string()))?;
         Ok((grid, limits))
     }
 

@@ -6,7 +6,6 @@ use super::plant::{PathShares, Plant};
 use super::retime::Work;
 use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use crate::kinematics::fk;
-use crate::motion::controller::motion_limits;
 use crate::path::joint_path::{DOF, Joints};
 
 /// The robot with its load, as the polishing of a stream sees it.
@@ -33,7 +32,7 @@ impl Plant for RunPlant<'_> {
     }
 
     fn torque_limit(&self) -> Joints {
-        motion_limits(self.work.task.model, 1.0).torque.map(|x| x * self.margins.load)
+        self.work.corridor.allowed.loads.torque.map(|x| x * self.margins.load)
     }
 
     fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {
@@ -42,9 +41,13 @@ impl Plant for RunPlant<'_> {
         let pose = tool.pose(&fk(task.model, q));
         let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
         let rate = tool.twist(task.model, q, qd);
-        let speed = rate.fixed_rows::<3>(0).norm();
+        let [tcp, joints] = [
+            rate.fixed_rows::<3>(0).norm() / ceiling,
+            self.work.corridor.ceiling(*place).share(qd),
+        ]
+        .map(|share| share / self.margins.speed);
         let body = self.work.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
-        [speed / (self.margins.speed * ceiling), distance / self.margins.distance, near]
+        [tcp, joints, distance / self.margins.distance, near]
     }
 }

@@ -199,7 +199,7 @@ struct Linearised {
     path: PathShares,
     torque_by: [[Joints; DOF]; 3],
     /// Of each share of the path, by q and q̇; zero where all are far from their limits.
-    path_by: [[[f64; DOF]; 2]; 3],
+    path_by: [[[f64; DOF]; 2]; 4],
 }
 
 impl<P: Plant> Polish<'_, P> {

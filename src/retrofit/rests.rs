@@ -11,7 +11,7 @@ use crate::ir::number::number;
 use crate::motion::Simulation;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, WaitBasis, WaitRecord, What};
-use crate::optimize::check::check;
+use crate::optimize::check::{Room, check};
 use crate::optimize::keep_out::around;
 use crate::optimize::reason::Reason;
 use crate::optimize::rest::{Rest, Standstill, rest};
@@ -52,6 +52,7 @@ pub(super) fn restings(
     ways: &[Way],
 ) -> Vec<Resting> {
     let Some(distance) = settings.dwell_pose else { return Vec::new() };
+    let loads = settings.freedom.loads(model);
     let free: BTreeSet<usize> = ways
         .iter()
         .filter(|way| matches!(way.outcome, Ok(_) | Err(Reason::NoSaving)))
@@ -86,6 +87,7 @@ pub(super) fn restings(
             tool,
             q: first.record.q,
             duration: first.duration,
+            loads: &loads,
             body: body.as_ref(),
         };
         let rest = rest(&standstill, distance, settings.spacing_s)?;
@@ -290,7 +292,9 @@ fn lateness(model: &Model, settings: &Settings, parts: &[Event], resting: &Resti
         let [(_, TimedMotion::Stream(stream))] = run.motions.as_slice() else { return false };
         let tool = &run.legs[0].tool;
         let body = around(model, tool, &settings.freedom);
-        let seen = check(model, &run.load, tool, stream, None, intended.end(), body.as_ref());
+        let loads = settings.freedom.loads(model);
+        let room = Room::Free(&loads);
+        let seen = check(model, &run.load, tool, stream, room, intended.end(), body.as_ref());
         seen.holds()
             && run.load == wait.load
             && apart(stream.end(), intended.end()) <= ENDPOINT_TOLERANCE

@@ -27,8 +27,8 @@ use crate::ir::program::Program;
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::check::Check;
-use crate::optimize::corridor::Ceilings;
 use crate::optimize::cycle::{Part, TradeOff};
+use crate::optimize::freedom::{Bound, Freedom};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::site::{Site, Variant, not_reached};
@@ -211,8 +211,7 @@ fn slot(
             let Some(span) = arguments.get(&movement.span).copied() else {
                 return Err("its speed is not one argument that can be written anew");
             };
-            let line = matches!(movement.form, MoveForm::Linear | MoveForm::Circular);
-            let ceiling = line && settings.freedom.ceilings == Ceilings::Programmed;
+            let ceiling = settings.freedom.bound(movement) == Bound::Original;
             let here = Programmed { span, speed: movement.speed, ceiling };
             let known = speeds.entry(movement.span).or_insert(here);
             if known.speed != movement.speed {
@@ -475,12 +474,12 @@ fn verify(
                 (&before.simulation.events[*event].what, &tried.simulation.events[*event].what);
             let (What::Run(was), What::Run(now)) = runs else { continue };
             paths &= now.problem.is_none() && same_path(was, now);
-            ceilings &= *factor <= 1.0 || keeps_ceilings(was, now, settings.freedom.ceilings);
+            ceilings &= *factor <= 1.0 || keeps_ceilings(was, now, &settings.freedom);
             worst = worst.max(&shares(model, now));
         }
     }
     note("targets and zones are those of before", paths);
-    note("no programmed speed of a line or arc is exceeded", ceilings);
+    note("no programmed speed is exceeded", ceilings);
     verification.worst = worst;
     verification.passed = verification.checks.iter().all(|(_, held)| *held);
     verification
@@ -495,9 +494,9 @@ fn same_path(was: &Run, now: &Run) -> bool {
         })
 }
 
-fn keeps_ceilings(was: &Run, now: &Run, ceilings: Ceilings) -> bool {
+fn keeps_ceilings(was: &Run, now: &Run, freedom: &Freedom) -> bool {
     was.moves.iter().zip(&now.moves).all(|(a, b)| {
-        ceilings.of(&a.movement).is_infinite() || b.movement.speed.tcp <= a.movement.speed.tcp
+        freedom.bound(&a.movement) == Bound::Robot || b.movement.speed.tcp <= a.movement.speed.tcp
     })
 }
 

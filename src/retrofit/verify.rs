@@ -11,8 +11,9 @@ use crate::motion::stream::Stream;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::{Event, Run, What};
 use crate::motion::{Simulation, simulate};
-use crate::optimize::check::{Check, check};
-use crate::optimize::corridor::{Corridor, Freedom};
+use crate::optimize::check::{Check, Room, check};
+use crate::optimize::corridor::Corridor;
+use crate::optimize::freedom::Freedom;
 use crate::optimize::keep_out::body;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::PathUse;
@@ -267,7 +268,8 @@ fn compare(
     }
     let body = body(model, run, freedom);
     let tool = &run.legs[0].tool;
-    let check = check(model, &run.load, tool, stream, Some(&corridor), &run.end, body.as_ref());
+    let check =
+        check(model, &run.load, tool, stream, Room::Corridor(&corridor), &run.end, body.as_ref());
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points".into());
     }

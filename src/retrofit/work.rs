@@ -14,9 +14,11 @@ use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
-use crate::optimize::corridor::Freedom;
+
+use crate::optimize::allowed::Loads;
 use crate::optimize::cost::Cost;
 use crate::optimize::energy_curve::{TimeEnergy, pareto};
+use crate::optimize::freedom::Freedom;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::{Retiming, Task, retime};
@@ -315,6 +317,9 @@ pub fn retrofit(
     let (program, entry) = read_program(files, &settings.entry)?;
     let simulation = simulate(&program, entry, model, &settings.options);
     let before = account(model, &simulation);
+    let loads = Some(Loads::shown(model, &simulation));
+    let settings =
+        &Settings { freedom: Freedom { loads, ..settings.freedom.clone() }, ..settings.clone() };
     let mut sites = sites(&program, &simulation);
     hazards::mark(&program, &simulation, &mut sites);
     if settings.form == Form::Speeds {

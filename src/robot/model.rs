@@ -12,7 +12,7 @@ use super::law::Law;
 use super::limits::Limits;
 use super::link::{ArmLoad, Link};
 use super::motors::Motors;
-use super::provenance::{self, Origin};
+use super::provenance::{self, Origin, Provenance};
 use super::sensors::Sensors;
 use super::tree::Node;
 use super::wrist::Wrist;
@@ -68,6 +68,13 @@ impl Model {
     #[must_use]
     pub fn assumed(&self) -> Vec<String> {
         provenance::assumed(&self.origins)
+    }
+
+    /// Whether a number is known: stated by the robot's file and not assumed there.
+    #[must_use]
+    pub fn is_known(&self, table: &str, key: &str) -> bool {
+        let mut origins = self.origins.iter().filter(|o| o.table == table && o.key == key);
+        origins.next().is_some_and(|origin| origin.provenance != Some(Provenance::Assumed))
     }
 
     /// The model of a document whose `extends` has been resolved.

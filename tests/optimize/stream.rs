@@ -287,7 +287,7 @@ impl Plant for Flywheel {
     }
 
     fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> PathShares {
-        [qd[0].abs() / self.ceiling, 0.0, 0.0]
+        [qd[0].abs() / self.ceiling, 0.0, 0.0, 0.0]
     }
 }
 

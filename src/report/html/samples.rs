@@ -63,7 +63,7 @@ pub(super) fn samples(model: &Model, run: &Run, corridor: Option<&Corridor>) -> 
             tau: std::array::from_fn(|joint| p.tau[joint]),
             electrical_w: base_w + drive_w,
             tcp_speed: rate.fixed_rows::<3>(0).norm(),
-            ceiling: corridor.map_or(f64::INFINITY, |c| c.offset(&pose, &mut place).ceiling),
+            ceiling: corridor.map_or(f64::INFINITY, |c| c.offset(&pose, &mut place).ceiling.tcp),
         });
     }
     rows
@@ -77,7 +77,7 @@ mod tests {
     use crate::energy::account::run_energy;
     use crate::motion::timeline::What;
     use crate::motion::{Options, simulate};
-    use crate::optimize::corridor::Freedom;
+    use crate::optimize::freedom::Freedom;
     use crate::retrofit::{Source, read_program};
     use crate::text::{FileId, SourceFile};
 
