@@ -108,6 +108,13 @@ pub struct Job {
 }
 
 impl Job {
+    /// The files of other tasks that were read beside those of the program.
+    pub fn others(&self) -> impl Iterator<Item = &SourceFile> {
+        let is_own = |path: &str| self.files.iter().any(|own| own.file.path == path);
+        let all = self.input.files.iter().map(|file| &file.source);
+        all.filter(move |source| !is_own(&source.path))
+    }
+
     /// The files alone, for reports.
     pub fn sources(&self) -> Vec<SourceFile> {
         self.files.iter().map(|source| source.file.clone()).collect()

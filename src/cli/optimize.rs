@@ -23,6 +23,7 @@ use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{
     Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, freed, retrofit,
+    written_in,
 };
 use crate::text::charset;
 
@@ -305,6 +306,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         },
         dwell_pose: args.dwell_pose.map(dwell_pose).transpose()?,
         pareto: usize::from(args.pareto),
+        written_elsewhere: written_in(job.others()),
     })
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use super::stream_module::EmitError;
+use super::site::EmitError;
 use crate::ir::number::{TIME_DECIMALS, joints, number};
 
 /// Longest name that RAPID reads.

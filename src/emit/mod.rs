@@ -6,8 +6,11 @@
 mod brake_note;
 mod excitation;
 mod generated;
+mod guard;
 mod layout;
+mod literal;
 pub mod names;
+mod site;
 pub mod stream_module;
 
 pub use brake_note::{BrakeDwell, brake_note};
@@ -18,6 +21,7 @@ pub use generated::{
 };
 pub use layout::Layout;
 pub use names::{Names, has_streams, missing_streams, own_name};
-pub use stream_module::{
-    EmitError, Emitted, EmittedStream, Pause, Site, can_guard, emit, end_of_line,
+pub use site::{
+    EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
 };
+pub use stream_module::{Emission, emit, end_of_line};

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::ir::hir::{Block, Expr, ExprKind, Routine, StmtKind};
+use crate::ir::hir::{Block, ExprKind, Routine, StmtKind};
 use crate::ir::program::Program;
 use crate::syntax::{TokenKind, tokenize};
 use crate::text::{SourceFile, Span};
@@ -16,16 +16,6 @@ pub struct Names {
     pub prefix: String,
     /// The module.
     pub module: String,
-    /// Function: the robot stands at a joint target.
-    pub at: String,
-    /// Function: the external axes that there are stand at a place.
-    pub external_at: String,
-    /// Function: the same for one of them.
-    pub axis_at: String,
-    /// Function: two joint targets are the same.
-    pub same_joints: String,
-    /// Function: two robtargets are the same.
-    pub same_target: String,
 }
 
 impl Names {
@@ -45,15 +35,7 @@ impl Names {
             round += 1;
             prefix = format!("jp{round}_");
         }
-        Names {
-            module: module_name(round),
-            at: format!("{prefix}At"),
-            external_at: format!("{prefix}ExternalAt"),
-            axis_at: format!("{prefix}AxisAt"),
-            same_joints: format!("{prefix}SameJoints"),
-            same_target: format!("{prefix}SameTarget"),
-            prefix,
-        }
+        Names { module: module_name(round), prefix }
     }
 
     /// The module with a part of the streams, from 0.
@@ -96,13 +78,36 @@ pub fn own_name(program: &Program) -> Option<&'static str> {
 }
 
 /// What RAPID declares and streams use.
-const USED: [&str; 8] =
-    ["Abs", "CJointT", "Distance", "MoveAbsJ", "WaitTime", "fine", "v1000", "z200"];
+const USED: [&str; 23] = [
+    "Abs",
+    "C_MOTSET",
+    "C_PROGDISP",
+    "CalcRobT",
+    "CJointT",
+    "Distance",
+    "ErrWrite",
+    "fine",
+    "GetSysInfo",
+    "Incr",
+    "MoveAbsJ",
+    "StrLen",
+    "StrMatch",
+    "StrPart",
+    "tool0",
+    "TPErase",
+    "TPWrite",
+    "v1000",
+    "ValToStr",
+    "WaitTime",
+    "z200",
+    "load0",
+    "motsetdata",
+];
 
 fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStreams> {
     block.iter().find_map(|stmt| {
         if let StmtKind::If { branches, .. } = &stmt.kind
-            && let Some(ExprKind::Call(name, _)) = branches.first().map(|(c, _)| &first(c).kind)
+            && let Some(ExprKind::Call(name, _)) = branches.first().map(|(c, _)| &c.kind)
             && let Some(round) = round_of(&name.key)
             && program.resolve(module, &name.key).is_none()
         {
@@ -116,17 +121,11 @@ fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStrea
     })
 }
 
-/// The first part of a conjunction.
-fn first(condition: &Expr) -> &Expr {
-    match &condition.kind {
-        ExprKind::Binary(_, left, _) => first(left),
-        _ => condition,
-    }
-}
-
-/// The round in which a lower-case name is that of [`Names::at`].
+/// The round in which a lower-case name is that of the function of a guard.
 fn round_of(key: &str) -> Option<usize> {
-    match key.strip_prefix("jp")?.strip_suffix("at")? {
+    let (round, site) = key.strip_prefix("jp")?.split_once("fits")?;
+    site.parse::<usize>().ok()?;
+    match round {
         "" => Some(1),
         round => round.strip_suffix('_')?.parse().ok(),
     }

@@ -72,6 +72,31 @@ pub fn components(type_key: &str) -> Option<Components> {
             &[("position", "num"), ("speed", "num"), ("mintime", "num"), ("maxtime", "num")]
         }
         "progdisp" => &[("pdisp", "pose"), ("eoffs", "extjoint")],
+        "motsetdata" => &[
+            ("vel", "veldata"),
+            ("acc", "accdata"),
+            ("sing", "singdata"),
+            ("conf", "confsupdata"),
+            ("pathresol", "num"),
+            ("motionsup", "bool"),
+            ("tunevalue", "num"),
+            ("acclim", "bool"),
+            ("accmax", "num"),
+            ("decellim", "bool"),
+            ("decelmax", "num"),
+            ("cirpathreori", "num"),
+            ("worldacclim", "bool"),
+            ("worldaccmax", "num"),
+            ("evtbufferact", "bool"),
+        ],
+        "veldata" => &[("oride", "num"), ("max", "num")],
+        "accdata" => &[("acc", "num"), ("ramp", "num"), ("finepramp", "num")],
+        "singdata" => {
+            &[("wrist", "bool"), ("lockaxis4", "bool"), ("arm", "bool"), ("base", "bool")]
+        }
+        "confsupdata" => {
+            &[("jsup", "bool"), ("lsup", "bool"), ("ax1", "num"), ("ax4", "num"), ("ax6", "num")]
+        }
         _ => return None,
     })
 }

@@ -12,6 +12,7 @@ pub mod movement;
 pub mod number;
 pub mod predefined;
 pub mod program;
+pub mod reads;
 pub mod signals;
 mod user;
 pub mod value;

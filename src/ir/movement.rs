@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Isometry3;
 
 use super::instructions::MoveForm;
-use super::value::{Datum, Dependence, Origin};
+use super::value::{Datum, Origin};
 use crate::text::Span;
 
 /// Where a movement goes.
@@ -131,6 +131,8 @@ pub struct Settings {
     pub displacement: Option<Isometry3<f64>>,
     /// `GripLoad`, in the tool's frame.
     pub grip_load: Option<LoadData>,
+    /// The same as the program has it.
+    pub grip_load_data: Option<Datum>,
     /// `SingArea` other than `\Off`, as written: lines and arcs may turn the tool otherwise than
     /// programmed.
     pub sing_area: Option<Arc<str>>,
@@ -161,25 +163,22 @@ impl Default for Settings {
             conf_linear: true,
             displacement: None,
             grip_load: None,
+            grip_load_data: None,
             sing_area: None,
             other: Vec::new(),
         }
     }
 }
 
-/// Data with a name of the routine or its module that a movement depends on, and their value.
+/// An argument of a movement with the value that it had.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LocalValue {
-    /// Its name as written.
-    pub name: Arc<str>,
-    /// Lower-case name of its type.
-    pub type_key: Arc<str>,
+pub struct Argument {
+    /// The expression.
+    pub span: Span,
+    /// Name of the type that the instruction takes there.
+    pub type_name: &'static str,
     /// Its value.
     pub datum: Datum,
-    /// Constant data, by a name valid in every module, that it was passed from.
-    pub alias: Option<Arc<str>>,
-    /// What depends on it.
-    pub of: Dependence,
 }
 
 /// A movement as it is executed.
@@ -228,8 +227,8 @@ pub struct Movement {
     pub other_arguments: Vec<Arc<str>>,
     /// What the arguments were computed from.
     pub origin: Origin,
-    /// Values of the loop variables and parameters among them.
-    pub locals: Vec<LocalValue>,
+    /// The arguments that say where and how it moves.
+    pub arguments: Vec<Argument>,
 }
 
 impl Movement {
@@ -265,8 +264,8 @@ pub struct Wait {
     pub routine: Arc<str>,
     /// Length in s where the program states it.
     pub duration: Option<f64>,
-    /// Whether that is the same at each run: it depends on literals and constants alone.
-    pub constant: bool,
+    /// The argument that states it, where that depends on literals and constants alone.
+    pub constant: Option<Argument>,
     /// `\MaxTime`: longest that it lasts, s.
     pub max_time: Option<f64>,
     /// The input that it waits for.

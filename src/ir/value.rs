@@ -74,18 +74,6 @@ pub enum Dependence {
     Input(Arc<str>),
     /// The robot's position at the moment of execution.
     RobotState,
-    /// One element, from 1 in each dimension, of an array on which it would depend.
-    Element(Box<Dependence>, Vec<u32>),
-}
-
-impl Dependence {
-    /// What it depends on, of which one element may be enough.
-    pub fn base(&self) -> &Dependence {
-        match self {
-            Dependence::Element(base, _) => base,
-            other => other,
-        }
-    }
 }
 
 /// The dependences of a value, sorted, each once.
@@ -146,7 +134,7 @@ impl Value {
         if let Some(unknown) = self.datum.first_unknown() {
             return Knowledge::Unknown(unknown);
         }
-        let stored = self.origin.iter().find_map(|dependence| match dependence.base() {
+        let stored = self.origin.iter().find_map(|dependence| match dependence {
             Dependence::Persistent(name) | Dependence::TrustedPersistent(name) => Some(name),
             _ => None,
         });

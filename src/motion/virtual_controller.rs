@@ -246,6 +246,14 @@ impl Machine for VirtualController<'_> {
         self.certain.then_some(self.q)
     }
 
+    fn flange(&self, q: &Joints) -> Option<Isometry3<f64>> {
+        Some(fk(self.model, q))
+    }
+
+    fn robot(&self) -> Option<String> {
+        Some(self.model.type_name().to_owned())
+    }
+
     fn repeats(&mut self) {
         // What is pending becomes the next event, and its end belongs to the loop.
         self.repeats_from.get_or_insert(self.events.len() + self.drafts.len());

@@ -31,7 +31,11 @@ impl Loads {
         Loads {
             acceleration: list(limits.acceleration.as_ref()),
             jerk: list(limits.jerk.as_ref()),
-            torque: if model.has_dynamics() { list(limits.torque.as_ref()) } else { [f64::INFINITY; DOF] },
+            torque: if model.has_dynamics() {
+                list(limits.torque.as_ref())
+            } else {
+                [f64::INFINITY; DOF]
+            },
         }
     }
 

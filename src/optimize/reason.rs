@@ -9,6 +9,8 @@ pub enum Reason {
     UnknownStart(String),
     /// A target or other argument that may be another one at the next run.
     NotConstant(String),
+    /// Something on which it depends may change while it runs.
+    Meanwhile(String),
     /// It could not be worked out.
     Unresolved(String),
     /// It does not run in the simulated cycle.
@@ -80,6 +82,7 @@ impl Reason {
             Reason::FirstMovement => "first-movement",
             Reason::UnknownStart(_) => "unknown-start",
             Reason::NotConstant(_) => "not-constant",
+            Reason::Meanwhile(_) => "meanwhile",
             Reason::Unresolved(_) => "unresolved",
             Reason::NotReached => "not-reached",
             Reason::CompactIf => "compact-if",
@@ -143,7 +146,7 @@ impl std::fmt::Display for Reason {
                 f.write_str("the first movement brings the robot to a known place")
             }
             Reason::UnknownStart(why) => write!(f, "where it starts is not known ({why})"),
-            Reason::NotConstant(what) => f.write_str(what),
+            Reason::NotConstant(what) | Reason::Meanwhile(what) => f.write_str(what),
             Reason::Unresolved(why)
             | Reason::Path(why)
             | Reason::Handler(why)

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::reason::Reason;
 use crate::ir::hir::{Block, Callee, StmtKind};
 use crate::ir::instructions::{MoveForm, is_movement};
-use crate::ir::movement::{LocalValue, Movement, Settings};
+use crate::ir::movement::{Argument, Movement, Settings};
 use crate::ir::program::Program;
 use crate::ir::value::Dependence;
 use crate::motion::Simulation;
@@ -37,17 +37,10 @@ pub struct Site {
 pub struct Variant {
     /// Indices of the simulation's events in which it ran so.
     pub events: Vec<usize>,
-    /// The values that tell it from others.
-    pub locals: Vec<LocalValue>,
+    /// The arguments of its movements, each place of the text once.
+    pub arguments: Vec<Argument>,
     /// Why it stays, if it does.
     pub reason: Option<Reason>,
-}
-
-impl Variant {
-    /// What it depends on of its module, which may be something else whenever it runs.
-    pub fn changing(&self) -> Option<&LocalValue> {
-        self.locals.iter().find(|local| !matches!(local.of.base(), Dependence::Local(_)))
-    }
 }
 
 /// Ways of one site beyond which none is rewritten.
@@ -79,10 +72,11 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
             statements: BTreeSet::new(),
         });
         site.statements.extend(run.moves.iter().map(|record| record.movement.span));
-        let locals = locals(run);
+        let arguments = arguments(run);
         let known = site.variants.iter_mut().find(|variant| {
             let other = variant.events.first().map(|i| &simulation.events[*i].what);
-            matches!(other, Some(What::Run(other)) if same(run, other)) && variant.locals == locals
+            matches!(other, Some(What::Run(other)) if same(run, other))
+                && variant.arguments == arguments
         });
         match known {
             Some(variant) => {
@@ -91,7 +85,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
                     variant.reason = reason;
                 }
             }
-            None => site.variants.push(Variant { events: vec![index], locals, reason }),
+            None => site.variants.push(Variant { events: vec![index], arguments, reason }),
         }
     }
     let mut sites: Vec<Site> = sites.into_values().collect();
@@ -160,16 +154,14 @@ fn same(a: &Run, b: &Run) -> bool {
             .all(|(a, b)| close(&a.end, &b.end) && a.speed == b.speed && a.zone == b.zone)
 }
 
-fn locals(run: &Run) -> Vec<LocalValue> {
-    let mut locals: Vec<LocalValue> = Vec::new();
-    for record in &run.moves {
-        for local in &record.movement.locals {
-            if !locals.contains(local) {
-                locals.push(local.clone());
-            }
+fn arguments(run: &Run) -> Vec<Argument> {
+    let mut arguments: Vec<Argument> = Vec::new();
+    for argument in run.moves.iter().flat_map(|record| &record.movement.arguments) {
+        if !arguments.contains(argument) {
+            arguments.push(argument.clone());
         }
     }
-    locals
+    arguments
 }
 
 /// Whether a run may be replaced at all.
@@ -220,31 +212,6 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
     if !movement.plain || movement.form == MoveForm::ExternalJoint {
         return Err(Reason::Instruction(movement.instruction.to_string()));
     }
-    for dependence in movement.origin.iter() {
-        if movement.locals.iter().any(|local| local.of == *dependence) {
-            continue;
-        }
-        let what = match dependence.base() {
-            Dependence::Local(_) | Dependence::TrustedPersistent(_) => continue,
-            Dependence::Inner(name) => {
-                format!("it is computed from {name}, which only its function can name")
-            }
-            Dependence::Variable(name) => {
-                format!("it is computed from the variable {name}, which the program changes")
-            }
-            Dependence::Persistent(name) => {
-                format!("it uses PERS {name}, whose stored value can differ from the source")
-            }
-            Dependence::Exposed(name, call) => {
-                format!("it uses {name}, which {call} may change: {call} is in no file given")
-            }
-            Dependence::Input(name) => format!("it is computed from the signal {name}"),
-            Dependence::RobotState | Dependence::Element(..) => {
-                "it is computed from where the robot stands".to_owned()
-            }
-        };
-        return Err(Reason::NotConstant(what));
-    }
     if movement.time.is_some() {
         return Err(Reason::Timed);
     }
@@ -264,6 +231,29 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
         }
         _ => settings_allow(settings),
     }
+}
+
+/// Why the arguments of a movement may be others at the next run, if they may: what stands for it
+/// without a condition would be wrong then.
+pub fn not_constant(movement: &Movement) -> Option<Reason> {
+    let what = |dependence: &Dependence| match dependence {
+        Dependence::Local(_) | Dependence::TrustedPersistent(_) => None,
+        Dependence::Inner(name) => {
+            Some(format!("it is computed from {name}, which only its function can name"))
+        }
+        Dependence::Variable(name) => {
+            Some(format!("it is computed from the variable {name}, which the program changes"))
+        }
+        Dependence::Persistent(name) => {
+            Some(format!("it uses PERS {name}, whose stored value can differ from the source"))
+        }
+        Dependence::Exposed(name, call) => {
+            Some(format!("it uses {name}, which {call} may change: {call} is in no file given"))
+        }
+        Dependence::Input(name) => Some(format!("it is computed from the signal {name}")),
+        Dependence::RobotState => Some("it is computed from where the robot stands".to_owned()),
+    };
+    movement.origin.iter().find_map(what).map(Reason::NotConstant)
 }
 
 fn settings_allow(settings: &Settings) -> Result<(), Reason> {

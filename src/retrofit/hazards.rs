@@ -3,11 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::guards::Guards;
 use crate::emit;
-use crate::ir::hir::{BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use crate::ir::hir::{ArgKind, BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::ir::instructions::is_movement;
 use crate::ir::movement::Stop;
-use crate::ir::program::{Program, RoutineId, Symbol};
+use crate::ir::program::{DataId, Program, RoutineId, Symbol};
 use crate::motion::Simulation;
 use crate::motion::timeline::{Run, What};
 use crate::optimize::reason::Reason;
@@ -39,7 +40,12 @@ const CHANGES_MOVEMENTS: [&str; 17] = [
 ];
 
 /// Gives the sites and variants that can't be streams their reasons, where they have none yet.
-pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site]) {
+pub(super) fn mark(
+    program: &Program,
+    simulation: &Simulation,
+    guards: &Guards<'_>,
+    sites: &mut [Site],
+) {
     let handled = handlers(program);
     let interrupt = interrupts(program);
     let moved = external_axes(simulation);
@@ -61,6 +67,7 @@ pub(super) fn mark(program: &Program, simulation: &Simulation, sites: &mut [Site
                         (elsewhere || moved.contains(event)).then_some(Reason::ExternalAxes)
                     })
                     .or_else(|| stop_with_time(run))
+                    .or_else(|| guards.refusal(run))
             });
             if variant.reason.is_none() {
                 variant.reason = reason;
@@ -196,6 +203,23 @@ fn is_movement_error(number: &Expr) -> bool {
 
 /// What connected interrupt routines may do to a movement.
 fn interrupts(program: &Program) -> Option<Reason> {
+    traps(program).into_iter().find_map(|(trap, reach)| {
+        let what = reach.hazard()?;
+        Some(Reason::Interrupt(format!(
+            "the interrupt routine {trap} is connected somewhere in the program and may run {what} \
+             meanwhile"
+        )))
+    })
+}
+
+/// Module data that connected interrupt routines may write.
+pub(super) fn written_by_interrupts(program: &Program) -> BTreeSet<DataId> {
+    traps(program).into_iter().flat_map(|(_, reach)| reach.written).collect()
+}
+
+/// The connected interrupt routines by name, with what they run.
+fn traps(program: &Program) -> Vec<(String, Reach)> {
+    let mut found = Vec::new();
     for (m, module) in program.modules.iter().enumerate() {
         for block in module.routines.iter().flat_map(Routine::blocks) {
             let mut traps = Vec::new();
@@ -207,17 +231,11 @@ fn interrupts(program: &Program) -> Option<Reason> {
                 while let Some(id) = reach.open.pop() {
                     reach.block(program, id.module, &program.routine(id).body);
                 }
-                if let Some(what) = reach.hazard() {
-                    let why = format!(
-                        "the interrupt routine {trap} is connected somewhere in the program and may run \
-                         {what} meanwhile"
-                    );
-                    return Some(Reason::Interrupt(why));
-                }
+                found.push((trap, reach));
             }
         }
     }
-    None
+    found
 }
 
 fn connected(block: &Block, traps: &mut Vec<String>) {
@@ -244,6 +262,8 @@ struct Reach {
     moves: Option<String>,
     /// Whether the path that it interrupts is kept for later.
     stores_path: bool,
+    /// Module data that it may write: what it assigns to, and what it hands to other routines.
+    written: BTreeSet<DataId>,
 }
 
 impl Reach {
@@ -269,9 +289,34 @@ impl Reach {
         }
     }
 
+    fn writes(&mut self, program: &Program, module: usize, target: &Expr) {
+        match &target.kind {
+            ExprKind::Field(base, _) | ExprKind::Index(base, _) => {
+                self.writes(program, module, base);
+            }
+            ExprKind::Ref(name) => {
+                if let Some(Symbol::Data(id)) = program.resolve(module, &name.key) {
+                    self.written.insert(id);
+                }
+            }
+            _ => {}
+        }
+    }
+
     fn block(&mut self, program: &Program, module: usize, block: &Block) {
         for stmt in block {
+            if let StmtKind::Assign { target, .. } = &stmt.kind {
+                self.writes(program, module, target);
+            }
             if let StmtKind::Call(call) = &stmt.kind {
+                for arg in &call.args {
+                    if let ArgKind::Positional(expr)
+                    | ArgKind::Named(_, expr)
+                    | ArgKind::Optional(_, Some(expr)) = &arg.kind
+                    {
+                        self.writes(program, module, expr);
+                    }
+                }
                 match &call.callee {
                     Callee::Name(name) => self.call(program, module, &name.text),
                     Callee::Late(_) => {

@@ -3,13 +3,16 @@
 //! Parse, simulate, optimise, emit; then read the emitted text again, simulate
 //! that, and compare. What does not hold keeps its original moves.
 
+mod elsewhere;
 pub mod figures;
 mod freed;
 mod goals;
+mod guards;
 mod guided;
 mod hazards;
 mod notes;
 mod outputs;
+mod recorded;
 mod rests;
 mod segments;
 mod sharing;
@@ -18,6 +21,7 @@ mod speeds;
 mod verify;
 mod work;
 
+pub use elsewhere::written_in;
 pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
 pub use freed::freed;
 pub use outputs::read_again;

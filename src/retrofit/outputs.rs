@@ -3,15 +3,21 @@
 use std::collections::BTreeMap;
 
 use super::figures::{OutputFile, OutputKind};
+use super::guards::Guards;
 use super::rests::{self, Resting};
 use super::work::{RetrofitError, Source, Way, run_of};
-use crate::emit::{self, EmittedStream, Layout, Names};
+use crate::emit::{self, EmittedStream, Layout, MotionSettings, Names, Parameter, Recorded, Robot};
+use crate::ir::movement::{Argument, Movement};
 use crate::ir::number::number;
+use crate::ir::predefined;
+use crate::ir::value::Datum;
+use crate::kinematics::fk;
 use crate::motion::Simulation;
 use crate::optimize::idle::Dwell;
 use crate::optimize::site::Site;
 use crate::robot::Model;
 use crate::text::{self, FileId, SourceFile, Span};
+use sha2::{Digest, Sha256};
 
 /// What stays the same from one emission to the next.
 pub(super) struct Writing<'a> {
@@ -21,6 +27,12 @@ pub(super) struct Writing<'a> {
     pub(super) originals: Vec<SourceFile>,
     /// The file beside which new modules lie.
     pub(super) beside: usize,
+    /// What guards compare.
+    pub(super) guards: &'a Guards<'a>,
+    /// The robot that streams are made for.
+    pub(super) robot: Robot,
+    /// What the program writes down for them.
+    pub(super) recorded: Recorded,
     /// Names that are free.
     pub(super) names: Names,
     /// How points are written.
@@ -36,24 +48,13 @@ pub(super) fn emit(
     restings: &[Resting],
 ) -> Result<Vec<OutputFile>, RetrofitError> {
     let files = writing.files;
-    let mut emitted_sites = Vec::new();
-    for (index, site) in sites.iter().enumerate() {
-        let streams: Vec<EmittedStream> = ways
-            .iter()
-            .filter(|way| way.site == index)
-            .filter_map(|way| stream(files, simulation, sites, way))
-            .collect();
-        if !streams.is_empty() {
-            emitted_sites.push(emit::Site { span: site.span, streams });
-        }
-    }
-    for resting in restings {
-        let streams: Vec<EmittedStream> =
-            rests::emitted(files, simulation, resting).into_iter().collect();
-        if !streams.is_empty() {
-            emitted_sites.push(emit::Site { span: resting.span, streams });
-        }
-    }
+    let mut emitted_sites: Vec<emit::Site> = sites
+        .iter()
+        .enumerate()
+        .filter_map(|(index, site)| site_of(writing, simulation, sites, ways, (index, site)))
+        .collect();
+    emitted_sites
+        .extend(restings.iter().filter_map(|rest| rests::emitted(writing, simulation, rest)));
     let mut outputs = Vec::new();
     if emitted_sites.is_empty() {
         for (i, source) in files.iter().enumerate() {
@@ -61,7 +62,16 @@ pub(super) fn emit(
         }
         return Ok(outputs);
     }
-    let emitted = emit::emit(&writing.originals, &writing.names, writing.layout, &emitted_sites)?;
+    let program = hash(&writing.originals);
+    let emission = emit::Emission {
+        files: &writing.originals,
+        names: &writing.names,
+        layout: writing.layout,
+        robot: &writing.robot,
+        recorded: &writing.recorded,
+        program: &program,
+    };
+    let emitted = emit::emit(&emission, &emitted_sites)?;
     for (i, source) in files.iter().enumerate() {
         let edits: Vec<text::Edit> =
             emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
@@ -115,46 +125,131 @@ pub(super) fn unchanged(index: usize, source: &Source) -> OutputFile {
     }
 }
 
+/// The robot as guards know it: what its controller calls it, and where a posture that no other
+/// robot shares brings its flange.
+pub(super) fn robot(model: &Model) -> Robot {
+    let place = fk(model, &POSTURE).translation.vector;
+    Robot { kind: model.type_name().to_owned(), posture: POSTURE, place: place.into() }
+}
+
+/// A posture in which every length of an arm counts, rad.
+const POSTURE: [f64; 6] = [0.3, 0.2, -0.4, 0.5, 0.7, 0.0];
+
+/// What tells one version of a program from another.
+fn hash(files: &[SourceFile]) -> String {
+    let mut hasher = Sha256::new();
+    for file in files {
+        hasher.update((file.bytes.len() as u64).to_le_bytes());
+        hasher.update(&file.bytes);
+    }
+    let digest = hasher.finalize();
+    digest.iter().take(HASH_BYTES).fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
+}
+
+/// Bytes of a hash that are written.
+const HASH_BYTES: usize = 8;
+
+/// A site with its streams; `None` where there is none.
+fn site_of(
+    writing: &Writing<'_>,
+    simulation: &Simulation,
+    sites: &[Site],
+    ways: &[Way],
+    (index, site): (usize, &Site),
+) -> Option<emit::Site> {
+    let own = || ways.iter().filter(|way| way.site == index && way.outcome.is_ok());
+    let run = run_of(simulation, sites, own().next()?)?;
+    let streams: Vec<(Vec<Parameter>, EmittedStream)> =
+        own().filter_map(|way| stream(writing, simulation, sites, way)).collect();
+    let parameters = streams.first()?.0.clone();
+    let movements = || run.moves.iter().map(|record| &record.movement);
+    let first = movements().next()?;
+    Some(emit::Site {
+        span: site.span,
+        origin: place(writing.files, site.span),
+        parameters,
+        settings: MotionSettings {
+            fastest: movements().map(|m| 1e3 * m.speed.tcp).fold(0.0, f64::max).min(MOST_SPEED),
+            conf_joint: first.settings.conf_joint,
+            conf_linear: first.settings.conf_linear,
+            lines: movements().any(|movement| movement.line_speed().is_finite()),
+        },
+        tool: argument(writing.files, first.tool_span),
+        streams: streams.into_iter().map(|(_, stream)| stream).collect(),
+    })
+}
+
+/// The speed that `VelSet` allows by itself, mm/s: faster programmed speeds are cut there.
+const MOST_SPEED: f64 = 5000.0;
+
+/// File and lines of some statements.
+pub(super) fn place(files: &[Source], span: Span) -> String {
+    let file = &files[span.file.0 as usize];
+    let first = file.file.position(span.start).line;
+    let last = file.file.position(span.end).line;
+    let lines = if first == last { format!("{first}") } else { format!("{first}-{last}") };
+    format!("{} {lines}", ascii(&file.relative))
+}
+
 fn stream(
-    files: &[Source],
+    writing: &Writing<'_>,
     simulation: &Simulation,
     sites: &[Site],
     way: &Way,
-) -> Option<EmittedStream> {
+) -> Option<(Vec<Parameter>, EmittedStream)> {
     let retiming = way.outcome.as_ref().ok()?;
     let run = run_of(simulation, sites, way)?;
     let site = &sites[way.site];
-    let file = &files[site.span.file.0 as usize];
-    let first = file.file.position(site.span.start).line;
-    let last = file.file.position(site.span.end).line;
-    let lines = if first == last { format!("{first}") } else { format!("{first}-{last}") };
     let variants = site.variants.len();
     let way_text = if variants > 1 {
         format!(", way {} of {variants}", way.variant + 1)
     } else {
         String::new()
     };
+    let first = &run.moves.first()?.movement;
+    let (parameters, values) = compared(writing, &site.variants[way.variant].arguments, first);
     let before: f64 = retiming.energy_before_j;
-    Some(EmittedStream {
+    let stream = EmittedStream {
         start: run.start,
         points: retiming.stream.points().to_vec(),
         intervals: retiming.stream.intervals().to_vec(),
         pause: None,
-        external: run.moves.first()?.movement.external?,
-        locals: site.variants[way.variant].locals.clone(),
-        tool: argument(files, run.moves.first()?.movement.tool_span),
-        origin: format!("{} {lines}{way_text}", ascii(&file.relative)),
+        external: first.external?,
+        values,
+        origin: format!("{}{way_text}", place(writing.files, site.span)),
         before: format!("{} s {} J", number(run.duration(), 3), number(before, 1)),
         after: format!(
             "{} s {} J",
             number(retiming.duration_s, 3),
             number(retiming.energy.energy_j(), 1)
         ),
-    })
+    };
+    Some((parameters, stream))
+}
+
+/// What a guard compares, and with what: arguments, and the load where the program changes it.
+pub(super) fn compared(
+    writing: &Writing<'_>,
+    arguments: &[Argument],
+    movement: &Movement,
+) -> (Vec<Parameter>, Vec<Datum>) {
+    let mut compared = writing.guards.parameters(arguments);
+    if writing.recorded.load {
+        let load = movement.settings.grip_load_data.clone();
+        let load = load.or_else(|| predefined::lookup("load0").map(|value| value.datum));
+        let parameter = Parameter {
+            text: None,
+            label: "GripLoad".to_owned(),
+            type_name: "loaddata",
+            is_computed: false,
+        };
+        compared.extend(load.map(|load| (parameter, load)));
+    }
+    compared.into_iter().unzip()
 }
 
 /// An argument as the program writes it, to be written again at the same place.
-fn argument(files: &[Source], span: Span) -> String {
+pub(super) fn argument(files: &[Source], span: Span) -> String {
     let file = &files[span.file.0 as usize].file;
     file.text(span).into_owned()
 }

@@ -3,10 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::outputs::{Writing, argument, compared, place};
 use super::work::{Settings, Source, TIME_TOLERANCE, Way};
-use crate::emit::{EmittedStream, Pause};
+use crate::emit::{self, EmittedStream, MotionSettings, Pause};
 use crate::energy::account::{at_rest, run_energy};
 use crate::energy::{Account, EnergyParts};
+use crate::ir::movement::Argument;
 use crate::ir::number::number;
 use crate::motion::Simulation;
 use crate::motion::timed::TimedMotion;
@@ -118,7 +120,7 @@ impl Standing<'_> {
 fn standing(simulation: &Simulation, event: usize) -> Option<Standing<'_>> {
     let What::Wait(record) = &simulation.events[event].what else { return None };
     let stated = record.basis == WaitBasis::Stated
-        && record.wait.constant
+        && record.wait.constant.is_some()
         && record.position_known
         && record.wait.signal.is_none()
         && record.wait.instruction.eq_ignore_ascii_case("WaitTime");
@@ -145,32 +147,44 @@ fn apart(a: &Joints, b: &Joints) -> f64 {
     (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
-/// The stream that is emitted for a wait.
+/// What is emitted for a wait.
 pub(super) fn emitted(
-    files: &[Source],
+    writing: &Writing<'_>,
     simulation: &Simulation,
     resting: &Resting,
-) -> Option<EmittedStream> {
+) -> Option<emit::Site> {
     let What::Run(run) = &simulation.events[resting.run].what else { return None };
+    let event = &simulation.events[resting.events[0]];
+    let What::Wait(record) = &event.what else { return None };
     let movement = &run.moves.last()?.movement;
-    let file = &files[resting.span.file.0 as usize];
+    let arguments: Vec<Argument> = record.wait.constant.iter().cloned().collect();
+    let (parameters, values) = compared(writing, &arguments, movement);
     let Rest { out, wait_s, back, energy, energy_before_j, .. } = &resting.rest;
-    let time = number(simulation.events[resting.events[0]].duration, 3);
-    Some(EmittedStream {
+    let time = number(event.duration, 3);
+    let place = place(writing.files, resting.span);
+    let stream = EmittedStream {
         start: *out.start(),
         points: [out.points(), back.points()].concat(),
         intervals: [out.intervals(), back.intervals()].concat(),
         pause: Some(Pause { after: out.points().len() - 1, seconds: *wait_s }),
         external: movement.external?,
-        locals: Vec::new(),
-        tool: files[movement.tool_span.file.0 as usize].file.text(movement.tool_span).into_owned(),
-        origin: format!(
-            "{} {}, a wait",
-            super::outputs::ascii(&file.relative),
-            file.file.position(resting.span.start).line
-        ),
+        values,
+        origin: format!("{place}, a wait"),
         before: format!("{time} s {} J", number(*energy_before_j, 1)),
         after: format!("{time} s {} J", number(energy.energy_j(), 1)),
+    };
+    Some(emit::Site {
+        span: resting.span,
+        origin: place,
+        parameters,
+        settings: MotionSettings {
+            fastest: 0.0,
+            conf_joint: movement.settings.conf_joint,
+            conf_linear: movement.settings.conf_linear,
+            lines: false,
+        },
+        tool: argument(writing.files, movement.tool_span),
+        streams: vec![stream],
     })
 }
 

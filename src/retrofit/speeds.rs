@@ -13,7 +13,7 @@ use super::outputs::{read_again, unchanged};
 use super::verify::same_order;
 use super::work::{
     Budget, Objective, RetrofitError, Settings, Source, TIME_TOLERANCE, Way, figures,
-    nothing_to_verify, read_program, unguided,
+    nothing_to_verify, read_program,
 };
 use super::{notes, segments, signals};
 use crate::dynamics::Data;
@@ -31,7 +31,7 @@ use crate::optimize::cycle::{Part, TradeOff};
 use crate::optimize::freedom::{Bound, Freedom};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::site::{Site, Variant, not_reached};
+use crate::optimize::site::{Site, not_reached};
 use crate::path::joint_path::DOF;
 use crate::robot::Model;
 use crate::syntax;
@@ -162,18 +162,13 @@ pub(super) fn retrofit(
 fn ways(sites: &[Site]) -> Vec<Way> {
     let variants = |(site, s): (usize, &Site)| {
         let reasons: Vec<Option<Reason>> =
-            s.variants.iter().map(|v| s.reason.clone().or_else(|| stays(v))).collect();
+            s.variants.iter().map(|v| s.reason.clone().or_else(|| v.reason.clone())).collect();
         let way = move |(variant, reason): (usize, Option<Reason>)| {
             Way::new(site, variant, Err(reason.unwrap_or(Reason::NoSaving)))
         };
         reasons.into_iter().enumerate().map(way).collect::<Vec<Way>>()
     };
     sites.iter().enumerate().flat_map(variants).collect()
-}
-
-fn stays(variant: &Variant) -> Option<Reason> {
-    let changing = || variant.changing().map(|local| Reason::NotConstant(unguided(&local.name)));
-    variant.reason.clone().or_else(changing)
 }
 
 /// The sites whose speeds can be written in their place; the ways of others get their reason.

@@ -1,13 +1,15 @@
 //! The pipeline.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::figures::{Figures, Retrofit, Verification};
 use super::goals::goals;
+use super::guards::Guards;
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
-use super::{guided, hazards, notes, outputs, rests, segments, signals, speeds, verify};
+use super::{guided, hazards, notes, outputs, recorded, rests, segments, signals, speeds, verify};
 use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
@@ -22,7 +24,7 @@ use crate::optimize::freedom::Freedom;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
 use crate::optimize::retime::{Retiming, Task, retime};
-use crate::optimize::site::{Site, not_reached, sites};
+use crate::optimize::site::{Site, not_constant, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
 use crate::text::SourceFile;
@@ -101,6 +103,8 @@ pub struct Settings {
     pub dwell_pose: Option<f64>,
     /// Points of the curve of energy over time of each segment; 0 for none.
     pub pareto: usize,
+    /// Lower-case names of `PERS` data that other tasks of the controller may write.
+    pub written_elsewhere: BTreeSet<String>,
 }
 
 /// Why a program can't be retrofitted at all.
@@ -321,7 +325,12 @@ pub fn retrofit(
     let settings =
         &Settings { freedom: Freedom { loads, ..settings.freedom.clone() }, ..settings.clone() };
     let mut sites = sites(&program, &simulation);
-    hazards::mark(&program, &simulation, &mut sites);
+    let by_interrupts = hazards::written_by_interrupts(&program);
+    let guards = Guards::new(&program, files, by_interrupts, &settings.written_elsewhere);
+    hazards::mark(&program, &simulation, &guards, &mut sites);
+    if settings.form != Form::Streams {
+        leave_what_changes(&simulation, &mut sites);
+    }
     if settings.form == Form::Speeds {
         let before =
             speeds::Before { files, program: &program, simulation, account: before, sites: &sites };
@@ -329,9 +338,13 @@ pub fn retrofit(
     }
     let mut ways = retime_all(model, settings, &simulation, &before, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
+    let names = Names::free(&originals);
     let writing = outputs::Writing {
         files,
-        names: Names::free(&originals),
+        guards: &guards,
+        robot: outputs::robot(model),
+        recorded: recorded::recorded(&program, files, &names),
+        names,
         originals,
         beside: program.modules[entry.module].span.file.0 as usize,
         layout: settings.layout,
@@ -419,9 +432,14 @@ pub(super) fn run_of<'a>(simulation: &'a Simulation, sites: &[Site], way: &Way) 
     }
 }
 
-/// Why no form of a retrofit but a stream behind a guard can stand for a way.
-pub(super) fn unguided(name: &str) -> String {
-    format!("{name} may have another value when it runs, and only streams have a guard for that")
+/// Other forms than streams have no guard: what may be another one at the next run stays.
+fn leave_what_changes(simulation: &Simulation, sites: &mut [Site]) {
+    for variant in sites.iter_mut().flat_map(|site| &mut site.variants) {
+        let run = variant.events.first().map(|event| &simulation.events[*event].what);
+        if let (None, Some(What::Run(run))) = (&variant.reason, run) {
+            variant.reason = run.moves.iter().find_map(|record| not_constant(&record.movement));
+        }
+    }
 }
 
 fn retime_all(
@@ -436,19 +454,6 @@ fn retime_all(
     for (s, site) in sites.iter().enumerate() {
         for (v, variant) in site.variants.iter().enumerate() {
             let reason = site.reason.clone().or_else(|| variant.reason.clone());
-            let unguarded = variant.locals.iter().find(|local| !emit::can_guard(local));
-            let reason = reason.or_else(|| {
-                let changing = || variant.changing().filter(|_| settings.form == Form::Guided);
-                changing().map(|local| Reason::NotConstant(unguided(&local.name)))
-            });
-            let reason = reason.or_else(|| {
-                unguarded.map(|local| {
-                    Reason::NotConstant(format!(
-                        "it depends on {}, for which no condition can be written",
-                        local.name
-                    ))
-                })
-            });
             ways.push(Way::new(s, v, Err(reason.unwrap_or(Reason::NoSaving))));
         }
     }

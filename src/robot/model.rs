@@ -58,6 +58,12 @@ pub struct Model {
 }
 
 impl Model {
+    /// What a controller of ABB calls it: the name without `IRB`.
+    #[must_use]
+    pub fn type_name(&self) -> &str {
+        self.name.strip_prefix("IRB").map_or(self.name.as_str(), str::trim_start)
+    }
+
     /// Whether torques and energies can be computed.
     #[must_use]
     pub fn has_dynamics(&self) -> bool {

@@ -1,13 +1,10 @@
 //! Calls of the program's own routines.
 
-use std::sync::Arc;
-
 use super::super::hir::{
     Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, RoutineKind, Stmt,
 };
-use super::super::predefined;
 use super::super::program::{RoutineId, Symbol};
-use super::super::value::{Datum, Dependence, Origin, Value};
+use super::super::value::{Datum, Dependence, Origin};
 use super::eval::declared_twice;
 use super::flow::{Flow, Raised};
 use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
@@ -108,7 +105,6 @@ impl Executor<'_> {
             self.seen_input = None;
         }
         let input = self.seen_input.clone();
-        let alias = self.alias(expr, &value);
         // A signal is passed on as such.
         if !matches!(value.datum, Datum::Signal(_)) {
             value.type_key = param.type_name.key.as_str().into();
@@ -119,27 +115,9 @@ impl Executor<'_> {
             reading,
             history: Origin::default(),
             read_only: false,
-            alias,
             input,
         });
         self.cells.len() - 1
-    }
-
-    /// A name, valid in every module, of constant data that the argument is.
-    fn alias(&mut self, expr: &Expr, value: &Value) -> Option<Arc<str>> {
-        let ExprKind::Ref(name) = &expr.kind else { return None };
-        if self.frame().names.iter().any(|(key, _)| *key == name.key) {
-            return self.cell_of(name).and_then(|cell| self.cells[cell].alias.clone());
-        }
-        let known = match self.program.resolve(self.frame().module, &name.key) {
-            Some(Symbol::Data(id)) => {
-                self.program.resolve_global(&name.key) == Some(Symbol::Data(id))
-                    && !self.program.is_written(id)
-            }
-            Some(Symbol::Routine(_) | Symbol::Ambiguous) => false,
-            None => value.origin.is_constant() && predefined::lookup(&name.key).is_some(),
-        };
-        known.then(|| name.text.as_str().into())
     }
 
     /// Runs a routine whose parameters are bound.

@@ -32,7 +32,7 @@ pub fn value_of(program: &Program, id: DataId) -> Value {
 
 /// Why a value that depends on this may be another one each time.
 fn changes(dependence: &Dependence) -> Option<String> {
-    match dependence.base() {
+    match dependence {
         // Local data are those of functions that were called with values of the expression.
         Dependence::Persistent(_) | Dependence::TrustedPersistent(_) | Dependence::Local(_) => None,
         Dependence::Inner(name) | Dependence::Variable(name) => {
@@ -42,9 +42,7 @@ fn changes(dependence: &Dependence) -> Option<String> {
             Some(format!("'{name}' may be written by '{call}', which is not in the files given"))
         }
         Dependence::Input(name) => Some(format!("'{name}' is not declared in the files given")),
-        Dependence::RobotState | Dependence::Element(..) => {
-            Some("it depends on where the robot is".to_owned())
-        }
+        Dependence::RobotState => Some("it depends on where the robot is".to_owned()),
     }
 }
 

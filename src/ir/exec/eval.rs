@@ -22,17 +22,8 @@ impl Executor<'_> {
                 self.component(&base, name)
             }
             ExprKind::Index(base, indices) => {
-                let mut value = self.eval(base);
-                let whole = std::mem::take(&mut value.origin);
-                let mut at = Vec::with_capacity(indices.len());
-                for index in indices {
-                    let number;
-                    (value, number) = self.element(value, index);
-                    at.extend(number);
-                }
-                let at = (at.len() == indices.len()).then_some(at);
-                value.origin.join(&of_element(&whole, base, at));
-                value
+                let base = self.eval(base);
+                indices.iter().fold(base, |value, index| self.element(value, index))
             }
             ExprKind::Call(name, args) => self.function(expr, name, args),
             ExprKind::Aggregate(items) => {
@@ -131,9 +122,12 @@ impl Executor<'_> {
                     type_key: "errnum".into(),
                     origin: Origin::of(Dependence::Variable("ERRNO".into())),
                 },
-                _ => predefined::lookup(&name.key).unwrap_or_else(|| {
-                    Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
-                }),
+                _ => self
+                    .system_data(&name.key)
+                    .or_else(|| predefined::lookup(&name.key))
+                    .unwrap_or_else(|| {
+                        Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
+                    }),
             },
         }
     }
@@ -161,7 +155,6 @@ impl Executor<'_> {
             reading: Origin::default(),
             history: Origin::default(),
             read_only: true,
-            alias: None,
             input: None,
         });
         let cell = self.cells.len() - 1;
@@ -195,7 +188,6 @@ impl Executor<'_> {
             reading,
             history: Origin::default(),
             read_only: data.kind == DataKind::Const,
-            alias: None,
             input: None,
         };
         cell
@@ -263,17 +255,15 @@ impl Executor<'_> {
         }
     }
 
-    /// The element of an array, and its number.
-    fn element(&mut self, base: Value, index: &Expr) -> (Value, Option<u32>) {
+    /// The element of an array.
+    fn element(&mut self, base: Value, index: &Expr) -> Value {
         let at = self.eval(index);
         let mut origin = base.origin;
         origin.join(&at.origin);
-        let mut number = None;
         let datum = match (base.datum, at.datum) {
             (Datum::List(items), Datum::Num(x)) => {
                 let i = x.round();
                 if i >= 1.0 && (i as usize) <= items.len() {
-                    number = Some(i as u32);
                     items[i as usize - 1].clone()
                 } else {
                     Datum::unknown(format!("index {i} is outside 1..{}", items.len()), index.span)
@@ -282,7 +272,7 @@ impl Executor<'_> {
             (unknown @ Datum::Unknown(_), _) | (_, unknown @ Datum::Unknown(_)) => unknown,
             _ => Datum::unknown("the index does not fit", index.span),
         };
-        (Value { datum, type_key: base.type_key, origin }, number)
+        Value { datum, type_key: base.type_key, origin }
     }
 
     /// `target := value`; what can't be written is left with a note.
@@ -353,7 +343,7 @@ impl Executor<'_> {
     pub(super) fn history(&self, origin: &Origin) -> Origin {
         let mut history = Origin::default();
         for dependence in origin.iter() {
-            match dependence.base() {
+            match dependence {
                 Dependence::Local(name) | Dependence::Variable(name) => {
                     let key = name.to_lowercase();
                     let names = &self.frame().names;
@@ -372,9 +362,7 @@ impl Executor<'_> {
                 | Dependence::RobotState
                 | Dependence::Persistent(_)
                 | Dependence::Exposed(..) => history.join(&Origin::of(dependence.clone())),
-                Dependence::Inner(_)
-                | Dependence::TrustedPersistent(_)
-                | Dependence::Element(..) => {}
+                Dependence::Inner(_) | Dependence::TrustedPersistent(_) => {}
             }
         }
         history
@@ -534,19 +522,5 @@ fn arithmetic(op: BinaryOp, a: f64, b: f64, expr: &Expr) -> Datum {
         BinaryOp::Gt => Datum::Bool(a > b),
         BinaryOp::Ge => Datum::Bool(a >= b),
         _ => Datum::unknown("the operator does not fit numbers", expr.span),
-    }
-}
-
-/// What an element depends on: where a name stands for the whole, on that element alone.
-fn of_element(whole: &Origin, base: &Expr, at: Option<Vec<u32>>) -> Origin {
-    let mut all = whole.iter();
-    let (Some(told @ (Dependence::Local(_) | Dependence::Variable(_))), None) =
-        (all.next(), all.next())
-    else {
-        return whole.clone();
-    };
-    match (&base.kind, at) {
-        (ExprKind::Ref(_), Some(at)) => Origin::of(Dependence::Element(Box::new(told.clone()), at)),
-        _ => whole.clone(),
     }
 }

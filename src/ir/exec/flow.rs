@@ -248,7 +248,7 @@ impl Executor<'_> {
             _ => Origin::of(Dependence::Local(name)),
         };
         let read_only = data.kind == super::super::hir::DataKind::Const;
-        self.cells.push(Cell { value, reading, history, read_only, alias: None, input: None });
+        self.cells.push(Cell { value, reading, history, read_only, input: None });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((data.name.key.clone(), cell));
     }

@@ -65,6 +65,11 @@ impl Executor<'_> {
             let datum = Datum::Unknown(unknown.clone());
             return Value { datum, type_key: "".into(), origin };
         }
+        match name.key.as_str() {
+            "calcrobt" => return self.robtarget_at(&values, &options, expr),
+            "getsysinfo" => return self.system_info(&options, expr),
+            _ => {}
+        }
         let Some(function) = functions::lookup(&name.key) else {
             return Value::unknown(not_known(name), expr.span);
         };
@@ -110,7 +115,7 @@ fn not_known(name: &Ident) -> String {
         "crobt" | "cpos" | "ctool" | "cwobj" => {
             format!("{} depends on where the robot is", name.text)
         }
-        "calcrobt" | "calcjointt" => format!("{} needs the robot's kinematics", name.text),
+        "calcjointt" => format!("{} needs the robot's kinematics", name.text),
         _ => format!("the function '{}' is not known", name.text),
     }
 }

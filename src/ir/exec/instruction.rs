@@ -5,10 +5,11 @@ use std::sync::Arc;
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
 use super::super::instructions::{self, MoveForm};
-use super::super::movement::{Output, Settings, Wait};
+use super::super::movement::{Argument, Output, Settings, Wait};
 use super::super::value::{Datum, Dependence, Value};
 use super::flow::{Flow, Raised, number_text};
 use super::{Cell, Executor, Waited};
+use crate::text::Span;
 
 /// The arguments of an instruction, by position and by name.
 pub(super) struct Arguments<'e> {
@@ -55,8 +56,8 @@ const MOST_OVERRIDE: f64 = 200.0;
 
 /// How long a wait lasts.
 pub(super) enum Length {
-    /// s, by literals and constants: the same whenever it runs.
-    Constant(f64),
+    /// s, by an argument of literals and constants: the same whenever it runs.
+    Constant(f64, Span),
     /// s.
     Stated(f64),
     /// Until an input comes, or a condition holds that names none.
@@ -172,7 +173,10 @@ impl Executor<'_> {
                 );
                 Length::Stated(0.0)
             }
-            Some(Datum::Num(time)) if time.is_finite() && constant => Length::Constant(time),
+            Some(Datum::Num(time)) if time.is_finite() && constant => {
+                let argument = arguments.positional.first().map_or(stmt.span, |expr| expr.span);
+                Length::Constant(time, argument)
+            }
             Some(Datum::Num(time)) if time.is_finite() => Length::Stated(time),
             Some(Datum::Num(_)) => Length::Unknown("a time that is out of range".into()),
             Some(Datum::Unknown(why)) => {
@@ -283,9 +287,14 @@ impl Executor<'_> {
         max_time: Option<f64>,
     ) -> Waited {
         let routine = self.frame().routine.clone();
-        let constant = matches!(length, Length::Constant(_));
+        let constant = match length {
+            Length::Constant(duration, span) => {
+                Some(Argument { span, type_name: "num", datum: Datum::Num(duration) })
+            }
+            _ => None,
+        };
         let (duration, signal, other) = match length {
-            Length::Constant(duration) | Length::Stated(duration) => {
+            Length::Constant(duration, _) | Length::Stated(duration) => {
                 self.waited_s += duration;
                 (Some(duration), None, None)
             }
@@ -423,6 +432,7 @@ impl Executor<'_> {
             "gripload" => match values.first().map(|v| convert::load(&v.datum)) {
                 Some(Ok(load)) => {
                     settings.grip_load = Some(load);
+                    settings.grip_load_data = values.first().map(|value| value.datum.clone());
                     false
                 }
                 Some(Err(why)) => {

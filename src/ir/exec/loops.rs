@@ -35,7 +35,6 @@ impl Executor<'_> {
             reading: Origin::of(Dependence::Local(var.text.as_str().into())),
             history: Origin::default(),
             read_only: true,
-            alias: None,
             input: None,
         });
         let cell = self.cells.len() - 1;

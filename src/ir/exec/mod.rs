@@ -17,11 +17,14 @@ mod instruction;
 mod loops;
 mod motion;
 mod polling;
+mod system;
 
 pub use constant::{evaluate, value_of};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+use nalgebra::Isometry3;
 
 use super::movement::{Movement, Output, Settings, Unresolved, Wait};
 use super::program::{DataId, Program, RoutineId};
@@ -59,6 +62,14 @@ pub trait Machine {
     }
     /// Axis positions in rad, if the robot stands and its position is known.
     fn joints(&mut self) -> Option<[f64; 6]>;
+    /// The pose of the flange in the world at these joints (rad), if a robot is there.
+    fn flange(&self, _q: &[f64; 6]) -> Option<Isometry3<f64>> {
+        None
+    }
+    /// What the controller calls its robot.
+    fn robot(&self) -> Option<String> {
+        None
+    }
     /// True once the machine wants no more (limits of time or of length); it tells why itself.
     fn is_full(&self) -> bool;
 }
@@ -115,8 +126,6 @@ struct Cell {
     /// Inputs, stored values and places of the robot from which what it holds was worked out.
     history: Origin,
     read_only: bool,
-    /// A name, valid in every module, of data that the value was passed from.
-    alias: Option<Arc<str>>,
     /// An input from which the value was worked out.
     input: Option<Arc<str>>,
 }

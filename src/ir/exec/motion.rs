@@ -3,13 +3,11 @@
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, Expr, ExprKind, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
-use super::super::movement::{LocalValue, Movement, Stop, Target, Unresolved, Zone};
+use super::super::movement::{Argument, Movement, Stop, Target, Unresolved, Zone};
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
+use super::Executor;
 use super::instruction::Arguments;
-use super::{Cell, Executor};
-use std::fmt::Write;
-use std::sync::Arc;
 
 /// Options that a movement may have without changing where or how fast it goes.
 const KNOWN_OPTIONS: &[&str] = &[
@@ -27,6 +25,13 @@ const KNOWN_OPTIONS: &[&str] = &[
     "cirpoint",
     "noeoffs",
 ];
+
+/// The arguments of a movement as far as they are evaluated.
+#[derive(Default)]
+struct Given {
+    origin: Origin,
+    arguments: Vec<Argument>,
+}
 
 impl Executor<'_> {
     pub(super) fn movement(
@@ -81,7 +86,7 @@ impl Executor<'_> {
         signature: MoveSignature,
         arguments: &Arguments<'_>,
     ) -> Result<Movement, String> {
-        let mut origin = Origin::default();
+        let mut given = Given::default();
         let mut positional = arguments.positional.iter().copied().skip(signature.before);
         let mut take = |name: &str, what: &str| {
             arguments
@@ -103,35 +108,39 @@ impl Executor<'_> {
 
         let via = match via {
             Some(expr) => {
-                let value = self.argument(expr, &mut origin);
+                let value = self.argument(expr, "robtarget", &mut given);
                 Some(convert::robtarget(&value.datum)?)
             }
             None => None,
         };
-        let target_value = self.argument(target, &mut origin);
+        let target_type = match signature.form {
+            MoveForm::AbsJ => "jointtarget",
+            _ => "robtarget",
+        };
+        let target_value = self.argument(target, target_type, &mut given);
         let external = convert::external(&target_value.datum);
         let target = match signature.form {
             MoveForm::AbsJ => Target::Joints(convert::jointtarget(&target_value.datum)?),
             _ => Target::Pose(convert::robtarget(&target_value.datum)?),
         };
-        let speed_value = self.argument(speed, &mut origin);
+        let speed_value = self.argument(speed, "speeddata", &mut given);
         let mut speed = convert::speed(&speed_value.datum)?;
         let zone = match zone {
             Some(expr) => {
-                let value = self.argument(expr, &mut origin);
+                let value = self.argument(expr, "zonedata", &mut given);
                 convert::zone(&value.datum)?
             }
             None => Zone { fine: true, tcp: 0.0, orientation: 0.0, angle: 0.0 },
         };
-        let zone = self.zone_options(zone, arguments, &mut origin)?;
+        let zone = self.zone_options(zone, arguments, &mut given)?;
         let stop = match arguments.option_value("inpos") {
             Some(expr) => {
-                let value = self.argument(expr, &mut origin);
+                let value = self.argument(expr, "stoppointdata", &mut given);
                 convert::stop(&value.datum)?
             }
             None => Stop::Fine,
         };
-        let tool_value = self.argument(tool, &mut origin);
+        let tool_value = self.argument(tool, "tooldata", &mut given);
         let tool_name = match &tool.kind {
             ExprKind::Ref(name) => name.text.as_str(),
             _ => "tool",
@@ -140,20 +149,20 @@ impl Executor<'_> {
         let tool = convert::tool(&tool_value.datum, tool_name)
             .map_err(|why| self.blame(named, &tool_value.datum, &why))?;
         let wobj = match arguments.option_value("wobj") {
-            Some(expr) => self.argument(expr, &mut origin),
+            Some(expr) => self.argument(expr, "wobjdata", &mut given),
             None => super::super::predefined::lookup("wobj0")
                 .unwrap_or_else(|| Value::unknown("wobj0", stmt.span)),
         };
         let wobj = convert::work_object(&wobj.datum)?;
         let total_load = match arguments.option_value("tload") {
             Some(expr) => {
-                let value = self.argument(expr, &mut origin);
+                let value = self.argument(expr, "loaddata", &mut given);
                 Some(convert::load(&value.datum)?)
             }
             None => None,
         };
         if let Some(expr) = arguments.option_value("v") {
-            let value = self.argument(expr, &mut origin);
+            let value = self.argument(expr, "num", &mut given);
             speed.tcp = convert::num(&value.datum, "\\V")? * 1e-3;
             if speed.tcp <= 0.0 {
                 return Err("\\V is not positive".into());
@@ -161,7 +170,7 @@ impl Executor<'_> {
         }
         let time = match arguments.option_value("t") {
             Some(expr) => {
-                let value = self.argument(expr, &mut origin);
+                let value = self.argument(expr, "num", &mut given);
                 let time = convert::num(&value.datum, "\\T")?;
                 if time <= 0.0 {
                     return Err("\\T is not positive".into());
@@ -170,6 +179,7 @@ impl Executor<'_> {
             }
             None => None,
         };
+        let mut origin = given.origin;
         for dependence in origin.iter() {
             if let Dependence::TrustedPersistent(name) = dependence {
                 let text = format!("PERS {name} has its value of the source");
@@ -180,11 +190,6 @@ impl Executor<'_> {
         }
         let history = self.history(&origin);
         origin.join(&history);
-        let mut locals = self.locals(&origin);
-        let options = arguments.optional.iter().filter_map(|(_, _, expr)| *expr);
-        for expr in arguments.positional.iter().copied().chain(options) {
-            self.references(expr, &mut locals);
-        }
         let other_arguments = arguments
             .optional
             .iter()
@@ -213,118 +218,8 @@ impl Executor<'_> {
             concurrent: arguments.has_option("conc"),
             other_arguments,
             origin,
-            locals,
+            arguments: given.arguments,
         })
-    }
-
-    /// What the data in an origin that have a name here are at this moment.
-    fn locals(&self, origin: &Origin) -> Vec<LocalValue> {
-        origin.iter().filter_map(|dependence| self.local(dependence)).collect()
-    }
-
-    fn local(&self, dependence: &Dependence) -> Option<LocalValue> {
-        let base = dependence.base();
-        let (name, cell) = match base {
-            Dependence::Local(name) => {
-                let key = name.to_lowercase();
-                let names = &self.frame().names;
-                let (_, cell) = names.iter().rev().find(|(known, _)| *known == key)?;
-                (name, &self.cells[*cell])
-            }
-            Dependence::Variable(name) => (name, self.module_data(name, base, dependence != base)?),
-            _ => return None,
-        };
-        let (mut datum, mut text) = (&cell.value.datum, name.to_string());
-        if let Dependence::Element(_, at) = dependence {
-            for index in at {
-                let Datum::List(items) = datum else { return None };
-                datum = items.get(*index as usize - 1)?;
-            }
-            let at: Vec<String> = at.iter().map(u32::to_string).collect();
-            let _ = write!(text, "{{{}}}", at.join(","));
-        }
-        Some(LocalValue {
-            name: text.into(),
-            type_key: cell.value.type_key.clone(),
-            datum: datum.clone(),
-            alias: if dependence == base { cell.alias.clone() } else { None },
-            of: dependence.clone(),
-        })
-    }
-
-    /// The cell of module data on which something depends, if its name means it and nothing else
-    /// here, and a condition can tell its value, or that of an `element`.
-    fn module_data(&self, name: &str, dependence: &Dependence, element: bool) -> Option<&Cell> {
-        let key = name.to_lowercase();
-        let frame = self.frame();
-        if frame.names.iter().any(|(known, _)| *known == key) {
-            return None;
-        }
-        let Some(Symbol::Data(id)) = self.program.resolve(frame.module, &key) else { return None };
-        let data = self.program.modules.iter().flat_map(|module| &module.data);
-        let is_alone = data.filter(|data| data.name.key == key).count() == 1;
-        let whole = self.program.data(id).dims.is_empty() != element;
-        let cell = &self.cells[*self.globals.get(&id)?];
-        let told = matches!(&*cell.value.type_key, "num" | "bool" | "robtarget" | "jointtarget");
-        let is_it = cell.reading == Origin::of(dependence.clone());
-        (is_alone && whole && told && is_it).then_some(cell)
-    }
-
-    /// Adds the parameters in an expression that stand for module data themselves: at another call
-    /// they may stand for others.
-    fn references(&self, expr: &Expr, locals: &mut Vec<LocalValue>) {
-        match &expr.kind {
-            ExprKind::Ref(name) => {
-                let names = &self.frame().names;
-                let Some((_, cell)) = names.iter().rev().find(|(key, _)| *key == name.key) else {
-                    return;
-                };
-                let data = self.globals.iter().find(|(_, known)| *known == cell);
-                let Some((id, _)) = data else { return };
-                if locals.iter().any(|local| local.name.eq_ignore_ascii_case(&name.text)) {
-                    return;
-                }
-                let declared = &self.program.data(*id).name;
-                let global = self.program.resolve_global(&declared.key) == Some(Symbol::Data(*id));
-                let value = &self.cells[*cell].value;
-                let own: Arc<str> = name.text.as_str().into();
-                locals.push(LocalValue {
-                    name: own.clone(),
-                    type_key: value.type_key.clone(),
-                    datum: value.datum.clone(),
-                    alias: global.then(|| declared.text.as_str().into()),
-                    of: Dependence::Local(own),
-                });
-            }
-            ExprKind::Field(base, _) => self.references(base, locals),
-            ExprKind::Index(base, indices) => {
-                self.references(base, locals);
-                for index in indices {
-                    self.references(index, locals);
-                }
-            }
-            ExprKind::Aggregate(items) => {
-                for item in items {
-                    self.references(item, locals);
-                }
-            }
-            ExprKind::Unary(_, operand) => self.references(operand, locals),
-            ExprKind::Binary(_, left, right) => {
-                self.references(left, locals);
-                self.references(right, locals);
-            }
-            ExprKind::Call(_, args) => {
-                for arg in args {
-                    if let ArgKind::Positional(expr)
-                    | ArgKind::Named(_, expr)
-                    | ArgKind::Optional(_, Some(expr)) = &arg.kind
-                    {
-                        self.references(expr, locals);
-                    }
-                }
-            }
-            _ => {}
-        }
     }
 
     /// Why an argument can't be used, with the name of the data; where their value is known but
@@ -351,10 +246,10 @@ impl Executor<'_> {
         &mut self,
         mut zone: Zone,
         arguments: &Arguments<'_>,
-        origin: &mut Origin,
+        given: &mut Given,
     ) -> Result<Zone, String> {
         if let Some(expr) = arguments.option_value("z") {
-            let value = self.argument(expr, origin);
+            let value = self.argument(expr, "num", given);
             let size = convert::num(&value.datum, "\\Z")?.max(0.0) * 1e-3;
             // The other sizes keep their proportion to the TCP zone.
             let scale = if zone.tcp > 0.0 { size / zone.tcp } else { 1.5 };
@@ -371,9 +266,10 @@ impl Executor<'_> {
         Ok(zone)
     }
 
-    fn argument(&mut self, expr: &Expr, origin: &mut Origin) -> Value {
+    fn argument(&mut self, expr: &Expr, type_name: &'static str, given: &mut Given) -> Value {
         let value = self.eval(expr);
-        origin.join(&value.origin);
+        given.origin.join(&value.origin);
+        given.arguments.push(Argument { span: expr.span, type_name, datum: value.datum.clone() });
         value
     }
 }

@@ -152,7 +152,7 @@ impl Executor<'_> {
             span: condition.span,
             routine: self.frame().routine.clone(),
             duration: None,
-            constant: false,
+            constant: None,
             max_time,
             signal,
             other: None,

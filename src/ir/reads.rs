@@ -1,0 +1,252 @@
+//! What the evaluation of an expression reads, and whether it does more: told from the text, for
+//! every way through the functions that it calls.
+
+use std::collections::BTreeSet;
+
+use super::hir::{Arg, ArgKind, Block, Call, Callee, Expr, ExprKind, ParamMode, Routine, StmtKind};
+use super::program::{DataId, Program, RoutineId, Symbol};
+use super::{functions, predefined};
+
+/// What an expression depends on.
+#[derive(Clone, Debug, Default)]
+pub struct Reads {
+    /// Data of modules.
+    pub data: BTreeSet<DataId>,
+    /// Whether it reads a parameter that stands for data of a caller.
+    pub by_reference: bool,
+    /// Names that no module declares: signals, presumably.
+    pub signals: BTreeSet<String>,
+    /// Whether it reads where the robot is.
+    pub position: bool,
+    /// Whether it names nothing but what every controller knows: it never changes.
+    pub fixed: bool,
+    /// The first thing that it does besides giving a value, or that it depends on and nobody can
+    /// compare.
+    pub effect: Option<String>,
+}
+
+/// What the evaluation of `expr` in a routine reads.
+pub fn reads(program: &Program, routine: RoutineId, expr: &Expr) -> Reads {
+    let mut walk = Walk { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
+    walk.expr(routine, expr);
+    Reads { fixed: !walk.changes, ..walk.found }
+}
+
+/// Functions that tell where the robot is, or that take it into account.
+const POSITION: [&str; 8] =
+    ["cjointt", "cpos", "crobt", "ctool", "cwobj", "calcjointt", "calcrobt", "calcrotaxisframe"];
+/// Functions that give the level of a signal, which is their argument.
+const LEVELS: [&str; 7] = ["ainput", "aoutput", "dinput", "doutput", "ginput", "goutput", "testdi"];
+
+struct Walk<'p> {
+    program: &'p Program,
+    /// Functions that were looked at.
+    seen: BTreeSet<RoutineId>,
+    found: Reads,
+    /// Whether anything was named that may change.
+    changes: bool,
+}
+
+impl Walk<'_> {
+    fn expr(&mut self, at: RoutineId, expr: &Expr) {
+        match &expr.kind {
+            ExprKind::Ref(name) => self.name(at, &name.key, &name.text),
+            ExprKind::Field(base, _) | ExprKind::Unary(_, base) => self.expr(at, base),
+            ExprKind::Index(base, indices) => {
+                self.expr(at, base);
+                indices.iter().for_each(|index| self.expr(at, index));
+            }
+            ExprKind::Aggregate(items) => items.iter().for_each(|item| self.expr(at, item)),
+            ExprKind::Binary(_, left, right) => {
+                self.expr(at, left);
+                self.expr(at, right);
+            }
+            ExprKind::Call(name, args) => {
+                self.arguments(at, args);
+                self.function(at, &name.key, &name.text);
+            }
+            ExprKind::AnyPosition | ExprKind::Placeholder | ExprKind::Broken => {
+                self.effect("holds something that only the controller knows");
+            }
+            ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) => {}
+        }
+    }
+
+    fn arguments(&mut self, at: RoutineId, args: &[Arg]) {
+        for arg in args {
+            match &arg.kind {
+                ArgKind::Positional(expr)
+                | ArgKind::Named(_, expr)
+                | ArgKind::Optional(_, Some(expr)) => self.expr(at, expr),
+                ArgKind::Conditional(_, outer) => self.name(at, &outer.key, &outer.text),
+                ArgKind::Optional(_, None) => {}
+            }
+        }
+    }
+
+    fn name(&mut self, at: RoutineId, key: &str, text: &str) {
+        let routine = self.program.routine(at);
+        if let Some(param) = routine.params.iter().find(|param| param.name.key == key) {
+            self.changes = true;
+            self.found.by_reference |= param.mode != ParamMode::In;
+            return;
+        }
+        if is_own(routine, key) {
+            self.changes = true;
+            return;
+        }
+        match self.program.resolve(at.module, key) {
+            Some(Symbol::Data(id)) => {
+                self.changes = true;
+                self.found.data.insert(id);
+            }
+            Some(Symbol::Routine(_) | Symbol::Ambiguous) => {
+                self.effect(&format!("names {text}, which is no data"));
+            }
+            None if predefined::lookup(key).is_some() => {}
+            None => {
+                self.changes = true;
+                self.found.signals.insert(text.to_owned());
+            }
+        }
+    }
+
+    fn function(&mut self, at: RoutineId, key: &str, text: &str) {
+        match self.program.resolve(at.module, key) {
+            Some(Symbol::Routine(id)) => {
+                self.changes = true;
+                if self.seen.insert(id) {
+                    self.routine(id);
+                }
+            }
+            Some(_) => self.effect(&format!("calls {text}, which is no function")),
+            None if POSITION.contains(&key) => {
+                self.changes = true;
+                self.found.position = true;
+            }
+            None if LEVELS.contains(&key) || key == "present" => self.changes = true,
+            None if functions::lookup(key).is_some() => {}
+            None => self.effect(&format!("calls {text}, whose value no condition can tell")),
+        }
+    }
+
+    fn routine(&mut self, id: RoutineId) {
+        let routine = self.program.routine(id);
+        if !routine.error.is_empty() || routine.undo.is_some() {
+            self.effect(&format!("calls {}, which has a handler", routine.name.text));
+        }
+        for init in routine.data.iter().filter_map(|data| data.init.as_ref()) {
+            self.expr(id, init);
+        }
+        self.block(id, &routine.body);
+    }
+
+    fn block(&mut self, at: RoutineId, block: &Block) {
+        for stmt in block {
+            match &stmt.kind {
+                StmtKind::Assign { target, value } => {
+                    self.expr(at, value);
+                    self.target(at, target);
+                }
+                StmtKind::If { branches, .. } => {
+                    branches.iter().for_each(|(condition, _)| self.expr(at, condition));
+                }
+                StmtKind::For { from, to, step, .. } => {
+                    [Some(from), Some(to), step.as_ref()]
+                        .into_iter()
+                        .flatten()
+                        .for_each(|expr| self.expr(at, expr));
+                }
+                StmtKind::While { condition, .. } => self.expr(at, condition),
+                StmtKind::Test { value, cases, .. } => {
+                    self.expr(at, value);
+                    cases.iter().flat_map(|(values, _)| values).for_each(|v| self.expr(at, v));
+                }
+                StmtKind::Return(Some(value)) => self.expr(at, value),
+                StmtKind::Data(data) => {
+                    data.init.iter().for_each(|init| self.expr(at, init));
+                }
+                StmtKind::Call(call) => self.call(at, call),
+                StmtKind::Return(None) | StmtKind::Label(_) | StmtKind::Goto(_) => {}
+                StmtKind::Raise(_)
+                | StmtKind::Exit
+                | StmtKind::Retry
+                | StmtKind::TryNext
+                | StmtKind::Connect { .. }
+                | StmtKind::Placeholder
+                | StmtKind::Broken => {
+                    let name = &self.program.routine(at).name.text;
+                    self.effect(&format!("calls {name}, which may not come back with a value"));
+                }
+            }
+            stmt.kind.blocks().into_iter().for_each(|inner| self.block(at, inner));
+        }
+    }
+
+    /// A function that calls a procedure does more than give a value, but for counters of its own.
+    fn call(&mut self, at: RoutineId, call: &Call) {
+        let own = &self.program.routine(at).name.text;
+        match &call.callee {
+            Callee::Name(name)
+                if matches!(name.key.as_str(), "incr" | "decr" | "add" | "clear")
+                    && self.program.resolve(at.module, &name.key).is_none() =>
+            {
+                self.arguments(at, &call.args);
+                if let Some(Arg { kind: ArgKind::Positional(target), .. }) = call.args.first() {
+                    self.target(at, target);
+                }
+            }
+            Callee::Name(name) => {
+                self.effect(&format!("calls {own}, which runs {}", name.text));
+            }
+            Callee::Late(_) => {
+                self.effect(&format!("calls {own}, which runs a procedure with a computed name"));
+            }
+        }
+    }
+
+    /// What a function writes has to be its own.
+    fn target(&mut self, at: RoutineId, target: &Expr) {
+        match &target.kind {
+            ExprKind::Field(base, _) => self.target(at, base),
+            ExprKind::Index(base, indices) => {
+                indices.iter().for_each(|index| self.expr(at, index));
+                self.target(at, base);
+            }
+            ExprKind::Ref(name) => {
+                let routine = self.program.routine(at);
+                let param = routine.params.iter().find(|param| param.name.key == name.key);
+                let is_own = param.map_or_else(
+                    || is_own(routine, &name.key),
+                    |param| param.mode == ParamMode::In,
+                );
+                if !is_own {
+                    let function = &routine.name.text;
+                    self.effect(&format!("calls {function}, which writes to {}", name.text));
+                }
+            }
+            _ => self.effect("writes to something that is no data"),
+        }
+    }
+
+    fn effect(&mut self, what: &str) {
+        self.changes = true;
+        self.found.effect.get_or_insert_with(|| what.to_owned());
+    }
+}
+
+/// Whether a name is data of the routine or the variable of one of its loops.
+fn is_own(routine: &Routine, key: &str) -> bool {
+    fn in_block(block: &Block, key: &str) -> bool {
+        block.iter().any(|stmt| {
+            let declares = match &stmt.kind {
+                StmtKind::Data(data) => data.name.key == key,
+                StmtKind::For { var, .. } => var.key == key,
+                _ => false,
+            };
+            declares || stmt.kind.blocks().into_iter().any(|inner| in_block(inner, key))
+        })
+    }
+    routine.data.iter().any(|data| data.name.key == key)
+        || routine.blocks().any(|block| in_block(block, key))
+}
