@@ -40,6 +40,7 @@ fn pick_place(c: &mut Criterion) {
         cost: Cost::Electrical,
         dwell_pose: None,
         pareto: 0,
+        written_elsewhere: std::collections::BTreeSet::new(),
     };
     let mut group = c.benchmark_group("retrofit");
     group.sample_size(10);

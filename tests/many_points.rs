@@ -2,7 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use joulepath::emit::{EmittedStream, Layout, Names, Site, emit};
+use joulepath::emit::{
+    Emission, EmittedStream, Layout, MotionSettings, Names, Recorded, Robot, Site, emit,
+};
+use joulepath::kinematics::fk;
 use joulepath::motion::stream::Stream;
 use joulepath::motion::timed::TimedMotion;
 use joulepath::motion::timeline::What;
@@ -47,8 +50,7 @@ fn stream(from: usize) -> EmittedStream {
         intervals: vec![INTERVAL; POINTS],
         pause: None,
         external: [9e9; 6],
-        locals: Vec::new(),
-        tool: "tool0".into(),
+        values: Vec::new(),
         origin: "m.mod".into(),
         before: "1 s 1 J".into(),
         after: "1 s 1 J".into(),
@@ -66,11 +68,34 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
             let start = PROGRAM.find(statement).unwrap();
             let end = start + PROGRAM[start..].find(';').unwrap() + 1;
             let span = Span { file: FileId(0), start: start as u32, end: end as u32 };
-            Site { span, streams: vec![stream(i % 2)] }
+            Site {
+                span,
+                origin: format!("m.mod {i}"),
+                parameters: Vec::new(),
+                settings: MotionSettings {
+                    fastest: 100.0,
+                    conf_joint: true,
+                    conf_linear: true,
+                    lines: false,
+                },
+                tool: "tool0".into(),
+                streams: vec![stream(i % 2)],
+            }
         })
         .collect();
     let names = Names::free(std::slice::from_ref(&file));
-    let emitted = emit(std::slice::from_ref(&file), &names, layout, &sites).unwrap();
+    let model = find("IRB1600-10/1.45").unwrap();
+    let posture = [0.1; 6];
+    let place = fk(&model, &posture).translation.vector.into();
+    let emission = Emission {
+        files: std::slice::from_ref(&file),
+        names: &names,
+        layout,
+        robot: &Robot { kind: "1600".into(), posture, place },
+        recorded: &Recorded::default(),
+        program: "0",
+    };
+    let emitted = emit(&emission, &sites).unwrap();
     let bytes = text::apply(&file.bytes, &emitted.edits).unwrap();
     let mut files = vec![SourceFile::new(FileId(0), "m.mod".into(), bytes)];
     for (name, text) in emitted.modules {

@@ -64,6 +64,7 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         cost: Cost::Electrical,
         dwell_pose: None,
         pareto: 0,
+        written_elsewhere: std::collections::BTreeSet::new(),
     };
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();

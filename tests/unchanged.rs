@@ -55,6 +55,7 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
         cost: Cost::Electrical,
         dwell_pose: None,
         pareto: 0,
+        written_elsewhere: std::collections::BTreeSet::new(),
     };
     let model = find("IRB1600-10/1.45").unwrap();
     let result = retrofit(&files, &model, &settings, &|_, _| ());

@@ -22,7 +22,7 @@ const COMMON: usize = 22;
 #[derive(Serialize)]
 pub(super) struct Guard {
     pub(super) origin: String,
-    /// The same, short enough for a line of the FlexPendant.
+    /// The same, short enough for a line of the `FlexPendant`.
     pub(super) label: String,
     number: String,
     /// The record of what is compared.

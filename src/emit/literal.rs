@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn values_read_as_the_same_nums() {
-        for x in [0.1, 1.0 / 3.0, -1234.567_89, 1e-7, 0.000_526_794] {
+        for x in [0.1, 1.0 / 3.0, -1_234.567_89, 1e-7, 0.000_526_794] {
             let text = num(x);
             assert_eq!(text.parse::<f64>().map(|y| y as f32), Ok(x as f32), "{text}");
             assert!(!text.contains('e'), "{text}");

@@ -265,7 +265,7 @@ pub struct Wait {
     /// Length in s where the program states it.
     pub duration: Option<f64>,
     /// The argument that states it, where that depends on literals and constants alone.
-    pub constant: Option<Argument>,
+    pub constant: Option<Span>,
     /// `\MaxTime`: longest that it lasts, s.
     pub max_time: Option<f64>,
     /// The input that it waits for.

@@ -54,9 +54,9 @@ impl Walk<'_> {
             ExprKind::Field(base, _) | ExprKind::Unary(_, base) => self.expr(at, base),
             ExprKind::Index(base, indices) => {
                 self.expr(at, base);
-                indices.iter().for_each(|index| self.expr(at, index));
+                self.all(at, indices);
             }
-            ExprKind::Aggregate(items) => items.iter().for_each(|item| self.expr(at, item)),
+            ExprKind::Aggregate(items) => self.all(at, items),
             ExprKind::Binary(_, left, right) => {
                 self.expr(at, left);
                 self.expr(at, right);
@@ -69,6 +69,12 @@ impl Walk<'_> {
                 self.effect("holds something that only the controller knows");
             }
             ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) => {}
+        }
+    }
+
+    fn all<'e>(&mut self, at: RoutineId, exprs: impl IntoIterator<Item = &'e Expr>) {
+        for expr in exprs {
+            self.expr(at, expr);
         }
     }
 
@@ -135,9 +141,7 @@ impl Walk<'_> {
         if !routine.error.is_empty() || routine.undo.is_some() {
             self.effect(&format!("calls {}, which has a handler", routine.name.text));
         }
-        for init in routine.data.iter().filter_map(|data| data.init.as_ref()) {
-            self.expr(id, init);
-        }
+        self.all(id, routine.data.iter().filter_map(|data| data.init.as_ref()));
         self.block(id, &routine.body);
     }
 
@@ -149,22 +153,19 @@ impl Walk<'_> {
                     self.target(at, target);
                 }
                 StmtKind::If { branches, .. } => {
-                    branches.iter().for_each(|(condition, _)| self.expr(at, condition));
+                    self.all(at, branches.iter().map(|(condition, _)| condition));
                 }
                 StmtKind::For { from, to, step, .. } => {
-                    [Some(from), Some(to), step.as_ref()]
-                        .into_iter()
-                        .flatten()
-                        .for_each(|expr| self.expr(at, expr));
+                    self.all(at, [from, to].into_iter().chain(step));
                 }
                 StmtKind::While { condition, .. } => self.expr(at, condition),
                 StmtKind::Test { value, cases, .. } => {
                     self.expr(at, value);
-                    cases.iter().flat_map(|(values, _)| values).for_each(|v| self.expr(at, v));
+                    self.all(at, cases.iter().flat_map(|(values, _)| values));
                 }
                 StmtKind::Return(Some(value)) => self.expr(at, value),
                 StmtKind::Data(data) => {
-                    data.init.iter().for_each(|init| self.expr(at, init));
+                    self.all(at, &data.init);
                 }
                 StmtKind::Call(call) => self.call(at, call),
                 StmtKind::Return(None) | StmtKind::Label(_) | StmtKind::Goto(_) => {}
@@ -179,7 +180,9 @@ impl Walk<'_> {
                     self.effect(&format!("calls {name}, which may not come back with a value"));
                 }
             }
-            stmt.kind.blocks().into_iter().for_each(|inner| self.block(at, inner));
+            for inner in stmt.kind.blocks() {
+                self.block(at, inner);
+            }
         }
     }
 
@@ -210,7 +213,7 @@ impl Walk<'_> {
         match &target.kind {
             ExprKind::Field(base, _) => self.target(at, base),
             ExprKind::Index(base, indices) => {
-                indices.iter().for_each(|index| self.expr(at, index));
+                self.all(at, indices);
                 self.target(at, base);
             }
             ExprKind::Ref(name) => {

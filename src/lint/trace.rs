@@ -107,7 +107,7 @@ pub struct Recording {
 #[derive(Debug)]
 enum Recorded {
     Move(Box<Movement>),
-    Wait(Wait),
+    Wait(Box<Wait>),
     Output(Output),
     Left(Span),
 }
@@ -149,7 +149,7 @@ impl Machine for Recording {
     }
 
     fn waits(&mut self, wait: Wait) -> Waited {
-        self.steps.push(Recorded::Wait(wait));
+        self.steps.push(Recorded::Wait(Box::new(wait)));
         Waited::Ended
     }
 

@@ -247,7 +247,7 @@ impl Machine for VirtualController<'_> {
     }
 
     fn flange(&self, q: &Joints) -> Option<Isometry3<f64>> {
-        Some(fk(self.model, q))
+        Some(self.model.kinematics.base * fk(self.model, q))
     }
 
     fn robot(&self) -> Option<String> {

@@ -16,7 +16,9 @@ pub fn written_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<S
         let parse = syntax::parse(&file.bytes);
         let modules = lower(file.id, &parse, &file.bytes);
         let routines = modules.iter().flat_map(|module| &module.routines);
-        routines.flat_map(Routine::blocks).for_each(|block| of_block(block, &mut names));
+        for block in routines.flat_map(Routine::blocks) {
+            of_block(block, &mut names);
+        }
     }
     names
 }
@@ -41,7 +43,9 @@ fn of_block(block: &Block, names: &mut BTreeSet<String>) {
             }
             _ => {}
         }
-        stmt.kind.blocks().into_iter().for_each(|inner| of_block(inner, names));
+        for inner in stmt.kind.blocks() {
+            of_block(inner, names);
+        }
     }
 }
 

@@ -15,8 +15,6 @@ use crate::optimize::site::Site;
 use crate::path::joint_path::Joints;
 use crate::robot::Model;
 
-/// Where the cycle may stay as it is, a run is not asked for more than this many times its time.
-const LAZIEST: f64 = 3.0;
 /// Times at which the curves are looked at besides the first ones.
 const LOOKS: usize = 4;
 /// Goals that differ by less are the same, s.
@@ -62,9 +60,12 @@ pub(super) fn goals(
                 What::Wait(record) => record.basis == WaitBasis::Input && event.duration > 0.0,
                 _ => false,
             };
-            let awaited = simulation.events.iter().any(is_awaited);
-            let laziest = if awaited { SLOWEST } else { LAZIEST };
-            let bounds = |(_, task): &(usize, Task<'_>)| (0.0, laziest * before(task));
+            if !simulation.events.iter().any(is_awaited) {
+                return Ok(each(&|task| Goal::Within(before(task))));
+            }
+            // No run gets quicker so that another one may be slower: where the cell has changed,
+            // the quick stream may not run, and the slow one still does. Only waits give time.
+            let bounds = |(_, task): &(usize, Task<'_>)| (before(task), SLOWEST * before(task));
             (simulation.cycle_s, tasks.iter().map(bounds).collect())
         }
         Budget::Takt(takt) => (takt, possible(simulation, sites, ways, tasks, takt)?),
@@ -170,8 +171,10 @@ fn possible(
         let least = rounded_up(fixed + shortest);
         return Err(RetrofitError::Takt { takt, least, fixed: fixed.max(0.0) });
     }
+    // As above, where the takt leaves the choice.
     let bounds = |((_, task), least): (&(usize, Task<'_>), &f64)| {
-        (*least, (SLOWEST * before(task)).max(*least))
+        let shortest = if takt < simulation.cycle_s { *least } else { before(task) };
+        (shortest, (SLOWEST * before(task)).max(*least))
     };
     Ok(tasks.iter().zip(&least).map(bounds).collect())
 }

@@ -128,7 +128,7 @@ pub(super) fn unchanged(index: usize, source: &Source) -> OutputFile {
 /// The robot as guards know it: what its controller calls it, and where a posture that no other
 /// robot shares brings its flange.
 pub(super) fn robot(model: &Model) -> Robot {
-    let place = fk(model, &POSTURE).translation.vector;
+    let place = (model.kinematics.base * fk(model, &POSTURE)).translation.vector;
     Robot { kind: model.type_name().to_owned(), posture: POSTURE, place: place.into() }
 }
 

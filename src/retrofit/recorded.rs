@@ -91,7 +91,11 @@ impl Found<'_> {
                         self.statement(inner, Some(branches[0].0.span));
                     }
                 }
-                other => other.blocks().into_iter().for_each(|inner| self.block(inner)),
+                other => {
+                    for inner in other.blocks() {
+                        self.block(inner);
+                    }
+                }
             }
         }
     }

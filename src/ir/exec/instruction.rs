@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::super::convert;
 use super::super::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, Stmt};
 use super::super::instructions::{self, MoveForm};
-use super::super::movement::{Argument, Output, Settings, Wait};
+use super::super::movement::{Output, Settings, Wait};
 use super::super::value::{Datum, Dependence, Value};
 use super::flow::{Flow, Raised, number_text};
 use super::{Cell, Executor, Waited};
@@ -288,9 +288,7 @@ impl Executor<'_> {
     ) -> Waited {
         let routine = self.frame().routine.clone();
         let constant = match length {
-            Length::Constant(duration, span) => {
-                Some(Argument { span, type_name: "num", datum: Datum::Num(duration) })
-            }
+            Length::Constant(_, argument) => Some(argument),
             _ => None,
         };
         let (duration, signal, other) = match length {

@@ -1,0 +1,205 @@
+//! A retrofit stays right when the cell changes: original and retrofit run under the same change
+//! and come to rest at the same places, in the same order of waits and outputs, no faster.
+//!
+//! Changes are drawn by chance: data are taught anew, tools, work objects, loads, speeds, inputs and
+//! settings change, other tasks write, the robot starts elsewhere, is another one, or passes more
+//! than once. `cargo test --release --test changes -- --nocapture` prints what was seen;
+//! `CHANGES=10000` draws so many.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+mod cell;
+mod compare;
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use joulepath::emit::Layout;
+use joulepath::motion::{Options, Simulation, simulate};
+use joulepath::optimize::cost::Cost;
+use joulepath::optimize::freedom::Freedom;
+use joulepath::retrofit::{Budget, Form, Objective, Settings, Source, read_program, retrofit};
+use joulepath::robot::{Model, find};
+use joulepath::text::SourceFile;
+use rayon::prelude::*;
+
+use cell::{Cell, Change, Changed, Counts, apply, is_within, kind, marked};
+use support::Random;
+
+/// Changes where nothing else is asked for.
+const CHANGES: usize = 600;
+/// Changes at once, at most.
+const TOGETHER: usize = 3;
+/// Times as long that runs may take where streams are asked for in every place.
+const SLOWER: f64 = 1.2;
+
+/// A program, what was emitted for it, and what can be changed.
+struct Case {
+    name: String,
+    original: Vec<String>,
+    emitted: Vec<String>,
+    cell: Cell,
+    /// Whether it may take longer than the original.
+    slower: bool,
+    streams: usize,
+}
+
+fn programs() -> Vec<(String, Vec<String>)> {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+    let read =
+        |path: &Path| String::from_utf8_lossy(&std::fs::read(path).unwrap()).replace("\r\n", "\n");
+    let mut programs = Vec::new();
+    for folder in ["changes", "hard"] {
+        let mut paths: Vec<_> = std::fs::read_dir(fixtures.join(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == "mod"))
+            .collect();
+        paths.sort();
+        for path in paths {
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            programs.push((name, vec![read(&path)]));
+        }
+    }
+    for folder in ["pick_place", "paper"] {
+        let mut paths: Vec<_> = std::fs::read_dir(fixtures.join(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|e| e == "mod" || e == "sys"))
+            .collect();
+        paths.sort();
+        programs.push((folder.to_owned(), paths.iter().map(|path| read(path)).collect()));
+    }
+    programs
+}
+
+fn sources(texts: &[String]) -> Vec<Source> {
+    let changed = apply(texts, &find("IRB1600-10/1.45").unwrap(), &[]);
+    sources_of(changed.files)
+}
+
+fn sources_of(files: Vec<SourceFile>) -> Vec<Source> {
+    files.into_iter().map(|file| Source { relative: file.path.clone(), file }).collect()
+}
+
+/// Signals that a program names: what no module declares and no instruction sets.
+fn signals(texts: &[String]) -> Vec<String> {
+    let mut found = BTreeSet::new();
+    for text in texts {
+        let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        found.extend(
+            words.filter(|w| w.starts_with("di") || w.starts_with("gi")).map(str::to_owned),
+        );
+    }
+    found.into_iter().filter(|word| word.len() > 2).collect()
+}
+
+fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Option<Case> {
+    let mut marks = 0;
+    let mut original = Vec::new();
+    for text in &texts {
+        // Marks count on over the files.
+        let (marked, count) = marked(text);
+        original.push(renumbered(&marked, count, marks));
+        marks += count;
+    }
+    let settings = Settings {
+        entry: "main".into(),
+        options: Options::default(),
+        objective: Objective::Energy,
+        budget: if slower { Budget::Factor(SLOWER) } else { Budget::AsBefore },
+        spacing_s: 0.05,
+        freedom: Freedom::none(),
+        form: Form::Streams,
+        layout: Layout::Auto,
+        cost: Cost::Electrical,
+        dwell_pose: None,
+        pareto: 0,
+        written_elsewhere: shared(&original),
+    };
+    let result = retrofit(&sources(&original), model, &settings, &|_, _| ()).ok()?;
+    assert!(result.verification.passed, "{name}");
+    let streams = result.segments.iter().filter(|segment| segment.rewritten).count();
+    if streams == 0 {
+        return None;
+    }
+    let emitted: Vec<String> = result
+        .outputs
+        .iter()
+        .filter(|output| output.path.ends_with(".mod"))
+        .map(|output| String::from_utf8_lossy(&output.bytes).into_owned())
+        .collect();
+    let whole = emitted.join("\n");
+    let outside = (0..marks).filter(|mark| !is_within(&whole, *mark)).collect();
+    let cell = Cell::new(&original.join("\n"), signals(&original), marks, outside);
+    Some(Case { name, original, emitted, cell, slower, streams })
+}
+
+/// PERS data of the programs: other tasks may write each of them.
+fn shared(texts: &[String]) -> BTreeSet<String> {
+    let cell = Cell::new(&texts.join("\n"), Vec::new(), 0, Vec::new());
+    cell.shared.into_iter().map(|(name, _)| name.to_lowercase()).collect()
+}
+
+fn renumbered(text: &str, count: usize, from: usize) -> String {
+    (0..count)
+        .rev()
+        .fold(text.to_owned(), |text, i| text.replace(&cell::mark(i), &cell::mark(from + i)))
+}
+
+fn run(changed: Changed) -> Option<(Simulation, Model)> {
+    let (program, entry) = read_program(&sources_of(changed.files), "main").ok()?;
+    let options = Options { max_time: Some(600.0), ..changed.options };
+    Some((simulate(&program, entry, &changed.model, &options), changed.model))
+}
+
+#[test]
+fn original_and_retrofit_agree_under_every_change() {
+    let model = find("IRB1600-10/1.45").unwrap();
+    let count = std::env::var("CHANGES").ok().and_then(|count| count.parse().ok());
+    let count: usize = count.unwrap_or(CHANGES);
+    let programs = programs();
+    let cases: Vec<Case> = programs
+        .par_iter()
+        .flat_map(|program| [false, true].map(|slower| (program.clone(), slower)))
+        .filter_map(|(program, slower)| case(program, &model, slower))
+        .collect();
+    let results: Vec<(Option<String>, Vec<&'static str>, bool)> = (0..count)
+        .into_par_iter()
+        .map(|draw| {
+            let case = &cases[draw % cases.len()];
+            let mut random = Random(draw as u64 * 7919 + 1);
+            let changes: Vec<Change> =
+                (0..=random.below(TOGETHER)).map(|_| case.cell.draw(&mut random)).collect();
+            let kinds = changes.iter().map(kind).collect();
+            let before = run(apply(&case.original, &model, &changes));
+            let after = run(apply(&case.emitted, &model, &changes));
+            let (Some((before, robot)), Some((after, _))) = (before, after) else {
+                return (None, kinds, false);
+            };
+            let streams = compare::streams(&after) > 0;
+            let fault = compare::compare(&robot, &before, &after, case.slower).err();
+            (fault.map(|why| format!("{} {}: {changes:?}: {why}", draw, case.name)), kinds, streams)
+        })
+        .collect();
+    let mut counts = Counts::new();
+    for name in results.iter().flat_map(|(_, kinds, _)| kinds) {
+        *counts.entry(name).or_default() += 1;
+    }
+    let faults: Vec<&String> = results.iter().filter_map(|(fault, ..)| fault.as_ref()).collect();
+    let with_streams = results.iter().filter(|(_, _, streams)| *streams).count();
+    let names: BTreeMap<&str, usize> =
+        cases.iter().map(|case| (case.name.as_str(), case.streams)).collect();
+    println!(
+        "{} cases of {} programs ({} with streams), {count} draws, {with_streams} with streams, \
+         {counts:?}, {} faults",
+        cases.len(),
+        programs.len(),
+        names.len(),
+        faults.len()
+    );
+    let shown: Vec<&str> = faults.iter().take(20).map(|fault| fault.as_str()).collect();
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), shown.join("\n"));
+}
