@@ -188,6 +188,8 @@ fn small(path: &str) -> Small {
     segments[2].span.start = second as u32;
     segments[2].span.end = (second + home.len()) as u32;
     let retrofit = Retrofit {
+        lower_limits: Vec::new(),
+        guard_instructions: 0,
         original: figures(&before),
         optimized: figures(&after),
         potential_j: 25.0,

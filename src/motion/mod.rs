@@ -2,6 +2,7 @@
 
 pub mod averaged;
 pub mod controller;
+mod late;
 mod leg_times;
 pub mod pace;
 pub mod planner;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::controller::{Planning, motion_limits};
+use super::late::within_limits;
 use super::pace::Pace;
 use super::planner::plan;
 use super::sampling::{Loaded, SpeedCap};
@@ -11,9 +12,7 @@ use super::tcp_limits;
 use super::timed::TimedMotion;
 use crate::ir::instructions::MoveForm;
 use crate::ir::movement::{Movement, Settings};
-use crate::path::joint_path::Joints;
 use crate::path::{Leg, LegKind, build};
-use crate::robot::Model;
 
 /// The motion of a run.
 pub(super) struct Planned {
@@ -37,7 +36,7 @@ pub(super) fn plan_run(
     settings: &Settings,
 ) -> Planned {
     match as_stream(legs, movements, times) {
-        Some(stream) => realise(loaded.model, stream, Planning::new(loaded.model, settings)),
+        Some(stream) => realise(loaded, stream, Planning::new(loaded.model, settings)),
         None => plan_paths(loaded, legs, movements, times, settings),
     }
 }
@@ -60,16 +59,11 @@ fn as_stream(legs: &[Leg], movements: &[Movement], times: &[Option<f64>]) -> Opt
     Stream::new(legs[0].start, points, intervals?).ok()
 }
 
-fn realise(model: &Model, stream: Stream, planning: Planning) -> Planned {
+fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
     // What the controller can't reach in time it does later.
-    let scale = lateness(model, &stream);
-    let stream = if scale > 1.0 {
-        let intervals = stream.intervals().iter().map(|t| t * scale).collect();
-        Stream::new(*stream.start(), stream.points().to_vec(), intervals).unwrap_or(stream)
-    } else {
-        stream
-    };
-    let pace = if scale > 1.0 { Pace::Acceleration } else { Pace::Time };
+    let asked = stream.duration();
+    let stream = within_limits(loaded, stream);
+    let pace = if stream.duration() > asked { Pace::Acceleration } else { Pace::Time };
     // A point's share of the time: up to the middle of the corner at it.
     let times = stream.knots().times();
     let count = stream.points().len();
@@ -84,23 +78,6 @@ fn realise(model: &Model, stream: Stream, planning: Planning) -> Planned {
     let settling_s = if count > 1 { planning.settling_s } else { settling_after(pace, &planning) };
     let motions = vec![(0.0, TimedMotion::Stream(stream))];
     Planned { motions, pieces, problem: None, settling_s }
-}
-
-/// Excess over a limit that is rounding of emitted figures and no reason to be late.
-const LATENESS_ROUNDING: f64 = 1e-3;
-
-/// How much slower than asked a stream runs, for the robot's speeds and accelerations.
-fn lateness(model: &Model, stream: &Stream) -> f64 {
-    let limits = &model.limits;
-    let worst = |values: &Joints, limit: &Option<Vec<f64>>| {
-        limit
-            .as_ref()
-            .map_or(0.0, |limit| values.iter().zip(limit).map(|(x, l)| x / l).fold(0.0, f64::max))
-    };
-    let speed = worst(&stream.max_velocity(), &limits.velocity);
-    let acceleration = worst(&stream.max_acceleration(), &limits.acceleration).sqrt();
-    let scale = speed.max(acceleration);
-    if scale > 1.0 + LATENESS_ROUNDING { scale } else { 1.0 }
 }
 
 fn plan_paths(

@@ -13,6 +13,9 @@ use crate::robot::Model;
 /// Step of the samples of a run, s: half a period of the interpolator.
 const STEP: f64 = 0.002;
 
+/// Share of assumed limits that ways may use that the program does not have.
+const OTHER_WAYS: f64 = 0.5;
+
 /// Joint loads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loads {
@@ -57,6 +60,21 @@ impl Loads {
             acceleration: within("acceleration", limits.acceleration, most.acceleration),
             jerk: within("jerk", limits.jerk, most.jerk),
             torque: within("torque", limits.torque, most.torque),
+        }
+    }
+
+    /// The same for ways that the program does not have, in which other joints may move: at least
+    /// half of the limits, however far the program stays below.
+    #[must_use]
+    pub fn for_other_ways(&self, model: &Model) -> Loads {
+        let limits = Loads::limits(model);
+        let half = |limit: Joints, own: Joints| -> Joints {
+            std::array::from_fn(|j| own[j].max(OTHER_WAYS * limit[j]))
+        };
+        Loads {
+            acceleration: half(limits.acceleration, self.acceleration),
+            jerk: half(limits.jerk, self.jerk),
+            torque: half(limits.torque, self.torque),
         }
     }
 

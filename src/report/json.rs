@@ -11,7 +11,8 @@ use crate::motion::timeline::{WaitBasis, What};
 use crate::optimize::check::Check;
 use crate::optimize::energy_curve::TimeEnergy;
 use crate::retrofit::{
-    Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind, SignalShift,
+    Figures, LowerLimits, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind,
+    SignalShift,
 };
 use crate::robot::Model;
 
@@ -173,9 +174,22 @@ pub fn retrofit(
         "signals": retrofit.signals.iter().map(signal).collect::<Vec<Value>>(),
         "files": retrofit.outputs.iter().map(file).collect::<Vec<Value>>(),
         "outputs": outputs,
+        "guards": {
+            "instructions": retrofit.guard_instructions,
+            "estimated_ms": retrofit.guards_ms(),
+        },
+        "lower_limits": retrofit.lower_limits.iter().map(lower_limits).collect::<Vec<Value>>(),
         "notes": retrofit.notes,
         "unresolved": unresolved(places, &retrofit.before.0),
         "assumed": assumed(model, &retrofit.before.0),
+    })
+}
+
+fn lower_limits(lower: &LowerLimits) -> Value {
+    json!({
+        "share": lower.share,
+        "original_s": lower.original_s,
+        "optimized_s": lower.optimized_s,
     })
 }
 

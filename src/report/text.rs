@@ -9,7 +9,7 @@ use crate::energy::{Account, EnergyParts};
 use crate::ir::movement::Movement;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
-use crate::retrofit::{Retrofit, SegmentKind};
+use crate::retrofit::{LowerLimits, Retrofit, SegmentKind};
 use crate::robot::Model;
 
 /// The table of a simulation.
@@ -183,6 +183,26 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         1e3 * worst.deviation_m,
         worst.endpoint_error_rad,
     );
+    if retrofit.guard_instructions > 0 {
+        let _ = writeln!(
+            out,
+            "guards run {} RAPID instructions in a cycle, about {:.1} ms (0.05 ms each, assumed)",
+            retrofit.guard_instructions,
+            retrofit.guards_ms()
+        );
+    }
+    if retrofit.guard_instructions > 0 && !retrofit.lower_limits.is_empty() {
+        let lower = |lower: &LowerLimits| {
+            let percent = 100.0 * (1.0 - lower.share);
+            format!("{percent:.0} %: {:.2} s for {:.2} s", lower.optimized_s, lower.original_s)
+        };
+        let cycles: Vec<String> = retrofit.lower_limits.iter().map(lower).collect();
+        let _ = writeln!(
+            out,
+            "if the true limits are lower than assumed, the cycle takes, retrofit for original: {}",
+            cycles.join(", ")
+        );
+    }
     if retrofit.potential_j > 0.0 {
         let _ = writeln!(
             out,

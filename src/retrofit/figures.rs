@@ -19,6 +19,21 @@ pub struct Figures {
     pub motion_energy_j: f64,
 }
 
+/// Time of a RAPID instruction, ms. Assumed: ABB publishes none, and a cycle of a PLC program is of
+/// this order; it is to be replaced by a measurement on a controller.
+const INSTRUCTION_MS: f64 = 0.05;
+
+/// The cycles where the assumed limits of acceleration and torque are too high.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowerLimits {
+    /// The true limits over the assumed ones.
+    pub share: f64,
+    /// s.
+    pub original_s: f64,
+    /// s.
+    pub optimized_s: f64,
+}
+
 /// What a segment is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SegmentKind {
@@ -145,6 +160,10 @@ pub struct Retrofit {
     pub outputs: Vec<OutputFile>,
     /// What else is to be known.
     pub notes: Vec<String>,
+    /// Both cycles if the robot can do less than its file assumes; empty where nothing is assumed.
+    pub lower_limits: Vec<LowerLimits>,
+    /// RAPID instructions that guards run in a cycle, at most.
+    pub guard_instructions: usize,
     /// The original cycle.
     pub before: (Simulation, Account),
     /// The cycle of the emitted program.
@@ -152,6 +171,12 @@ pub struct Retrofit {
 }
 
 impl Retrofit {
+    /// Time that the guards take in a cycle, ms.
+    #[must_use]
+    pub fn guards_ms(&self) -> f64 {
+        INSTRUCTION_MS * self.guard_instructions as f64
+    }
+
     /// Saved share of the energy, %.
     pub fn saving_percent(&self) -> f64 {
         percent(self.original.energy_j, self.optimized.energy_j)

@@ -10,6 +10,7 @@ mod goals;
 mod guards;
 mod guided;
 mod hazards;
+mod lower_limits;
 mod notes;
 mod outputs;
 mod recorded;
@@ -22,7 +23,9 @@ mod verify;
 mod work;
 
 pub use elsewhere::written_in;
-pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
+pub use figures::{
+    Figures, LowerLimits, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification,
+};
 pub use freed::freed;
 pub use outputs::read_again;
 pub use signals::{SignalKind, SignalShift};

@@ -46,7 +46,7 @@ pub(super) fn emit(
     sites: &[Site],
     ways: &[Way],
     restings: &[Resting],
-) -> Result<Vec<OutputFile>, RetrofitError> {
+) -> Result<Outputs, RetrofitError> {
     let files = writing.files;
     let mut emitted_sites: Vec<emit::Site> = sites
         .iter()
@@ -60,7 +60,7 @@ pub(super) fn emit(
         for (i, source) in files.iter().enumerate() {
             outputs.push(unchanged(i, source));
         }
-        return Ok(outputs);
+        return Ok(Outputs { files: outputs, guard_instructions: 0 });
     }
     let program = hash(&writing.originals);
     let emission = emit::Emission {
@@ -103,7 +103,23 @@ pub(super) fn emit(
             input: None,
         });
     }
-    Ok(outputs)
+    let executions = |site: &emit::Site| -> usize {
+        let own = sites.iter().filter(|own| own.span == site.span);
+        let runs = own.flat_map(|own| &own.variants).map(|variant| variant.events.len());
+        let rests = restings.iter().filter(|rest| rest.span == site.span);
+        runs.chain(rests.map(|rest| rest.events.len())).sum()
+    };
+    let guards = emitted_sites.iter().zip(&emitted.instructions);
+    let guard_instructions = guards.map(|(site, count)| executions(site) * count).sum();
+    Ok(Outputs { files: outputs, guard_instructions })
+}
+
+/// The files of an emitted program.
+pub(super) struct Outputs {
+    /// All of them.
+    pub(super) files: Vec<OutputFile>,
+    /// RAPID instructions that its guards run in a cycle, at most.
+    pub(super) guard_instructions: usize,
 }
 
 /// The files as a reader of the emitted program finds them.

@@ -55,7 +55,7 @@ pub(super) fn restings(
     ways: &[Way],
 ) -> Vec<Resting> {
     let Some(distance) = settings.dwell_pose else { return Vec::new() };
-    let loads = settings.freedom.loads(model);
+    let loads = settings.freedom.loads(model).for_other_ways(model);
     let free: BTreeSet<usize> = ways
         .iter()
         .filter(|way| matches!(way.outcome, Ok(_) | Err(Reason::NoSaving)))
@@ -308,7 +308,7 @@ fn lateness(model: &Model, settings: &Settings, parts: &[Event], resting: &Resti
         let [(_, TimedMotion::Stream(stream))] = run.motions.as_slice() else { return false };
         let tool = &run.legs[0].tool;
         let body = around(model, tool, &settings.freedom);
-        let loads = settings.freedom.loads(model);
+        let loads = settings.freedom.loads(model).for_other_ways(model);
         let room = Room::Free(&loads);
         let seen = check(model, &run.load, tool, stream, room, intended.end(), body.as_ref());
         seen.holds()

@@ -145,6 +145,8 @@ pub(super) fn retrofit(
     let pair: (&Figures, &Figures) = (&original, &optimized);
     let notes = notes::notes(before.files, model, settings, &before.simulation, &segments, pair);
     Ok(Retrofit {
+        lower_limits: Vec::new(),
+        guard_instructions: 0,
         original,
         optimized,
         potential_j: dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b),

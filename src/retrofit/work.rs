@@ -9,7 +9,10 @@ use super::figures::{Figures, Retrofit, Verification};
 use super::goals::goals;
 use super::guards::Guards;
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
-use super::{guided, hazards, notes, outputs, recorded, rests, segments, signals, speeds, verify};
+use super::{
+    guided, hazards, lower_limits, notes, outputs, recorded, rests, segments, signals, speeds,
+    verify,
+};
 use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
@@ -352,15 +355,31 @@ pub fn retrofit(
     let dwells_before = dwells(model, &simulation);
     let mut restings = rests::restings(model, settings, files, &simulation, &sites, &ways);
 
+    let lowered = lower_limits::lowered(&program, entry, model, settings);
+
     // Each round leaves out what did not hold in the emitted text.
     let mut rounds = 0;
-    let mut checked = loop {
+    let (mut checked, lower_limits) = loop {
         let emitted = outputs::emit(&writing, &simulation, &sites, &ways, &restings)?;
         let what = (sites.as_slice(), ways.as_slice(), restings.as_slice());
-        let attempt = verify::verify(files, &emitted, model, settings, &simulation, what);
+        let attempt = verify::verify(files, &emitted.files, model, settings, &simulation, what);
         let nothing_left = restings.is_empty() && ways.iter().all(|way| way.outcome.is_err());
         if attempt.verification.passed || nothing_left {
-            break (emitted, attempt);
+            let kept = (sites.as_slice(), ways.as_slice());
+            let (table, weak) = lower_limits::compare(
+                &lowered,
+                &emitted.files,
+                settings,
+                kept,
+                restings.is_empty(),
+            );
+            if weak.is_empty() {
+                break ((emitted, attempt), table);
+            }
+            for (way, reason) in weak {
+                ways[way].outcome = Err(reason);
+            }
+            continue;
         }
         rounds += 1;
         if !attempt.restless.is_empty() {
@@ -383,7 +402,8 @@ pub fn retrofit(
         simulation: mut after_simulation, account: mut after, verification, ..
     } = checked.1;
     if settings.form == Form::Guided {
-        checked.0 = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
+        checked.0.guard_instructions = 0;
+        checked.0.files = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
         after_simulation = simulate(&program, entry, model, &settings.options);
         after = account(model, &after_simulation);
@@ -396,7 +416,7 @@ pub fn retrofit(
         (&dwells_before, &restings),
         &not_reached(&program, &simulation),
     );
-    outputs::add_brake_note(&mut checked.0, model, &dwells(model, &after_simulation));
+    outputs::add_brake_note(&mut checked.0.files, model, &dwells(model, &after_simulation));
     let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
     let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
     let notes =
@@ -407,9 +427,11 @@ pub fn retrofit(
         potential_j,
         segments,
         notes,
+        lower_limits,
         verification,
         signals: signals::signals(&simulation, &after_simulation),
-        outputs: checked.0,
+        guard_instructions: checked.0.guard_instructions,
+        outputs: checked.0.files,
         before: (simulation, before),
         after: (after_simulation, after),
     })

@@ -59,7 +59,7 @@ pub(crate) fn compare(
 }
 
 fn same_rest(model: &Model, a: &Run, b: &Run) -> Result<(), String> {
-    let tool = |run: &Run| run.legs.last().map(|leg| leg.tool.clone());
+    let tool = |run: &Run| run.legs.last().map(|leg| leg.tool);
     let (Some(tool), Some(_)) = (tool(a), tool(b)) else { return Ok(()) };
     let place = |run: &Run| tool.pose(&fk(model, &run.end)).translation.vector * 1e3;
     let apart = (place(a) - place(b)).norm();

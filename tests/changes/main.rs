@@ -128,7 +128,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Op
     let emitted: Vec<String> = result
         .outputs
         .iter()
-        .filter(|output| output.path.ends_with(".mod"))
+        .filter(|output| !output.path.ends_with("txt"))
         .map(|output| String::from_utf8_lossy(&output.bytes).into_owned())
         .collect();
     let whole = emitted.join("\n");
@@ -192,7 +192,7 @@ fn original_and_retrofit_agree_under_every_change() {
     let with_streams = results.iter().filter(|(_, _, streams)| *streams).count();
     let names: BTreeMap<&str, usize> =
         cases.iter().map(|case| (case.name.as_str(), case.streams)).collect();
-    println!(
+    eprintln!(
         "{} cases of {} programs ({} with streams), {count} draws, {with_streams} with streams, \
          {counts:?}, {} faults",
         cases.len(),

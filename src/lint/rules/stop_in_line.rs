@@ -27,7 +27,8 @@
 //! ```
 //!
 //! ## Safety
-//! Safe: a zone between two pieces of one line does not leave the line.
+//! Safe: a zone between two pieces of one line does not leave the line. Below 200 mm/s there is no
+//! fix: such lines may be a process, such as drilling, and the stop a part of it.
 //!
 //! ## Assumptions
 //! Directions that differ by less than 0.3° are one line.
@@ -46,6 +47,8 @@ const STRAIGHT: f64 = 0.005;
 const UNTURNED: f64 = 0.002;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
+/// TCP speed from which on a line is travel and no process, m/s.
+const PROCESS_SPEED: f64 = 0.2;
 /// Largest zone that is proposed, m.
 const MOST: f64 = 0.075;
 
@@ -63,7 +66,14 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
         finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
         finding.saving = saving;
-        finding.fix = Some(fix(Applicability::Safe, replace(argument.span, zone.name)));
+        // Slower lines are processes, such as drilling: a stop may belong to them.
+        let is_travel = |site: &usize| {
+            let speed = context.sites[*site].facts.speed;
+            speed.is_some_and(|speed| speed.tcp >= PROCESS_SPEED)
+        };
+        if next.iter().chain([&index]).all(is_travel) {
+            finding.fix = Some(fix(Applicability::Safe, replace(argument.span, zone.name)));
+        }
         findings.push(finding);
     }
 }
