@@ -17,6 +17,8 @@ const PROGRAM: &str = "MODULE M\n\
     MoveAbsJ jA,v1000,fine,tool0;\n\
     ENDPROC\n\
     ENDMODULE\n";
+/// The robot with known limits.
+const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// What a local solution may miss of the best, share.
 const LOCAL: f64 = 5e-3;
 
@@ -26,7 +28,7 @@ fn optimize(config: &str, options: &[&str]) -> Value {
     fs::write(&path, PROGRAM).unwrap();
     fs::write(folder.path().join("joulepath.toml"), config).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
+        .args(["optimize", path.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
         .args(["--format", "json"])
         .args(options)
         .output()
@@ -55,8 +57,7 @@ fn no_other_cost_saves_more_joules() {
 
 #[test]
 fn curves_fall_and_stay_above_their_bounds() {
-    let free = ["--allow-faster-joints", "--allow-faster-tcp"];
-    let result = optimize("", &[["--pareto", "6"], free].concat());
+    let result = optimize("", &["--pareto", "6", "--allow-faster-tcp"]);
     let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
     let mut curves = 0;
     for segment in result["segments"].as_array().unwrap() {

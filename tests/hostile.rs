@@ -11,7 +11,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
+const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 const EXPECTED: &str = "! => ";
 
 const DATA: &str = "\

@@ -13,6 +13,8 @@ use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
+/// The same with known limits.
+const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// There and back with a tool, away from the limits.
 const PROGRAM: &str = "MODULE M\n\
     PERS tooldata tLong:=[TRUE,[[0,0,180],[1,0,0,0]],[2,[0,0,60],[1,0,0,0],0,0,0]];\n\
@@ -66,11 +68,21 @@ fn optimized(config: &str, options: &[&str]) -> Run {
     let (input, out, csv) = (at("m.mod"), at("out"), at("t.csv"));
     fs::write(&input, PROGRAM).unwrap();
     fs::write(at("joulepath.toml"), config).unwrap();
-    let common = ["optimize", &input, "--robot", ROBOT, "--format", "json", "--out", &out];
+    let common = [
+        "optimize",
+        &input,
+        "--robot",
+        KNOWN,
+        "--format",
+        "json",
+        "--out",
+        &out,
+        "--allow-faster-joints",
+    ];
     let result: Value =
         serde_json::from_slice(&joulepath(&[&common[..], options].concat())).unwrap();
     assert_eq!(result["verification"]["passed"], true);
-    joulepath(&["simulate", &out, "--robot", ROBOT, "--trajectory", &csv]);
+    joulepath(&["simulate", &out, "--robot", KNOWN, "--trajectory", &csv]);
     Run { result, motion: motion(Path::new(&csv)) }
 }
 

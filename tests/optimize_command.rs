@@ -218,6 +218,8 @@ fn program(declarations: &str, statements: &str) -> String {
     )
 }
 
+/// The robot with known limits.
+const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 
 /// What `command` prints on standard error, without what is assumed, and its exit code.
@@ -348,8 +350,8 @@ fn streams(declarations: &str, statements: &str) -> Vec<(u64, bool)> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     fs::write(&path, program(declarations, statements)).unwrap();
-    let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
-    let result = json(&[&args[..], &ROBOT].concat());
+    let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--allow-faster-joints"];
+    let result = json(&[&args[..], &["--robot", KNOWN]].concat());
     assert_eq!(result["verification"]["passed"], true);
     let segments = result["segments"].as_array().unwrap().iter();
     let timing = segments.filter(|segment| segment["kind"] == "timing");

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
+const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
 /// Clock of externally guided motion, s.
@@ -47,7 +47,15 @@ fn run_text(folder: &Path, text: &str, options: &[&str]) -> Value {
     let path = folder.join("m.mod");
     fs::write(&path, text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args([
+            "optimize",
+            path.to_str().unwrap(),
+            "--robot",
+            ROBOT,
+            "--format",
+            "json",
+            "--allow-faster-joints",
+        ])
         .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
         .args(options)
         .output()

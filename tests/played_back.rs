@@ -17,6 +17,8 @@ use joulepath::robot::{Model, Sharing, find};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
+/// The same with known limits.
+const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Axis speeds of the data sheet, degrees/s.
 const SPEEDS: [f64; 6] = [180.0, 180.0, 185.0, 385.0, 400.0, 460.0];
 /// a1, c1, c2, c3, c4 of the data sheet, mm.
@@ -336,7 +338,15 @@ fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
     fs::write(&path, program()).unwrap();
     let out = folder.join("out");
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args([
+            "optimize",
+            path.to_str().unwrap(),
+            "--robot",
+            KNOWN,
+            "--format",
+            "json",
+            "--allow-faster-joints",
+        ])
         .args(["--quiet", "--out", out.to_str().unwrap()])
         .args(options)
         .output()

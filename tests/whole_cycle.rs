@@ -7,7 +7,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
+const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
 
@@ -36,7 +36,15 @@ fn optimize(text: &str, options: &[&str]) -> Value {
     let path = folder.path().join("m.mod");
     fs::write(&path, text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+        .args([
+            "optimize",
+            path.to_str().unwrap(),
+            "--robot",
+            ROBOT,
+            "--format",
+            "json",
+            "--allow-faster-joints",
+        ])
         .args(options)
         .output()
         .unwrap();

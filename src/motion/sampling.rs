@@ -17,8 +17,8 @@ use crate::robot::Model;
 pub struct SpeedCap {
     /// TCP speed, m/s; of a joint movement its mean.
     pub tcp: f64,
-    /// TCP speed at each instant, m/s.
-    pub peak: f64,
+    /// TCP speed at each instant, m/s: between corner zones, and in them.
+    pub peak: [f64; 2],
     /// Joint speeds, rad/s.
     pub joints: Joints,
     /// Reorientation speed, rad/s.
@@ -35,7 +35,7 @@ impl SpeedCap {
     /// No limit but the robot's own.
     pub const NONE: SpeedCap = SpeedCap {
         tcp: f64::INFINITY,
-        peak: f64::INFINITY,
+        peak: [f64::INFINITY; 2],
         joints: [f64::INFINITY; DOF],
         orientation: f64::INFINITY,
         acceleration: 1.0,
@@ -273,7 +273,7 @@ fn point(
         PieceKind::Cartesian | PieceKind::CartesianZone => (tcp_rate, turn_rate),
     };
     limit(programmed, cap.tcp, SpeedBound::Programmed);
-    limit(tcp_rate, cap.peak, SpeedBound::Programmed);
+    limit(tcp_rate, cap.peak[usize::from(zone.is_some())], SpeedBound::Programmed);
     limit(turn, cap.orientation, SpeedBound::Reorientation);
     if let Some(zone) = zone {
         // The interpolator takes at least one step in each zone: runs with z1 show it.

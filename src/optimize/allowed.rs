@@ -112,6 +112,9 @@ pub(super) struct Allowed {
 pub struct Ceiling {
     /// Of the TCP, m/s.
     pub tcp: f64,
+    /// The same within the corner zones at its ends, where the controller itself comes from the
+    /// speed of one movement to that of the next.
+    pub corner: f64,
     /// Of the joints, rad/s.
     pub joints: Joints,
 }
@@ -120,7 +123,8 @@ impl Ceiling {
     /// The larger of each speed.
     pub(super) fn max(&self, other: &Ceiling) -> Ceiling {
         let joints = std::array::from_fn(|j| self.joints[j].max(other.joints[j]));
-        Ceiling { tcp: self.tcp.max(other.tcp), joints }
+        let corner = self.corner.max(other.corner);
+        Ceiling { tcp: self.tcp.max(other.tcp), corner, joints }
     }
 
     /// The largest share of a ceiling that joint speeds (rad/s) use.
@@ -139,9 +143,9 @@ impl Allowed {
             let movement = &record.movement;
             let line = matches!(movement.form, MoveForm::Linear | MoveForm::Circular);
             let reached = reached(model, run, record, leg);
-            let tcp = match freedom.bound(movement) {
-                Bound::Original => reached.tcp.min(movement.line_speed()),
-                Bound::Robot => fastest,
+            let [tcp, corner] = match freedom.bound(movement) {
+                Bound::Original => [reached.tcp.min(movement.line_speed()), reached.tcp],
+                Bound::Robot => [fastest; 2],
             };
             let joints = match freedom.joints {
                 Bound::Original if !line => {
@@ -149,7 +153,7 @@ impl Allowed {
                 }
                 _ => velocity,
             };
-            Ceiling { tcp: tcp.min(fastest), joints }
+            Ceiling { tcp: tcp.min(fastest), corner: corner.min(fastest), joints }
         });
         Allowed { moves: moves.collect(), loads: freedom.loads(model) }
     }
@@ -157,7 +161,7 @@ impl Allowed {
 
 /// The largest speeds of a movement as the controller executes it.
 fn reached(model: &Model, run: &Run, record: &MoveRecord, leg: &Leg) -> Ceiling {
-    let mut most = Ceiling { tcp: 0.0, joints: NONE };
+    let mut most = Ceiling { tcp: 0.0, corner: 0.0, joints: NONE };
     let (count, step) = steps(record.duration);
     for i in 0..=count {
         let t = record.t_start + i as f64 * step;

@@ -135,7 +135,7 @@ pub fn check(
         ..Check::none()
     };
     let tcp = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
-    let ceiling = Ceiling { tcp, joints: velocity };
+    let ceiling = Ceiling { tcp, corner: tcp, joints: velocity };
     let anywhere = Offset { distance: 0.0, tolerance: f64::INFINITY, ceiling };
     let mut data = Data::new();
     let mut at = 0;

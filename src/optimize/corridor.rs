@@ -87,7 +87,8 @@ impl Corridor {
             let free = movements.map(|movement| freedom.of(movement)).fold(f64::INFINITY, f64::min);
             // In a corner joints come from the one speed to the other.
             let beyond = corner.and_then(|leg| allowed.moves.get(leg)).unwrap_or(&ceiling);
-            let ceiling = Ceiling { joints: ceiling.max(beyond).joints, ..ceiling };
+            let tcp = if corner.is_some() { ceiling.corner } else { ceiling.tcp };
+            let ceiling = Ceiling { tcp, joints: ceiling.max(beyond).joints, ..ceiling };
             let tolerance = tolerance.max(free);
             let extent = path.extent(piece.leg);
             let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;

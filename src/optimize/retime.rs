@@ -259,7 +259,9 @@ impl<'a> Work<'a> {
         for _ in 0..ATTEMPTS {
             let intended = match begun.take() {
                 Some(intended) => Ok(intended),
-                None => self.least_energy_program(budget, &margins, bound.as_ref()),
+                None => self
+                    .least_energy_program(budget, &margins, bound.as_ref())
+                    .or_else(|reason| self.as_before(reason, budget, &margins)),
             };
             let outcome = intended.and_then(|intended| self.realise(intended, &margins));
             match outcome {
@@ -430,7 +432,7 @@ impl<'a> Work<'a> {
     ) -> Result<(PathGrid, PathLimits), Reason> {
         let allowed = &self.corridor.allowed;
         let cap = |ceiling: &Ceiling| SpeedCap {
-            peak: margins.speed * ceiling.tcp,
+            peak: [ceiling.tcp, ceiling.corner].map(|speed| margins.speed * speed),
             joints: ceiling.joints.map(|speed| margins.speed * speed),
             ..SpeedCap::NONE
         };
@@ -447,6 +449,24 @@ impl<'a> Work<'a> {
         Ok((grid, limits))
     }
 
+    /// Where the margins leave no room on the path, the motion of the run itself is what polishing
+    /// begins with: it is within all limits and takes this time.
+    fn as_before(
+        &self,
+        reason: Reason,
+        budget: f64,
+        margins: &Margins,
+    ) -> Result<Intended, Reason> {
+        match self.task.run.motions.as_slice() {
+            [(_, motion)]
+                if reason == Reason::NoSaving && motion.duration() <= budget + quantum() =>
+            {
+                self.intend_near(reference_of(motion)?, budget, margins)
+            }
+            _ => Err(reason),
+        }
+    }
+
     /// A stream of this duration fitted to a profile.
     fn intend(
         &self,
@@ -454,8 +474,17 @@ impl<'a> Work<'a> {
         duration: f64,
         margins: &Margins,
     ) -> Result<Intended, Reason> {
+        self.intend_near(self.reference(profile)?, duration, margins)
+    }
+
+    /// A stream of this duration fitted to a motion.
+    fn intend_near(
+        &self,
+        reference: Reference,
+        duration: f64,
+        margins: &Margins,
+    ) -> Result<Intended, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
-        let reference = self.reference(profile)?;
         let mut spacing = Spacing {
             shortest: self.task.spacing_s,
             longest: f64::INFINITY,
@@ -560,6 +589,15 @@ impl<'a> Work<'a> {
             path: PathUse::Kept,
         }
     }
+}
+
+/// A motion as it is.
+fn reference_of(motion: &TimedMotion) -> Result<Reference, Reason> {
+    let n = (motion.duration() / REFERENCE_STEP).ceil().max(8.0) as usize;
+    let times: Vec<f64> = (0..=n).map(|i| motion.duration() * i as f64 / n as f64).collect();
+    let states = times.iter().map(|t| motion.at(*t));
+    let (q, qd) = states.map(|state| (state.q, state.qd)).unzip();
+    Reference::new(times, q, qd).map_err(|error| Reason::NoStream(error.to_string()))
 }
 
 /// Step of the samples of an intended motion, s.
