@@ -341,6 +341,8 @@ fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
         .args([
             "optimize",
             path.to_str().unwrap(),
+            "--time-factor",
+            "1.1",
             "--robot",
             KNOWN,
             "--format",

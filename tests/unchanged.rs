@@ -136,7 +136,8 @@ fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> 
         Some(i) if i > 0 && original[i - 1] == b'\r' => "\r\n",
         _ => "\n",
     };
-    let mut rest = output;
+    let output = without_notes(output);
+    let mut rest = output.as_slice();
     let mut from = 0;
     for span in spans {
         let statements = &original[span.clone()];
@@ -168,20 +169,26 @@ fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> 
     if rest == &original[from..] { Ok(()) } else { Err("bytes after the last guard differ".into()) }
 }
 
-/// `IF … THEN`, a call, and any number of `ELSEIF … THEN` with a call.
+/// `IF … THEN` with a function of the streams, its arguments on any number of lines, and a call.
 fn guard_is_plain(head: &[u8], line_break: &str) -> Result<(), String> {
-    let head = std::str::from_utf8(head).map_err(|error| error.to_string())?;
-    for (i, line) in head.split(line_break).enumerate() {
-        let (begin, end) = match i {
-            0 => ("IF jpAt(jpFrom", " THEN"),
-            _ if i % 2 == 0 => ("ELSEIF jpAt(jpFrom", " THEN"),
-            _ => ("    jpRun", ";"),
-        };
-        if !(line.starts_with(begin) && line.ends_with(end)) {
-            return Err(format!("'{line}'"));
-        }
+    let head = String::from_utf8_lossy(head);
+    let Some((condition, call)) = head.rsplit_once(line_break) else {
+        return Err(format!("'{head}'"));
+    };
+    let asks = condition.starts_with("IF jpFits") && condition.ends_with(") THEN");
+    let calls = call.starts_with("    jpRun") && call.ends_with(';');
+    let one = call.matches(';').count() == 1 && !condition.contains(';');
+    if asks && calls && one { Ok(()) } else { Err(format!("'{head}'")) }
+}
+
+/// A text without what writes loads and settings down behind the statements that change them.
+fn without_notes(text: &[u8]) -> Vec<u8> {
+    let mut left = text.to_vec();
+    while let Some(begin) = find_bytes(&left, b" jpLoad:=") {
+        let end = begin + left[begin..].iter().position(|b| *b == b';').unwrap() + 1;
+        left.drain(begin..end);
     }
-    Ok(())
+    left
 }
 
 fn find_bytes(bytes: &[u8], part: &[u8]) -> Option<usize> {
@@ -241,7 +248,7 @@ fn changed_bytes_are_found() {
     let original = b"! a\n  MoveJ p,v,fine,t;\n! b\n";
     let start = find_bytes(original, b"MoveJ").unwrap();
     let span = start..start + "MoveJ p,v,fine,t;".len();
-    let good = "! a\n  IF jpAt(jpFrom1) THEN\n      jpRun1 t;\n  ELSE\n  MoveJ p,v,fine,t;\n  \
+    let good = "! a\n  IF jpFits1(p,t) THEN\n      jpRun1 t;\n  ELSE\n  MoveJ p,v,fine,t;\n  \
                 ENDIF\n! b\n";
     let check =
         |output: &str| only_guards_added(original, output.as_bytes(), std::slice::from_ref(&span));
@@ -253,7 +260,7 @@ fn changed_bytes_are_found() {
         ("  ENDIF", "  Stop;\n  ENDIF"),
         ("ENDIF\n", "ENDIF\r\n"),
         ("jpRun1 t;", "jpRun1 t;\n      Stop;"),
-        ("jpAt(jpFrom1)", "TRUE"),
+        ("jpFits1(p,t)", "TRUE"),
     ];
     for (from, to) in bad {
         assert!(check(&good.replacen(from, to, 1)).is_err(), "{from} -> {to}");

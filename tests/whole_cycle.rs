@@ -79,13 +79,12 @@ fn a_wait_of_known_length_is_used_up() {
     assert!(saving(&known) > saving(&unknown) + 5.0);
 }
 
+/// Where the cell has changed, a quick stream may not run, and a slow one still does.
 #[test]
-fn a_run_where_time_is_worth_less_gives_it_to_the_others() {
+fn no_run_takes_longer_so_that_another_one_may_be_quicker() {
     let result = optimize(&program("MoveL pD,v500,fine,tool0;"), &[]);
-    let changes: Vec<f64> =
-        [8, 10, 11, 12].map(|line| times(&result, line)).map(|[a, b]| b / a - 1.0).to_vec();
-    assert!(changes.iter().any(|change| *change > 0.02), "{changes:?}");
-    assert!(changes.iter().any(|change| *change < -0.02), "{changes:?}");
+    let changes = [8, 10, 11, 12].map(|line| times(&result, line)).map(|[a, b]| b / a - 1.0);
+    assert!(changes.iter().all(|change| *change < 1e-6), "{changes:?}");
 }
 
 #[test]

@@ -13,6 +13,9 @@ use crate::robot::Model;
 /// Step of the samples of a run, s: half a period of the interpolator.
 const STEP: f64 = 0.002;
 
+/// Share of a limit that a joint has at least: one that stands still in the program still holds, and
+/// turns by what is rounding.
+const LEAST: f64 = 0.02;
 /// Share of assumed limits that ways may use that the program does not have.
 const OTHER_WAYS: f64 = 0.5;
 
@@ -54,7 +57,8 @@ impl Loads {
         let limits = Loads::limits(model);
         let within = |key: &str, limit: Joints, most: Joints| -> Joints {
             let is_known = model.is_known("limits", key);
-            std::array::from_fn(|j| if is_known { limit[j] } else { limit[j].min(most[j]) })
+            let shown = |j: usize| limit[j].min(most[j]).max(LEAST * limit[j]);
+            std::array::from_fn(|j| if is_known { limit[j] } else { shown(j) })
         };
         Loads {
             acceleration: within("acceleration", limits.acceleration, most.acceleration),

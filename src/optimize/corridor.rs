@@ -8,7 +8,7 @@ use crate::kinematics::fk;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::path::PieceKind;
-use crate::path::joint_path::DOF;
+use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
 
 /// Distance of the samples of the path, m.
@@ -222,3 +222,20 @@ impl Corridor {
 fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
 }
+
+/// Distance of the TCP from each joint's axis at most along the run, m: weighs joint errors.
+pub(super) fn levers(model: &Model, run: &Run) -> Joints {
+    let mut lever = [MIN_LEVER; DOF];
+    for leg in &run.legs {
+        for q in [&leg.start, &leg.end] {
+            let j = leg.tool.jacobian(model, q);
+            for (i, lever) in lever.iter_mut().enumerate() {
+                *lever = lever.max(j.fixed_view::<3, 1>(0, i).norm());
+            }
+        }
+    }
+    lever
+}
+
+/// A joint whose axis passes the TCP still turns the tool, m/rad.
+const MIN_LEVER: f64 = 0.1;

@@ -49,6 +49,12 @@ impl Margins {
         }
     }
 
+    /// Share of the torque limits: where an arm is held at the most that the program asks of a joint,
+    /// any margin would be too much at first.
+    pub(super) fn torque(&self) -> f64 {
+        (self.load / FIRST_MARGIN).min(1.0)
+    }
+
     /// Tighter where the loads left no stream.
     pub(super) fn lighten(&mut self) {
         self.load *= FIRST_MARGIN;

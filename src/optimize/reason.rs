@@ -41,7 +41,7 @@ pub enum Reason {
     Scattered,
     /// Runs that begin or end at different statements at different times.
     Overlapping,
-    /// The last movement of the program does not stop, and what comes after it is not known or the
+    /// Its last movement does not stop, and what comes behind it may move on: another branch, or the
     /// beginning of the program again.
     FliesOn,
     /// The program has streams of joulepath already.
@@ -173,7 +173,7 @@ impl std::fmt::Display for Reason {
                 f.write_str("it begins or ends at another statement in another execution")
             }
             Reason::FliesOn => {
-                f.write_str("it ends in a zone at the end of the program, which may begin again")
+                f.write_str("it ends in a zone, and what comes behind it may move on")
             }
             Reason::Already => f.write_str(
                 "the program has streams of joulepath; start from the original to time it anew",

@@ -6,7 +6,7 @@
 
 use super::allowed::{Ceiling, Loads, speeds};
 use super::check::{Check, Room, check};
-use super::corridor::{Corridor, JOINT_TOLERANCE, LINE_TOLERANCE};
+use super::corridor::{Corridor, JOINT_TOLERANCE, LINE_TOLERANCE, levers};
 use super::cost::Cost;
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
 use super::freedom::Freedom;
@@ -256,12 +256,15 @@ impl<'a> Work<'a> {
         let mut problem = None;
         let mut begun: Option<Intended> = None;
         let mut worst = NEARLY;
+        let mut is_tight = false;
         for _ in 0..ATTEMPTS {
             let intended = match begun.take() {
                 Some(intended) => Ok(intended),
-                None => self
-                    .least_energy_program(budget, &margins, bound.as_ref())
-                    .or_else(|reason| self.as_before(reason, budget, &margins)),
+                None => {
+                    let program = self.least_energy_program(budget, &margins, bound.as_ref());
+                    is_tight |= matches!(program, Err(Reason::NoSaving));
+                    program.or_else(|reason| self.as_before(reason, budget, &margins))
+                }
             };
             let outcome = intended.and_then(|intended| self.realise(intended, &margins));
             match outcome {
@@ -294,7 +297,8 @@ impl<'a> Work<'a> {
                 Err(other) => return Err(other),
             }
         }
-        Err(Reason::NoStream(problem.unwrap_or_default()))
+        // The motion of the run itself is such a timing: it is no stream that is missing.
+        Err(if is_tight { Reason::NoSaving } else { Reason::NoStream(problem.unwrap_or_default()) })
     }
 
     /// The convex program's answer and a stream fitted to it.
@@ -442,8 +446,8 @@ impl<'a> Work<'a> {
         let no_grid = |why: String| Reason::NoStream(why);
         let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
             .map_err(|error| no_grid(error.to_string()))?;
-        let [acceleration, torque] = [allowed.loads.acceleration, allowed.loads.torque]
-            .map(|limits| limits.map(|x| x * margins.load));
+        let acceleration = allowed.loads.acceleration.map(|x| x * margins.load);
+        let torque = allowed.loads.torque.map(|x| x * margins.torque());
         let limits =
             PathLimits::new(acceleration, torque).map_err(|error| no_grid(error.to_string()))?;
         Ok((grid, limits))
@@ -461,7 +465,8 @@ impl<'a> Work<'a> {
             [(_, motion)]
                 if reason == Reason::NoSaving && motion.duration() <= budget + quantum() =>
             {
-                self.intend_near(reference_of(motion)?, budget, margins)
+                let state = |t: f64| (motion.at(t).q, motion.at(t).qd);
+                self.intend_near(motion.duration(), &state, budget, margins)
             }
             _ => Err(reason),
         }
@@ -474,17 +479,27 @@ impl<'a> Work<'a> {
         duration: f64,
         margins: &Margins,
     ) -> Result<Intended, Reason> {
-        self.intend_near(self.reference(profile)?, duration, margins)
+        let end = profile.duration();
+        let motion = |t: f64| {
+            let (s, v, _) = if t < end { profile.at(t) } else { (self.path.length(), 0.0, 0.0) };
+            let point = self.path.eval(s);
+            (point.q, point.q1.map(|x| x * v))
+        };
+        self.intend_near(end, &motion, duration, margins)
     }
 
-    /// A stream of this duration fitted to a motion.
+    /// A stream of this duration fitted to a motion that takes `time`, both in s.
     fn intend_near(
         &self,
-        reference: Reference,
+        time: f64,
+        motion: &dyn Fn(f64) -> (Joints, Joints),
         duration: f64,
         margins: &Margins,
     ) -> Result<Intended, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
+        let intervals = (time / REFERENCE_STEP).ceil().max(8.0) as usize;
+        let reference = Reference::sample(time, intervals, motion)
+            .map_err(|error| failed(&error.to_string()))?;
         let mut spacing = Spacing {
             shortest: self.task.spacing_s,
             longest: f64::INFINITY,
@@ -546,20 +561,6 @@ impl<'a> Work<'a> {
         2.0 * LARGEST_ZONE / speed
     }
 
-    fn reference(&self, profile: &Profile) -> Result<Reference, Reason> {
-        let n = (profile.duration() / REFERENCE_STEP).ceil().max(8.0) as usize;
-        let times: Vec<f64> = (0..=n).map(|i| profile.duration() * i as f64 / n as f64).collect();
-        let mut q = Vec::with_capacity(n + 1);
-        let mut qd = Vec::with_capacity(n + 1);
-        for (i, t) in times.iter().enumerate() {
-            let (s, v, _) = if i == n { (self.path.length(), 0.0, 0.0) } else { profile.at(*t) };
-            let point = self.path.eval(s);
-            q.push(point.q);
-            qd.push(point.q1.map(|x| x * v));
-        }
-        Reference::new(times, q, qd).map_err(|error| Reason::NoStream(error.to_string()))
-    }
-
     /// Energy of a stream's motion, settling not included.
     fn moving(&self, stream: &Stream) -> EnergyParts {
         let motion = TimedMotion::Stream(stream.clone());
@@ -591,15 +592,6 @@ impl<'a> Work<'a> {
     }
 }
 
-/// A motion as it is.
-fn reference_of(motion: &TimedMotion) -> Result<Reference, Reason> {
-    let n = (motion.duration() / REFERENCE_STEP).ceil().max(8.0) as usize;
-    let times: Vec<f64> = (0..=n).map(|i| motion.duration() * i as f64 / n as f64).collect();
-    let states = times.iter().map(|t| motion.at(*t));
-    let (q, qd) = states.map(|state| (state.q, state.qd)).unzip();
-    Reference::new(times, q, qd).map_err(|error| Reason::NoStream(error.to_string()))
-}
-
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
@@ -608,20 +600,3 @@ pub(super) fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Pr
         .into_profile()
         .ok_or_else(|| Reason::NoStream("the torque limits leave no timing on the path".into()))
 }
-
-/// Distance of the TCP from each joint's axis at most along the run, m: weighs joint errors.
-fn levers(model: &Model, run: &Run) -> Joints {
-    let mut lever = [MIN_LEVER; DOF];
-    for leg in &run.legs {
-        for q in [&leg.start, &leg.end] {
-            let j = leg.tool.jacobian(model, q);
-            for (i, lever) in lever.iter_mut().enumerate() {
-                *lever = lever.max(j.fixed_view::<3, 1>(0, i).norm());
-            }
-        }
-    }
-    lever
-}
-
-/// A joint whose axis passes the TCP still turns the tool, m/rad.
-const MIN_LEVER: f64 = 0.1;

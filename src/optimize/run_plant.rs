@@ -32,7 +32,7 @@ impl Plant for RunPlant<'_> {
     }
 
     fn torque_limit(&self) -> Joints {
-        self.work.corridor.allowed.loads.torque.map(|x| x * self.margins.load)
+        self.work.corridor.allowed.loads.torque.map(|x| x * self.margins.torque())
     }
 
     fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {

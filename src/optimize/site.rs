@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::reason::Reason;
-use crate::ir::hir::{Block, Callee, StmtKind};
+use crate::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Stmt, StmtKind};
 use crate::ir::instructions::{MoveForm, is_movement};
 use crate::ir::movement::{Argument, Movement, Settings};
 use crate::ir::program::Program;
@@ -62,7 +62,8 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
             .err()
             .or_else(|| places.neighbours(run).err())
             .or_else(|| sets_on_the_way(simulation, index).then_some(Reason::EarlyOutput))
-            .or_else(|| joined.contains(&index).then_some(Reason::FliesOn));
+            .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
+            .or_else(|| places.flies_on(run).then_some(Reason::FliesOn));
         let same_file = head.file == tail.file;
         let span = if same_file { head.to(tail) } else { head };
         let site = sites.entry((head, tail)).or_insert_with(|| Site {
@@ -288,13 +289,16 @@ fn settings_allow(settings: &Settings) -> Result<(), Reason> {
 /// Where each statement stands: its list and its place in it.
 struct Places {
     by_span: BTreeMap<Span, (usize, usize)>,
+    /// The statements that wait for a time, and so let the robot stop.
+    stops: BTreeSet<(usize, usize)>,
     /// Statements of compact IFs.
     compact: BTreeSet<Span>,
 }
 
 impl Places {
     fn new(program: &Program) -> Places {
-        let mut places = Places { by_span: BTreeMap::new(), compact: BTreeSet::new() };
+        let mut places =
+            Places { by_span: BTreeMap::new(), stops: BTreeSet::new(), compact: BTreeSet::new() };
         let mut lists = 0;
         for module in &program.modules {
             for routine in &module.routines {
@@ -311,6 +315,9 @@ impl Places {
         *lists += 1;
         for (index, stmt) in block.iter().enumerate() {
             self.by_span.insert(stmt.span, (list, index));
+            if is_wait(stmt) {
+                self.stops.insert((list, index));
+            }
             for inner in stmt.kind.blocks() {
                 // A compact IF ends with its statement, the long form with ENDIF after it.
                 if let Some(last) = inner.last()
@@ -321,6 +328,16 @@ impl Places {
                 self.block(inner, lists);
             }
         }
+    }
+
+    /// Whether a run ends in a zone and nothing behind it makes sure that the robot stops there: in
+    /// another branch, or where an input is on already, it flies on.
+    fn flies_on(&self, run: &Run) -> bool {
+        let Some(last) = run.moves.last().filter(|record| !record.movement.zone.fine) else {
+            return false;
+        };
+        let place = self.by_span.get(&last.movement.span);
+        place.is_none_or(|(list, index)| !self.stops.contains(&(*list, index + 1)))
     }
 
     /// Whether the statements of a run follow each other in one list.
@@ -340,6 +357,14 @@ impl Places {
         }
         Ok(())
     }
+}
+
+/// Whether a statement waits for a time that is not 0.
+fn is_wait(stmt: &Stmt) -> bool {
+    let StmtKind::Call(call) = &stmt.kind else { return false };
+    let is_zero = |arg: &Arg| matches!(&arg.kind, ArgKind::Positional(Expr { kind: ExprKind::Num(x), .. }) if *x == 0.0);
+    matches!(&call.callee, Callee::Name(name) if name.key == "waittime")
+        && !call.args.iter().any(is_zero)
 }
 
 /// The movement statements of a program that did not run in a simulation.

@@ -104,7 +104,8 @@ impl Executor<'_> {
             "pathacclim" => self.path_acceleration(stmt, text, &arguments),
             "worldacclim" => self.world_acceleration(stmt, text, &arguments),
             "singarea" => self.sing_area(text, &arguments),
-            "waitrob" | "pathresol" | "motionsup" => {}
+            "waitrob" | "motionsup" => {}
+            "pathresol" => self.path_resolution(stmt, text, &arguments),
             "eoffsset" | "eoffson" | "softact" | "pdispon" | "corrcon" | "speedlimaxis"
             | "tuneservo" | "pathrecstart" => self.unmodelled(stmt, text),
             "pathrecstop" => self.clear_unmodelled(&["pathrecstart"]),
@@ -566,6 +567,16 @@ impl Executor<'_> {
         let plain = |key: &str| matches!(key, "pathframe" | "objectframe");
         if arguments.optional.iter().all(|(key, _, _)| plain(key)) {
             self.clear_unmodelled(&["cirpathmode"]);
+        } else {
+            self.unmodelled(stmt, text);
+        }
+    }
+
+    /// `PathResol`: how densely a path is interpolated, 100 % where nothing is said.
+    fn path_resolution(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let percent = arguments.positional.first().and_then(|expr| self.eval(expr).datum.num());
+        if percent == Some(100.0) {
+            self.clear_unmodelled(&["pathresol"]);
         } else {
             self.unmodelled(stmt, text);
         }
