@@ -283,7 +283,7 @@ fn slower_than_pays_has_a_note() {
     fs::write(&path, program("", "")).unwrap();
     let path = path.to_str().unwrap();
     let args = ["optimize", path, "--time-factor", "2", "--format", "json", "--quiet"];
-    let result = json(&[&args[..], &ROBOT].concat());
+    let result = json(&[&args[..], &["--robot", KNOWN]].concat());
     assert!(number(&result, "/optimized/energy_j") > number(&result, "/original/energy_j"));
     let note = result["notes"][0].as_str().unwrap();
     assert!(note.contains("more energy than before"), "{note}");

@@ -114,11 +114,11 @@ fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
 fn read(text: &str) -> Vec<Stream> {
     let mut streams = Vec::new();
     for number in 1.. {
-        let Some(at) = text.find(&format!("CONST jointtarget jpFrom{number}:=")) else { break };
+        let Some(at) = text.find(&format!("CONST jointtarget jpFrom{number}_1:=")) else { break };
         let origin = text[..at].trim_end().rsplit('\n').next().unwrap();
         let line = between(origin, ".mod ", ":").parse().unwrap();
         let mut stream = Stream { line, start: joints(&text[at..]), ..Stream::default() };
-        let body = between(text, &format!("PROC jpRun{number}("), "ENDPROC");
+        let body = between(text, &format!("PROC jpMove{number}_1("), "ENDPROC");
         let mut moves: Vec<&str> = body.split(';').map(str::trim).collect();
         moves.retain(|statement| !statement.is_empty());
         if body.contains("FOR ") {
@@ -126,7 +126,7 @@ fn read(text: &str) -> Vec<Stream> {
             let to: usize = between(body, " TO ", " DO").parse().unwrap();
             assert_eq!(to + 1, count, "the loop ends before the last point");
             let declared = |name: &str| {
-                let from = format!("{name}{number}{{{count}}}:=[");
+                let from = format!("{name}{number}_1{{{count}}}:=[");
                 between(text, &from, "];").to_owned()
             };
             for point in declared("jpPoints").lines().filter(|l| l.contains("[[")) {
@@ -341,8 +341,6 @@ fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
         .args([
             "optimize",
             path.to_str().unwrap(),
-            "--time-factor",
-            "1.1",
             "--robot",
             KNOWN,
             "--format",
@@ -400,7 +398,7 @@ fn layouts_are_the_same_motion() {
     let folder = tempfile::tempdir().unwrap();
     let (_, plain) = optimize(folder.path(), &["--layout", "plain"]);
     let (_, array) = optimize(folder.path(), &["--layout", "array"]);
-    assert!(array.contains("FOR i FROM 1 TO ") && !plain.contains("FOR "));
+    assert!(array.contains("MoveAbsJ jpPoints") && !plain.contains("MoveAbsJ jpPoints"));
     for (plain, array) in read(&plain).iter().zip(&read(&array)) {
         assert_eq!((&plain.points, &plain.times), (&array.points, &array.times));
     }

@@ -122,7 +122,7 @@ const WORTHWHILE: f64 = 1e-3;
 const HOPELESS: f64 = 0.05;
 /// Where a motion is slow, the ramp time is a short step: at least this share of its time.
 const SLOW_STEP: f64 = 0.02;
-/// Steps in which the time of the fastest stream is searched, share of the ramp time.
+/// Steps of the search for the time of the fastest stream, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 
 /// A realised stream with its faults.
@@ -258,14 +258,14 @@ impl<'a> Work<'a> {
         let mut worst = NEARLY;
         let mut is_tight = false;
         for _ in 0..ATTEMPTS {
-            let intended = match begun.take() {
-                Some(intended) => Ok(intended),
-                None => {
+            let intended = begun.take().map_or_else(
+                || {
                     let program = self.least_energy_program(budget, &margins, bound.as_ref());
                     is_tight |= matches!(program, Err(Reason::NoSaving));
                     program.or_else(|reason| self.as_before(reason, budget, &margins))
-                }
-            };
+                },
+                Ok,
+            );
             let outcome = intended.and_then(|intended| self.realise(intended, &margins));
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
@@ -297,7 +297,6 @@ impl<'a> Work<'a> {
                 Err(other) => return Err(other),
             }
         }
-        // The motion of the run itself is such a timing: it is no stream that is missing.
         Err(if is_tight { Reason::NoSaving } else { Reason::NoStream(problem.unwrap_or_default()) })
     }
 
@@ -497,9 +496,9 @@ impl<'a> Work<'a> {
         margins: &Margins,
     ) -> Result<Intended, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
-        let intervals = (time / REFERENCE_STEP).ceil().max(8.0) as usize;
-        let reference = Reference::sample(time, intervals, motion)
-            .map_err(|error| failed(&error.to_string()))?;
+        let samples = (time / REFERENCE_STEP).ceil().max(8.0) as usize;
+        let reference = Reference::sample(time, samples, motion);
+        let reference = reference.map_err(|error| failed(&error.to_string()))?;
         let mut spacing = Spacing {
             shortest: self.task.spacing_s,
             longest: f64::INFINITY,

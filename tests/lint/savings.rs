@@ -54,6 +54,11 @@ fn by_hand(fixture: &Fixture, finding: &Finding) -> Edit {
         let start = text.rmatch_indices("Move").nth(count - 1).unwrap().0;
         return edit(Span { start: start as u32, end: span.start, ..span }, String::new());
     }
+    if change == "leaving out this movement and the one before" {
+        let text = String::from_utf8(file.bytes[..span.start as usize].to_vec()).unwrap();
+        let start = text.rfind("Move").unwrap() as u32;
+        return edit(Span { start, ..span }, String::new());
+    }
     assert_eq!(change, "leaving it out");
     edit(span, String::new())
 }

@@ -551,7 +551,7 @@ impl Executor<'_> {
     }
 
     /// A setting that changes movements in a way that is not modelled.
-    fn unmodelled(&mut self, stmt: &Stmt, text: &str) {
+    pub(super) fn unmodelled(&mut self, stmt: &Stmt, text: &str) {
         self.unresolved(
             stmt.span,
             format!("{text} is not simulated: what follows runs as if it were not there"),
@@ -562,40 +562,7 @@ impl Executor<'_> {
         self.settings = Arc::new(settings);
     }
 
-    /// `CirPathMode`: how the tool turns on arcs; about the path's frame where nothing is said.
-    fn circle_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
-        let plain = |key: &str| matches!(key, "pathframe" | "objectframe");
-        if arguments.optional.iter().all(|(key, _, _)| plain(key)) {
-            self.clear_unmodelled(&["cirpathmode"]);
-        } else {
-            self.unmodelled(stmt, text);
-        }
-    }
-
-    /// `PathResol`: how densely a path is interpolated, 100 % where nothing is said.
-    fn path_resolution(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
-        let percent = arguments.positional.first().and_then(|expr| self.eval(expr).datum.num());
-        if percent == Some(100.0) {
-            self.clear_unmodelled(&["pathresol"]);
-        } else {
-            self.unmodelled(stmt, text);
-        }
-    }
-
-    /// `MotionProcessModeSet`: another tuning of the servo than the one that everything starts with.
-    fn process_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
-        let usual = |expr: &&Expr| match &expr.kind {
-            ExprKind::Ref(name) => name.key == "optimal_cycle_time_mode",
-            _ => false,
-        };
-        if arguments.positional.first().is_some_and(usual) {
-            self.clear_unmodelled(&["motionprocessmodeset"]);
-        } else {
-            self.unmodelled(stmt, text);
-        }
-    }
-
-    fn clear_unmodelled(&mut self, keys: &[&str]) {
+    pub(super) fn clear_unmodelled(&mut self, keys: &[&str]) {
         let mut settings = Settings::clone(&self.settings);
         settings.other.retain(|name| !keys.contains(&name.to_lowercase().as_str()));
         self.settings = Arc::new(settings);

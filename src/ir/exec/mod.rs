@@ -15,6 +15,7 @@ mod flow;
 mod functions;
 mod instruction;
 mod loops;
+mod modes;
 mod motion;
 mod polling;
 mod system;
