@@ -47,15 +47,7 @@ fn run_text(folder: &Path, text: &str, options: &[&str]) -> Value {
     let path = folder.join("m.mod");
     fs::write(&path, text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args([
-            "optimize",
-            path.to_str().unwrap(),
-            "--robot",
-            ROBOT,
-            "--format",
-            "json",
-            "--allow-faster-joints",
-        ])
+        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
         .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
         .args(options)
         .output()

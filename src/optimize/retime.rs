@@ -111,8 +111,7 @@ const BOUND_ROUNDING: f64 = 1e-5;
 const ZONE_SHARE: f64 = 0.95;
 /// The share that is asked for where they would not keep that: they are placed by other rules too.
 const CLOSER: f64 = 0.6;
-/// Distance from the path that costs the polishing a share of the energy, in units of the
-/// tolerance of the path.
+/// Distance from the path that costs the polishing a share of the energy, in tolerances of it.
 const CORRIDOR: f64 = 0.3;
 /// Share of a limit beyond which an attempt is begun anew instead of polished on.
 const NEARLY: f64 = 2.0;
@@ -248,7 +247,7 @@ impl<'a> Work<'a> {
         Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
     }
 
-    /// Least energy in a time, settling included, if that takes less than `worth` (J, motion).
+    /// Least energy in a time, settling included, if it is below `worth` (J, motion).
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
@@ -497,8 +496,8 @@ impl<'a> Work<'a> {
     ) -> Result<Intended, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
         let samples = (time / REFERENCE_STEP).ceil().max(8.0) as usize;
-        let reference = Reference::sample(time, samples, motion);
-        let reference = reference.map_err(|error| failed(&error.to_string()))?;
+        let reference =
+            Reference::sample(time, samples, motion).map_err(|error| failed(&error.to_string()))?;
         let mut spacing = Spacing {
             shortest: self.task.spacing_s,
             longest: f64::INFINITY,
