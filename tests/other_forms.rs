@@ -94,12 +94,11 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
         // All but the speed is the same.
         let (head, tail) = (was.find(",v").unwrap(), was.find(",fine").or(was.find(",z")).unwrap());
         assert!(now.starts_with(&was[..=head]) && now.ends_with(&was[tail..]), "{was}\n{now}");
-        if was.starts_with("MoveL") {
-            assert!(speed(now) <= speed(was), "{was}\n{now}");
-        }
+        // Those of joint movements are ceilings, too.
+        assert!(speed(now) <= speed(was), "{was}\n{now}");
     }
     assert_eq!(original.lines().count(), written.lines().count());
-    assert!(changed >= 2, "{written}");
+    assert!(changed >= 1, "{written}");
     // The quick way before the wait is slower now; a speed with \V stays.
     assert!(
         written.contains("MoveAbsJ jB,[") && written.contains("v1000\\V:=700,fine"),
