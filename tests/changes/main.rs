@@ -3,7 +3,7 @@
 //!
 //! Changes are drawn by chance: data are taught anew, tools, work objects, loads, speeds, inputs and
 //! settings change, other tasks write, the robot starts elsewhere, is another one, or passes more
-//! than once. `CHANGES=10000 cargo test --release --test changes` draws so many.
+//! than once. `CHANGES=N` draws N of them.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -28,7 +28,7 @@ use cell::{Cell, Change, Changed, Counts, apply, is_within, kind, marked};
 use support::Random;
 
 /// Changes where nothing else is asked for.
-const CHANGES: usize = 600;
+const CHANGES: usize = 10_000;
 /// Changes at once, at most.
 const TOGETHER: usize = 3;
 /// Times as long that runs may take where streams are asked for in every place.
