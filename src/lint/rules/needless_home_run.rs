@@ -26,23 +26,23 @@
 //! ```
 //!
 //! ## Safety
-//! Unsafe: home may be the only free way between both. Check that there is room.
+//! Without a fix: the way home may be the lift behind a grip, or the only free way between both.
+//! Who leaves it out by hand checks that there is room.
 //!
 //! ## Assumptions
 //! Home is where the first movement of the program goes, if that is a `MoveAbsJ`, or a pose at which
 //! the program also ends and the robot stops.
 
 use super::super::context::Context;
-use super::super::edits::{fix, remove, with_line};
-use super::super::finding::{Applicability, Finding};
-use super::super::site::{Site, compact, facts_of};
+use super::super::finding::Finding;
+use super::super::site::{Site, facts_of};
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
 use crate::ir::graph::Step as GraphStep;
 use crate::ir::hir::{Callee, Stmt, StmtKind};
 use crate::ir::instructions::MoveForm;
 use crate::motion::Step;
-use crate::text::{Edit, Span};
+use crate::text::Span;
 
 rule!("EW406", "needless-home-run", Path, Text, Info, "needless_home_run.rs");
 
@@ -94,26 +94,19 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !joint || !site.is_plain() || site.executions.is_empty() {
             continue;
         }
-        let edit = || remove(context, site);
         if site.executions.iter().all(|step| idle(*step)) {
             let weighed = context.weigh(&[site.stmt.span], &|_| Vec::new());
-            findings.extend(told(site.stmt.span, site.name, weighed, visits, edit()));
+            findings.extend(told(site.stmt.span, site.name, weighed, visits));
         } else if does_nothing_else(context, site) {
             for call in idle_calls(context, site, &idle) {
                 let weighed = context.weigh(&[site.stmt.span], &|step| without(step, call.name));
-                findings.extend(told(call.stmt.span, call.text, weighed, visits, call.edit));
+                findings.extend(told(call.stmt.span, call.text, weighed, visits));
             }
         }
     }
 }
 
-fn told(
-    span: Span,
-    name: &str,
-    weighed: Weighed,
-    visits: usize,
-    edit: Option<Edit>,
-) -> Option<Finding> {
+fn told(span: Span, name: &str, weighed: Weighed, visits: usize) -> Option<Finding> {
     let saving = match weighed {
         Weighed::Saves(saving) => Some(saving),
         Weighed::Unknown if visits >= MANY => None,
@@ -124,7 +117,6 @@ fn told(
     "leaving it out".clone_into(&mut finding.change);
     finding.saving = saving;
     finding.assumptions.push("the direct way is free".to_owned());
-    finding.fix = edit.map(|edit| fix(Applicability::Unsafe, edit));
     Some(finding)
 }
 
@@ -135,8 +127,6 @@ struct CallSite<'c> {
     /// The routine's name there.
     name: Span,
     text: &'c str,
-    /// Takes the call out.
-    edit: Option<Edit>,
 }
 
 /// The calls of the routine of a movement of which each execution is for nothing.
@@ -157,10 +147,7 @@ fn idle_calls<'c>(
         let mut visits = site.executions.iter().filter(|step| called_at(**step) == Some(name.span));
         let some = visits.clone().next().is_some();
         if some && visits.all(|step| idle(*step)) {
-            let alone = compact(context.program.routine(place.0)).contains(&stmt.span);
-            let span = (!alone).then(|| with_line(context, stmt.span));
-            let edit = span.map(|span| Edit { span, text: Vec::new() });
-            found.push(CallSite { stmt, name: name.span, text: &name.text, edit });
+            found.push(CallSite { stmt, name: name.span, text: &name.text });
         }
     }
     found

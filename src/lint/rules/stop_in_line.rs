@@ -27,14 +27,15 @@
 //! ```
 //!
 //! ## Safety
-//! Safe: a zone between two pieces of one line does not leave the line.
+//! Without a fix: the stop may belong to a process, as where a hole is drilled in steps.
+//! Somebody has to say that nothing needs it.
 //!
 //! ## Assumptions
 //! Directions that differ by less than 0.3° are one line.
 
 use super::super::context::{Context, Corner};
-use super::super::edits::{fix, replace, zone_within};
-use super::super::finding::{Applicability, Finding};
+use super::super::edits::zone_within;
+use super::super::finding::Finding;
 use super::unneeded_stop_point::{stops_for_movements, with_zone};
 use crate::ir::instructions::MoveForm;
 
@@ -63,7 +64,6 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
         finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
         finding.saving = saving;
-        finding.fix = Some(fix(Applicability::Safe, replace(argument.span, zone.name)));
         findings.push(finding);
     }
 }

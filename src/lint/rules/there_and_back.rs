@@ -25,15 +25,15 @@
 //! ```
 //!
 //! ## Safety
-//! Unsafe: being there may have been the purpose (to shake something off, to be seen).
+//! Without a fix: being there may have been the purpose (to lift a part, to shake something off,
+//! to be seen). Somebody has to say that the way was for nothing.
 //!
 //! ## Assumptions
 //! Movements alone have no purpose, unless the procedure does nothing else, or hardly anything else.
 //! Ways that are gone several times are left alone.
 
 use super::super::context::Context;
-use super::super::edits::remove;
-use super::super::finding::{Applicability, Finding, Fix};
+use super::super::finding::Finding;
 use super::super::flow::Through;
 use super::move_to_same_place::same_goal;
 use crate::ir::instructions::MoveForm;
@@ -76,10 +76,6 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         finding.related.push((c.stmt.span, "back again".to_owned()));
         "leaving out this movement and the one before".clone_into(&mut finding.change);
         finding.saving = saving;
-        let edits = [a, b].map(|site| remove(context, site));
-        if let [Some(a), Some(b)] = edits {
-            finding.fix = Some(Fix { applicability: Applicability::Unsafe, edits: vec![a, b] });
-        }
         findings.push(finding);
     }
 }
