@@ -189,6 +189,7 @@ fn small(path: &str) -> Small {
     let retrofit = Retrofit {
         original: figures(&before),
         optimized: figures(&after),
+        padding: None,
         potential_j: 25.0,
         notes: Vec::new(),
         segments,

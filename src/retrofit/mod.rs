@@ -10,6 +10,7 @@ mod guided;
 mod hazards;
 mod notes;
 mod outputs;
+mod padding;
 mod rests;
 mod segments;
 mod sharing;
@@ -18,7 +19,9 @@ mod speeds;
 mod verify;
 mod work;
 
-pub use figures::{Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification};
+pub use figures::{
+    Figures, OutputFile, OutputKind, Padding, Retrofit, Segment, SegmentKind, Verification,
+};
 pub use freed::freed;
 pub use outputs::read_again;
 pub use signals::{SignalKind, SignalShift};

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::figures::{Figures, Retrofit, Verification};
 use super::goals::goals;
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
-use super::{guided, hazards, notes, outputs, rests, segments, signals, speeds, verify};
+use super::{guided, hazards, notes, outputs, padding, rests, segments, signals, speeds, verify};
 use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
@@ -380,11 +380,14 @@ pub fn retrofit(
     );
     outputs::add_brake_note(&mut checked.0, model, &dwells(model, &after_simulation));
     let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
-    let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
-    let notes =
-        notes::notes(files, model, settings, &simulation, &segments, (&original, &optimized));
+    let optimized = figures(&after_simulation, &after);
+    let padding = padding::padding(model, &simulation, &optimized);
+    let original = figures(&simulation, &before).padded(padding.as_ref());
+    let compared = (&original, &optimized, padding.as_ref());
+    let notes = notes::notes(files, model, settings, &simulation, &segments, compared);
     Ok(Retrofit {
         original,
+        padding,
         optimized,
         potential_j,
         segments,
