@@ -365,7 +365,7 @@ pub fn retrofit(
         simulation: mut after_simulation, account: mut after, verification, ..
     } = checked.1;
     if settings.form == Form::Guided {
-        checked.0 = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
+        checked.0 = guided::files(files, &program, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
         after_simulation = simulate(&program, entry, model, &settings.options);
         after = account(model, &after_simulation);
