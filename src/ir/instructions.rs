@@ -4,6 +4,8 @@
 //! here nor in the program is unknown: it may move the robot and write its
 //! arguments.
 
+use super::processes;
+
 /// The form of a movement instruction: which positional arguments it takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoveForm {
@@ -49,6 +51,8 @@ pub fn written(key: &str) -> Option<Written> {
     let (position, name) = match key {
         "searchl" | "searchc" => (1, "searchpoint"),
         "searchextj" => (1, "searchjointpos"),
+        "wzboxdef" | "wzcyldef" | "wzsphdef" | "wzlimjointdef" | "wzhomejointdef" => (0, "shape"),
+        "wzlimsup" | "wzdoset" | "wzenable" | "wzdisable" | "wzfree" => (0, "worldzone"),
         _ => return None,
     };
     Some(Written { position, name })
@@ -77,7 +81,7 @@ pub fn movement(key: &str) -> Option<MoveSignature> {
         "searchc" => (Circular, 2, 0, false, false),
         // Signal, SearchJointPos, ToJointPos, Speed
         "searchextj" => (ExternalJoint, 2, 0, false, false),
-        _ => return None,
+        _ => return processes::signature(key),
     };
     Some(MoveSignature { form, before, between, zone, plain })
 }
@@ -324,7 +328,7 @@ mod tests {
 
     #[test]
     fn movements_are_told_from_their_neighbours() {
-        for name in ["MoveJ", "MOVEABSJ", "triggL", "SearchExtJ", "MoveLDO"] {
+        for name in ["MoveJ", "MOVEABSJ", "triggL", "SearchExtJ", "MoveLDO", "ArcLStart", "SpotL"] {
             assert!(is_movement(name), "{name}");
         }
         // Conditions, interrupts and procedures that only sound alike.

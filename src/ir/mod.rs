@@ -11,6 +11,7 @@ mod lower;
 pub mod movement;
 pub mod number;
 pub mod predefined;
+mod processes;
 pub mod program;
 pub mod signals;
 mod user;

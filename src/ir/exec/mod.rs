@@ -17,6 +17,7 @@ mod instruction;
 mod loops;
 mod motion;
 mod polling;
+mod world_zones;
 
 pub use constant::{evaluate, value_of};
 
