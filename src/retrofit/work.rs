@@ -19,7 +19,7 @@ use crate::optimize::cost::Cost;
 use crate::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Retiming, Task, retime};
+use crate::optimize::retime::{PathUse, Retiming, Task, retime};
 use crate::optimize::site::{Site, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
@@ -364,6 +364,8 @@ pub fn retrofit(
     let verify::Attempt {
         simulation: mut after_simulation, account: mut after, verification, ..
     } = checked.1;
+    let is_free = |way: &Way| matches!(&way.outcome, Ok(it) if it.path == PathUse::Left);
+    let freed = ways.iter().any(is_free);
     if settings.form == Form::Guided {
         checked.0 = guided::files(files, &program, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
@@ -384,7 +386,10 @@ pub fn retrofit(
     let padding = padding::padding(model, &simulation, &optimized);
     let original = figures(&simulation, &before).padded(padding.as_ref());
     let compared = (&original, &optimized, padding.as_ref());
-    let notes = notes::notes(files, model, settings, &simulation, &segments, compared);
+    let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
+    if freed {
+        notes.extend(notes::off_path(settings, verification.worst.deviation_m));
+    }
     Ok(Retrofit {
         original,
         padding,
