@@ -52,7 +52,8 @@ fn pick_place_keeps_the_contract() {
     assert!(number(&result, "/verification/endpoint_error_rad") <= ENDPOINT_TOLERANCE);
     assert!(number(&result, "/motion_saving_percent") > 0.0);
     assert!(number(&result, "/optimized/cycle_s") <= number(&result, "/original/cycle_s"));
-    assert!(number(&result, "/potential_j") > 0.0, "the long wait for the mill pays for a brake");
+    // The mill takes 12 s, in which closed brakes spare 60 W of their coils besides the holding.
+    assert!(number(&result, "/potential_j") > 60.0 * 11.0, "{}", result["potential_j"]);
 
     let (mut eligible, mut rewritten) = (0.0, 0.0);
     for segment in result["segments"].as_array().unwrap() {

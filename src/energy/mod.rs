@@ -5,6 +5,7 @@
 //! motion energy.
 
 pub mod account;
+pub mod brakes;
 pub mod parts;
 pub mod power;
 mod quadrature;

@@ -1,10 +1,8 @@
 //! Dwells: what standing still costs, and from when on the brake pays.
-//!
-//! Break-even as in Paes et al. 2014, figure 7: the energy of one release over
-//! the holding power, plus the time that engaging and releasing take.
 
 use super::reason::Reason;
 use crate::dynamics::Load;
+use crate::energy::brakes::{break_even_s, spared_j};
 use crate::energy::power::holding_w;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
@@ -27,7 +25,7 @@ pub struct Dwell {
     pub load: Load,
     /// Mean holding power by joint, W.
     pub holding_w: Joints,
-    /// s; `None` where nothing is to be held or no brake is known.
+    /// s; `None` where nothing is spared or no brake is known.
     pub break_even_s: Option<f64>,
     /// What the brake would save, J; 0 where it does not pay.
     pub potential_j: f64,
@@ -95,24 +93,15 @@ pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
     dwells
 }
 
-/// From which length of a dwell on closing the brakes pays, s, where holding takes
-/// `holding_w`; `None` where nothing is to be held or no brake is known.
-pub fn break_even_s(model: &Model, holding_w: f64) -> Option<f64> {
-    let brakes = model.brakes.as_ref().filter(|_| holding_w > 0.0)?;
-    Some(brakes.energy_per_release_j / holding_w + brakes.engage_s + brakes.release_s)
-}
-
 fn judge(model: &Model, dwell: &mut Dwell) {
     let holding: f64 = dwell.holding_w.iter().sum();
-    let Some(brakes) = &model.brakes else { return };
     if matches!(dwell.reason, Reason::UnknownDwell) {
         return;
     }
     let Some(break_even) = break_even_s(model, holding) else { return };
-    let delay = brakes.engage_s + brakes.release_s;
     dwell.break_even_s = Some(break_even);
     dwell.reason = if dwell.duration > break_even {
-        dwell.potential_j = holding * (dwell.duration - delay) - brakes.energy_per_release_j;
+        dwell.potential_j = spared_j(model, holding, dwell.duration);
         Reason::NeedsSetting(break_even)
     } else {
         Reason::ShortDwell(break_even)

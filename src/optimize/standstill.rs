@@ -5,8 +5,8 @@
 //! descends from the cheapest of them (R. Hooke, T. A. Jeeves, "Direct search solution of
 //! numerical and statistical problems", J. ACM 8, 1961).
 
-use super::idle::break_even_s;
 use crate::dynamics::Load;
+use crate::energy::brakes::break_even_s;
 use crate::energy::power::holding_w;
 use crate::kinematics::{limits_ok, radical_inverse};
 use crate::path::joint_path::{DOF, Joints};
@@ -34,7 +34,7 @@ pub struct Standing {
     /// Holding power by joint, W.
     pub per_joint_w: Joints,
     /// From which length of a dwell on closing the brakes pays, s; `None` where
-    /// nothing is to be held or no brake is known.
+    /// nothing is spared or no brake is known.
     pub break_even_s: Option<f64>,
     /// The pose of least holding power nearby, rad.
     pub best: Joints,

@@ -41,6 +41,7 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
     let brake = model.brakes.as_ref().map(|brakes| {
         json!({
             "energy_per_release_j": brakes.energy_per_release_j,
+            "power_released_w": brakes.power_released_w,
             "release_s": brakes.release_s,
             "engage_s": brakes.engage_s,
         })

@@ -30,6 +30,7 @@ use std::collections::BTreeSet;
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::Deed;
+use crate::energy::brakes::spared_j;
 use crate::energy::power::holding_w;
 use crate::motion::timeline::What;
 use crate::text::Span;
@@ -55,14 +56,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let spared = || {
             let (event, _) = done.event?;
             let model = context.model.filter(|model| model.has_dynamics())?;
-            let brakes = model.brakes.as_ref()?;
             let What::Wait(record) = &context.cycle?.simulation.events[event].what else {
                 return None;
             };
             let holding: f64 = holding_w(model, &record.load, &record.q).iter().sum();
-            let power = holding + brakes.power_released_w;
-            let spared = power * done.duration - brakes.energy_per_release_j;
-            (spared > 0.0).then(|| format!("; closed for all of it they would spare {spared:.0} J"))
+            let spared = spared_j(model, holding, done.duration);
+            (spared > 0.0).then(|| format!("; closed as it waits, they would spare {spared:.0} J"))
         };
         let message = format!(
             "the robot waits {:.0} s and MOC.cfg states no {TIMEOUT}: the brakes stay open{}",

@@ -37,6 +37,7 @@ use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
+use crate::energy::brakes::spared_j;
 use crate::energy::power::holding_w;
 use crate::motion::timeline::What;
 use crate::text::Span;
@@ -94,11 +95,11 @@ fn is_tiny(context: &Context<'_>, step: usize) -> bool {
 fn spared(context: &Context<'_>, step: usize, total: f64) -> String {
     let known = || {
         let (event, _) = context.trace[step].event?;
-        let (model, cycle) = (context.model?, context.cycle?);
-        let brakes = model.brakes.as_ref().filter(|_| model.has_dynamics())?;
+        let model = context.model.filter(|model| model.has_dynamics())?;
+        let cycle = context.cycle?;
         let What::Wait(wait) = &cycle.simulation.events[event].what else { return None };
         let holding: f64 = holding_w(model, &wait.load, &wait.q).iter().sum();
-        let spared = (holding + brakes.power_released_w) * total - brakes.energy_per_release_j;
+        let spared = spared_j(model, holding, total);
         (spared > 0.0).then(|| format!("; closed, they would spare up to {spared:.0} J"))
     };
     known().unwrap_or_default()
