@@ -220,7 +220,8 @@ fn program(declarations: &str, statements: &str) -> String {
 }
 
 /// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
+const KNOWN: [&str; 2] =
+    ["--robot", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml")];
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 
 /// What `command` prints on standard error, without what is assumed, and its exit code.
@@ -281,13 +282,67 @@ fn what_a_message_tells_to_give_does() {
 fn slower_than_pays_has_a_note() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "")).unwrap();
+    // The stretched arm is held at more power than the pose in which the cycle ends.
+    let far = "CONST jointtarget jFar:=[[20,85,-5,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+               CONST jointtarget jOut:=[[35,85,-5,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
+    let out = "MoveAbsJ jFar,v1000,fine,tP;\nMoveAbsJ jOut,v1000,fine,tP;";
+    fs::write(&path, program(far, out)).unwrap();
     let path = path.to_str().unwrap();
-    let args = ["optimize", path, "--time-factor", "2", "--format", "json", "--quiet"];
-    let result = json(&[&args[..], &["--robot", KNOWN]].concat());
-    assert!(number(&result, "/optimized/energy_j") > number(&result, "/original/energy_j"));
-    let note = result["notes"][0].as_str().unwrap();
-    assert!(note.contains("more energy than before"), "{note}");
+    let args = ["optimize", path, "--time-factor", "10", "--format", "json", "--quiet"];
+    let result = json(&[&args[..], &KNOWN].concat());
+    let note = result["notes"][1].as_str().unwrap();
+    assert!(note.contains("1 of the rewritten runs take more energy than before"), "{note}");
+    assert!(note.contains("m.mod:10)"), "{note}");
+}
+
+/// The original of a longer takt is the original with a wait behind it.
+#[test]
+fn a_longer_time_is_compared_with_a_padded_original() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    let text = program("", "WaitTime 0.5;");
+    fs::write(&path, &text).unwrap();
+    let path = path.to_str().unwrap();
+    let simulated =
+        || json(&[&["simulate", path, "--format", "json", "--quiet"][..], &KNOWN].concat());
+    let alone = simulated();
+    let takt = (number(&alone, "/cycle_s") + 3.0).to_string();
+    let forms = [["--takt", &takt], ["--time-factor", "1.8"]];
+    for time in forms {
+        for form in [&[][..], &["--emit", "retime"]] {
+            let args = ["optimize", path, "--format", "json", "--quiet"];
+            let result = json(&[&args[..], &time, form, &KNOWN].concat());
+            let [original, optimized] =
+                ["original", "optimized"].map(|side| number(&result, &format!("/{side}/cycle_s")));
+            assert!(optimized > number(&alone, "/cycle_s") + 0.5, "{time:?}: {result}");
+            assert!((original - optimized).abs() < 1e-9, "{original} s, {optimized} s");
+            let padding = number(&result, "/original/padding_s");
+            let own =
+                number(&result, "/original/energy_j") - number(&result, "/original/padding_j");
+            assert!((own - number(&alone, "/energy_j")).abs() < 1e-6, "{own} J");
+            assert!(number(&result, "/saving_percent") > 0.0, "{time:?} {form:?}: {result}");
+            let note = result["notes"][0].as_str().unwrap();
+            assert!(note.starts_with("the original is padded"), "{note}");
+
+            let waiting = text.replace("ENDPROC", &format!("WaitTime {padding};\nENDPROC"));
+            fs::write(path, waiting).unwrap();
+            let waiting = simulated();
+            fs::write(path, &text).unwrap();
+            let error = number(&waiting, "/energy_j") - number(&result, "/original/energy_j");
+            assert!(error.abs() < 1e-6, "{error} J");
+            let table = text_of(&[&["optimize", path][..], &time, form, &KNOWN].concat());
+            let row = table.lines().find(|line| line.starts_with("end of the cycle"));
+            assert!(row.is_some_and(|row| row.contains("padding")), "{table}");
+        }
+    }
+    // In its own time nothing is added.
+    let result = json(&[&["optimize", path, "--format", "json", "--quiet"][..], &KNOWN].concat());
+    assert_eq!(number(&result, "/original/padding_s"), 0.0);
+}
+
+/// What `command` prints on standard output.
+fn text_of(args: &[&str]) -> String {
+    text(&joulepath(args).stdout)
 }
 
 #[test]
@@ -352,7 +407,7 @@ fn streams(declarations: &str, statements: &str) -> Vec<(u64, bool)> {
     let path = folder.path().join("m.mod");
     fs::write(&path, program(declarations, statements)).unwrap();
     let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--allow-faster-joints"];
-    let result = json(&[&args[..], &["--robot", KNOWN]].concat());
+    let result = json(&[&args[..], &KNOWN].concat());
     assert_eq!(result["verification"]["passed"], true);
     let segments = result["segments"].as_array().unwrap().iter();
     let timing = segments.filter(|segment| segment["kind"] == "timing");

@@ -192,6 +192,7 @@ fn small(path: &str) -> Small {
         guard_instructions: 0,
         original: figures(&before),
         optimized: figures(&after),
+        padding: None,
         potential_j: 25.0,
         notes: Vec::new(),
         segments,

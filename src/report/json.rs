@@ -137,6 +137,15 @@ fn figures(figures: &Figures) -> Value {
     })
 }
 
+/// The figures before, and how much of them is a wait that the original program does not have.
+fn original(retrofit: &Retrofit) -> Value {
+    let mut value = figures(&retrofit.original);
+    let padding = retrofit.padding.as_ref();
+    value["padding_s"] = padding.map_or(0.0, |padding| padding.duration_s).into();
+    value["padding_j"] = padding.map_or(0.0, |padding| padding.energy.energy_j()).into();
+    value
+}
+
 /// The result of `optimize`. `outputs` are the paths that were written.
 pub fn retrofit(
     model: &Model,
@@ -157,7 +166,7 @@ pub fn retrofit(
     json!({
         "robot": model.name,
         "entry": entry,
-        "original": figures(&retrofit.original),
+        "original": original(retrofit),
         "optimized": figures(&retrofit.optimized),
         "saving_percent": retrofit.saving_percent(),
         "motion_saving_percent": retrofit.motion_saving_percent(),

@@ -154,6 +154,19 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         ]);
     }
     let (before, after) = (&retrofit.original, &retrofit.optimized);
+    if let Some(padding) = &retrofit.padding {
+        rows.push(vec![
+            "end of the cycle".to_owned(),
+            "padding".to_owned(),
+            String::new(),
+            format!("{:.3}", padding.duration_s),
+            format!("{:.3}", 0.0),
+            format!("{:.1}", padding.energy.energy_j()),
+            format!("{:.1}", 0.0),
+            String::new(),
+            "the original waits, so that both sides take the same time".to_owned(),
+        ]);
+    }
     rows.push(vec![
         "cycle".to_owned(),
         String::new(),

@@ -1,7 +1,7 @@
 //! The result of a retrofit as plain data.
 
 use super::signals::SignalShift;
-use crate::energy::Account;
+use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::optimize::check::Check;
 use crate::optimize::energy_curve::TimeEnergy;
@@ -32,6 +32,27 @@ pub struct LowerLimits {
     pub original_s: f64,
     /// s.
     pub optimized_s: f64,
+}
+
+/// A wait at the end of the original cycle that the comparison adds, so that both sides take the
+/// same time.
+#[derive(Clone, Debug)]
+pub struct Padding {
+    /// s.
+    pub duration_s: f64,
+    /// What it costs: base load, holding and open brakes.
+    pub energy: EnergyParts,
+}
+
+impl Figures {
+    /// The figures with a wait at the end.
+    pub(super) fn padded(self, padding: Option<&Padding>) -> Figures {
+        padding.map_or(self, |padding| Figures {
+            cycle_s: self.cycle_s + padding.duration_s,
+            energy_j: self.energy_j + padding.energy.energy_j(),
+            ..self
+        })
+    }
 }
 
 /// What a segment is.
@@ -144,8 +165,10 @@ pub struct OutputFile {
 /// A retrofit.
 #[derive(Debug)]
 pub struct Retrofit {
-    /// Before.
+    /// Before, with the padding.
     pub original: Figures,
+    /// The wait that the figures before have besides the original program's own.
+    pub padding: Option<Padding>,
     /// After.
     pub optimized: Figures,
     /// What settings of the controller could save besides, J.

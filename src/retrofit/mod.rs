@@ -13,6 +13,7 @@ mod hazards;
 mod lower_limits;
 mod notes;
 mod outputs;
+mod padding;
 mod recorded;
 mod rests;
 mod segments;
@@ -24,7 +25,8 @@ mod work;
 
 pub use elsewhere::written_in;
 pub use figures::{
-    Figures, LowerLimits, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Verification,
+    Figures, LowerLimits, OutputFile, OutputKind, Padding, Retrofit, Segment, SegmentKind,
+    Verification,
 };
 pub use freed::freed;
 pub use outputs::read_again;

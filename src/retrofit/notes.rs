@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::figures::{Figures, Segment, SegmentKind};
+use super::figures::{Figures, Padding, Segment, SegmentKind};
 use super::work::{Budget, Objective, Settings, Source};
 use crate::dynamics::Load;
 use crate::energy::account::at_rest;
@@ -24,9 +24,10 @@ pub(super) fn notes(
     settings: &Settings,
     simulation: &Simulation,
     segments: &[Segment],
-    (original, optimized): (&Figures, &Figures),
+    (original, optimized, padding): (&Figures, &Figures, Option<&Padding>),
 ) -> Vec<String> {
     let mut notes: Vec<String> = unchanged(segments).into_iter().collect();
+    notes.extend(padding.map(|padding| padded(original, padding)));
     if settings.objective == Objective::Time {
         return notes;
     }
@@ -46,7 +47,11 @@ pub(super) fn notes(
     let dearer: Vec<String> = segments
         .iter()
         .filter(|segment| segment.kind != SegmentKind::Idle && segment.rewritten)
-        .filter(|segment| segment.energy_after_j > segment.energy_before_j + ROUNDING_J)
+        .filter(|segment| {
+            let waited = segment.time_after_s - segment.time_before_s;
+            let before = segment.energy_before_j + resting_j(model, simulation, waited);
+            segment.energy_after_j > before + ROUNDING_J
+        })
         .map(|segment| {
             let file = &files[segment.span.file.0 as usize].file;
             format!("{}:{}", file.path, file.position(segment.span.start).line)
@@ -56,8 +61,8 @@ pub(super) fn notes(
         return notes;
     }
     let mut note = format!(
-        "in the time asked for, {} of the rewritten runs take more energy than before, base load \
-         included ({}); the cycle takes {:.1} J instead of {:.1} J",
+        "in the time asked for, {} of the rewritten runs take more energy than before and than \
+         waiting for the rest of their time ({}); the cycle takes {:.1} J instead of {:.1} J",
         dearer.len(),
         dearer.join(", "),
         optimized.energy_j,
@@ -76,6 +81,19 @@ pub(super) fn notes(
     }
     notes.push(note);
     notes
+}
+
+/// Says that the original is counted with a wait that it does not have.
+fn padded(original: &Figures, padding: &Padding) -> String {
+    format!(
+        "the original is padded: by itself it takes {:.3} s, and it is counted with {:.3} s more in \
+         which the robot waits where its cycle ends ({:.1} J of base load, holding and open brakes), \
+         so that both sides take {:.3} s",
+        original.cycle_s - padding.duration_s,
+        padding.duration_s,
+        padding.energy.energy_j(),
+        original.cycle_s,
+    )
 }
 
 /// A run that is quicker than before by more than this is worth a note.

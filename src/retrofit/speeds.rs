@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::figures::{Figures, OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
+use super::figures::{OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
 use super::goals::cycle;
 use super::outputs::{read_again, unchanged};
 use super::verify::same_order;
@@ -15,7 +15,7 @@ use super::work::{
     Budget, Objective, RetrofitError, Settings, Source, TIME_TOLERANCE, Way, figures,
     nothing_to_verify, read_program,
 };
-use super::{notes, segments, signals};
+use super::{notes, padding, segments, signals};
 use crate::dynamics::Data;
 use crate::energy::power::power;
 use crate::energy::{Account, account};
@@ -142,12 +142,16 @@ pub(super) fn retrofit(
         }
     }
     let optimized = figures(&tried.simulation, &tried.account);
-    let pair: (&Figures, &Figures) = (&original, &optimized);
-    let notes = notes::notes(before.files, model, settings, &before.simulation, &segments, pair);
+    let padding = padding::padding(model, &before.simulation, &optimized);
+    let original = original.padded(padding.as_ref());
+    let compared = (&original, &optimized, padding.as_ref());
+    let notes =
+        notes::notes(before.files, model, settings, &before.simulation, &segments, compared);
     Ok(Retrofit {
         lower_limits: Vec::new(),
         guard_instructions: 0,
         original,
+        padding,
         optimized,
         potential_j: dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b),
         segments,

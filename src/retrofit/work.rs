@@ -10,8 +10,8 @@ use super::goals::goals;
 use super::guards::Guards;
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
 use super::{
-    guided, hazards, lower_limits, notes, outputs, recorded, rests, segments, signals, speeds,
-    verify,
+    guided, hazards, lower_limits, notes, outputs, padding, recorded, rests, segments, signals,
+    speeds, verify,
 };
 use crate::emit::{self, Layout, Names};
 use crate::energy::{Account, EnergyParts, account};
@@ -418,11 +418,14 @@ pub fn retrofit(
     );
     outputs::add_brake_note(&mut checked.0.files, model, &dwells(model, &after_simulation));
     let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
-    let (original, optimized) = (figures(&simulation, &before), figures(&after_simulation, &after));
-    let notes =
-        notes::notes(files, model, settings, &simulation, &segments, (&original, &optimized));
+    let optimized = figures(&after_simulation, &after);
+    let padding = padding::padding(model, &simulation, &optimized);
+    let original = figures(&simulation, &before).padded(padding.as_ref());
+    let compared = (&original, &optimized, padding.as_ref());
+    let notes = notes::notes(files, model, settings, &simulation, &segments, compared);
     Ok(Retrofit {
         original,
+        padding,
         optimized,
         potential_j,
         segments,

@@ -45,6 +45,8 @@ pub(super) struct ReasonText {
 #[derive(Serialize)]
 pub(super) struct Table {
     rows: Vec<Row>,
+    /// The wait that the original is counted with, so that both sides take the same time.
+    padding: Option<Costs>,
     /// What no segment has: short waits.
     rest: Costs,
     total: Costs,
@@ -91,10 +93,15 @@ pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
         time: [retrofit.original.cycle_s, retrofit.optimized.cycle_s],
         energy: [retrofit.original.energy_j, retrofit.optimized.energy_j],
     };
-    let listed =
-        retrofit.segments.iter().fold(Sums::default(), |sum, s| sum.with(Sums::of(s), 1.0));
+    let padding = retrofit.padding.as_ref().map(|padding| Sums {
+        time: [padding.duration_s, 0.0],
+        energy: [padding.energy.energy_j(), 0.0],
+    });
+    let listed = retrofit.segments.iter().map(Sums::of).chain(padding);
+    let listed = listed.fold(Sums::default(), |sum, costs| sum.with(costs, 1.0));
     Table {
         rows: numbered(retrofit).map(|(number, segment)| row(number, segment, places)).collect(),
+        padding: padding.map(|sums| sums.text()),
         rest: total.with(listed, -1.0).text(),
         total: total.text(),
         not_reached: retrofit

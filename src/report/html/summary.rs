@@ -65,7 +65,11 @@ pub(super) fn summary(retrofit: &Retrofit) -> Summary {
         after: joules(after),
         change: change(before, after, "saved", "more"),
     };
-    let parts = [&retrofit.before.1.total, &retrofit.after.1.total];
+    let mut padded = retrofit.before.1.total;
+    if let Some(padding) = &retrofit.padding {
+        padded += padding.energy;
+    }
+    let parts = [&padded, &retrofit.after.1.total];
     let eligible =
         retrofit.segments.iter().filter(|s| s.kind != SegmentKind::Idle && s.executions > 0);
     Summary {
