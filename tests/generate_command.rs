@@ -117,6 +117,8 @@ fn guided_motion_gets_its_positions_and_a_module() {
     assert_eq!(rows.lines().count(), 1 + 501);
     let module = fs::read_to_string(folder.path().join("out/pointsMod.mod")).unwrap();
     assert!(module.contains("EGMRunJoint"));
+    assert!(module.contains(r"EGMActJoint egmId\Tool:=tool0\WObj:=wobj0\J1:="), "{module}");
+    assert!(module.contains(r"\MaxSpeedDeviation:="), "{module}");
 }
 
 #[test]

@@ -23,6 +23,8 @@ fn program() -> String {
         "MODULE M\n\
          CONST jointtarget jA:=[[0,-12,14,0,60,0],{FAR}];\n\
          CONST jointtarget jB:=[[60,20,0,-20,65,30],{FAR}];\n\
+         PERS tooldata tGun:=[TRUE,[[0,0,80],[1,0,0,0]],[2,[0,0,40],[1,0,0,0],0,0,0]];\n\
+         PERS wobjdata woTable:=[FALSE,TRUE,\"\",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];\n\
          CONST robtarget pC:=[[850,300,1000],[0,0,1,0],[0,0,0,0],{FAR}];\n\
          CONST robtarget pD:=[[850,-300,1000],[0,0,1,0],[-1,0,0,0],{FAR}];\n\
          PROC main()\n\
@@ -33,7 +35,7 @@ fn program() -> String {
          MoveL Offs(pC,0,-100,0),v300,z20,tool0;\n\
          MoveL pD,v500,fine,tool0\\WObj:=wobj0;\n\
          MoveJ pC,v1000\\V:=700,fine,tool0;\n\
-         MoveAbsJ jA,v1000,fine,tool0;\n\
+         MoveAbsJ jA,v1000,fine,tGun\\WObj:=woTable;\n\
          ENDPROC\n\
          ENDMODULE\n"
     )
@@ -158,6 +160,7 @@ fn positions_for_a_guide_stand_beside_an_unchanged_program() {
     files.retain(|path| path.extension().is_some_and(|extension| extension == "csv"));
     assert_eq!(files.len(), times.len());
     files.sort();
+    let mut tools = std::collections::BTreeSet::new();
     for path in &files {
         let text = fs::read_to_string(path).unwrap();
         let rows: Vec<Vec<f64>> = text
@@ -179,5 +182,34 @@ fn positions_for_a_guide_stand_beside_an_unchanged_program() {
             assert!((a.parse::<f64>().unwrap() - b).abs() < ROUNDING, "{module}");
         }
         assert!(module.contains("EGMRunJoint"), "{module}");
+        // Without it the controller lets a joint turn by a degree in a second.
+        let steps =
+            rows.windows(2).flat_map(|pair| (1..7).map(|j| (pair[1][j] - pair[0][j]).abs()));
+        let fastest = steps.fold(0.0, f64::max) / TICK;
+        let stated = module.split(r"\MaxSpeedDeviation:=").nth(1).unwrap();
+        let stated: f64 = stated.split(';').next().unwrap().parse().unwrap();
+        assert!(stated >= 1.2 * fastest && stated <= 1.3 * fastest + 1.0, "{stated}, {fastest}");
+        // The run with the gun and the others.
+        let named = if module.contains(",tGun") { ("tGun", "woTable") } else { ("tool0", "wobj0") };
+        let (tool, work_object) = named;
+        assert!(module.contains(&format!(",fine,{tool}\\WObj:={work_object};")), "{module}");
+        let active = format!("EGMActJoint egmId\\Tool:={tool}\\WObj:={work_object}\\J1:=");
+        assert!(module.contains(&active), "{module}");
+        tools.insert(tool);
     }
+    assert_eq!(tools.len(), 2, "{tools:?}");
+}
+
+/// The module stands beside the program, where data of a module alone are not known.
+#[test]
+fn a_tool_of_its_module_alone_has_no_equivalent_for_a_guide() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = program().replace("PERS tooldata", "LOCAL PERS tooldata");
+    let result = run_text(folder.path(), &text, &["--emit", "egm"]);
+    let segments = result["segments"].as_array().unwrap();
+    let reasons: Vec<&str> = segments.iter().filter_map(|s| s["reason"].as_str()).collect();
+    let refused = reasons.iter().filter(|reason| reason.contains("tGun is not known outside"));
+    assert_eq!(refused.count(), 1, "{reasons:?}");
+    let guided = reasons.iter().filter(|reason| reason.starts_with("guided: ")).count();
+    assert!(guided > 0, "{reasons:?}");
 }

@@ -85,24 +85,43 @@ pub fn main_module(names: &GeneratedNames) -> Result<String, EmitError> {
     Ok(Tera::one_off(include_str!("../../templates/main.mod.tera"), &context, false)?)
 }
 
-/// The module that lets positions from outside guide the joints, which start at `start`.
+/// The module that lets positions from outside guide the joints, with a tool and a work object as
+/// RAPID names them. The joints start at the first of the positions (rad, one a clock tick).
 ///
 /// # Errors
 /// A template that does not render.
 pub fn egm_module(
     names: &GeneratedNames,
-    start: &[f64; 6],
-    duration_s: f64,
+    positions: &[[f64; 6]],
+    tool: &str,
+    work_object: &str,
 ) -> Result<String, EmitError> {
+    let start = positions.first().copied().unwrap_or_default();
+    let duration_s = EGM_STEP_S * positions.len().saturating_sub(1) as f64;
     let mut context = context(names, "");
-    context.insert("start", &jointtarget(start));
+    context.insert("start", &jointtarget(&start));
     context.insert("duration", &number(duration_s, 3));
+    context.insert("tool", tool);
+    context.insert("work_object", work_object);
+    context.insert("fastest", &number(speed_deviation(positions), 0));
     context.insert("joints", &[1, 2, 3, 4, 5, 6]);
     Ok(Tera::one_off(include_str!("../../templates/egm.mod.tera"), &context, false)?)
 }
 
 /// Clock of externally guided motion, s.
 pub const EGM_STEP_S: f64 = 0.004;
+
+/// What the controller may add to the speed of a joint to catch up with the positions that it is
+/// sent.
+const EGM_SPEED_MARGIN: f64 = 1.25;
+
+/// The speed that EGM may give a joint, degrees/s: without it the controller takes 1.
+fn speed_deviation(positions: &[[f64; 6]]) -> f64 {
+    let steps =
+        positions.windows(2).flat_map(|pair| (0..6).map(|j| (pair[1][j] - pair[0][j]).abs()));
+    let fastest = steps.fold(0.0, f64::max) / EGM_STEP_S;
+    (EGM_SPEED_MARGIN * fastest.to_degrees()).ceil().max(1.0)
+}
 
 /// The positions to send, rad, one a clock tick, as a file.
 pub fn egm_rows(positions: &[[f64; 6]]) -> String {

@@ -102,7 +102,7 @@ pub(super) fn egm(
     sampled: &Sampled,
 ) -> Result<Vec<OutputFile>, GenerateError> {
     let text = emit::egm_rows(&sampled.positions);
-    let module = emit::egm_module(names, &sampled.positions[0], sampled.duration())?;
+    let module = emit::egm_module(names, &sampled.positions, "tool0", "wobj0")?;
     let mut outputs = complete(names, module)?;
     outputs.push(new_file(format!("{}.csv", names.module), text));
     parses(&outputs[..2])?;

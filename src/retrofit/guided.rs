@@ -7,10 +7,14 @@ use super::figures::{OutputFile, OutputKind};
 use super::outputs::unchanged;
 use super::work::{RetrofitError, Source, Way, run_of};
 use crate::emit::{self, EGM_STEP_S, GeneratedNames, Names};
+use crate::ir::predefined;
+use crate::ir::program::{Program, Symbol};
 use crate::motion::Simulation;
 use crate::motion::stream::{DOF, Joints, Stream};
+use crate::motion::timeline::Run;
 use crate::optimize::reason::Reason;
 use crate::optimize::site::Site;
+use crate::text::Span;
 
 /// The folder, relative to the program.
 const FOLDER: &str = "egm";
@@ -21,6 +25,7 @@ const ROUNDING: f64 = 1e-7;
 /// stream. The ways then have their reason to stay.
 pub(super) fn files(
     files: &[Source],
+    program: &Program,
     simulation: &Simulation,
     sites: &[Site],
     ways: &mut [Way],
@@ -31,6 +36,13 @@ pub(super) fn files(
     for (index, way) in ways.iter_mut().enumerate() {
         let Some(run) = run_of(simulation, sites, way) else { continue };
         let Ok(retiming) = &way.outcome else { continue };
+        let (tool, work_object) = match arguments(files, program, run) {
+            Ok(arguments) => arguments,
+            Err(reason) => {
+                way.outcome = Err(reason);
+                continue;
+            }
+        };
         let positions = positions(&retiming.stream);
         let number = index + 1;
         let names = GeneratedNames {
@@ -40,8 +52,7 @@ pub(super) fn files(
         };
         let text = emit::egm_rows(&positions);
         way.outcome = if reads_as(&text, &positions) && ends_at(&positions, &run.end) {
-            let duration = EGM_STEP_S * (positions.len() - 1) as f64;
-            let module = emit::egm_module(&names, &run.start, duration)?;
+            let module = emit::egm_module(&names, &positions, &tool, &work_object)?;
             for (extension, text) in [("mod", module), ("csv", text)] {
                 outputs.push(OutputFile {
                     path: format!("{FOLDER}/{}.{extension}", names.module),
@@ -58,6 +69,43 @@ pub(super) fn files(
         };
     }
     Ok(outputs)
+}
+
+/// Tool and work object of a run as a module beside the program can name them.
+fn arguments(files: &[Source], program: &Program, run: &Run) -> Result<(String, String), Reason> {
+    let Some(record) = run.moves.first() else { return Err(Reason::NoMotion) };
+    let movement = &record.movement;
+    if movement.total_load.is_some() {
+        return Err(Reason::Argument("TLoad".into()));
+    }
+    let named = |span: Option<Span>, unsaid: &str| {
+        let Some(span) = span else { return Ok(unsaid.to_owned()) };
+        let text = files[span.file.0 as usize].file.text(span).trim().to_owned();
+        let why = format!("{text} is not known outside of its module, where EGM would need it");
+        if is_known_everywhere(program, span, &text) { Ok(text) } else { Err(why) }
+    };
+    let tool = named(Some(movement.tool_span), "tool0");
+    let work_object = named(movement.wobj_span, "wobj0");
+    tool.and_then(|tool| Ok((tool, work_object?))).map_err(Reason::NotConstant)
+}
+
+/// Whether a name means the same data in every module as at a place of the program.
+fn is_known_everywhere(program: &Program, place: Span, name: &str) -> bool {
+    let key = name.to_lowercase();
+    let holds =
+        |span: Span| span.file == place.file && span.start <= place.start && place.end <= span.end;
+    let Some(module) = program.modules.iter().position(|module| holds(module.span)) else {
+        return false;
+    };
+    let own = program.modules[module].routines.iter().filter(|routine| holds(routine.span)).any(
+        |routine| {
+            routine.params.iter().any(|param| param.name.key == key)
+                || routine.data.iter().any(|data| data.name.key == key)
+        },
+    );
+    let here = program.resolve(module, &key);
+    let is_data = matches!(here, Some(Symbol::Data(_)));
+    !own && (is_data || predefined::lookup(&key).is_some()) && here == program.resolve_global(&key)
 }
 
 /// A stream at the clock of the guide: its own motion, held for the rest of the last tick.

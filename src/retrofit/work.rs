@@ -403,7 +403,8 @@ pub fn retrofit(
     } = checked.1;
     if settings.form == Form::Guided {
         checked.0.guard_instructions = 0;
-        checked.0.files = guided::files(files, &simulation, &sites, &mut ways, &writing.names)?;
+        checked.0.files =
+            guided::files(files, &program, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
         after_simulation = simulate(&program, entry, model, &settings.options);
         after = account(model, &after_simulation);
