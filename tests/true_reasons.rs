@@ -72,6 +72,26 @@ fn names_of_rapid_that_the_program_has_otherwise_are_told() {
     assert_eq!(reasons(&local), ["first-movement"], "{local:?}");
 }
 
+/// RAPID's names have no case.
+#[test]
+fn a_tool_in_other_letters_is_the_same_tool() {
+    let tool = "PERS tooldata tGun:=[TRUE,[[0,0,80],[1,0,0,0]],[2,[0,0,40],[1,0,0,0],0,0,0]];\n";
+    let other = tool.replace("tGun", "tOther");
+    let through = |last: &str| {
+        let q = |angle: f64| [angle, angle / 4.0, 10.0, 0.0, 60.0, 20.0];
+        let tools = ["tGun", "tGun", "TGUN", last];
+        let movements = [(0.0, "v1000,fine"), (20.0, "v1000,z50"), (40.0, "v1000,z50")];
+        let mut all: Vec<String> = movements.map(|(angle, rest)| joints(q(angle), rest)).to_vec();
+        all.push(joints(q(60.0), "v1000,fine"));
+        let all = all.iter().zip(tools).map(|(movement, tool)| movement.replace("tool0", tool));
+        segments(&format!("{tool}{other}"), &all.collect::<Vec<String>>())
+    };
+    let same = through("tgun");
+    assert_eq!(reasons(&same), ["first-movement"], "{same:?}");
+    let changed = through("tOther");
+    assert_eq!(reasons(&changed), ["first-movement", "setting"], "{changed:?}");
+}
+
 #[test]
 fn one_joint_that_turns_far_does_not_leave_its_path() {
     let turned = |angle: f64| joints([0.0, 0.0, 0.0, 0.0, 30.0, angle], "vmax,fine");

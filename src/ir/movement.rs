@@ -81,7 +81,7 @@ pub struct LoadData {
 }
 
 /// A `tooldata`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Tool {
     /// As the program names it.
     pub name: Arc<str>,
@@ -91,6 +91,16 @@ pub struct Tool {
     pub frame: Isometry3<f64>,
     /// Its load, in the flange's frame.
     pub load: LoadData,
+}
+
+impl PartialEq for Tool {
+    /// RAPID's names have no case.
+    fn eq(&self, other: &Tool) -> bool {
+        self.name.to_lowercase() == other.name.to_lowercase()
+            && self.robhold == other.robhold
+            && self.frame == other.frame
+            && self.load == other.load
+    }
 }
 
 /// A `wobjdata`.
