@@ -35,6 +35,25 @@ pub struct MoveSignature {
     pub plain: bool,
 }
 
+/// The one argument that an instruction writes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Its place among the positional arguments.
+    pub position: usize,
+    /// Its name, in lower case.
+    pub name: &'static str,
+}
+
+/// The argument to which an instruction writes, if that is one of several; `key` in lower case.
+pub fn written(key: &str) -> Option<Written> {
+    let (position, name) = match key {
+        "searchl" | "searchc" => (1, "searchpoint"),
+        "searchextj" => (1, "searchjointpos"),
+        _ => return None,
+    };
+    Some(Written { position, name })
+}
+
 /// The signature of a movement instruction; `key` in lower case.
 pub fn movement(key: &str) -> Option<MoveSignature> {
     use MoveForm::{AbsJ, Circular, ExternalJoint, Joint, Linear};
@@ -291,12 +310,12 @@ pub fn is_harmless(key: &str) -> bool {
 
 /// True if the instruction is one of RAPID's own that may write to its arguments.
 pub fn is_writing(key: &str) -> bool {
-    WRITING.contains(&key)
+    WRITING.contains(&key) || written(key).is_some()
 }
 
 /// True if a call of this name, not declared in the program, may write to its arguments.
 pub fn may_write(key: &str) -> bool {
-    movement(key).is_none() && !is_harmless(key)
+    written(key).is_some() || (movement(key).is_none() && !is_harmless(key))
 }
 
 #[cfg(test)]

@@ -257,6 +257,10 @@ impl RoutineScope<'_> {
             (Callee::Name(name), _) => Writer::UnknownCall(name.text.as_str().into()),
             (Callee::Late(_), _) => Writer::UnknownCall("%…%".into()),
         };
+        let only = match (&call.callee, callee) {
+            (Callee::Name(name), None) => instructions::written(&name.key),
+            _ => None,
+        };
         let mut position = 0;
         for arg in &call.args {
             let (expr, name) = match &arg.kind {
@@ -266,18 +270,21 @@ impl RoutineScope<'_> {
                 }
                 ArgKind::Optional(_, None) | ArgKind::Conditional(..) => continue,
             };
-            let writer = match callee {
-                Some(Symbol::Routine(id)) => {
-                    let params = &self.program.routine(id).params;
-                    let index = if let Some(key) = name {
-                        params.iter().position(|p| p.name.key == *key)
-                    } else {
-                        let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
-                        required.map(|(i, _)| i).nth(position)
-                    };
-                    index.and_then(|index| found.params.get(&(id, index)).cloned())
-                }
-                _ => Some(outside.clone()),
+            let writer = if let Some(Symbol::Routine(id)) = callee {
+                let params = &self.program.routine(id).params;
+                let index = if let Some(key) = name {
+                    params.iter().position(|p| p.name.key == *key)
+                } else {
+                    let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
+                    required.map(|(i, _)| i).nth(position)
+                };
+                index.and_then(|index| found.params.get(&(id, index)).cloned())
+            } else {
+                let is_it = only.is_none_or(|only| match name {
+                    Some(name) => name == only.name,
+                    None => position == only.position,
+                });
+                is_it.then(|| outside.clone())
             };
             if let Some(writer) = writer {
                 self.target(expr, &writer, found);

@@ -117,6 +117,9 @@ impl Executor<'_> {
             "tunereset" => self.clear_unmodelled(&["tuneservo"]),
             "cirpathmode" => self.circle_mode(stmt, text, &arguments),
             _ if instructions::is_harmless(key) => {}
+            _ if instructions::written(key).is_some() => {
+                self.forget_written(args, key, &format!("is written by {text}"));
+            }
             _ if instructions::is_writing(key) => {
                 self.forget(args, &format!("is written by {text}"));
             }
@@ -139,6 +142,18 @@ impl Executor<'_> {
     /// Data that a call may have written are no longer known.
     pub(super) fn forget(&mut self, args: &[Arg], how: &str) {
         self.forget_if(args, how, |_| true);
+    }
+
+    /// The data that an instruction of RAPID's own writes to are no longer known.
+    pub(super) fn forget_written(&mut self, args: &[Arg], key: &str, how: &str) {
+        let Some(written) = instructions::written(key) else { return };
+        let by_name =
+            |arg: &&Arg| matches!(&arg.kind, ArgKind::Named(name, _) if name.key == written.name);
+        let positional = |arg: &&Arg| matches!(arg.kind, ArgKind::Positional(_));
+        let in_place = || args.iter().filter(positional).nth(written.position);
+        if let Some(arg) = args.iter().find(by_name).or_else(in_place) {
+            self.forget(std::slice::from_ref(arg), how);
+        }
     }
 
     fn forget_if(&mut self, args: &[Arg], how: &str, may_change: impl Fn(&Cell) -> bool) {

@@ -51,10 +51,9 @@ impl Executor<'_> {
             self.unresolved(stmt.span, reason.clone());
             Unresolved { span: stmt.span, reason, moves: true }
         });
-        if !signature.plain {
-            self.forget_targets(args);
-        }
-        if signature.form != MoveForm::ExternalJoint && text.to_lowercase().starts_with("search") {
+        let key = text.to_lowercase();
+        if key.starts_with("search") {
+            self.forget_written(args, &key, "is found by a search");
             self.unresolved(
                 stmt.span,
                 "where the search finds its signal is not known: it runs to its end point",
@@ -62,21 +61,6 @@ impl Executor<'_> {
         }
         self.moves += 1;
         self.machine.moves(movement);
-    }
-
-    /// Search instructions write the point they find.
-    fn forget_targets(&mut self, args: &[Arg]) {
-        for arg in args {
-            if let ArgKind::Positional(expr) = &arg.kind
-                && let ExprKind::Ref(name) = &expr.kind
-                && let Some(cell) = self.cell_of(name)
-                && !self.cells[cell].read_only
-                && &*self.cells[cell].value.type_key == "robtarget"
-            {
-                self.cells[cell].value.datum =
-                    Datum::unknown(format!("'{}' is found by a search", name.text), arg.span);
-            }
-        }
     }
 
     fn resolve(

@@ -48,6 +48,8 @@ const DATA: &str = "
     CONST robtarget p20:=[[150,0,300],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
     CONST robtarget pTurned:=[[150,0,300],[0,0,0,1],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
     CONST jointtarget j10:=[[30,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    VAR robtarget pVar;
+    VAR robtarget pFound;
     VAR bool bFlag;
     VAR num nKey;";
 
@@ -88,6 +90,32 @@ fn every_family_of_movements_is_resolved() {
         assert!(told.len() == 1 && told[0].ends_with(" 100.0"), "{statement}: {told:?}");
     }
     assert_eq!(told("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
+}
+
+/// Only a search writes a target, and only the point that it finds.
+#[test]
+fn what_does_more_than_move_leaves_its_target_alone() {
+    let behind = |statement: &str| {
+        told(&format!(
+            "pVar:=p20; pFound:=p20; {statement}; MoveL pVar, v100, fine, tool0; \
+             MoveL pFound, v100, fine, tool0;"
+        ))
+        .split_off(1)
+    };
+    for statement in [
+        "MoveLDO pVar, v100, z10, tool0, doGlue, 1",
+        "MoveLSync pVar, v100, z10, tool0, \"rGlue\"",
+        "TriggL pVar, v100, trGlue, z10, tool0",
+    ] {
+        assert_eq!(behind(statement), ["MoveL 150.0", "MoveL 150.0"], "{statement}");
+    }
+    for statement in [
+        "SearchL \\Stop, diTouch, pFound, pVar, v100, tool0",
+        "SearchC diTouch, pFound, p10, pVar, v100, tool0",
+    ] {
+        let found = behind(statement);
+        assert_eq!(found, ["MoveL 150.0", "'pFound' is found by a search (true)"], "{statement}");
+    }
 }
 
 #[test]
