@@ -197,6 +197,9 @@ fn what_does_more_than_move_is_never_rewritten() {
         ("SearchL diA,pF,pD,v100,tP;", "instruction"),
         ("MoveLDO pD,v500,fine,tP,doA,1;", "instruction"),
         ("MoveLSync pD,v500,fine,tP,\"rX\";", "instruction"),
+        ("ArcLStart pD,v500,sm,wd,fine,tP;", "instruction"),
+        ("SpotJ pD,v500,gun1,sp1,tP;", "instruction"),
+        ("DispL \\On,pD,v500,bd,fine,tP;", "instruction"),
         ("MoveL \\Conc,pD,v500,fine,tP;", "argument"),
         ("MoveL pD,v500,fine,tP\\TLoad:=load0;", "argument"),
         ("MoveL pD\\ID:=10,v500,fine,tP;", "argument"),
@@ -208,8 +211,8 @@ fn what_does_more_than_move_is_never_rewritten() {
         let statements = format!("MoveJ pC,v1000,fine,tP; ! => stream\n{statement} ! => {code}");
         check(&program(data, &statements, ""), &[]);
     }
-    // A process instruction that no file declares may end anywhere.
-    let process = "MoveJ pC,v1000,fine,tP; ! => stream\nArcLStart pD,v500,sm,wd,fine,tP;\n\
+    // A process instruction whose arguments are not certain may end anywhere.
+    let process = "MoveJ pC,v1000,fine,tP; ! => stream\nPaintL pD,v500,sm,wd,fine,tP;\n\
                    MoveAbsJ jE,v1000,fine,tP; ! => unknown-start\n\
                    MoveAbsJ jA,v1000,fine,tP; ! => stream";
     check(&program(data, process, ""), &[]);

@@ -24,7 +24,7 @@ const EXTENSIONS: [&str; 2] = ["mod", "sys"];
 /// Marks a movement of `fixtures/hard` that can't be rewritten.
 const REFUSED: &str = "! Refused:";
 /// Beginnings of statements that move the robot.
-const MOVES: [&str; 3] = ["Move", "Trigg", "Search"];
+const MOVES: [&str; 6] = ["Move", "Trigg", "Search", "Arc", "Spot", "Disp"];
 
 /// A program with what became of it.
 struct Case {

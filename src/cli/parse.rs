@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::backup::Backup;
 use super::input::{self, InputFile, Place};
 use crate::diagnostics::{self, Diagnostic, Label, Paint};
-use crate::ir::is_movement;
+use crate::ir::is_of_move_family;
 use crate::syntax::{self, NodeKind, Parse, SyntaxError, ast};
 use crate::text::{self, FileId, SourceFile, Span};
 
@@ -169,7 +169,8 @@ fn report(file: &InputFile, parse: &Parse, backups: &[(PathBuf, Backup)]) -> Fil
         let kind = node.kind();
         routines += usize::from(ast::Routine::cast(node).is_some());
         statements += usize::from(kind.is_statement());
-        movements += usize::from(kind == NodeKind::CallStatement && is_movement_call(node, source));
+        movements +=
+            usize::from(kind == NodeKind::CallStatement && is_of_move_family_call(node, source));
     }
     let errors = parse.errors.iter().map(|error| {
         let position = source.position(error.start);
@@ -198,10 +199,10 @@ fn report(file: &InputFile, parse: &Parse, backups: &[(PathBuf, Backup)]) -> Fil
     }
 }
 
-fn is_movement_call(node: syntax::Node<'_>, source: &SourceFile) -> bool {
+fn is_of_move_family_call(node: syntax::Node<'_>, source: &SourceFile) -> bool {
     ast::Call::cast(node)
         .and_then(ast::Call::name)
-        .is_some_and(|name| is_movement(&String::from_utf8_lossy(name.text(&source.bytes))))
+        .is_some_and(|name| is_of_move_family(&String::from_utf8_lossy(name.text(&source.bytes))))
 }
 
 /// Whether the tokens of the tree, joined, are the file.

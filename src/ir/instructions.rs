@@ -4,6 +4,8 @@
 //! here nor in the program is unknown: it may move the robot and write its
 //! arguments.
 
+use super::processes;
+
 /// The form of a movement instruction: which positional arguments it takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoveForm {
@@ -49,6 +51,8 @@ pub fn written(key: &str) -> Option<Written> {
     let (position, name) = match key {
         "searchl" | "searchc" => (1, "searchpoint"),
         "searchextj" => (1, "searchjointpos"),
+        "wzboxdef" | "wzcyldef" | "wzsphdef" | "wzlimjointdef" | "wzhomejointdef" => (0, "shape"),
+        "wzlimsup" | "wzdoset" | "wzenable" | "wzdisable" | "wzfree" => (0, "worldzone"),
         _ => return None,
     };
     Some(Written { position, name })
@@ -77,15 +81,19 @@ pub fn movement(key: &str) -> Option<MoveSignature> {
         "searchc" => (Circular, 2, 0, false, false),
         // Signal, SearchJointPos, ToJointPos, Speed
         "searchextj" => (ExternalJoint, 2, 0, false, false),
-        _ => return None,
+        _ => return processes::signature(key),
     };
     Some(MoveSignature { form, before, between, zone, plain })
 }
 
-/// Whether the procedure of this name (in any case) is an instruction of the Move, Trigg or
-/// Search family.
+/// Whether the procedure of this name (in any case) is an instruction that moves.
 pub fn is_movement(name: &str) -> bool {
     movement(&name.to_ascii_lowercase()).is_some()
+}
+
+/// Whether it is one of the Move, Trigg or Search family, which do nothing for a process.
+pub fn is_of_move_family(name: &str) -> bool {
+    is_movement(name) && processes::signature(&name.to_ascii_lowercase()).is_none()
 }
 
 /// Instructions that write to some argument (or to all that the arguments reach).
@@ -325,7 +333,10 @@ mod tests {
     #[test]
     fn movements_are_told_from_their_neighbours() {
         for name in ["MoveJ", "MOVEABSJ", "triggL", "SearchExtJ", "MoveLDO"] {
-            assert!(is_movement(name), "{name}");
+            assert!(is_movement(name) && is_of_move_family(name), "{name}");
+        }
+        for name in ["ArcLStart", "SPOTL"] {
+            assert!(is_movement(name) && !is_of_move_family(name), "{name}");
         }
         // Conditions, interrupts and procedures that only sound alike.
         for name in ["TriggIO", "TriggEquip", "TriggCheckIO", "MoveHome", "StartMove", "Search"] {

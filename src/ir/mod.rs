@@ -11,11 +11,12 @@ mod lower;
 pub mod movement;
 pub mod number;
 pub mod predefined;
+mod processes;
 pub mod program;
 pub mod reads;
 pub mod signals;
 mod user;
 pub mod value;
 
-pub use instructions::is_movement;
+pub use instructions::{is_movement, is_of_move_family};
 pub use lower::lower;

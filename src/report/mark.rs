@@ -2,7 +2,7 @@
 
 use crate::ir::movement::Movement;
 
-/// `trigger`, `search`, `output` or `call`; none for an instruction that only moves.
+/// `trigger`, `search`, `process`, `output` or `call`; none for an instruction that only moves.
 pub(super) fn mark(movement: &Movement) -> Option<&'static str> {
     if movement.plain {
         return None;
@@ -12,6 +12,7 @@ pub(super) fn mark(movement: &Movement) -> Option<&'static str> {
         _ if key.starts_with("trigg") => "trigger",
         _ if key.starts_with("search") => "search",
         _ if key.ends_with("sync") => "call",
-        _ => "output",
+        _ if key.starts_with("move") => "output",
+        _ => "process",
     })
 }

@@ -91,6 +91,7 @@ impl Executor<'_> {
                 self.output(stmt, key, text, &arguments);
             }
             "incr" | "decr" | "add" | "clear" => self.count(key, &arguments),
+            "wzdoset" => self.zone_output(args, &arguments),
             "stop" | "break" | "exitcycle" => {
                 self.unresolved(stmt.span, format!("{text}: taken as passed"));
                 if key == "exitcycle" {

@@ -19,6 +19,7 @@ mod modes;
 mod motion;
 mod polling;
 mod system;
+mod world_zones;
 
 pub use constant::{evaluate, value_of};
 

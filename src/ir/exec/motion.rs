@@ -4,6 +4,7 @@ use super::super::convert;
 use super::super::hir::{Arg, ArgKind, Expr, ExprKind, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{Argument, Movement, Stop, Target, Unresolved, Zone};
+use super::super::processes;
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
@@ -58,6 +59,9 @@ impl Executor<'_> {
                 stmt.span,
                 "where the search finds its signal is not known: it runs to its end point",
             );
+        }
+        if let Some(what) = processes::unmodelled(&key) {
+            self.unresolved(stmt.span, what);
         }
         self.moves += 1;
         self.machine.moves(movement);

@@ -50,6 +50,7 @@ const DATA: &str = "
     CONST jointtarget j10:=[[30,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
     VAR robtarget pVar;
     VAR robtarget pFound;
+    VAR jointtarget jVar;
     VAR bool bFlag;
     VAR num nKey;";
 
@@ -84,6 +85,12 @@ fn every_family_of_movements_is_resolved() {
         "MoveLSync p10, v100, z10, tool0, \"rGlue\";".to_owned(),
         "SearchL \\Stop, diTouch, pFound, p10, v100, tool0;".to_owned(),
         "SearchC diTouch, pFound, p20, p10, v100, tool0;".to_owned(),
+        "ArcLStart p10 \\ID:=3, v100, sm1, wd1 \\Weave:=wv1, fine, tool0 \\WObj:=wobj0;".to_owned(),
+        "ArcC2 p20, p10, v100, sm1, wd1, z10, tool0;".to_owned(),
+        "ArcMoveJ p10, v100, z10, tool0;".to_owned(),
+        "SpotL p10, v100, gun1, sp1, tool0;".to_owned(),
+        "DispC \\On, p20, p10, v100, bd1, z10, tool0;".to_owned(),
+        "CapL p10, v100, cd1, ws1, we1, fine, tool0;".to_owned(),
         "MoveL Tool:=tool0, ToPoint:=p10, Speed:=v100, Zone:=z10;".to_owned(),
     ] {
         let told = told(&statement);
@@ -106,6 +113,7 @@ fn what_does_more_than_move_leaves_its_target_alone() {
         "MoveLDO pVar, v100, z10, tool0, doGlue, 1",
         "MoveLSync pVar, v100, z10, tool0, \"rGlue\"",
         "TriggL pVar, v100, trGlue, z10, tool0",
+        "ArcL pVar, v100, sm1, wd1, z10, tool0",
     ] {
         assert_eq!(behind(statement), ["MoveL 150.0", "MoveL 150.0"], "{statement}");
     }
@@ -116,6 +124,25 @@ fn what_does_more_than_move_leaves_its_target_alone() {
         let found = behind(statement);
         assert_eq!(found, ["MoveL 150.0", "'pFound' is found by a search (true)"], "{statement}");
     }
+}
+
+/// World zones move nothing, and write nothing but the zone or the shape.
+#[test]
+fn world_zones_leave_targets_and_signals_as_they_should() {
+    let statements = "pVar:=p20; jVar:=j10; SetDO doHome, 1;
+        WZHomeJointDef \\Inside, shHome, jVar, jVar; WZLimJointDef \\Outside, shHome, jVar, jVar;
+        WZBoxDef \\Inside, shBox, pVar.trans, pVar.trans; WZCylDef \\Inside, shBox, pVar.trans, 9, 9;
+        WZSphDef \\Inside, shBox, pVar.trans, 9; WZLimSup \\Stat, wzBox, shBox;
+        WZDisable wzTemp; WZEnable wzTemp; WZFree wzTemp;
+        MoveL pVar, v100, fine, tool0; MoveAbsJ jVar, v100, fine, tool0;";
+    assert_eq!(told(statements), ["SetDO doHome=1", "MoveL 150.0", "MoveAbsJ 30.0"]);
+    // The place of the robot sets the output from then on.
+    let inverted = |zone: &str| told(&format!("SetDO doHome, 1; {zone} InvertDO doHome;"));
+    assert_eq!(inverted("")[1], "InvertDO doHome=0");
+    assert_eq!(
+        inverted("WZDOSet \\Stat, wzHome \\Inside, shHome, doHome, 1;")[1],
+        "InvertDO doHome=unknown"
+    );
 }
 
 #[test]

@@ -1,0 +1,20 @@
+//! World zones: what they do to data and signals. They move nothing.
+
+use super::super::hir::Arg;
+use super::Executor;
+use super::instruction::Arguments;
+
+impl Executor<'_> {
+    /// `WZDOSet zone, shape, signal, value`: from here on the place of the robot sets the signal,
+    /// so that its level is not known any more.
+    pub(super) fn zone_output(&mut self, args: &[Arg], arguments: &Arguments<'_>) {
+        const SIGNAL: usize = 2;
+        self.forget_written(args, "wzdoset", "is written by WZDOSet");
+        let signal = arguments.positional.get(SIGNAL).and_then(|expr| self.first_signal(expr));
+        if let Some(signal) = signal
+            && self.signals.remove(&signal.to_lowercase()).is_some()
+        {
+            self.changes(None);
+        }
+    }
+}
