@@ -171,6 +171,24 @@ fn free_paths_go_round_a_box() {
 }
 
 #[test]
+fn free_paths_in_an_unknown_cell_are_warned_of() {
+    let warning = |run: &Run| {
+        let notes = run.result["notes"].as_array().unwrap().iter();
+        let mut told = notes.filter_map(Value::as_str).filter(|note| note.starts_with("warning: "));
+        told.next().map(str::to_owned)
+    };
+    let free = optimized("", &FREE);
+    let told = warning(&free).unwrap();
+    let farthest = free.result["verification"]["max_path_deviation_m"].as_f64().unwrap();
+    assert!(farthest > 0.02, "{farthest}");
+    assert!(told.contains(&format!("by up to {:.1} mm", 1e3 * farthest)), "{told}");
+    assert!(told.contains("no keep-out is configured"), "{told}");
+    assert_eq!(warning(&optimized("", &[])), None);
+    let known = "[[keep_out]]\nplane = [0, 0, 1, -1]\n";
+    assert_eq!(warning(&optimized(known, &FREE)), None);
+}
+
+#[test]
 fn free_paths_stay_on_one_side_of_a_plane() {
     let (kept, free) = (optimized("", &[]), optimized("", &FREE));
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];

@@ -83,6 +83,18 @@ pub(super) fn notes(
     notes
 }
 
+/// Says how far streams leave the programmed path where nothing is known of the cell.
+pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
+    settings.freedom.keep_out.is_empty().then(|| {
+        format!(
+            "warning: streams leave the programmed path by up to {:.1} mm, and no keep-out is \
+             configured: nothing tells what stands there; state the cell's boxes and planes as \
+             keep_out in joulepath.toml, or leave out --free-path",
+            1e3 * farthest_m
+        )
+    })
+}
+
 /// Says that the original is counted with a wait that it does not have.
 fn padded(original: &Figures, padding: &Padding) -> String {
     format!(

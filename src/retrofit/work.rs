@@ -19,14 +19,13 @@ use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Options, Simulation, simulate};
-
 use crate::optimize::allowed::Loads;
 use crate::optimize::cost::Cost;
 use crate::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::optimize::freedom::Freedom;
 use crate::optimize::idle::dwells;
 use crate::optimize::reason::Reason;
-use crate::optimize::retime::{Retiming, Task, retime};
+use crate::optimize::retime::{PathUse, Retiming, Task, retime};
 use crate::optimize::site::{Site, not_constant, not_reached, sites};
 use crate::robot::{Model, NotReady, Use, ready};
 use crate::syntax::{self, SyntaxError};
@@ -401,6 +400,8 @@ pub fn retrofit(
     let verify::Attempt {
         simulation: mut after_simulation, account: mut after, verification, ..
     } = checked.1;
+    let is_free = |way: &Way| matches!(&way.outcome, Ok(it) if it.path == PathUse::Left);
+    let freed = ways.iter().any(is_free);
     if settings.form == Form::Guided {
         checked.0.guard_instructions = 0;
         checked.0.files =
@@ -423,7 +424,10 @@ pub fn retrofit(
     let padding = padding::padding(model, &simulation, &optimized);
     let original = figures(&simulation, &before).padded(padding.as_ref());
     let compared = (&original, &optimized, padding.as_ref());
-    let notes = notes::notes(files, model, settings, &simulation, &segments, compared);
+    let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
+    if freed {
+        notes.extend(notes::off_path(settings, verification.worst.deviation_m));
+    }
     Ok(Retrofit {
         original,
         padding,
