@@ -101,6 +101,22 @@ pub enum InputError {
         /// The program file.
         path: String,
     },
+    /// A `.pgf` that lists a file outside of its folder: such a file would be copied and changed
+    /// with the program.
+    #[error(
+        "{program}:{line}: '{module}' is not a file below the folder of the program ({why}); move \
+         it there and list it by its name, or name the module files in place of the .pgf"
+    )]
+    Outside {
+        /// The program file.
+        program: String,
+        /// From 1.
+        line: usize,
+        /// As listed.
+        module: String,
+        /// What leads outside.
+        why: &'static str,
+    },
     /// Something that cannot be read.
     #[error("cannot read '{path}': {reason}; check the path and its permissions")]
     Unreadable {
@@ -115,7 +131,8 @@ pub enum InputError {
 ///
 /// # Errors
 /// When nothing can be read; the error is about the first path then. Otherwise
-/// what cannot be read is listed in [`Input::unreadable`].
+/// what cannot be read is listed in [`Input::unreadable`]. A `.pgf` that lists files outside of
+/// its folder.
 pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     let mut first_error = None;
     let mut input = Input::default();
@@ -128,6 +145,7 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
                     |file: &Found| fs::canonicalize(&file.path).unwrap_or(file.path.clone());
                 found.extend(files.into_iter().filter(|file| seen.insert(place(file))));
             }
+            Err(error @ InputError::Outside { .. }) => return Err(error),
             Err(error) => {
                 input.unreadable.push(Unreadable { path: shown(path), reason: error.to_string() });
                 first_error.get_or_insert(error);
@@ -208,7 +226,10 @@ fn find(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, Inp
             files.into_iter().partition(|file| has_extension(file, &[PROGRAM]));
         let mut listings = Vec::new();
         for program in programs {
-            let of_program = listed(&program).unwrap_or_default();
+            let of_program = match listed(&program) {
+                Err(error @ InputError::Outside { .. }) => return Err(error),
+                listed => listed.unwrap_or_default(),
+            };
             listings.push(found_listing(path, program, &of_program));
             modules.extend(of_program.into_iter().filter(|module| module.is_file()));
         }
@@ -269,8 +290,7 @@ fn file_name(path: &Path) -> String {
 
 /// The modules that a program file lists.
 fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
-    let modules =
-        listed(path).map_err(|reason| InputError::Unreadable { path: shown(path), reason })?;
+    let modules = listed(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();
     let listing = found_listing(folder, path.to_path_buf(), &modules);
@@ -290,18 +310,45 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
 }
 
 /// The paths between `<Module>` and `</Module>`, relative to the program file.
-fn listed(path: &Path) -> Result<Vec<PathBuf>, String> {
-    let bytes = bytes_of(path)?;
+fn listed(path: &Path) -> Result<Vec<PathBuf>, InputError> {
+    const BEGIN: &str = "<Module>";
+    let unreadable = |reason| InputError::Unreadable { path: shown(path), reason };
+    let bytes = bytes_of(path).map_err(unreadable)?;
     let text = crate::text::decode(&bytes).text;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut modules = Vec::new();
-    for part in text.split("<Module>").skip(1) {
-        let name = part.split("</Module>").next().unwrap_or_default().trim();
-        if !name.is_empty() {
-            modules.push(below_in_any_case(folder, &unescaped(name)));
+    for (at, _) in text.match_indices(BEGIN) {
+        let rest = &text[at + BEGIN.len()..];
+        let name = unescaped(rest.split("</Module>").next().unwrap_or_default().trim());
+        if name.is_empty() {
+            continue;
         }
+        let module = below_in_any_case(folder, &name);
+        if let Some(why) = leads_outside(folder, &name, &module) {
+            let line = 1 + text[..at].matches('\n').count();
+            return Err(InputError::Outside { program: shown(path), line, module: name, why });
+        }
+        modules.push(module);
     }
     Ok(modules)
+}
+
+/// What leads out of the folder of a program file in the name of a module that it lists.
+fn leads_outside(folder: &Path, name: &str, module: &Path) -> Option<&'static str> {
+    if name.starts_with(['/', '\\']) {
+        return Some("the path is absolute");
+    }
+    if name.contains(':') {
+        return Some("the path names a drive or device");
+    }
+    if name.split(['/', '\\']).any(|part| part == "..") {
+        return Some("the path has '..'");
+    }
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (Ok(module), Ok(folder)) = (fs::canonicalize(module), fs::canonicalize(folder)) else {
+        return None;
+    };
+    (!module.starts_with(folder)).then_some("a symbolic link leads out of it")
 }
 
 /// A path of a controller, whose file system has its own separators and knows no case.
@@ -411,6 +458,42 @@ mod tests {
         assert!(input.unreadable[0].path.ends_with("gone & lost.mod"));
         assert_eq!(input.listings[0].relative, "cell.pgf");
         assert_eq!(input.listings[0].bytes, list.as_bytes());
+    }
+
+    #[test]
+    fn a_program_lists_nothing_outside_of_its_folder() {
+        for (name, why) in [
+            ("../x.mod", "has '..'"),
+            ("sub\\..\\..\\x.mod", "has '..'"),
+            ("/tmp/x.mod", "is absolute"),
+            ("\\x.mod", "is absolute"),
+            ("C:\\x.mod", "names a drive or device"),
+            ("HOME:/x.mod", "names a drive or device"),
+        ] {
+            let list = format!("<Program>\n<Module>m.mod</Module>\n<Module>{name}</Module>\n");
+            let folder = folder(&[("p/cell.pgf", &list), ("p/m.mod", ""), ("x.mod", "")]);
+            // Named or found, beside what can be read or not.
+            for path in ["p/cell.pgf", "p"].map(|path| folder.path().join(path)) {
+                let error = read(&[folder.path().join("x.mod"), path]).unwrap_err().to_string();
+                assert!(error.contains(&format!("cell.pgf:3: '{name}'")), "{error}");
+                assert!(error.contains(why) && error.contains("move it there"), "{error}");
+            }
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_of_a_program_stay_below_its_folder() {
+        use std::os::unix::fs::symlink;
+        let list = "<Program><Module>m.mod</Module></Program>";
+        let folder = folder(&[("p/cell.pgf", list), ("p/own.mod", ""), ("x.mod", "")]);
+        let link = folder.path().join("p/m.mod");
+        symlink("own.mod", &link).unwrap();
+        assert!(read(&[folder.path().join("p/cell.pgf")]).is_ok());
+        fs::remove_file(&link).unwrap();
+        symlink("../x.mod", &link).unwrap();
+        let error = read(&[folder.path().join("p/cell.pgf")]).unwrap_err().to_string();
+        assert!(error.contains("cell.pgf:1: 'm.mod'") && error.contains("link"), "{error}");
     }
 
     #[test]
