@@ -1,6 +1,7 @@
 //! Controller backups through the binary: what is chosen, what is said.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -111,17 +112,82 @@ fn parse_reads_every_task_and_tells_what_the_backup_says() {
     assert_eq!(value["backups"][0]["robotware"], "6.08.01.00");
 }
 
-#[test]
-fn the_retrofit_of_a_backup_is_its_whole_program() {
-    let backup = backup();
-    let out = backup.path().join("out");
-    let path = backup.path().to_str().unwrap();
-    let output = joulepath(&["optimize", path, "--out", out.to_str().unwrap(), "--quiet"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    for file in ["PROGMOD/MainModule.mod", "PROGMOD/Locked.mod", "SYSMOD/user.sys"] {
-        assert!(out.join("RAPID/TASK2").join(file).is_file(), "{file}");
+/// All files below a folder, by their paths in it.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let name = entry.file_name().into_string().unwrap();
+        if entry.file_type().unwrap().is_dir() {
+            let below = files(&entry.path()).into_iter();
+            found.extend(below.map(|(path, bytes)| (format!("{name}/{path}"), bytes)));
+        } else {
+            found.insert(name, fs::read(entry.path()).unwrap());
+        }
     }
-    assert!(!out.join("RAPID/TASK1").exists(), "another task's program");
-    let before = fs::read(backup.path().join("RAPID/TASK2/PROGMOD/Locked.mod")).unwrap();
-    assert_eq!(fs::read(out.join("RAPID/TASK2/PROGMOD/Locked.mod")).unwrap(), before);
+    found
+}
+
+/// The task's block with the new module, and every other byte as it was.
+fn assert_lists_the_new_module(before: &[u8], after: &[u8]) {
+    let line = "PROGMOD/Locked.mod @ ";
+    let before = String::from_utf8(before.to_vec()).unwrap();
+    let end = if before.contains("\r\n") { "\r\n" } else { "\n" };
+    let longer = format!("{line}{end}PROGMOD/Joulepath.mod @ {end}");
+    assert_eq!(String::from_utf8_lossy(after), before.replace(&format!("{line}{end}"), &longer));
+}
+
+const INFO: &str = "BACKINFO/backinfo.txt";
+const NEW: &str = "RAPID/TASK2/PROGMOD/Joulepath.mod";
+
+#[test]
+fn the_retrofit_of_a_backup_is_the_whole_backup() {
+    for end in ["\n", "\r\n"] {
+        let backup = backup();
+        let info = backup.path().join(INFO);
+        let text = fs::read_to_string(&info).unwrap().replace("\r\n", "\n").replace('\n', end);
+        fs::write(&info, text).unwrap();
+        let before = files(backup.path());
+        // Inside of the backup, too.
+        let out = backup.path().join("out");
+        let path = backup.path().to_str().unwrap();
+        let output = joulepath(&["optimize", path, "--out", out.to_str().unwrap(), "--quiet"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let mut after = files(&out);
+        assert_lists_the_new_module(&before[INFO], &after.remove(INFO).unwrap());
+        assert!(after.remove(NEW).is_some());
+        let main = "RAPID/TASK2/PROGMOD/MainModule.mod";
+        assert_ne!(after.remove(main).unwrap(), before[main]);
+        after.remove("joulepath_brakes.txt");
+        for (path, bytes) in &after {
+            assert_eq!(before.get(path), Some(bytes), "{path}");
+        }
+        assert_eq!(after.len() + 2, before.len(), "{:?}", after.keys());
+        // It can be read again as a backup.
+        let (moves, notes) = simulated(&out);
+        assert!(moves.len() >= 5 && notes.contains("T_ROB1 (RAPID/TASK2)"), "{moves:?} {notes}");
+    }
+}
+
+#[test]
+fn a_backup_is_changed_in_place_and_taken_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let backup = folder.path().join("monday");
+    copy(Path::new("fixtures/backup"), &backup);
+    let before = files(folder.path());
+    // Also by a task or a module of it.
+    for named in ["", "RAPID/TASK2", "RAPID/TASK2/PROGMOD/MainModule.mod"] {
+        let path = if named.is_empty() { backup.clone() } else { backup.join(named) };
+        let path = path.to_str().unwrap();
+        let output = joulepath(&["optimize", path, "--in-place", "--quiet"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let after = files(&backup);
+        assert_lists_the_new_module(&before["monday/BACKINFO/backinfo.txt"], &after[INFO]);
+        assert!(after.contains_key(NEW));
+        assert!(!after.keys().any(|path| path.contains(".bak") || path.contains("undo")));
+        let kept = files(&folder.path().join("monday.joulepath-undo"));
+        assert!(kept.contains_key("manifest.json") && kept.contains_key(&format!("files/{INFO}")));
+        let output = joulepath(&["optimize", path, "--undo"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(files(folder.path()), before, "{named}");
+    }
 }

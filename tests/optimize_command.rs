@@ -1,9 +1,10 @@
 //! The main job through the binary: the contract of its JSON, what it writes, what it says.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
@@ -143,18 +144,104 @@ fn paper_order_holds() {
     assert!(segment(&energy, slow, "time_before_s") > segment(&energy, half, "time_before_s"));
 }
 
+/// What lies in a folder, with its bytes.
+fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.insert(path.clone(), Vec::new());
+            found.extend(tree(&path));
+        } else {
+            found.insert(path.clone(), fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
 #[test]
-fn in_place_keeps_a_copy() {
+fn in_place_is_taken_back_to_the_byte() {
     let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("waits.mod");
+    let cell = folder.path().join("cell");
+    fs::create_dir(&cell).unwrap();
+    let program = cell.join("waits.mod");
     fs::copy("fixtures/hard/waits.mod", &program).unwrap();
+    let before = tree(folder.path());
     let path = program.to_str().unwrap();
     let args = ["optimize", path, "--robot", "IRB1600-10/1.45", "--in-place", "--quiet"];
+    let undo = |path: &Path| joulepath(&["optimize", path.to_str().unwrap(), "--undo"]);
+    let refused = |output: &Output, part: &str| {
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(part), "{said}");
+    };
+    refused(&undo(&program), "nothing to undo");
+    for named in [&program, &cell] {
+        assert!(joulepath(&args).status.success());
+        assert_ne!(fs::read(&program).unwrap(), before[&program]);
+        assert!(cell.join("Joulepath.mod").is_file());
+        // The originals lie outside of what is loaded.
+        let kept = folder.path().join("cell.joulepath-undo");
+        assert_eq!(fs::read(kept.join("files/waits.mod")).unwrap(), before[&program]);
+        let names = fs::read_dir(&cell).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        assert_eq!(names, ["Joulepath.mod", "joulepath_brakes.txt", "waits.mod"]);
+        assert!(undo(named).status.success());
+        assert_eq!(tree(folder.path()), before);
+    }
+    refused(&undo(&cell), "nothing to undo");
+}
+
+#[test]
+fn what_was_changed_since_is_not_taken_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = folder.path().join("cell");
+    fs::create_dir(&cell).unwrap();
+    let program = cell.join("waits.mod");
+    fs::copy("fixtures/hard/waits.mod", &program).unwrap();
+    let original = fs::read(&program).unwrap();
+    let path = cell.to_str().unwrap();
+    let args = ["optimize", path, "--robot", "IRB1600-10/1.45", "--in-place", "--quiet"];
     assert!(joulepath(&args).status.success());
-    let original = fs::read("fixtures/hard/waits.mod").unwrap();
-    assert_eq!(fs::read(folder.path().join("waits.mod.bak")).unwrap(), original);
-    assert_ne!(fs::read(&program).unwrap(), original);
-    assert!(folder.path().join("Joulepath.mod").is_file());
+    let written = fs::read(&program).unwrap();
+    // A second run would overwrite the originals.
+    fs::write(&program, &original).unwrap();
+    let again = joulepath(&args);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("--undo"), "{}", text(&again.stderr));
+    // What somebody has changed stays, and everything else with it.
+    for changed in ["waits.mod", "Joulepath.mod"] {
+        fs::write(&program, &written).unwrap();
+        fs::write(cell.join(changed), "MODULE M\nENDMODULE\n").unwrap();
+        let now = tree(folder.path());
+        let output = joulepath(&["optimize", path, "--undo"]);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(&format!("{changed}' was changed since")), "{said}");
+        assert_eq!(tree(folder.path()), now);
+    }
+    // What is as it was already, or gone already, is no obstacle.
+    fs::remove_file(cell.join("Joulepath.mod")).unwrap();
+    fs::write(&program, &original).unwrap();
+    assert!(joulepath(&["optimize", path, "--undo"]).status.success());
+    assert_eq!(fs::read(&program).unwrap(), original);
+    assert!(!folder.path().join("cell.joulepath-undo").exists());
+}
+
+#[test]
+fn folders_that_were_made_are_removed_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = folder.path().join("cell");
+    fs::create_dir(&cell).unwrap();
+    fs::write(cell.join("m.mod"), program("", "")).unwrap();
+    let before = tree(folder.path());
+    let path = cell.to_str().unwrap();
+    let (said, code) = said(folder.path(), &["optimize", path, "--emit", "egm", "--in-place"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(cell.join("egm").is_dir());
+    assert!(joulepath(&["optimize", path, "--undo"]).status.success());
+    assert_eq!(tree(folder.path()), before);
 }
 
 #[test]
@@ -494,25 +581,27 @@ fn a_load_gripped_while_waiting_is_held() {
 
 #[test]
 fn the_list_of_modules_names_the_new_one() {
-    let folder = tempfile::tempdir().unwrap();
+    let outside = tempfile::tempdir().unwrap();
+    let folder = outside.path().join("cell");
+    fs::create_dir(&folder).unwrap();
     let list = "<?xml version=\"1.0\"?>\r\n<Program>\r\n\t<Module>m.mod</Module>\r\n</Program>\r\n";
-    fs::write(folder.path().join("cell.pgf"), list).unwrap();
-    fs::write(folder.path().join("m.mod"), program("", "")).unwrap();
-    let path = folder.path().join("cell.pgf");
-    let out = folder.path().join("out");
+    fs::write(folder.join("cell.pgf"), list).unwrap();
+    fs::write(folder.join("m.mod"), program("", "")).unwrap();
+    let path = folder.join("cell.pgf");
+    let out = folder.join("out");
     let args = ["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
-    assert_eq!(said(folder.path(), &args).1, Some(0));
+    assert_eq!(said(&folder, &args).1, Some(0));
     let entry = "\r\n\t<Module>Joulepath.mod</Module>";
     let expected = list.replace("m.mod</Module>", &format!("m.mod</Module>{entry}"));
     assert_eq!(text(&fs::read(out.join("cell.pgf")).unwrap()), expected);
     // What was written is a whole program.
-    let (message, code) =
-        said(folder.path(), &["simulate", out.join("cell.pgf").to_str().unwrap()]);
+    let (message, code) = said(&folder, &["simulate", out.join("cell.pgf").to_str().unwrap()]);
     assert_eq!((message.as_str(), code), ("", Some(0)));
     let args = ["optimize", path.to_str().unwrap(), "--in-place"];
-    assert_eq!(said(folder.path(), &args).1, Some(0));
+    assert_eq!(said(&folder, &args).1, Some(0));
     assert_eq!(text(&fs::read(&path).unwrap()), expected);
-    assert_eq!(text(&fs::read(folder.path().join("cell.pgf.bak")).unwrap()), list);
+    let kept = outside.path().join("cell.joulepath-undo/files/cell.pgf");
+    assert_eq!(text(&fs::read(kept).unwrap()), list);
 }
 
 #[test]

@@ -79,13 +79,19 @@ pub fn motion_configuration(root: &Path) -> Option<PathBuf> {
     child(&child(root, "SYSPAR")?, "MOC.cfg")
 }
 
+/// The file that lists the modules of the backup at `root`.
+pub fn information(root: &Path) -> Option<PathBuf> {
+    child(&child(root, "BACKINFO")?, "backinfo.txt")
+}
+
 /// Reads the backup at `root`; what is missing or broken is left out.
 pub fn read(root: &Path) -> Backup {
     let file = |folder: &str, name: &str| {
         let path = child(&child(root, folder)?, name)?;
         fs::read(path).ok().map(|bytes| text::decode(&bytes).text)
     };
-    let info = file("BACKINFO", "backinfo.txt").unwrap_or_default();
+    let info = information(root).and_then(|path| fs::read(path).ok());
+    let info = info.map(|bytes| text::decode(&bytes).text).unwrap_or_default();
     let system = file("SYSPAR", "SYS.cfg").unwrap_or_default();
     let motion = file("SYSPAR", "MOC.cfg").unwrap_or_default();
     let parameters = Parameters {

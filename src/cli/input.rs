@@ -58,6 +58,17 @@ pub struct Listing {
     pub modules: Vec<String>,
 }
 
+/// The file of a controller backup that lists its modules.
+#[derive(Clone, Debug)]
+pub struct Information {
+    /// Its path, joined with `/`.
+    pub path: String,
+    /// Its path below the backup, with `/`.
+    pub relative: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
 /// A file or folder that could not be read.
 #[derive(Clone, Debug)]
 pub struct Unreadable {
@@ -78,6 +89,8 @@ pub struct Input {
     pub unreadable: Vec<Unreadable>,
     /// The controller backups that the files are of, with their folders.
     pub backups: Vec<(PathBuf, Backup)>,
+    /// What lists the modules of these backups.
+    pub information: Vec<Information>,
 }
 
 /// Why nothing was read.
@@ -169,7 +182,7 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
         match source {
             Ok(source) => {
                 let id = FileId(input.files.len() as u32);
-                let place = place(&file.path, &mut input.backups);
+                let place = place(&file.path, &mut input);
                 let source = SourceFile { id, ..source };
                 let Found { relative, named, .. } = file;
                 input.files.push(InputFile { source, relative, place, named });
@@ -192,15 +205,23 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
 }
 
 /// The place of a file in one of the backups, which is read with its first file.
-fn place(path: &Path, backups: &mut Vec<(PathBuf, Backup)>) -> Option<Place> {
+fn place(path: &Path, input: &mut Input) -> Option<Place> {
     let (root, folder) = backup::place(&fs::canonicalize(path).ok()?)?;
-    let known = backups.iter().position(|(known, _)| *known == root);
+    let known = input.backups.iter().position(|(known, _)| *known == root);
     let backup = known.unwrap_or_else(|| {
+        input.information.extend(information(&root));
         let backup = backup::read(&root);
-        backups.push((root, backup));
-        backups.len() - 1
+        input.backups.push((root, backup));
+        input.backups.len() - 1
     });
     Some(Place { backup, folder })
+}
+
+fn information(root: &Path) -> Option<Information> {
+    let path = backup::information(root)?;
+    let bytes = bytes_of(&path).ok()?;
+    let relative = below(path.strip_prefix(root).ok()?);
+    Some(Information { path: shown(&path), relative, bytes })
 }
 
 /// A file to be read.

@@ -1,5 +1,6 @@
 //! The command line.
 
+pub mod backinfo;
 pub mod backup;
 pub mod blind;
 pub mod choice;
@@ -24,6 +25,7 @@ pub mod rule;
 pub mod signals;
 pub mod simulate;
 pub mod standstill;
+pub mod undo;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;

@@ -1,6 +1,7 @@
 //! `joulepath optimize`: the main job.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,7 +13,7 @@ use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::{listing, output};
+use super::{backinfo, listing, output, undo};
 use crate::config::KeepOut;
 use crate::emit::Layout;
 use crate::kinematics::{self, Obstacle, Plane};
@@ -45,9 +46,15 @@ pub struct OptimizeArgs {
     #[arg(long)]
     diff: bool,
 
-    /// Change the files themselves; each keeps a copy with .bak appended.
+    /// Change the files themselves. The originals go to a folder beside that of the program (of a
+    /// backup: beside the backup), with `.joulepath-undo` appended to its name.
     #[arg(long)]
     in_place: bool,
+
+    /// Take back what --in-place did to the program at this path: restore the files that it
+    /// changed, delete those that it added, and remove the folder with the originals.
+    #[arg(long, conflicts_with_all = ["in_place", "out", "diff", "report"])]
+    undo: bool,
 
     /// Write a report as one HTML file.
     #[arg(long, value_name = "FILE.html")]
@@ -192,9 +199,15 @@ const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
 /// # Errors
 /// Unusable input, or output that can't be written.
 pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    if args.undo {
+        return take_back(args);
+    }
     let settings_of = |job: &Job| settings(args, job);
     let job = common::prepare(&args.program)?;
     let settings = settings_of(&job)?;
+    // A folder of one task has no list of the controller's modules to be written with it.
+    let backup = whole_backup(args, &job);
+    let lists = backup.is_some() || (args.in_place && args.out.is_none());
     let result = {
         let bar = progress(args.program.cell.quiet);
         let result = retrofit(&job.files, &job.model, &settings, &|done, all| {
@@ -205,6 +218,9 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
         listing::add(&mut result, &job.input, &job.files);
+        if lists {
+            backinfo::add(&mut result, &job.input);
+        }
         result
     };
     for text in &result.notes {
@@ -214,10 +230,10 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, &job, &result)?);
+        written.extend(write_folder(folder, &job, &result, backup)?);
     }
     if args.in_place {
-        written.extend(write_in_place(&job, &result)?);
+        written.extend(write_in_place(args, &job, &result)?);
     }
     if let Some(path) = &args.report {
         let html = report::html::optimize_report(&result, &job.files, &job.model, &job.entry)?;
@@ -380,8 +396,83 @@ fn progress(quiet: bool) -> ProgressBar {
     bar
 }
 
-/// The complete program below a folder.
-fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
+/// Takes back what an earlier run changed in place.
+fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    let cell = &args.program.cell;
+    let mut done = Vec::new();
+    for path in &cell.paths {
+        done.extend(undo::undo(path)?);
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            serde_json::to_writer_pretty(&mut out, &serde_json::json!({ "undone": done }))?;
+            writeln!(out)?;
+        }
+        Format::Text => done.iter().for_each(|text| common::note(cell.quiet, text)),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The backup, if the command line names the whole of it.
+fn whole_backup<'j>(args: &OptimizeArgs, job: &'j Job) -> Option<&'j Path> {
+    let [path] = args.program.cell.paths.as_slice() else { return None };
+    let [(root, _)] = job.input.backups.as_slice() else { return None };
+    (path.canonicalize().ok()? == *root).then_some(root.as_path())
+}
+
+/// The folder of the program: that of its backup, or the deepest one that holds all that is named.
+fn program_folder(args: &OptimizeArgs, job: &Job) -> anyhow::Result<PathBuf> {
+    let mut shared: Option<PathBuf> = job.input.backups.first().map(|(root, _)| root.clone());
+    for path in &args.program.cell.paths {
+        let mut folder =
+            path.canonicalize().with_context(|| format!("cannot find '{}'", path.display()))?;
+        if !folder.is_dir() {
+            folder.pop();
+        }
+        let mut common = shared.unwrap_or_else(|| folder.clone());
+        while !folder.starts_with(&common) && common.pop() {}
+        shared = Some(common);
+    }
+    shared.context("no file or folder given")
+}
+
+/// The files of a backup that are not among the outputs, with their paths below it.
+fn rest_of_backup(
+    root: &Path,
+    out: &Path,
+    result: &Retrofit,
+) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
+    let known: BTreeSet<PathBuf> =
+        result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
+    let mut rest = Vec::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let failed = || format!("cannot read the backup's '{}'", folder.display());
+        for entry in std::fs::read_dir(&folder).with_context(failed)? {
+            let path = entry.with_context(failed)?.path();
+            let kind = std::fs::symlink_metadata(&path).with_context(failed)?;
+            let relative = path.strip_prefix(root).unwrap_or(&path).to_owned();
+            if kind.is_dir() && path != out {
+                folders.push(path);
+            } else if kind.is_file() && !known.contains(&relative) {
+                let bytes = std::fs::read(&path)
+                    .with_context(|| format!("cannot read '{}'", path.display()))?;
+                rest.push((relative, bytes));
+            }
+        }
+    }
+    rest.sort();
+    Ok(rest)
+}
+
+/// The complete program below a folder, of a backup all of it.
+fn write_folder(
+    folder: &Path,
+    job: &Job,
+    result: &Retrofit,
+    backup: Option<&Path>,
+) -> anyhow::Result<Vec<String>> {
     let real = |path: &Path| path.canonicalize().ok();
     for file in &result.outputs {
         let path = folder.join(&file.path);
@@ -391,17 +482,26 @@ fn write_folder(folder: &Path, job: &Job, result: &Retrofit) -> anyhow::Result<V
         {
             bail!(
                 "'{}' is a file of the program itself; name another folder, or give --in-place, \
-                 which keeps backups",
+                 which keeps the originals",
                 path.display()
             );
         }
     }
     let stored: Vec<(PathBuf, Cow<'_, [u8]>)> =
         new_first(result).map(|file| (PathBuf::from(&file.path), stored(job, file))).collect();
-    let files: Vec<(PathBuf, &[u8])> =
-        stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref())).collect();
-    output::write_folder(folder, &files)?;
-    Ok(result.outputs.iter().map(|file| folder.join(&file.path).display().to_string()).collect())
+    let rest = match backup {
+        Some(root) => {
+            let out = std::path::absolute(folder)?;
+            rest_of_backup(root, &real(&out).unwrap_or(out), result)?
+        }
+        None => Vec::new(),
+    };
+    let files = stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref()));
+    let unchanged = rest.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
+    output::write_folder(folder, &files.chain(unchanged).collect::<Vec<_>>())?;
+    let written = result.outputs.iter().map(|file| folder.join(&file.path));
+    let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
+    Ok(written.map(|path| path.display().to_string()).collect())
 }
 
 /// New files before those that call them: a write that breaks off leaves a program that works.
@@ -411,36 +511,36 @@ fn new_first(result: &Retrofit) -> impl Iterator<Item = &OutputFile> {
     of(true).chain(of(false))
 }
 
-/// The changed files in place of the original ones, each with a backup; new files beside.
-fn write_in_place(job: &Job, result: &Retrofit) -> anyhow::Result<Vec<String>> {
-    let changed: Vec<(&OutputFile, PathBuf)> = new_first(result)
-        .filter(|file| file.kind != OutputKind::Unchanged)
-        .map(|file| (file, place(job, file)))
-        .collect();
-    let backup = |path: &Path| PathBuf::from(format!("{}.bak", path.display()));
-    for (file, path) in &changed {
-        let taken = if file.kind == OutputKind::New { path.clone() } else { backup(path) };
-        if taken.exists() {
-            bail!(
-                "'{}' exists already and would be overwritten: move it away first, or use --out",
-                taken.display()
-            );
-        }
+/// The changed files in place of the original ones, which are kept; new files beside.
+fn write_in_place(
+    args: &OptimizeArgs,
+    job: &Job,
+    result: &Retrofit,
+) -> anyhow::Result<Vec<String>> {
+    let mut changes = Vec::new();
+    for file in new_first(result).filter(|file| file.kind != OutputKind::Unchanged) {
+        let path = place(job, file);
+        let before = if file.kind == OutputKind::New {
+            None
+        } else {
+            let bytes = std::fs::read(&path);
+            Some(bytes.with_context(|| format!("cannot read '{}'", path.display()))?)
+        };
+        changes.push(undo::Change { path, before, after: stored(job, file) });
     }
-    let mut written = Vec::new();
-    let mut staged = Vec::new();
-    for (file, path) in &changed {
-        if file.kind == OutputKind::Changed {
-            let copy = backup(path);
-            std::fs::copy(path, &copy)
-                .with_context(|| format!("cannot write '{}'", copy.display()))?;
-            written.push(copy.display().to_string());
-        }
-        staged.push(output::stage(path, &stored(job, file))?);
-        written.push(path.display().to_string());
+    if changes.is_empty() {
+        return Ok(Vec::new());
     }
+    let kept = undo::keep(&program_folder(args, job)?, &changes)?;
+    let staged: anyhow::Result<Vec<output::Staged>> =
+        changes.iter().map(|change| output::stage(&change.path, &change.after)).collect();
+    let staged = staged.inspect_err(|_| {
+        // Nothing is changed, so there is nothing to take back.
+        let _ = std::fs::remove_dir_all(&kept);
+    })?;
     staged.into_iter().try_for_each(output::Staged::put)?;
-    Ok(written)
+    let paths = std::iter::once(&kept).chain(changes.iter().map(|change| &change.path));
+    Ok(paths.map(|path| path.display().to_string()).collect())
 }
 
 /// The bytes of an output in the encoding of the file that it stands for.
@@ -457,8 +557,10 @@ fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> 
         (OutputKind::New, _) => None,
         (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
         (_, None) => {
-            let listing = job.input.listings.iter().find(|l| l.relative == file.path)?;
-            Some((&listing.path, &listing.bytes))
+            let listing = job.input.listings.iter().find(|l| l.relative == file.path);
+            let listing = listing.map(|l| (l.path.as_str(), l.bytes.as_slice()));
+            let information = job.input.information.iter().find(|i| i.relative == file.path);
+            listing.or_else(|| information.map(|i| (i.path.as_str(), i.bytes.as_slice())))
         }
     }
 }

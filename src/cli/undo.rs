@@ -1,0 +1,250 @@
+//! What `optimize --in-place` changed, and how it is taken back.
+//!
+//! Beside the folder of the program (of a backup: beside the backup, so that a restore does not
+//! read it) lies a folder with the original files at their relative paths and a manifest. The
+//! manifest names every changed and every new file with a checksum of what was written: a file
+//! that somebody has changed since is neither restored nor deleted.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use anyhow::{Context, bail};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::output;
+
+/// What is appended to the name of the program's folder.
+const SUFFIX: &str = ".joulepath-undo";
+/// The manifest in it.
+const MANIFEST: &str = "manifest.json";
+/// The folder of the originals in it.
+const ORIGINALS: &str = "files";
+/// The form of the manifest.
+const VERSION: u32 = 1;
+
+/// A file that is written in place.
+pub struct Change<'a> {
+    /// Where.
+    pub path: PathBuf,
+    /// What it holds now; `None` where it is new.
+    pub before: Option<Vec<u8>>,
+    /// What is written.
+    pub after: Cow<'a, [u8]>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Manifest {
+    version: u32,
+    files: Vec<Entry>,
+    /// Folders that were made for new files, the outer ones first.
+    folders: Vec<String>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    /// Below the folder of the program, with `/`.
+    path: String,
+    change: Kind,
+    /// Checksum of what was written.
+    sha256: String,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Changed,
+    Added,
+}
+
+/// Keeps what is needed to take changes of files below `root` back; returns the folder of it.
+/// Nothing of the program is touched.
+///
+/// # Errors
+/// The folder or a new file is there already, a file lies outside of `root`, or nothing can be
+/// written.
+pub fn keep(root: &Path, changes: &[Change<'_>]) -> anyhow::Result<PathBuf> {
+    let root = real(root)?;
+    let folder = beside(&root)?;
+    if folder.exists() {
+        bail!(
+            "'{}' holds the originals of an earlier --in-place: take that back first (joulepath \
+             optimize {} --undo), or move the folder away to keep its changes",
+            folder.display(),
+            root.display()
+        );
+    }
+    let mut files = Vec::new();
+    let mut folders = Vec::new();
+    let mut kept: Vec<(PathBuf, &[u8])> = Vec::new();
+    for change in changes {
+        let path = below(&root, &change.path)?;
+        let kind = if let Some(before) = &change.before {
+            kept.push((Path::new(ORIGINALS).join(&path), before));
+            Kind::Changed
+        } else {
+            if change.path.exists() {
+                bail!(
+                    "'{}' exists already and would be overwritten: move it away first, or use --out",
+                    change.path.display()
+                );
+            }
+            made(&root, &path, &mut folders);
+            Kind::Added
+        };
+        files.push(Entry { path: shown(&path), change: kind, sha256: checksum(&change.after) });
+    }
+    let manifest = serde_json::to_vec_pretty(&Manifest { version: VERSION, files, folders })?;
+    kept.push((MANIFEST.into(), &manifest));
+    output::write_folder(&folder, &kept)?;
+    Ok(folder)
+}
+
+/// Takes the changes of the program at `path` back; returns what became of its files, in words.
+///
+/// # Errors
+/// There is nothing to take back, or a file was changed since.
+pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
+    let absolute = real(path)?;
+    let found = absolute.ancestors().find_map(|root| {
+        let folder = beside(root).ok()?;
+        folder.join(MANIFEST).is_file().then(|| (root.to_owned(), folder))
+    });
+    let Some((root, folder)) = found else {
+        bail!(
+            "nothing to undo: no folder '….{}' lies beside '{}' or a folder above it; name the \
+             path that --in-place was given",
+            SUFFIX.trim_start_matches('.'),
+            path.display()
+        );
+    };
+    let manifest = read(&folder)?;
+    let original = |entry: &Entry| {
+        let path = folder.join(ORIGINALS).join(&entry.path);
+        fs::read(&path).with_context(|| format!("cannot read the original '{}'", path.display()))
+    };
+    // Nothing is touched before all can be.
+    let (mut restored, mut deleted, mut done) = (Vec::new(), Vec::new(), Vec::new());
+    for entry in &manifest.files {
+        let path = root.join(&entry.path);
+        let now = fs::read(&path).ok();
+        let as_written = now.as_ref().is_some_and(|now| checksum(now) == entry.sha256);
+        match entry.change {
+            Kind::Changed => {
+                let before = original(entry)?;
+                if now.as_ref() == Some(&before) {
+                    continue;
+                }
+                if !as_written {
+                    return Err(changed_since(&path, &folder));
+                }
+                restored.push(output::stage(&path, &before)?);
+                done.push(format!("restored {}", path.display()));
+            }
+            Kind::Added if now.is_none() => {}
+            Kind::Added if as_written => {
+                done.push(format!("deleted {}", path.display()));
+                deleted.push(path);
+            }
+            Kind::Added => return Err(changed_since(&path, &folder)),
+        }
+    }
+    restored.into_iter().try_for_each(output::Staged::put)?;
+    for path in deleted {
+        fs::remove_file(&path).with_context(|| format!("cannot delete '{}'", path.display()))?;
+    }
+    for made in manifest.folders.iter().rev() {
+        // Somebody may have put a file of their own into it.
+        let _ = fs::remove_dir(root.join(made));
+    }
+    fs::remove_dir_all(&folder).with_context(|| format!("cannot delete '{}'", folder.display()))?;
+    done.push(format!("deleted {}", folder.display()));
+    Ok(done)
+}
+
+fn changed_since(path: &Path, folder: &Path) -> anyhow::Error {
+    anyhow::anyhow!(
+        "'{}' was changed since --in-place wrote it, so nothing is undone: move that file away and \
+         put back what --in-place wrote, or copy the originals from '{}' yourself",
+        path.display(),
+        folder.join(ORIGINALS).display()
+    )
+}
+
+fn read(folder: &Path) -> anyhow::Result<Manifest> {
+    let path = folder.join(MANIFEST);
+    let unreadable = || {
+        format!(
+            "'{}' is not as --in-place wrote it: copy the originals from '{}' yourself",
+            path.display(),
+            folder.join(ORIGINALS).display()
+        )
+    };
+    let manifest: Manifest = serde_json::from_slice(&fs::read(&path).with_context(unreadable)?)
+        .with_context(unreadable)?;
+    let plain = |path: &String| {
+        Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
+    };
+    let inside = manifest.files.iter().map(|entry| &entry.path).chain(&manifest.folders).all(plain);
+    if manifest.version != VERSION || !inside {
+        bail!(unreadable());
+    }
+    Ok(manifest)
+}
+
+/// The folder beside the program's.
+fn beside(root: &Path) -> anyhow::Result<PathBuf> {
+    let name = root.file_name().with_context(|| {
+        format!("'{}' has no folder beside it: move the program into a folder", root.display())
+    })?;
+    let mut name = name.to_owned();
+    name.push(SUFFIX);
+    Ok(root.with_file_name(name))
+}
+
+/// The path of a file below the folder of the program. The file may be a link.
+fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    // A folder that is not there yet is made by that name.
+    let known = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let rest = folder.strip_prefix(known).unwrap_or(Path::new(""));
+    let absolute = real(known)?.join(rest).join(path.file_name().unwrap_or_default());
+    let relative = absolute.strip_prefix(root).with_context(|| {
+        format!(
+            "'{}' does not lie below '{}': name the folder that holds the whole program",
+            path.display(),
+            root.display()
+        )
+    })?;
+    Ok(relative.to_owned())
+}
+
+/// Adds the folders that a new file needs and that are not there.
+fn made(root: &Path, path: &Path, folders: &mut Vec<String>) {
+    let needed: Vec<&Path> = path.ancestors().skip(1).collect();
+    for folder in needed.into_iter().rev() {
+        let name = shown(folder);
+        if !name.is_empty() && !root.join(folder).exists() && !folders.contains(&name) {
+            folders.push(name);
+        }
+    }
+}
+
+fn real(path: &Path) -> anyhow::Result<PathBuf> {
+    path.canonicalize().with_context(|| format!("cannot find '{}'; check the path", path.display()))
+}
+
+fn shown(path: &Path) -> String {
+    let parts: Vec<_> = path.components().map(|part| part.as_os_str().to_string_lossy()).collect();
+    parts.join("/")
+}
+
+fn checksum(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
