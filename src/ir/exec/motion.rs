@@ -1,7 +1,7 @@
 //! Movement instructions: from arguments to a [`Movement`].
 
 use super::super::convert;
-use super::super::hir::{Arg, ArgKind, Expr, ExprKind, Stmt};
+use super::super::hir::{Arg, Expr, ExprKind, Stmt};
 use super::super::instructions::{MoveForm, MoveSignature};
 use super::super::movement::{Argument, Movement, Stop, Target, Unresolved, Zone};
 use super::super::processes;
