@@ -26,6 +26,7 @@ pub mod signals;
 pub mod simulate;
 pub mod standstill;
 pub mod undo;
+mod written;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;

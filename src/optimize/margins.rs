@@ -4,10 +4,10 @@ use super::check::Check;
 
 /// Margin to acceleration and torque limits at first: what a stream between nodes needs.
 const FIRST_MARGIN: f64 = 0.98;
-/// Margin to speed ceilings at first.
-const FIRST_SPEED_MARGIN: f64 = 0.995;
-/// Reach of lower ceilings at first, m.
-const FIRST_REACH: f64 = 0.006;
+/// Margin to speed ceilings where they were exceeded.
+const SPEED_MARGIN: f64 = 0.995;
+/// Reach of lower ceilings at first, m: half of a [`LONGEST_STEP`](super::run_plant::LONGEST_STEP).
+const FIRST_REACH: f64 = 0.002;
 /// Placing of the points at first, share of the tolerance of the path.
 const FIRST_SPACING: f64 = 0.1;
 /// Share of the allowed distance from the path that the polishing may use at first.
@@ -15,6 +15,8 @@ const FIRST_DISTANCE: f64 = 0.95;
 
 /// Room to what the cell keeps free at first, m: a motion is looked at in steps.
 const FIRST_ROOM: f64 = 0.005;
+/// Factor on the tolerance of the points' placing.
+const CLOSER: f64 = 0.7;
 /// What is asked for beyond what is missing.
 const FURTHER: f64 = 1.002;
 
@@ -41,7 +43,7 @@ impl Margins {
     pub(super) fn first(tolerance: f64) -> Margins {
         Margins {
             load: FIRST_MARGIN,
-            speed: FIRST_SPEED_MARGIN,
+            speed: 1.0,
             reach: FIRST_REACH,
             spacing: FIRST_SPACING * tolerance,
             distance: FIRST_DISTANCE,
@@ -72,7 +74,7 @@ impl Margins {
             self.load *= FIRST_MARGIN / load;
         }
         if check.velocity > 1.0 {
-            self.speed *= FIRST_SPEED_MARGIN / check.velocity;
+            self.speed *= SPEED_MARGIN / check.velocity;
         }
         if check.tcp_speed > 1.0 {
             self.reach *= 2.0;
@@ -80,7 +82,10 @@ impl Margins {
         self.room += check.intrusion_m.max(0.0);
         if check.deviation > 1.0 {
             self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
-            self.spacing *= 0.7;
+        }
+        // Between points far apart, speed and path ripple.
+        if check.tcp_speed > 1.0 || check.deviation > 1.0 {
+            self.spacing *= CLOSER;
         }
     }
 

@@ -1,6 +1,7 @@
 //! The optimiser: timing on a fixed path and the streams that realise it.
 
 pub mod allowed;
+mod attempt;
 mod banded;
 mod banded_program;
 pub mod check;

@@ -1,7 +1,7 @@
 //! What the optimiser of a stream asks of the robot, and what a realised stream costs there.
 
 use super::path_energy::{EnergyModel, EnergyParts};
-use crate::motion::stream::{DOF, Joints, Stream};
+use crate::motion::stream::{DOF, Joints, Piece, Stream};
 
 /// Shares of the limits of a path.
 pub type PathShares = [f64; 4];
@@ -40,6 +40,11 @@ pub trait Plant {
         PathShares::default()
     }
 
+    /// Number of steps on a piece in which it is judged, even.
+    fn steps(&self, _piece: &Piece) -> usize {
+        LEAST_STEPS
+    }
+
     /// Torques with dry friction, Nm; none at rest.
     fn full_torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
         let (smooth, dry) = (self.torque(q, qd, qdd), self.dry_friction());
@@ -60,8 +65,8 @@ pub(super) fn direction(velocity: f64) -> f64 {
 pub(super) const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
 /// Room that is kept to the limits.
 pub(super) const ROOM: f64 = 1e-3;
-/// Steps on a piece at which it is judged; even, for Simpson's rule.
-const STEPS: usize = 8;
+/// Steps on a piece in which it is judged, at least; even, for Simpson's rule.
+pub(super) const LEAST_STEPS: usize = 8;
 
 /// What the motion that a stream is realised as costs, and how near it comes to the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,10 +87,11 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     let sum = &mut out.energy;
     let mut place = 0;
     for piece in stream.pieces() {
-        let step = piece.length / STEPS as f64;
-        for i in 0..=STEPS {
+        let steps = plant.steps(&piece);
+        let step = piece.length / steps as f64;
+        for i in 0..=steps {
             let (q, qd, qdd) = piece.at(i as f64 * step);
-            let ends = i == 0 || i == STEPS;
+            let ends = i == 0 || i == steps;
             let weight = if ends { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
             let seconds = weight / 3.0 * step;
             let smooth = plant.torque(&q, &qd, &qdd);

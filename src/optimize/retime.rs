@@ -5,6 +5,7 @@
 //! tightens the margins and is tried again.
 
 use super::allowed::{Ceiling, Loads, speeds};
+use super::attempt::{Attempt, Intended};
 use super::check::{Check, Room, check};
 use super::corridor::{Corridor, JOINT_TOLERANCE, LINE_TOLERANCE, levers};
 use super::cost::Cost;
@@ -15,19 +16,14 @@ use super::margins::Margins;
 use super::path_energy::EnergyModel;
 use super::path_grid;
 use super::reason::Reason;
-use super::run_plant::RunPlant;
-use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_limits::StreamLimits;
-use super::stream_polish::{Corridor as PolishCorridor, polish_stream};
-use super::stream_reference::Reference;
-use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals, rounded_points};
-use super::stream_spacing::{Spacing, adaptive_intervals};
+use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
 use crate::dynamics::potential_energy;
 use crate::energy::power::motion_energy;
 use crate::energy::{EnergyParts, account};
-use crate::kinematics::{Body, fk};
+use crate::kinematics::Body;
 use crate::motion::sampling::{Loaded, SpeedCap};
-use crate::motion::stream::{LARGEST_ZONE, Stream};
+use crate::motion::stream::Stream;
 use crate::motion::timed::TimedMotion;
 use crate::motion::timeline::Run;
 use crate::motion::timing::grid::PathGrid;
@@ -95,22 +91,14 @@ pub enum PathUse {
     Left,
 }
 
-/// Points of a stream, at least.
-const LEAST_POINTS: usize = 2;
 /// Intervals of the grid besides those of zones.
 const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
 const ATTEMPTS: usize = 8;
 /// Time over which the points of a stream smooth its speed to either side, s.
 const SHAPING_TIME: f64 = 0.04;
-/// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
-const EASING: f64 = 10.0;
 /// Rounding between two integrations of the same energy, relative.
 const BOUND_ROUNDING: f64 = 1e-5;
-/// Share of the reach of the zones that two points may use up.
-const ZONE_SHARE: f64 = 0.95;
-/// The share that is asked for where they would not keep that: they are placed by other rules too.
-const CLOSER: f64 = 0.6;
 /// Distance from the path that costs the polishing a share of the energy, in tolerances of it.
 const CORRIDOR: f64 = 0.3;
 /// Share of a limit beyond which an attempt is begun anew instead of polished on.
@@ -123,20 +111,6 @@ const HOPELESS: f64 = 0.05;
 const SLOW_STEP: f64 = 0.02;
 /// Steps of the search for the time of the fastest stream, share of the ramp time.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
-
-/// A realised stream with its faults.
-struct Attempt {
-    stream: Stream,
-    check: Check,
-    /// What more polishing may begin with.
-    intended: Intended,
-}
-
-/// A motion on the path and a stream near it.
-struct Intended {
-    reference: Reference,
-    stream: Stream,
-}
 
 /// The stream of a run.
 ///
@@ -220,15 +194,15 @@ pub const SLOWEST: f64 = 10.0;
 
 pub(super) struct Work<'a> {
     pub(super) task: &'a Task<'a>,
-    path: &'a JointPath,
+    pub(super) path: &'a JointPath,
     pub(super) corridor: Corridor,
     pub(super) body: Option<Body<'a>>,
-    limits: StreamLimits,
+    pub(super) limits: StreamLimits,
     /// What the robot takes.
     pub(super) electrical: EnergyModel,
     /// What is minimised.
-    model: EnergyModel,
-    lever: Joints,
+    pub(super) model: EnergyModel,
+    pub(super) lever: Joints,
 }
 
 impl<'a> Work<'a> {
@@ -306,8 +280,13 @@ impl<'a> Work<'a> {
         margins: &Margins,
         bound: Option<&EnergyBound>,
     ) -> Result<Intended, Reason> {
-        let (grid, limits) = self.grid(margins)?;
-        let fast = fastest_profile(&grid, &limits)?;
+        let (mut grid, limits) = self.grid(margins)?;
+        let mut fast = fastest_profile(&grid, &limits)?;
+        if fast.duration() > budget {
+            // Too short a time for a shaped motion: polishing shapes it.
+            (grid, _) = self.bare_grid(margins)?;
+            fast = fastest_profile(&grid, &limits)?;
+        }
         // The relaxation of another cost says nothing of this one.
         let bound = bound.filter(|_| self.model == self.electrical);
         let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
@@ -387,7 +366,7 @@ impl<'a> Work<'a> {
     }
 
     /// What a stream does as the controller will realise it.
-    fn check(&self, stream: &Stream) -> Check {
+    pub(super) fn check(&self, stream: &Stream) -> Check {
         let Task { model, run, .. } = self.task;
         let tool = &run.legs[0].tool;
         let room = Room::Corridor(&self.corridor);
@@ -395,7 +374,7 @@ impl<'a> Work<'a> {
     }
 
     /// How far the motion may leave the path somewhere, m, before the polishing minds.
-    fn looseness(&self) -> f64 {
+    pub(super) fn looseness(&self) -> f64 {
         let moves = self.task.run.moves.iter();
         let free = moves.map(|record| self.task.freedom.of(&record.movement)).fold(0.0, f64::max);
         if free > 0.0 { free } else { CORRIDOR * self.tolerance() }
@@ -451,114 +430,6 @@ impl<'a> Work<'a> {
         Ok((grid, limits))
     }
 
-    /// Where the margins leave no room on the path, the motion of the run itself is what polishing
-    /// begins with: it is within all limits and takes this time.
-    fn as_before(
-        &self,
-        reason: Reason,
-        budget: f64,
-        margins: &Margins,
-    ) -> Result<Intended, Reason> {
-        match self.task.run.motions.as_slice() {
-            [(_, motion)]
-                if reason == Reason::NoSaving && motion.duration() <= budget + quantum() =>
-            {
-                let state = |t: f64| (motion.at(t).q, motion.at(t).qd);
-                self.intend_near(motion.duration(), &state, budget, margins)
-            }
-            _ => Err(reason),
-        }
-    }
-
-    /// A stream of this duration fitted to a profile.
-    fn intend(
-        &self,
-        profile: &Profile,
-        duration: f64,
-        margins: &Margins,
-    ) -> Result<Intended, Reason> {
-        let end = profile.duration();
-        let motion = |t: f64| {
-            let (s, v, _) = if t < end { profile.at(t) } else { (self.path.length(), 0.0, 0.0) };
-            let point = self.path.eval(s);
-            (point.q, point.q1.map(|x| x * v))
-        };
-        self.intend_near(end, &motion, duration, margins)
-    }
-
-    /// A stream of this duration fitted to a motion that takes `time`, both in s.
-    fn intend_near(
-        &self,
-        time: f64,
-        motion: &dyn Fn(f64) -> (Joints, Joints),
-        duration: f64,
-        margins: &Margins,
-    ) -> Result<Intended, Reason> {
-        let failed = |why: &str| Reason::NoStream(why.to_owned());
-        let samples = (time / REFERENCE_STEP).ceil().max(8.0) as usize;
-        let reference =
-            Reference::sample(time, samples, motion).map_err(|error| failed(&error.to_string()))?;
-        let mut spacing = Spacing {
-            shortest: self.task.spacing_s,
-            longest: f64::INFINITY,
-            tolerance: margins.spacing,
-            lever: self.lever,
-        };
-        let mut intervals = adaptive_intervals(&reference, duration, &spacing);
-        let reach = self.zone_time(&reference, duration);
-        if intervals.iter().any(|interval| *interval > ZONE_SHARE * reach) {
-            spacing.longest = CLOSER * reach;
-            intervals = adaptive_intervals(&reference, duration, &spacing);
-        }
-        // A stop after one point alone comes without settling in the controller's law.
-        if intervals.len() < LEAST_POINTS {
-            let interval = duration / LEAST_POINTS as f64;
-            if interval < self.task.spacing_s {
-                return Err(failed("it is too short for two points"));
-            }
-            intervals = vec![interval; LEAST_POINTS];
-        }
-        let intervals = rounded_intervals(&intervals, duration);
-        let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
-            .map_err(|error| failed(&error.to_string()))?;
-        match fit {
-            StreamFit::Fitted(fitted) => Ok(Intended { reference, stream: fitted.stream }),
-            StreamFit::TooFast { .. } => {
-                Err(failed("speed, acceleration and jerk leave no stream in this time"))
-            }
-            StreamFit::Failed => Err(failed("the solver found no stream")),
-        }
-    }
-
-    /// The stream polished, rounded as it will be emitted and checked.
-    fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
-        let Intended { reference, stream } = intended;
-        let plant =
-            RunPlant { work: self, margins, ceilings: self.corridor.eased(margins.reach, EASING) };
-        let corridor = PolishCorridor { tolerance: self.looseness(), lever: self.lever };
-        let polished =
-            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
-                .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let rounded = rounded_points(&polished.stream)
-            .map_err(|error| Reason::NoStream(error.to_string()))?;
-        let check = self.check(&rounded);
-        let intended = Intended { reference, stream: polished.stream };
-        Ok(Attempt { stream: rounded, check, intended })
-    }
-
-    /// Time in which the TCP goes no farther than the zones of two points reach, s.
-    fn zone_time(&self, reference: &Reference, duration: f64) -> f64 {
-        let tool = &self.task.run.legs[0].tool;
-        let tcp = |t: f64| tool.pose(&fk(self.task.model, &reference.at(t).0)).translation.vector;
-        let n = (reference.duration() / REFERENCE_STEP).ceil().max(1.0) as usize;
-        let step = reference.duration() / n as f64;
-        let farthest = (0..n)
-            .map(|i| (tcp((i + 1) as f64 * step) - tcp(i as f64 * step)).norm())
-            .fold(0.0, f64::max);
-        let speed = farthest / step * (reference.duration() / duration);
-        2.0 * LARGEST_ZONE / speed
-    }
-
     /// Energy of a stream's motion, settling not included.
     fn moving(&self, stream: &Stream) -> EnergyParts {
         let motion = TimedMotion::Stream(stream.clone());
@@ -589,9 +460,6 @@ impl<'a> Work<'a> {
         }
     }
 }
-
-/// Step of the samples of an intended motion, s.
-const REFERENCE_STEP: f64 = 0.005;
 
 pub(super) fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
     time_optimal(grid, limits)

@@ -2,11 +2,16 @@
 
 use super::keep_out;
 use super::margins::Margins;
-use super::plant::{PathShares, Plant};
+use super::plant::{LEAST_STEPS, PathShares, Plant};
 use super::retime::Work;
 use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use crate::kinematics::fk;
+use crate::motion::stream::Piece;
 use crate::path::joint_path::{DOF, Joints};
+
+/// Longest way of the TCP between two places at which a motion is judged, m: the ceilings of its
+/// speed have steps.
+pub(super) const LONGEST_STEP: f64 = 0.004;
 
 /// The robot with its load, as the polishing of a stream sees it.
 pub(super) struct RunPlant<'a> {
@@ -33,6 +38,15 @@ impl Plant for RunPlant<'_> {
 
     fn torque_limit(&self) -> Joints {
         self.work.corridor.allowed.loads.torque.map(|x| x * self.margins.torque())
+    }
+
+    fn steps(&self, piece: &Piece) -> usize {
+        let speed = |qd: &Joints| -> f64 {
+            let tcp = self.work.lever.iter().zip(qd).map(|(lever, v)| (lever * v).powi(2));
+            tcp.sum::<f64>().sqrt()
+        };
+        let way = speed(&piece.qd).max(speed(&piece.at(piece.length).1)) * piece.length;
+        LEAST_STEPS.max(2 * (0.5 * way / LONGEST_STEP).ceil() as usize)
     }
 
     fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {

@@ -78,20 +78,8 @@ const ROUND_POWER: f64 = 0.02;
 const ROUND_SPEED: f64 = 0.02;
 /// Peak power below which a stream is taken to need no rounding finer, W.
 const LEAST_POWER: f64 = 1.0;
-/// Simpson's rule on a piece: share of its length and weight.
-const SIMPSON: [(f64, f64); 3] = [(0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0)];
-/// The same with places between, at which limits are looked at.
-const DENSE: [(f64, f64); 9] = [
-    (0.0, 1.0 / 6.0),
-    (0.125, 0.0),
-    (0.25, 0.0),
-    (0.375, 0.0),
-    (0.5, 4.0 / 6.0),
-    (0.625, 0.0),
-    (0.75, 0.0),
-    (0.875, 0.0),
-    (1.0, 1.0 / 6.0),
-];
+/// Steps of Simpson's rule on a piece.
+const SIMPSON: usize = 2;
 /// Parts of a proposed step that are tried.
 const PARTS: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
@@ -204,7 +192,7 @@ struct Linearised {
 
 impl<P: Plant> Polish<'_, P> {
     fn polished(&self, best: Judged, status: PolishStatus) -> Polished {
-        let places = places(&best.stream, &SIMPSON);
+        let places = places(&best.stream, |_| SIMPSON);
         Polished {
             status,
             realised: best.realised,
@@ -216,7 +204,7 @@ impl<P: Plant> Polish<'_, P> {
     fn judge(&self, stream: Stream) -> Judged {
         let realised = realise(&stream, self.plant, self.model);
         let price = self.deviation_price();
-        let places = places(&stream, &SIMPSON);
+        let places = places(&stream, |_| SIMPSON);
         let distance: f64 =
             places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
         let merit = realised.energy.total() / self.unit
@@ -313,7 +301,7 @@ impl<P: Plant> Polish<'_, P> {
         };
         let mut near = 0;
         let limit = self.plant.torque_limit();
-        for place in places(&best.stream, &DENSE) {
+        for place in places(&best.stream, |piece| self.plant.steps(piece)) {
             let mut lin = self.shares(&place, &mut near);
             let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
             if place.seconds > 0.0 || loaded || lin.path.iter().any(|share| *share > NEAR) {
@@ -480,19 +468,26 @@ struct Place {
     qdd: Joints,
 }
 
-/// The places at which a stream is judged and linearised.
-fn places(stream: &Stream, rule: &[(f64, f64)]) -> Vec<Place> {
-    let pieces = stream.pieces().enumerate();
+/// Places of a stream, an even number of steps apart on each piece, with the weights of Simpson's
+/// rule at the ends and the middle of pieces.
+fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
     let of = |(index, piece): (usize, Piece)| {
-        let rule = rule.iter();
-        rule.map(move |(share, weight)| {
-            let tau = share * piece.length;
-            let (q, qd, qdd) = piece.at(tau);
-            let seconds = weight * piece.length;
-            Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
-        })
+        let steps = steps(&piece);
+        (0..=steps)
+            .map(|i| {
+                let tau = piece.length * i as f64 / steps as f64;
+                let (q, qd, qdd) = piece.at(tau);
+                let weight = match 2 * i {
+                    n if n == steps => 4.0 / 6.0,
+                    n if n == 0 || n == 2 * steps => 1.0 / 6.0,
+                    _ => 0.0,
+                };
+                let seconds = weight * piece.length;
+                Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
+            })
+            .collect::<Vec<Place>>()
     };
-    pieces.flat_map(of).collect()
+    stream.pieces().enumerate().flat_map(of).collect()
 }
 
 /// What a variable does at a place, per unit of it.
@@ -530,7 +525,7 @@ fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
         let torque = plant.full_torque(&place.q, &place.qd, &place.qdd);
         (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
     };
-    places(stream, &SIMPSON).iter().map(power).fold(0.0, f64::max)
+    places(stream, |_| SIMPSON).iter().map(power).fold(0.0, f64::max)
 }
 
 /// The largest speed of a joint, rad/s.

@@ -1,0 +1,177 @@
+//! Where a changed program goes: into a folder, or in place of the original.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+
+use super::common::Job;
+use super::{output, undo};
+use crate::retrofit::{OutputFile, OutputKind, Retrofit};
+
+/// The backup, if the command line names the whole of it.
+pub(super) fn whole_backup<'j>(paths: &[PathBuf], job: &'j Job) -> Option<&'j Path> {
+    let [path] = paths else { return None };
+    let [(root, _)] = job.input.backups.as_slice() else { return None };
+    (path.canonicalize().ok()? == *root).then_some(root.as_path())
+}
+
+/// The folder of the program: that of its backup, or the deepest one that holds all that is named.
+fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
+    let mut shared: Option<PathBuf> = job.input.backups.first().map(|(root, _)| root.clone());
+    for path in paths {
+        let mut folder =
+            path.canonicalize().with_context(|| format!("cannot find '{}'", path.display()))?;
+        if !folder.is_dir() {
+            folder.pop();
+        }
+        let mut common = shared.unwrap_or_else(|| folder.clone());
+        while !folder.starts_with(&common) && common.pop() {}
+        shared = Some(common);
+    }
+    shared.context("no file or folder given")
+}
+
+/// The files of a backup that are not among the outputs, with their paths below it.
+fn rest_of_backup(
+    root: &Path,
+    out: &Path,
+    result: &Retrofit,
+) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
+    let known: BTreeSet<PathBuf> =
+        result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
+    let mut rest = Vec::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let failed = || format!("cannot read the backup's '{}'", folder.display());
+        for entry in std::fs::read_dir(&folder).with_context(failed)? {
+            let path = entry.with_context(failed)?.path();
+            let kind = std::fs::symlink_metadata(&path).with_context(failed)?;
+            let relative = path.strip_prefix(root).unwrap_or(&path).to_owned();
+            if kind.is_dir() && path != out {
+                folders.push(path);
+            } else if kind.is_file() && !known.contains(&relative) {
+                let bytes = std::fs::read(&path)
+                    .with_context(|| format!("cannot read '{}'", path.display()))?;
+                rest.push((relative, bytes));
+            }
+        }
+    }
+    rest.sort();
+    Ok(rest)
+}
+
+/// The complete program below a folder, of a backup all of it.
+pub(super) fn write_folder(
+    folder: &Path,
+    job: &Job,
+    result: &Retrofit,
+    backup: Option<&Path>,
+) -> anyhow::Result<Vec<String>> {
+    let real = |path: &Path| path.canonicalize().ok();
+    for file in &result.outputs {
+        let path = folder.join(&file.path);
+        let target = real(&path);
+        if target.is_some()
+            && job.files.iter().any(|source| real(Path::new(&source.file.path)) == target)
+        {
+            bail!(
+                "'{}' is a file of the program itself; name another folder, or give --in-place, \
+                 which keeps the originals",
+                path.display()
+            );
+        }
+    }
+    let stored: Vec<(PathBuf, Cow<'_, [u8]>)> =
+        new_first(result).map(|file| (PathBuf::from(&file.path), stored(job, file))).collect();
+    let rest = match backup {
+        Some(root) => {
+            let out = std::path::absolute(folder)?;
+            rest_of_backup(root, &real(&out).unwrap_or(out), result)?
+        }
+        None => Vec::new(),
+    };
+    let files = stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref()));
+    let unchanged = rest.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
+    output::write_folder(folder, &files.chain(unchanged).collect::<Vec<_>>())?;
+    let written = result.outputs.iter().map(|file| folder.join(&file.path));
+    let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
+    Ok(written.map(|path| path.display().to_string()).collect())
+}
+
+/// New files before those that call them: a write that breaks off leaves a program that works.
+fn new_first(result: &Retrofit) -> impl Iterator<Item = &OutputFile> {
+    let of =
+        |new: bool| result.outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
+    of(true).chain(of(false))
+}
+
+/// The changed files in place of the original ones, which are kept; new files beside.
+pub(super) fn write_in_place(
+    paths: &[PathBuf],
+    job: &Job,
+    result: &Retrofit,
+) -> anyhow::Result<Vec<String>> {
+    let mut changes = Vec::new();
+    for file in new_first(result).filter(|file| file.kind != OutputKind::Unchanged) {
+        let path = place(job, file);
+        let before = if file.kind == OutputKind::New {
+            None
+        } else {
+            let bytes = std::fs::read(&path);
+            Some(bytes.with_context(|| format!("cannot read '{}'", path.display()))?)
+        };
+        changes.push(undo::Change { path, before, after: stored(job, file) });
+    }
+    if changes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let kept = undo::keep(&program_folder(paths, job)?, &changes)?;
+    let staged: anyhow::Result<Vec<output::Staged>> =
+        changes.iter().map(|change| output::stage(&change.path, &change.after)).collect();
+    let staged = staged.inspect_err(|_| {
+        // Nothing is changed, so there is nothing to take back.
+        let _ = std::fs::remove_dir_all(&kept);
+    })?;
+    staged.into_iter().try_for_each(output::Staged::put)?;
+    let paths = std::iter::once(&kept).chain(changes.iter().map(|change| &change.path));
+    Ok(paths.map(|path| path.display().to_string()).collect())
+}
+
+/// The bytes of an output in the encoding of the file that it stands for.
+fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
+    match file.input.and_then(|i| job.files.get(i)) {
+        Some(source) => source.file.stored(&file.bytes),
+        None => Cow::Borrowed(&file.bytes),
+    }
+}
+
+/// Path and bytes of the file of the input that an output stands for.
+pub(super) fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+    match (file.kind, file.input) {
+        (OutputKind::New, _) => None,
+        (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
+        (_, None) => {
+            let listing = job.input.listings.iter().find(|l| l.relative == file.path);
+            let listing = listing.map(|l| (l.path.as_str(), l.bytes.as_slice()));
+            let information = job.input.information.iter().find(|i| i.relative == file.path);
+            listing.or_else(|| information.map(|i| (i.path.as_str(), i.bytes.as_slice())))
+        }
+    }
+}
+
+/// Where an output lies in the user's own tree.
+fn place(job: &Job, file: &OutputFile) -> PathBuf {
+    if let Some((path, _)) = original(job, file) {
+        return PathBuf::from(path);
+    }
+    let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    // A new file lies beside one of the same folder, others where the relative paths start.
+    let beside = job.files.iter().find(|s| folder(&s.relative) == folder(&file.path));
+    if let (Some(source), Some(name)) = (beside, Path::new(&file.path).file_name()) {
+        return folder(&source.file.path).join(name);
+    }
+    let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
+    PathBuf::from(root.unwrap_or_default()).join(&file.path)
+}
