@@ -11,7 +11,9 @@ const MOST_SHARINGS: usize = 4;
 
 /// A stream in the run's share of the cycle; where there is none, in its time before.
 pub(super) fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
-    retime(task, goal).or_else(|_| retime(task, Goal::Within(task.run.duration())))
+    let before = Goal::Within(task.run.duration());
+    let outcome = retime(task, goal);
+    if goal == before { outcome } else { outcome.or_else(|_| retime(task, before)) }
 }
 
 /// What a run takes with its outcome: time, s, and energy of the motion, J.
