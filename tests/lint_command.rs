@@ -9,6 +9,7 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
+const UNSAFE: [&str; 3] = ["--unsafe-fixes", "--select", "EW103"];
 
 fn joulepath(args: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).current_dir(folder).output().unwrap()
@@ -101,23 +102,27 @@ fn a_baseline_takes_back_what_is_known() {
 
 #[test]
 fn fixes_are_shown_and_written() {
-    let folder = folder("EW102_stop_in_line.mod");
+    let folder = folder("EW103_tiny_zone.mod");
     let path = folder.path().join("Cell.mod");
     let before = fs::read(&path).unwrap();
-    let output = joulepath(&[&["lint", ".", "--diff"], &ROBOT[..]].concat(), folder.path());
+    let output =
+        joulepath(&[&["lint", ".", "--diff"], &UNSAFE[..], &ROBOT].concat(), folder.path());
     let diff = text(&output.stdout);
     assert_eq!(diff.lines().filter(|line| line.starts_with("-  ")).count(), 1, "{diff}");
-    assert!(diff.contains("v500,z20,tGripper"), "{diff}");
+    assert!(diff.contains("+        MoveJ Offs(pAUp,-50,450,100),v1500,z50,tGripper"), "{diff}");
     assert_eq!(fs::read(&path).unwrap(), before);
-    let output = joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    // What has to be looked at first is not applied by --fix alone.
+    joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    assert_eq!(fs::read(&path).unwrap(), before);
+    let output = joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
     assert!(text(&output.stderr).contains("1 fixes applied"), "{}", text(&output.stderr));
     let after = fs::read(&path).unwrap();
     assert_ne!(after, before);
-    joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
     assert_eq!(fs::read(&path).unwrap(), after);
     // Without a robot nothing can be tried.
     fs::write(&path, &before).unwrap();
-    joulepath(&["lint", ".", "--fix", "--unsafe-fixes"], folder.path());
+    joulepath(&[&["lint", "."], &UNSAFE[..]].concat(), folder.path());
     assert_eq!(fs::read(&path).unwrap(), before);
 }
 
@@ -125,12 +130,12 @@ fn fixes_are_shown_and_written() {
 #[test]
 fn protected_files_stay_and_links_stay_links() {
     use std::os::unix::fs::{PermissionsExt, symlink};
-    let folder = folder("EW102_stop_in_line.mod");
+    let folder = folder("EW103_tiny_zone.mod");
     let path = folder.path().join("Cell.mod");
     let before = fs::read(&path).unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
     let fix = |name: &str| {
-        let output = joulepath(&[&["lint", name, "--fix"], &ROBOT[..]].concat(), folder.path());
+        let output = joulepath(&[&["lint", name], &UNSAFE[..], &ROBOT].concat(), folder.path());
         (output.status.code(), text(&output.stderr))
     };
     let (code, said) = fix("Cell.mod");

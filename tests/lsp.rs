@@ -109,7 +109,7 @@ impl Client {
 fn an_editor_is_served() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Cell 1.mod");
-    let text = fs::read_to_string("fixtures/lint/EW102_stop_in_line.mod").unwrap();
+    let text = fs::read_to_string("fixtures/lint/EW103_tiny_zone.mod").unwrap();
     fs::write(&path, "MODULE Old\nENDMODULE\n").unwrap();
     let uri = format!("file://{}", path.display()).replace(' ', "%20");
     let document = json!({ "uri": uri });
@@ -121,24 +121,24 @@ fn an_editor_is_served() {
     });
     client.tell("textDocument/didOpen", &opened);
     let found = client.told();
-    let in_line = found.iter().find(|it| it["code"] == "EW102").unwrap().clone();
-    assert!(in_line["data"]["saving_j"].as_f64().unwrap() > 1.0, "{in_line}");
-    assert!(in_line["message"].as_str().unwrap().contains(" J "), "{in_line}");
+    let tiny = found.iter().find(|it| it["code"] == "EW103").unwrap().clone();
+    assert!(tiny["data"]["saving_j"].as_f64().unwrap() > 1.0, "{tiny}");
+    assert!(tiny["message"].as_str().unwrap().contains(" J "), "{tiny}");
 
-    let place = in_line["range"]["start"].clone();
+    let place = tiny["range"]["start"].clone();
     let hover =
         client.ask("textDocument/hover", &json!({ "textDocument": document, "position": place }));
     let value = hover["contents"]["value"].as_str().unwrap();
-    assert!(value.contains("**MoveL**") && value.contains(" J, "), "{value}");
+    assert!(value.contains("**MoveJ**") && value.contains(" J, "), "{value}");
 
     let actions = client.ask(
         "textDocument/codeAction",
-        &json!({ "textDocument": document, "range": in_line["range"], "context": {} }),
+        &json!({ "textDocument": document, "range": tiny["range"], "context": {} }),
     );
     let action = &actions.as_array().unwrap()[0];
-    assert_eq!(action["isPreferred"], true, "{action}");
+    assert_eq!(action["isPreferred"], false, "{action}");
     let edit = &action["edit"]["changes"][&uri][0];
-    assert_eq!(edit["newText"], "z20");
+    assert_eq!(edit["newText"], "z50");
 
     // The fix, as an incremental change: nothing of that kind is left.
     let change = json!({
@@ -146,7 +146,7 @@ fn an_editor_is_served() {
         "contentChanges": [{ "range": edit["range"], "text": edit["newText"] }]
     });
     client.tell("textDocument/didChange", &change);
-    assert!(client.told().iter().all(|it| it["code"] != "EW102"));
+    assert!(client.told().iter().all(|it| it["code"] != "EW103"));
     client.tell("textDocument/didClose", &json!({ "textDocument": document }));
     assert!(client.told().is_empty());
     assert_eq!(fs::read_to_string(&path).unwrap(), "MODULE Old\nENDMODULE\n");

@@ -22,7 +22,8 @@ change that saves nothing or whose interval reaches below zero.
 **Fixes** are *safe* where path, order and end points provably stay, else *unsafe*. `--fix` applies
 safe ones, `--unsafe-fixes` both, `--diff` shows what they would do. Each is simulated before and
 after; it is taken back where the cycle does not take less energy, or waits and outputs are not the
-same in the same order at the same places. So fixes need a robot.
+same in the same order at the same places. So fixes need a robot. Where only the person who knows
+the cell can tell waste from a need of the process, a rule offers none.
 
 **Comments** take findings back: `! joulepath: ignore EW101 reason`, at the end of the statement's
 first line or on a line of its own above it.

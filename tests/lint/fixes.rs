@@ -8,6 +8,8 @@ use joulepath::text::SourceFile;
 use crate::plants::plants;
 use crate::{Fixture, fixtures};
 
+const UNNEEDED_STOP: &str = "EW101_unneeded_stop_point.mod";
+
 /// What a cycle takes (J) and does, and where it ends (rad).
 fn cycle(fixture: &Fixture) -> (f64, Vec<String>, Option<[f64; 6]>) {
     let cycles = cycles(&fixture.job());
@@ -84,18 +86,23 @@ fn bytes_that_mean_nothing_stay() {
     }
 }
 
-/// A safe fix changes the zone and no other byte.
+/// A fix of a stop point changes the zone and no other byte.
 #[test]
 fn every_other_byte_stays() {
     let all = fixtures();
-    let fixture = all.iter().find(|it| it.path.ends_with("EW102_stop_in_line.mod")).unwrap();
-    let fixed = fix(&fixture.job(), Applicability::Safe);
+    let mut fixture = all.into_iter().find(|it| it.path.ends_with(UNNEEDED_STOP)).unwrap();
+    fixture.settings.select = vec!["EW101".to_owned()];
+    let fixed = fix(&fixture.job(), Applicability::Unsafe);
     let (old, new) = (&fixture.files[0].bytes, &fixed.files[0].bytes);
     let (old, new) = (String::from_utf8_lossy(old), String::from_utf8_lossy(new));
     let changed: Vec<(&str, &str)> =
         old.lines().zip(new.lines()).filter(|(old, new)| old != new).collect();
-    let [(before, after)] = changed.as_slice() else { panic!("{changed:?}") };
-    assert!(before.contains("v500,fine,tGripper; !~ EW102"), "{before}");
-    assert_eq!(before.replace("v500,fine", "v500,z20"), *after);
-    assert_eq!(old.len() - "fine".len() + "z20".len(), new.len());
+    assert_eq!(old.lines().count(), new.lines().count());
+    assert_eq!(changed.len(), fixed.applied, "{changed:?}");
+    assert!(!changed.is_empty());
+    for (before, after) in changed {
+        assert!(before.ends_with(",fine,tGripper; !~ EW101"), "{before}");
+        let zone = after.split(',').find(|part| part.starts_with('z')).unwrap();
+        assert_eq!(before.replace(",fine,", &format!(",{zone},")), after);
+    }
 }

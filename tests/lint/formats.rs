@@ -14,7 +14,7 @@ use crate::schema::{assert_known, errors};
 #[test]
 fn json_has_the_fields_of_the_contract() {
     let all = fixtures();
-    let fixture = all.iter().find(|it| it.path.ends_with("EW102_stop_in_line.mod")).unwrap();
+    let fixture = all.iter().find(|it| it.path.ends_with("EW103_tiny_zone.mod")).unwrap();
     let value = json::json(&fixture.report(), &fixture.files);
     let finding = &value["findings"][0];
     for key in [
@@ -39,7 +39,7 @@ fn json_has_the_fields_of_the_contract() {
     }
     let edit = &finding["fix"]["edits"][0];
     let (start, end) = (edit["start"].as_u64().unwrap(), edit["end"].as_u64().unwrap());
-    assert_eq!(&fixture.files[0].bytes[start as usize..end as usize], b"fine");
+    assert_eq!(&fixture.files[0].bytes[start as usize..end as usize], b"z1");
     for key in ["findings", "saving_j", "cycle_energy_j", "unresolved"] {
         assert!(value["totals"].get(key).is_some(), "{key}");
     }

@@ -26,8 +26,8 @@
 //! ```
 //!
 //! ## Safety
-//! Without a fix: home may be the only free way between both, and what looks like a way home may
-//! lift a part out of its place.
+//! Without a fix: the way home may be the lift behind a grip, or the only free way between both.
+//! Who leaves it out by hand checks that there is room.
 //!
 //! ## Assumptions
 //! Home is where the first movement of the program goes, if that is a `MoveAbsJ`, or a pose at which

@@ -27,15 +27,15 @@
 //! ```
 //!
 //! ## Safety
-//! Safe: a zone between two pieces of one line does not leave the line. Below 200 mm/s there is no
-//! fix: such lines may be a process, such as drilling, and the stop a part of it.
+//! Without a fix: the stop may belong to a process, as where a hole is drilled in steps.
+//! Somebody has to say that nothing needs it.
 //!
 //! ## Assumptions
 //! Directions that differ by less than 0.3° are one line.
 
 use super::super::context::{Context, Corner};
-use super::super::edits::{fix, replace, zone_within};
-use super::super::finding::{Applicability, Finding};
+use super::super::edits::zone_within;
+use super::super::finding::Finding;
 use super::unneeded_stop_point::{stops_for_movements, with_zone};
 use crate::ir::instructions::MoveForm;
 
@@ -47,8 +47,6 @@ const STRAIGHT: f64 = 0.005;
 const UNTURNED: f64 = 0.002;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
-/// TCP speed from which on a line is travel and no process, m/s.
-const PROCESS_SPEED: f64 = 0.2;
 /// Largest zone that is proposed, m.
 const MOST: f64 = 0.075;
 
@@ -66,14 +64,6 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
         finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
         finding.saving = saving;
-        // Slower lines are processes, such as drilling: a stop may belong to them.
-        let is_travel = |site: &usize| {
-            let speed = context.sites[*site].facts.speed;
-            speed.is_some_and(|speed| speed.tcp >= PROCESS_SPEED)
-        };
-        if next.iter().chain([&index]).all(is_travel) {
-            finding.fix = Some(fix(Applicability::Safe, replace(argument.span, zone.name)));
-        }
         findings.push(finding);
     }
 }

@@ -25,8 +25,8 @@
 //! ```
 //!
 //! ## Safety
-//! Without a fix: being there may have been the purpose (to shake something off, to be seen, to
-//! lift a part clear).
+//! Without a fix: being there may have been the purpose (to lift a part, to shake something off,
+//! to be seen). Somebody has to say that the way was for nothing.
 //!
 //! ## Assumptions
 //! Movements alone have no purpose, unless the procedure does nothing else, or hardly anything else.
