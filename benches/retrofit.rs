@@ -4,11 +4,7 @@
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use joulepath::emit::Layout;
-use joulepath::motion::Options;
-use joulepath::optimize::cost::Cost;
-use joulepath::optimize::freedom::Freedom;
-use joulepath::retrofit::{Budget, Form, Objective, Settings, Source, retrofit};
+use joulepath::retrofit::{Settings, Source, retrofit};
 use joulepath::robot;
 use joulepath::text::{FileId, SourceFile};
 
@@ -28,20 +24,7 @@ fn pick_place(c: &mut Criterion) {
         })
         .collect();
     let model = robot::find("IRB1600-10/1.45").unwrap();
-    let settings = Settings {
-        entry: "main".into(),
-        options: Options::default(),
-        objective: Objective::Energy,
-        budget: Budget::AsBefore,
-        spacing_s: 0.05,
-        freedom: Freedom::none(),
-        form: Form::Streams,
-        layout: Layout::Auto,
-        cost: Cost::Electrical,
-        dwell_pose: None,
-        pareto: 0,
-        written_elsewhere: std::collections::BTreeSet::new(),
-    };
+    let settings = Settings::default();
     let mut group = c.benchmark_group("retrofit");
     group.sample_size(10);
     group.bench_function("pick_place", |b| {

@@ -40,15 +40,8 @@ fn optimize(folder: &Path, text: impl AsRef<[u8]>, options: &[&str]) -> Value {
     let path = folder.join("m.mod");
     fs::write(&path, &text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args([
-            "optimize",
-            path.to_str().unwrap(),
-            "--robot",
-            ROBOT,
-            "--format",
-            "json",
-            "--allow-faster-joints",
-        ])
+        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--allow-faster-joints"])
+        .args(["--format", "json"])
         .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
         .args(options)
         .output()

@@ -338,15 +338,8 @@ fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
     fs::write(&path, program()).unwrap();
     let out = folder.join("out");
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args([
-            "optimize",
-            path.to_str().unwrap(),
-            "--robot",
-            KNOWN,
-            "--format",
-            "json",
-            "--allow-faster-joints",
-        ])
+        .args(["optimize", path.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
+        .args(["--format", "json"])
         .args(["--quiet", "--out", out.to_str().unwrap()])
         .args(options)
         .output()

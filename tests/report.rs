@@ -5,18 +5,15 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-use joulepath::emit::Layout;
 use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::optimize::check::Check;
-use joulepath::optimize::cost::Cost;
-use joulepath::optimize::freedom::Freedom;
 use joulepath::optimize::reason::Reason;
 use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{
-    Budget, Figures, Form, Objective, OutputFile, OutputKind, Retrofit, Segment, SegmentKind,
-    Settings, SignalKind, SignalShift, Source, Verification, read_program, retrofit,
+    Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings, SignalKind,
+    SignalShift, Source, Verification, read_program, retrofit,
 };
 use joulepath::robot::{self, Model};
 use joulepath::text::{FileId, SourceFile, Span};
@@ -52,20 +49,7 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
         })
         .collect();
     let model = irb1600();
-    let settings = Settings {
-        entry: "main".into(),
-        options: Options::default(),
-        objective: Objective::Energy,
-        budget: Budget::AsBefore,
-        spacing_s: 0.05,
-        freedom: Freedom::none(),
-        form: Form::Streams,
-        layout: Layout::Auto,
-        cost: Cost::Electrical,
-        dwell_pose: None,
-        pareto: 0,
-        written_elsewhere: std::collections::BTreeSet::new(),
-    };
+    let settings = Settings::default();
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
     let page = optimize_report(&retrofit, &files, &model, "main").unwrap();
     Cell { files, model, retrofit, page }

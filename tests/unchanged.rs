@@ -9,13 +9,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use joulepath::emit::Layout;
-use joulepath::motion::Options;
-use joulepath::optimize::cost::Cost;
-use joulepath::optimize::freedom::Freedom;
-use joulepath::retrofit::{
-    Budget, Form, Objective, OutputFile, OutputKind, Retrofit, Settings, Source, retrofit,
-};
+use joulepath::retrofit::{OutputFile, OutputKind, Retrofit, Settings, Source, retrofit};
 use joulepath::robot::find;
 use joulepath::text::{FileId, SourceFile, Span};
 
@@ -43,20 +37,7 @@ fn case(name: &str, paths: &[PathBuf]) -> Case {
             Source { file: SourceFile::new(FileId(i as u32), relative.clone(), bytes), relative }
         })
         .collect();
-    let settings = Settings {
-        entry: "main".into(),
-        options: Options::default(),
-        objective: Objective::Energy,
-        budget: Budget::AsBefore,
-        spacing_s: 0.05,
-        freedom: Freedom::none(),
-        form: Form::Streams,
-        layout: Layout::Auto,
-        cost: Cost::Electrical,
-        dwell_pose: None,
-        pareto: 0,
-        written_elsewhere: std::collections::BTreeSet::new(),
-    };
+    let settings = Settings::default();
     let model = find("IRB1600-10/1.45").unwrap();
     let result = retrofit(&files, &model, &settings, &|_, _| ());
     let result = result.unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -36,15 +36,8 @@ fn optimize(text: &str, options: &[&str]) -> Value {
     let path = folder.path().join("m.mod");
     fs::write(&path, text).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args([
-            "optimize",
-            path.to_str().unwrap(),
-            "--robot",
-            ROBOT,
-            "--format",
-            "json",
-            "--allow-faster-joints",
-        ])
+        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--allow-faster-joints"])
+        .args(["--format", "json"])
         .args(options)
         .output()
         .unwrap();

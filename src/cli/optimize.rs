@@ -22,7 +22,7 @@ use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{
-    Budget, Form, Objective, OutputKind, Retrofit, Settings, freed, retrofit, written_in,
+    Budget, Form, Objective, OutputKind, Retrofit, SPACING_S, Settings, freed, retrofit, written_in,
 };
 use crate::text::charset;
 
@@ -181,8 +181,6 @@ enum EnergyArg {
 const LEAST_SPACING_S: f64 = 0.004;
 /// Largest sensible spacing, s.
 const LARGEST_SPACING_S: f64 = 1.0;
-/// Spacing of the points that a controller plans in time, s.
-const SPACING_S: f64 = 0.05;
 
 /// How far a free movement may leave its path where nothing is said, mm.
 const DEVIATION_MM: f64 = 50.0;

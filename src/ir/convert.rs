@@ -83,12 +83,14 @@ fn frame(trans: &Datum, rot: &Datum, what: &str) -> Converted<Isometry3<f64>> {
 
 /// The inverse of [`pose`].
 pub(super) fn pose_datum(pose: &Isometry3<f64>) -> Datum {
+    Datum::List(pose_parts(pose).to_vec())
+}
+
+/// `trans` and `rot` of a `pose`.
+pub(super) fn pose_parts(pose: &Isometry3<f64>) -> [Datum; 2] {
     let t = pose.translation.vector / MM;
     let q = pose.rotation;
-    Datum::List(vec![
-        Datum::List([t.x, t.y, t.z].map(Datum::Num).to_vec()),
-        Datum::List([q.w, q.i, q.j, q.k].map(Datum::Num).to_vec()),
-    ])
+    [Datum::nums([t.x, t.y, t.z]), Datum::nums([q.w, q.i, q.j, q.k])]
 }
 
 /// The external axes of a `robtarget` or `jointtarget`, as written.

@@ -227,8 +227,6 @@ pub struct Movement {
     pub tool_span: Span,
     /// Work object.
     pub wobj: WorkObject,
-    /// The argument that names it; none where it is `wobj0` unsaid.
-    pub wobj_span: Option<Span>,
     /// `\TLoad`: replaces the tool's load and `GripLoad`, in the flange's frame.
     pub total_load: Option<LoadData>,
     /// Settings in force.

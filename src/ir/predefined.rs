@@ -128,20 +128,16 @@ pub fn lookup(key: &str) -> Option<Value> {
 fn light_load() -> Datum {
     Datum::List(vec![
         Datum::Num(0.001),
-        nums(&[0.0, 0.0, 0.001]),
-        nums(&[1.0, 0.0, 0.0, 0.0]),
+        Datum::nums([0.0, 0.0, 0.001]),
+        Datum::nums([1.0, 0.0, 0.0, 0.0]),
         Datum::Num(0.0),
         Datum::Num(0.0),
         Datum::Num(0.0),
     ])
 }
 
-fn nums(values: &[f64]) -> Datum {
-    Datum::List(values.iter().copied().map(Datum::Num).collect())
-}
-
 fn identity_pose() -> Datum {
-    Datum::List(vec![nums(&[0.0; 3]), nums(&[1.0, 0.0, 0.0, 0.0])])
+    Datum::List(vec![Datum::nums([0.0; 3]), Datum::nums([1.0, 0.0, 0.0, 0.0])])
 }
 
 /// The number in a name, if it is one of the list.
@@ -152,7 +148,7 @@ fn known(text: &str, list: &[u32]) -> Option<f64> {
 
 /// A `speeddata` for external axes alone: linear and turning.
 fn external_speed([linear, turning]: [f64; 2]) -> Value {
-    Value::constant(nums(&[0.0, 0.0, linear, turning]), "speeddata")
+    Value::constant(Datum::nums([0.0, 0.0, linear, turning]), "speeddata")
 }
 
 /// A `stoppointdata`.
@@ -161,7 +157,7 @@ fn stop(kind: f64, share: f64, stands: f64, follows: f64) -> Value {
     let list = vec![
         Datum::Num(kind),
         Datum::Bool(stands <= 0.0),
-        nums(&inpos),
+        Datum::nums(inpos),
         Datum::Num(stands),
         Datum::Num(follows),
         Datum::Text("".into()),
@@ -173,7 +169,7 @@ fn stop(kind: f64, share: f64, stands: f64, follows: f64) -> Value {
 
 fn speed(v_tcp: f64) -> Value {
     let [ori, leax, reax] = OTHER_SPEEDS;
-    Value::constant(nums(&[v_tcp, ori, leax, reax]), "speeddata")
+    Value::constant(Datum::nums([v_tcp, ori, leax, reax]), "speeddata")
 }
 
 fn zone(fine: bool, sizes: [f64; 6]) -> Value {
@@ -189,7 +185,7 @@ mod tests {
     #[test]
     fn speeds_and_zones_have_the_manuals_values() {
         let speed = lookup("v1500").map(|v| v.datum);
-        assert_eq!(speed, Some(nums(&[1500.0, 500.0, 5000.0, 1000.0])));
+        assert_eq!(speed, Some(Datum::nums([1500.0, 500.0, 5000.0, 1000.0])));
         assert!(lookup("v1501").is_none());
         let Some(Value { datum: Datum::List(z50), .. }) = lookup("z50") else {
             unreachable!("z50 is predefined")

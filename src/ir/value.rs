@@ -31,6 +31,11 @@ pub struct Unknown {
 }
 
 impl Datum {
+    /// A list of numbers.
+    pub(super) fn nums(values: impl IntoIterator<Item = f64>) -> Datum {
+        Datum::List(values.into_iter().map(Datum::Num).collect())
+    }
+
     /// An unknown value.
     pub fn unknown(reason: impl Into<String>, span: Span) -> Datum {
         Datum::Unknown(Arc::new(Unknown { reason: reason.into(), span }))

@@ -85,7 +85,8 @@ fn arguments(files: &[Source], program: &Program, run: &Run) -> Result<(String, 
         if is_known_everywhere(program, span, &text) { Ok(text) } else { Err(why) }
     };
     let tool = named(Some(movement.tool_span), "tool0");
-    let work_object = named(movement.wobj_span, "wobj0");
+    let stated = movement.arguments.iter().find(|argument| argument.type_name == "wobjdata");
+    let work_object = named(stated.map(|argument| argument.span), "wobj0");
     tool.and_then(|tool| Ok((tool, work_object?))).map_err(Reason::NotConstant)
 }
 

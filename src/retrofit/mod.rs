@@ -31,4 +31,6 @@ pub use figures::{
 pub use freed::freed;
 pub use outputs::read_again;
 pub use signals::{SignalKind, SignalShift};
-pub use work::{Budget, Form, Objective, RetrofitError, Settings, Source, read_program, retrofit};
+pub use work::{
+    Budget, Form, Objective, RetrofitError, SPACING_S, Settings, Source, read_program, retrofit,
+};

@@ -47,18 +47,20 @@ pub struct Source {
 }
 
 /// What is to be minimised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
     /// Energy in the time that there is.
+    #[default]
     Energy,
     /// Time.
     Time,
 }
 
 /// The time that there is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Budget {
     /// No run takes longer than before.
+    #[default]
     AsBefore,
     /// The cycle takes this long, s.
     Takt(f64),
@@ -107,6 +109,29 @@ pub struct Settings {
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
     pub written_elsewhere: BTreeSet<String>,
+}
+
+/// Spacing of the points that a controller plans in time, s.
+pub const SPACING_S: f64 = 0.05;
+
+impl Default for Settings {
+    /// Streams of least energy from `main`, with no freedom.
+    fn default() -> Settings {
+        Settings {
+            entry: "main".into(),
+            options: Options::default(),
+            objective: Objective::default(),
+            budget: Budget::default(),
+            spacing_s: SPACING_S,
+            freedom: Freedom::none(),
+            form: Form::default(),
+            layout: Layout::default(),
+            cost: Cost::default(),
+            dwell_pose: None,
+            pareto: 0,
+            written_elsewhere: BTreeSet::new(),
+        }
+    }
 }
 
 /// Why a program can't be retrofitted at all.

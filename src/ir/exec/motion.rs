@@ -201,7 +201,6 @@ impl Executor<'_> {
             tool,
             tool_span: named.span,
             wobj,
-            wobj_span: arguments.option_value("wobj").map(|expr| expr.span),
             total_load,
             settings: self.settings.clone(),
             concurrent: arguments.has_option("conc"),

@@ -26,7 +26,7 @@ impl Executor<'_> {
 
     fn displacement(&self) -> Datum {
         let shift = self.settings.displacement.unwrap_or_else(Isometry3::identity);
-        Datum::List(vec![pose(&shift), nums(&[0.0; 6])])
+        Datum::List(vec![convert::pose_datum(&shift), Datum::nums([0.0; 6])])
     }
 
     fn motion_settings(&self) -> Datum {
@@ -51,8 +51,8 @@ impl Executor<'_> {
         let zeros = [0.0; 3].map(Datum::Num);
         let acc = [settings.acceleration, settings.ramp, settings.fine_point_ramp];
         let mut all = vec![
-            nums(&[percent(settings.speed_override), speed]),
-            nums(&acc.map(percent)),
+            Datum::nums([percent(settings.speed_override), speed]),
+            Datum::nums(acc.map(percent)),
             Datum::List(sing.map(|kind| Datum::Bool(area.ends_with(kind))).to_vec()),
             Datum::List(conf.into_iter().chain(zeros).collect()),
             Datum::Num(0.0),
@@ -86,10 +86,10 @@ impl Executor<'_> {
         let found = self.pose_at(values, options);
         match found {
             Ok(at) => {
-                let Datum::List(mut parts) = pose(&at) else { unreachable!("a pose is a list") };
-                parts.extend([nums(&[0.0; 4]), nums(&[NO_AXIS; 6])]);
+                let [trans, rot] = convert::pose_parts(&at);
+                let (conf, external) = (Datum::nums([0.0; 4]), Datum::nums([NO_AXIS; 6]));
                 Value {
-                    datum: Datum::List(parts),
+                    datum: Datum::List(vec![trans, rot, conf, external]),
                     type_key: "robtarget".into(),
                     origin: Origin::of(Dependence::RobotState),
                 }
@@ -118,14 +118,4 @@ impl Executor<'_> {
         let at = wobj.map_or(at, |wobj| wobj.frame.inverse() * at);
         Ok(self.settings.displacement.map_or(at, |shift| shift.inverse() * at))
     }
-}
-
-/// A `pose`.
-fn pose(at: &Isometry3<f64>) -> Datum {
-    let (p, r) = (at.translation.vector * 1e3, at.rotation);
-    Datum::List(vec![nums(&[p.x, p.y, p.z]), nums(&[r.w, r.i, r.j, r.k])])
-}
-
-fn nums(values: &[f64]) -> Datum {
-    Datum::List(values.iter().copied().map(Datum::Num).collect())
 }

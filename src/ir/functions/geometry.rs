@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use super::{Function, Given, Typed, num, nums};
+use super::{Function, Given, Typed, num};
 use crate::ir::convert;
 use crate::ir::value::Datum;
 
@@ -25,7 +25,7 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
         "poseinv" => |g| Some((convert::pose_datum(&pose(g, 0)?.inverse()), "pose")),
         "posevect" => |g| {
             let point = pose(g, 0)? * Point3::from(g.vector(1)? * 1e-3);
-            Some((nums(point.coords.iter().map(|x| x * 1e3)), "pos"))
+            Some((Datum::nums(point.coords.iter().map(|x| x * 1e3)), "pos"))
         },
         "orientzyx" => |g| {
             let [z, y, x] = [g.num(0)?, g.num(1)?, g.num(2)?].map(f64::to_radians);
@@ -43,14 +43,14 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
 pub(in crate::ir) fn product(left: &Datum, right: &Datum) -> Option<Datum> {
     let vector = |datum| convert::nums::<3>(datum, "the vector").ok().map(Vector3::from);
     if let (Some(left), Some(right)) = (vector(left), vector(right)) {
-        return Some(nums(left.cross(&right).iter().copied()));
+        return Some(Datum::nums(left.cross(&right).iter().copied()));
     }
     let turn = |datum| {
         let [w, x, y, z] = convert::nums::<4>(datum, "the orientation").ok()?;
         Some(Quaternion::new(w, x, y, z))
     };
     let q = turn(left)? * turn(right)?;
-    Some(nums([q.w, q.i, q.j, q.k]))
+    Some(Datum::nums([q.w, q.i, q.j, q.k]))
 }
 
 fn pose(given: &Given<'_>, index: usize) -> Option<Isometry3<f64>> {
@@ -58,7 +58,7 @@ fn pose(given: &Given<'_>, index: usize) -> Option<Isometry3<f64>> {
 }
 
 fn orient(rotation: &UnitQuaternion<f64>) -> Typed {
-    (nums([rotation.w, rotation.i, rotation.j, rotation.k]), "orient")
+    (Datum::nums([rotation.w, rotation.i, rotation.j, rotation.k]), "orient")
 }
 
 /// An orientation, normalised.

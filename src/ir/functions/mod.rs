@@ -70,7 +70,3 @@ fn num(value: f64) -> Option<Typed> {
 fn boolean(value: bool) -> Typed {
     (Datum::Bool(value), "bool")
 }
-
-fn nums(values: impl IntoIterator<Item = f64>) -> Datum {
-    Datum::List(values.into_iter().map(Datum::Num).collect())
-}
