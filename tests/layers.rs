@@ -35,7 +35,7 @@ const LAYERS: [Layer; 23] = [
     layer("motion", &["path", "ir", "kinematics", "dynamics", "effects"]),
     layer("energy", &["motion", "dynamics", "effects"]),
     layer("optimize", &["energy"]),
-    layer("excite", &["kinematics", "dynamics"]),
+    layer("excite", &["kinematics", "dynamics", "motion"]),
     layer("identify", &["log", "effects", "dynamics"]),
     layer("lint", &["energy"]),
     layer("emit", &["ir"]),

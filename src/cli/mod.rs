@@ -25,6 +25,7 @@ pub mod rule;
 pub mod signals;
 pub mod simulate;
 pub mod standstill;
+pub mod streamtest;
 pub mod undo;
 mod written;
 
@@ -52,6 +53,7 @@ enum Command {
     Generate(generate::GenerateArgs),
     Standstill(standstill::StandstillArgs),
     Excite(Box<excite::ExciteArgs>),
+    Streamtest(streamtest::StreamtestArgs),
     Identify(Box<identify::IdentifyArgs>),
     Predict(predict::PredictArgs),
     Diagnose(Box<diagnose::DiagnoseArgs>),
@@ -73,6 +75,7 @@ pub fn main() -> ExitCode {
         Command::Generate(args) => generate::run(&args),
         Command::Standstill(args) => standstill::run(&args),
         Command::Excite(args) => excite::run(&args),
+        Command::Streamtest(args) => streamtest::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),

@@ -8,13 +8,13 @@ use crate::ir::number::{TIME_DECIMALS, joints, number};
 /// Names of everything that is declared begin with this.
 const PREFIX: &str = "jpExcite";
 /// The motion task, the mechanical unit and the mark, as a controller names them.
-const TASK: &str = "T_ROB1";
+pub(super) const TASK: &str = "T_ROB1";
 const UNIT: &str = "ROB_1";
 const SIGNAL: &str = "doJpSync";
 /// Decimals of gear ratios.
 const RATIO_DECIMALS: usize = 5;
 /// Interval of the logger \[s\]: the fastest that test signals have.
-const INTERVAL: f64 = 0.004;
+pub(super) const INTERVAL: f64 = 0.004;
 /// Rows of the logger at most: what a RAPID array takes from a task's memory.
 const MOST_ROWS: usize = 30_000;
 

@@ -12,6 +12,7 @@ mod literal;
 pub mod names;
 mod site;
 pub mod stream_module;
+mod stream_test;
 
 pub use brake_note::{BrakeDwell, brake_note};
 pub use excitation::{Excitation, ExcitationModules, LoggedTorques, Points, excitation};
@@ -25,3 +26,4 @@ pub use site::{
     EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
 };
 pub use stream_module::{Emission, emit, end_of_line};
+pub use stream_test::stream_test;

@@ -18,4 +18,9 @@ pub enum ExciteError {
         "no motion was found that keeps all limits and clear of itself, of planes and boxes: move these, or give a smaller --speed-share or --load"
     )]
     Nowhere,
+    /// No room for a test at its pose.
+    #[error(
+        "there is no room to move around this pose within joint ranges, above the floor and clear of the arm: give another --start"
+    )]
+    NoRoom,
 }

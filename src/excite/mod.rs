@@ -11,6 +11,8 @@ mod information;
 mod plateaus;
 mod search;
 mod series;
+mod stream_log;
+mod stream_test;
 
 pub use blend::{Blend, blends};
 pub use design::{Design, Designed, Focus, design, random_feasible};
@@ -19,3 +21,5 @@ pub use feasible::{Checked, Ratios, check};
 pub use information::{Information, information};
 pub use plateaus::{Plateaus, friction_plateaus, wrist_plateaus};
 pub use series::{Series, State};
+pub use stream_log::{Finding, Measured, Rows, measured};
+pub use stream_test::{StreamTest, stream_tests};
