@@ -13,7 +13,7 @@ use serde_json::json;
 use super::common::{self, Format};
 use super::output;
 use crate::effects;
-use crate::emit::stream_test;
+use crate::emit::{TestStream, stream_test};
 use crate::excite::{Finding, Measured, Rows, StreamTest, measured, stream_tests};
 use crate::kinematics::{Body, Obstacle, Plane, limits_ok};
 use crate::log::{self, Channel, ColumnMap};
@@ -87,7 +87,15 @@ fn write(
     tests: &[StreamTest],
     folder: &std::path::Path,
 ) -> anyhow::Result<ExitCode> {
-    let streams: Vec<_> = tests.iter().map(|test| (test.what, &test.stream)).collect();
+    let streams: Vec<_> = tests
+        .iter()
+        .map(|StreamTest { what, stream }| TestStream {
+            what,
+            start: stream.start(),
+            points: stream.points(),
+            intervals: stream.intervals(),
+        })
+        .collect();
     let [motion, logger] = stream_test(&model.name, &streams)?;
     let table = ("streamtest.csv".to_owned(), predicted(tests));
     for text in model.assumed().iter().filter(|text| text.starts_with("limits.")) {

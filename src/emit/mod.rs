@@ -26,4 +26,4 @@ pub use site::{
     EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
 };
 pub use stream_module::{Emission, emit, end_of_line};
-pub use stream_test::stream_test;
+pub use stream_test::{TestStream, stream_test};

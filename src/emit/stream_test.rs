@@ -5,7 +5,6 @@ use tera::{Context, Tera};
 
 use super::excitation::{INTERVAL, TASK};
 use crate::ir::number::{TIME_DECIMALS, joints, number};
-use crate::motion::stream::Stream;
 
 /// Names of everything that is declared begin with this.
 const PREFIX: &str = "jpTest";
@@ -14,6 +13,19 @@ const LOG: &str = "streamtest_log.csv";
 /// Time around each test, and what logging may take besides \[s\].
 const AROUND: f64 = 1.0;
 const MORE: f64 = 5.0;
+
+/// A stream to emit.
+#[derive(Clone, Copy, Debug)]
+pub struct TestStream<'a> {
+    /// What it shows.
+    pub what: &'a str,
+    /// Where it starts \[rad\].
+    pub start: &'a [f64; 6],
+    /// Its points \[rad\].
+    pub points: &'a [[f64; 6]],
+    /// The `\T` of each \[s\].
+    pub intervals: &'a [f64],
+}
 
 #[derive(Serialize)]
 struct Test<'a> {
@@ -29,7 +41,7 @@ struct Test<'a> {
 /// A template that does not fit its data.
 pub fn stream_test(
     robot: &str,
-    tests: &[(&str, &Stream)],
+    streams: &[TestStream<'_>],
 ) -> Result<[(String, String); 2], tera::Error> {
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
@@ -37,22 +49,23 @@ pub fn stream_test(
         ("logger", include_str!("../../templates/streamtest_logger.mod.tera")),
     ])?;
     let (motion, logger) = ("JoulepathTest", "JoulepathTestLogger");
-    let start = tests.first().map(|(_, stream)| joints(stream.start())).unwrap_or_default();
-    let from_start = tests.iter().flat_map(|(_, stream)| {
-        stream
-            .points()
-            .iter()
-            .flat_map(|q| q.iter().zip(stream.start()).map(|(a, b)| (a - b).abs()))
-    });
-    let reach = from_start.fold(0.0, f64::max).to_degrees();
-    let duration: f64 = tests.iter().map(|(_, stream)| stream.duration() + AROUND).sum();
-    let tests: Vec<Test<'_>> = tests
+    let start = streams.first().map(|stream| joints(stream.start)).unwrap_or_default();
+    let of_point = |stream: &TestStream<'_>, q: &[f64; 6]| {
+        q.iter().zip(stream.start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let of_stream = |stream: &TestStream<'_>| {
+        stream.points.iter().map(|q| of_point(stream, q)).fold(0.0, f64::max)
+    };
+    let reach = streams.iter().map(of_stream).fold(0.0, f64::max).to_degrees();
+    let of_stream = |stream: &TestStream<'_>| stream.intervals.iter().sum::<f64>() + AROUND;
+    let duration: f64 = streams.iter().map(of_stream).sum();
+    let tests: Vec<Test<'_>> = streams
         .iter()
-        .map(|(what, stream)| Test {
-            what,
-            points: stream.points().iter().map(|q| joints(q)).collect(),
-            times: stream.intervals().iter().map(|d| number(*d, TIME_DECIMALS)).collect(),
-            fly_by: stream.points().len() - 1,
+        .map(|stream| Test {
+            what: stream.what,
+            points: stream.points.iter().map(|q| joints(q)).collect(),
+            times: stream.intervals.iter().map(|d| number(*d, TIME_DECIMALS)).collect(),
+            fly_by: stream.points.len().saturating_sub(1),
         })
         .collect();
     let mut context = Context::new();

@@ -53,7 +53,7 @@ pub fn stream_tests(
     if model.limits.acceleration.is_none() {
         return Err(lacks("acceleration"));
     }
-    patterns().into_iter().map(|pattern| sized(model, body, start, pattern)).collect()
+    patterns().iter().map(|pattern| sized(model, body, start, pattern)).collect()
 }
 
 fn patterns() -> Vec<Pattern> {
@@ -91,7 +91,7 @@ fn sized(
     model: &Model,
     body: &Body<'_>,
     start: &Joints,
-    pattern: Pattern,
+    pattern: &Pattern,
 ) -> Result<StreamTest, ExciteError> {
     let mut size = REACH;
     for _ in 0..HALVINGS {
