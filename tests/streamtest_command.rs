@@ -58,8 +58,11 @@ fn points(folder: &TempDir) -> Vec<Vec<Timed>> {
         .collect()
 }
 
+/// Positions over the time [deg].
+type Motion = Box<dyn Fn(f64) -> [f64; 6]>;
+
 /// A log of some motions, one for each test: positions over the time, which lasts so long.
-fn log(motions: &[(Box<dyn Fn(f64) -> [f64; 6]>, f64)]) -> String {
+fn log(motions: &[(Motion, f64)]) -> String {
     let mut csv = String::from("t,cmd,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n");
     let mut t = 0.0;
     for (test, (motion, duration)) in motions.iter().enumerate() {
@@ -188,7 +191,7 @@ fn the_predicted_log_and_a_robot_with_lag_and_noise_are_as_expected() {
         .iter()
         .map(|points| {
             let law = b_spline(START, points);
-            let motion: Box<dyn Fn(f64) -> [f64; 6]> = Box::new(move |t| law(t - LAG));
+            let motion: Motion = Box::new(move |t| law(t - LAG));
             (motion, duration(points) + LAG)
         })
         .collect();
@@ -203,7 +206,7 @@ fn a_controller_that_visits_the_points_is_told() {
     let motions: Vec<_> = points(&folder)
         .iter()
         .map(|points| {
-            let motion: Box<dyn Fn(f64) -> [f64; 6]> = Box::new(visiting(START, points));
+            let motion: Motion = Box::new(visiting(START, points));
             (motion, duration(points))
         })
         .collect();
@@ -222,7 +225,7 @@ fn a_controller_that_is_slower_or_cuts_corners_otherwise_is_not_as_expected() {
             .iter()
             .map(|points| {
                 let (law, visits) = (b_spline(START, points), visiting(START, points));
-                let motion: Box<dyn Fn(f64) -> [f64; 6]> = Box::new(move |t| {
+                let motion: Motion = Box::new(move |t| {
                     let (a, b) = (law(t / slower), visits(t / slower));
                     std::array::from_fn(|j| b[j] + wider * (a[j] - b[j]))
                 });
