@@ -278,11 +278,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     for text in &args.boxes {
         obstacles.push(Obstacle::KeepOut(keep_out(text)?));
     }
-    // What stands on a floor does not reach below it.
-    if model.kinematics.base.rotation.angle() < 1e-6 {
-        let distance = -model.kinematics.base.translation.z;
-        obstacles.push(Obstacle::Plane(Plane { normal: Vector3::z(), distance }));
-    }
+    obstacles.extend(floor(model));
     let tool = match &args.tool {
         Some(text) => {
             let [x, y, z] = numbers("--tool", text, "three lengths in mm, such as 0,0,250")?;
@@ -309,6 +305,14 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         load,
         seed: args.seed,
     })
+}
+
+/// The floor that a robot stands on, which it does not reach below; none of one that hangs or leans.
+pub(super) fn floor(model: &Model) -> Option<Obstacle> {
+    let base = &model.kinematics.base;
+    let distance = -base.translation.z;
+    let stands = base.rotation.angle() < 1e-6;
+    stands.then_some(Obstacle::Plane(Plane { normal: Vector3::z(), distance }))
 }
 
 fn of_design(

@@ -1,4 +1,4 @@
-//! `joulepath streamtest`: does this controller realise streams as taken here?
+//! `joulepath streamtest`: does this controller run streams as joulepath assumes?
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -11,11 +11,12 @@ use nalgebra::Vector3;
 use serde_json::json;
 
 use super::common::{self, Format};
+use super::excite::floor;
 use super::output;
 use crate::effects;
 use crate::emit::{TestStream, stream_test};
 use crate::excite::{Finding, Measured, Rows, StreamTest, measured, stream_tests};
-use crate::kinematics::{Body, Obstacle, Plane, limits_ok};
+use crate::kinematics::{Body, Obstacle, limits_ok};
 use crate::log::{self, Channel, ColumnMap};
 use crate::motion::stream::Joints;
 use crate::robot::Model;
@@ -25,7 +26,7 @@ const STEP: f64 = 0.004;
 /// Rest around each test of the predicted log \[s\].
 const REST: f64 = 0.2;
 
-/// Streams that show how a controller realises streams: RAPID to run and log, and what a log says.
+/// Test how a controller runs streams: RAPID to run and log, and what the log says.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: joulepath streamtest --robot IRB1600-10/1.45 --out test\n          joulepath streamtest --robot IRB1600-10/1.45 --log streamtest_log.csv"
@@ -39,7 +40,7 @@ pub struct StreamtestArgs {
     #[arg(long, value_name = "DIR", required_unless_present = "log")]
     out: Option<PathBuf>,
 
-    /// A log of the test: compare it with what is taken for streams.
+    /// A log of the test: compare it with the motion that joulepath assumes.
     #[arg(long, value_name = "FILE", conflicts_with = "out")]
     log: Option<PathBuf>,
 
@@ -69,9 +70,7 @@ pub fn run(args: &StreamtestArgs) -> anyhow::Result<ExitCode> {
     if let Err(violation) = limits_ok(&model, &start) {
         bail!("--start {}: {violation}", args.start);
     }
-    let floor = Plane { normal: Vector3::z(), distance: -model.kinematics.base.translation.z };
-    let stands = model.kinematics.base.rotation.angle() < 1e-6;
-    let obstacles: Vec<Obstacle> = stands.then_some(Obstacle::Plane(floor)).into_iter().collect();
+    let obstacles: Vec<Obstacle> = floor(&model).into_iter().collect();
     let body = Body::new(&model, Vector3::zeros(), &obstacles);
     let tests = stream_tests(&model, &body, &start)?;
     match (&args.out, &args.log) {
@@ -130,7 +129,7 @@ fn write(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The log that a controller writes that realises streams as taken here.
+/// The log of a controller that runs streams as assumed.
 fn predicted(tests: &[StreamTest]) -> String {
     let mut csv = String::from("t,cmd,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n");
     let mut row = 0;
@@ -173,8 +172,9 @@ fn compare(
         }
         let Some(measured) = measured(test, &rows) else {
             bail!(
-                "'{shown}': test {number} has {} rows, and they do not move from --start {}; \
-                 give the --robot and --start that the test was made with",
+                "'{shown}': test {number} has {} rows; it needs rows at most 0.02 s apart that begin \
+                 at --start {} and move: give the logger's file, and the --robot and --start that \
+                 the test was made with",
                 rows.t.len(),
                 args.start
             );
@@ -229,9 +229,9 @@ fn text(m: &Measured) -> String {
 
 fn conclusion(holds: bool) -> &'static str {
     if holds {
-        "This controller realises streams as taken here."
+        "This controller runs streams as joulepath assumes."
     } else {
-        "This controller does not realise streams as taken here: do not run retrofits on it. \
+        "This controller does not run streams as joulepath assumes: do not run retrofits on it. \
          docs/safety.md says how to read these figures."
     }
 }

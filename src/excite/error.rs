@@ -20,7 +20,7 @@ pub enum ExciteError {
     Nowhere,
     /// No room for a test at its pose.
     #[error(
-        "there is no room to move around this pose within joint ranges, above the floor and clear of the arm: give another --start"
+        "no test of at least 1.7 degrees keeps joint ranges, half of the speed and acceleration limits, clear of the floor and of the arm around this pose: give another --start"
     )]
     NoRoom,
 }

@@ -17,6 +17,8 @@ const VISITED: f64 = 0.25;
 const MOVED: f64 = 1e-3;
 /// Largest distance of a log's first position from the start of its test \[rad\].
 const START: f64 = 0.02;
+/// Largest mean distance of rows \[s\]: corners and times are not seen by fewer.
+const COARSEST: f64 = 0.02;
 /// Interval at which the law is compared \[s\].
 const STEP: f64 = 0.002;
 /// Halvings of the interval in which the offset of the clocks lies.
@@ -57,11 +59,15 @@ pub struct Measured {
 }
 
 /// Compares a test with the rows that were logged during it; none where they do not begin at its
-/// start, or have no motion.
+/// start, have no motion, or are farther apart than 0.02 s in the mean.
 pub fn measured(test: &StreamTest, rows: &Rows) -> Option<Measured> {
     let stream = &test.stream;
     let first = rows.q.first()?;
     if distance(first, stream.start()) > START {
+        return None;
+    }
+    let row = (rows.t.last()? - rows.t.first()?) / (rows.t.len() - 1).max(1) as f64;
+    if row > COARSEST {
         return None;
     }
     let steps = (stream.duration() / STEP).ceil() as usize;
@@ -70,7 +76,6 @@ pub fn measured(test: &StreamTest, rows: &Rows) -> Option<Measured> {
     let time = [moving(rows)?, moving(&law)?];
     let deviation = deviation(stream, rows);
     let corners = corners(stream, rows, &law);
-    let row = rows.t.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     let in_time = (time[0] - time[1]).abs() <= LATE * time[1] + 2.0 * row;
     let finding = if corners.is_some_and(|share| share < VISITED) {
         Finding::Visits
@@ -89,7 +94,7 @@ fn distance(a: &Joints, b: &Joints) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Time from leaving the first position for good to reaching the last one.
+/// Time from leaving the first position to reaching the last one.
 fn moving(rows: &Rows) -> Option<f64> {
     let (first, last) = (rows.q.first()?, rows.q.last()?);
     let left = rows.q.iter().position(|q| distance(q, first) > MOVED)?;

@@ -12,13 +12,15 @@ use crate::robot::{MAX_DOF, Model};
 
 /// Largest distance of a point from the start \[rad\].
 const REACH: f64 = 0.2;
-/// Share of each limit that a test may use: a controller whose limits are lower than assumed has to
+/// Share of the speed and acceleration limits that a test may use: a controller whose limits are lower than assumed has to
 /// be able to follow.
 const SHARE: f64 = 0.5;
 /// Interval at which limits are checked \[s\].
 const STEP: f64 = 0.002;
-/// Halvings of the size of a test until it is given up or found.
-const HALVINGS: usize = 20;
+/// The least such distance of the farthest point \[rad\]: a smaller test shows nothing in a log.
+const LEAST_REACH: f64 = 0.03;
+/// Factor from one size that is tried to the next.
+const SMALLER: f64 = 0.9;
 
 /// One test.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,8 +38,8 @@ struct Pattern {
     intervals: Vec<f64>,
 }
 
-/// The tests around `start` \[rad\] for a robot with six joints, each as large as keeps half of all
-/// limits, clear of the floor and of the arm itself.
+/// The tests around `start` \[rad\] for a robot with six joints, each as large as keeps half of the
+/// speed and acceleration limits and all of the others, clear of obstacles and of the arm itself.
 ///
 /// # Errors
 /// No limits of speed or acceleration, or no room to move at this pose.
@@ -94,7 +96,7 @@ fn sized(
     pattern: &Pattern,
 ) -> Result<StreamTest, ExciteError> {
     let mut size = REACH;
-    for _ in 0..HALVINGS {
+    while size >= LEAST_REACH {
         let points = pattern
             .points
             .iter()
@@ -103,7 +105,7 @@ fn sized(
         if let Some(stream) = stream.ok().filter(|stream| fits(model, body, stream)) {
             return Ok(StreamTest { what: pattern.what, stream });
         }
-        size *= 0.5_f64.sqrt();
+        size *= SMALLER;
     }
     Err(ExciteError::NoRoom)
 }
