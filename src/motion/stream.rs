@@ -294,6 +294,18 @@ impl Stream {
         (0..=self.points.len()).map(|p| self.piece(p))
     }
 
+    /// The way from point to point P₀…Pₙ, 1 s each: what a robot does that stops at every point.
+    pub fn polygon(&self) -> impl Iterator<Item = Piece> + '_ {
+        let from = std::iter::once(&self.start).chain(&self.points);
+        from.zip(&self.points).enumerate().map(|(i, (from, to))| Piece {
+            start: i as f64,
+            length: 1.0,
+            q: *from,
+            qd: std::array::from_fn(|j| to[j] - from[j]),
+            qdd: [0.0; DOF],
+        })
+    }
+
     /// (q, q̇, q̈) at `t` (s). At a knot the acceleration is that of the later piece; before the
     /// start and from the end on the robot rests at P₀ and Pₙ.
     pub fn eval(&self, t: f64) -> (Joints, Joints, Joints) {

@@ -92,6 +92,7 @@ impl Work<'_> {
             shortest: self.task.spacing_s,
             longest: f64::INFINITY,
             tolerance: margins.spacing,
+            polygon: margins.polygon,
             lever: self.lever,
         };
         let mut intervals = adaptive_intervals(&reference, duration, &spacing);

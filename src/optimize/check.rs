@@ -32,6 +32,11 @@ pub struct Check {
     pub deviation_m: f64,
     /// The same in units of what is allowed at each place.
     pub deviation: f64,
+    /// Largest distance of the polygon of the points from the programmed path, m: where the robot goes
+    /// if it stops at each of them.
+    pub polygon_m: f64,
+    /// The same in units of what is allowed at each place.
+    pub polygon: f64,
     /// Distance of the end from the programmed one, rad.
     pub endpoint_error_rad: f64,
     /// True if every joint stays in its range.
@@ -44,7 +49,7 @@ pub struct Check {
 impl Check {
     /// The largest share of a limit.
     pub fn worst(&self) -> f64 {
-        [self.velocity, self.acceleration, self.jerk, self.torque, self.tcp_speed]
+        [self.velocity, self.acceleration, self.jerk, self.torque, self.tcp_speed, self.polygon]
             .into_iter()
             .fold(self.deviation, f64::max)
     }
@@ -63,6 +68,7 @@ impl Check {
             ("torque", self.torque),
             ("TCP speed", self.tcp_speed),
             ("distance from the path", self.deviation),
+            ("distance of the points' polygon from the path", self.polygon),
         ];
         let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
         if self.worst() <= 1.0 && self.in_range {
@@ -85,6 +91,8 @@ impl Check {
             tcp_speed: self.tcp_speed.max(other.tcp_speed),
             deviation_m: self.deviation_m.max(other.deviation_m),
             deviation: self.deviation.max(other.deviation),
+            polygon_m: self.polygon_m.max(other.polygon_m),
+            polygon: self.polygon.max(other.polygon),
             endpoint_error_rad: self.endpoint_error_rad.max(other.endpoint_error_rad),
             in_range: self.in_range && other.in_range,
             intrusion_m: self.intrusion_m.max(other.intrusion_m),
@@ -136,7 +144,8 @@ pub fn check(
     };
     let tcp = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
     let ceiling = Ceiling { tcp, corner: tcp, joints: velocity };
-    let anywhere = Offset { distance: 0.0, tolerance: f64::INFINITY, ceiling };
+    let anywhere =
+        Offset { distance: 0.0, tolerance: f64::INFINITY, polygon: f64::INFINITY, ceiling };
     let mut data = Data::new();
     let mut at = 0;
     for piece in stream.pieces() {
@@ -161,8 +170,22 @@ pub fn check(
             result.velocity = result.velocity.max(offset.ceiling.share(&qd));
         }
     }
+    if let Some(corridor) = corridor {
+        let mut at = 0;
+        for edge in stream.polygon() {
+            for i in 0..=EDGE_STEPS {
+                let (q, _, _) = edge.at(i as f64 / EDGE_STEPS as f64);
+                let offset = corridor.offset(&tool.pose(&fk(model, &q)), &mut at);
+                result.polygon_m = result.polygon_m.max(offset.distance);
+                result.polygon = result.polygon.max(offset.distance / offset.polygon);
+            }
+        }
+    }
     result
 }
+
+/// Steps on the way from one point to the next.
+const EDGE_STEPS: usize = 16;
 
 /// Distance from the time at which a joint turns, s: dry friction jumps there.
 const BESIDE: f64 = 1e-6;

@@ -21,6 +21,12 @@ pub const LINE_TOLERANCE: f64 = 0.001;
 pub const JOINT_TOLERANCE: f64 = 0.005;
 /// Allowed distance in a corner zone, in units of its size.
 pub const ZONE_TOLERANCE: f64 = 0.1;
+/// Allowed distance of the polygon near stops, m: grippers and fixtures are near there.
+pub(super) const STOP_TOLERANCE: f64 = 0.0005;
+/// How much of the path counts as near a stop, m.
+const NEAR_STOP: f64 = 0.05;
+/// By how much the tolerance of the polygon grows behind that, m/m: a motion cannot follow a step.
+const WIDENING: f64 = 0.05;
 /// How many samples ahead and behind the last place are searched for the nearest.
 const WINDOW: (usize, usize) = (8, 24);
 
@@ -32,6 +38,10 @@ struct Place {
     ceiling: Ceiling,
     /// Largest distance from here, m.
     tolerance: f64,
+    /// The same for the polygon of the points.
+    polygon: f64,
+    /// The same if it is near a stop.
+    stop_tolerance: f64,
 }
 
 /// The programmed path of a run.
@@ -49,8 +59,26 @@ pub struct Offset {
     pub distance: f64,
     /// Allowed distance, m.
     pub tolerance: f64,
+    /// Allowed distance of the points' polygon, m.
+    pub polygon: f64,
     /// Largest speeds.
     pub ceiling: Ceiling,
+}
+
+/// Lowers the tolerances of the polygon near both ends of a path.
+fn near_stops(places: &mut [Place]) {
+    let step =
+        |a: &Place, b: &Place| (a.pose.translation.vector - b.pose.translation.vector).norm();
+    let mut way: Vec<f64> = vec![0.0];
+    way.extend(places.windows(2).scan(0.0, |way, pair| {
+        *way += step(&pair[0], &pair[1]);
+        Some(*way)
+    }));
+    let all = way[way.len() - 1];
+    for (place, way) in places.iter_mut().zip(way) {
+        let beyond = (way.min(all - way) - NEAR_STOP).max(0.0);
+        place.polygon = place.polygon.min(place.stop_tolerance + WIDENING * beyond);
+    }
 }
 
 impl Corridor {
@@ -90,6 +118,7 @@ impl Corridor {
             let tcp = if corner.is_some() { ceiling.corner } else { ceiling.tcp };
             let ceiling = Ceiling { tcp, joints: ceiling.max(beyond).joints, ..ceiling };
             let tolerance = tolerance.max(free);
+            let stop_tolerance = STOP_TOLERANCE.max(free);
             let extent = path.extent(piece.leg);
             let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
             // A turn of the tool by more than half a turn looks shorter from its ends.
@@ -97,12 +126,21 @@ impl Corridor {
             let turned = (0..DOF).map(|j| (ends[1][j] - ends[0][j]).abs()).fold(0.0, f64::max);
             let way = (piece.length * share).max(METRES_PER_RADIAN * turned);
             let n = (way / SPACING).ceil().max(1.0) as usize;
-            for i in 0..=n {
-                let s = piece.s + piece.length * i as f64 / n as f64;
-                let pose = extent.tool.pose(&fk(model, &piece.eval(s).q));
-                places.push(Place { pose, ceiling, tolerance });
-            }
+            let poses: Vec<Isometry3<f64>> = (0..=n)
+                .map(|i| piece.s + piece.length * i as f64 / n as f64)
+                .map(|s| extent.tool.pose(&fk(model, &piece.eval(s).q)))
+                .collect();
+            // Where zones fail an original goes to the corner itself; the polygon may go as far.
+            let cut = corner.and_then(|other| run.legs.get(other.min(piece.leg))).map(|leg| {
+                let corner = extent.tool.pose(&fk(model, &leg.end)).translation.vector;
+                let distance = |pose: &Isometry3<f64>| (pose.translation.vector - corner).norm();
+                poses.iter().map(distance).fold(f64::INFINITY, f64::min) + LINE_TOLERANCE
+            });
+            let polygon = cut.map_or(tolerance, |cut| tolerance.max(cut));
+            let place = |pose| Place { pose, ceiling, tolerance, polygon, stop_tolerance };
+            places.extend(poses.into_iter().map(place));
         }
+        near_stops(&mut places);
         Some(Corridor { places, allowed })
     }
 
@@ -125,6 +163,7 @@ impl Corridor {
         Offset {
             distance: best.0,
             tolerance: place.tolerance.max(lo.tolerance).max(hi.tolerance),
+            polygon: place.polygon.max(lo.polygon).max(hi.polygon),
             ceiling: place.ceiling.max(&lo.ceiling).max(&hi.ceiling),
         }
     }
@@ -163,6 +202,33 @@ impl Corridor {
     /// The distance of a pose over what is allowed there, and the value there of something given
     /// at each place. The place is searched near `from`, which is moved on.
     pub fn locate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> (f64, f64) {
+        let i = self.nearest(pose, from);
+        let distance = self.distance(pose, i) / self.places[i].tolerance;
+        // Between the nearest place and its neighbour on the side of the pose.
+        let here = self.places[i].pose.translation.vector;
+        let offset = pose.translation.vector - here;
+        for k in [i + 1, i.wrapping_sub(1)] {
+            if k >= self.places.len() {
+                continue;
+            }
+            let along = self.places[k].pose.translation.vector - here;
+            let share = offset.dot(&along) / along.norm_squared();
+            if share > 0.0 {
+                return (distance, values[i] + (values[k] - values[i]) * share.min(1.0));
+            }
+        }
+        (distance, values[i])
+    }
+
+    /// The distance of a pose on the polygon of the points over what is allowed there, searched in
+    /// the same way.
+    pub(super) fn polygon_share(&self, pose: &Isometry3<f64>, from: &mut usize) -> f64 {
+        let i = self.nearest(pose, from);
+        self.distance(pose, i) / self.places[i].polygon
+    }
+
+    /// The place nearest to a pose, searched near `from`, which becomes that place.
+    fn nearest(&self, pose: &Isometry3<f64>, from: &mut usize) -> usize {
         const STRIDE: usize = 8;
         const AHEAD: usize = 32 * STRIDE;
         let square = |place: &Place| {
@@ -176,23 +242,8 @@ impl Corridor {
         let last = self.places.len() - 1;
         let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
         let coarse = nearest(&mut window.step_by(STRIDE));
-        let i = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
-        *from = i;
-        let distance = self.distance(pose, i) / self.places[i].tolerance;
-        // Between the nearest place and its neighbour on the side of the pose.
-        let here = self.places[i].pose.translation.vector;
-        let offset = pose.translation.vector - here;
-        for k in [i + 1, i.wrapping_sub(1)] {
-            if k > last {
-                continue;
-            }
-            let along = self.places[k].pose.translation.vector - here;
-            let share = offset.dot(&along) / along.norm_squared();
-            if share > 0.0 {
-                return (distance, values[i] + (values[k] - values[i]) * share.min(1.0));
-            }
-        }
-        (distance, values[i])
+        *from = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
+        *from
     }
 
     /// Distance of a pose from the stretch before and after a place.

@@ -60,13 +60,13 @@ struct Stretch {
     end: (f64, f64),
 }
 
-/// A room, m, that arm and tool have everywhere along the realised motion of a stream: that at
-/// both ends of a stretch, less what the fastest point can use up on the way. It is looked at
+/// A room, m, that arm and tool have everywhere along the realised motion of a stream and along the
+/// polygon of its points: that at both ends of a stretch, less what the fastest point can use up on the way. It is looked at
 /// closely where there is little.
 pub(super) fn least_room(model: &Model, body: &Body<'_>, stream: &Stream) -> f64 {
     let reach: f64 = body.capsules(stream.start()).iter().map(Capsule::length).sum();
     let mut least = f64::INFINITY;
-    for piece in stream.pieces() {
+    for piece in stream.pieces().chain(stream.polygon()) {
         let room = |t: f64| (t, body.margins(&piece.at(t).0)[0]);
         let fastest = reach * turning(model, &piece);
         let mut open = vec![Stretch { begin: room(0.0), end: room(piece.length) }];

@@ -1,6 +1,7 @@
 //! How far from the limits an attempt at a stream stays.
 
 use super::check::Check;
+use super::corridor::STOP_TOLERANCE;
 
 /// Margin to acceleration and torque limits at first: what a stream between nodes needs.
 const FIRST_MARGIN: f64 = 0.98;
@@ -32,6 +33,11 @@ pub(super) struct Margins {
     pub(super) reach: f64,
     /// Tolerance of the points' placing, m.
     pub(super) spacing: f64,
+    /// Distance of the points' polygon from the path that their placing expects, m.
+    pub(super) polygon: f64,
+    /// Share of the allowed distance of that polygon that the polishing may use; infinite until it is
+    /// found to be too far away: it follows the motion, and it needs room to become one that holds.
+    pub(super) edges: f64,
     /// Share of the allowed distance from the path that the polishing may use.
     pub(super) distance: f64,
     /// Room that the polishing keeps to what the cell keeps free, m.
@@ -46,6 +52,8 @@ impl Margins {
             speed: 1.0,
             reach: FIRST_REACH,
             spacing: FIRST_SPACING * tolerance,
+            polygon: STOP_TOLERANCE,
+            edges: f64::INFINITY,
             distance: FIRST_DISTANCE,
             room: FIRST_ROOM,
         }
@@ -64,7 +72,16 @@ impl Margins {
 
     /// The limits themselves.
     pub(super) fn none() -> Margins {
-        Margins { load: 1.0, speed: 1.0, reach: 0.0, spacing: 0.0, distance: 1.0, room: 0.0 }
+        Margins {
+            load: 1.0,
+            speed: 1.0,
+            reach: 0.0,
+            spacing: 0.0,
+            polygon: 0.0,
+            edges: f64::INFINITY,
+            distance: 1.0,
+            room: 0.0,
+        }
     }
 
     /// Tighter for another attempt from the begin.
@@ -87,6 +104,10 @@ impl Margins {
         if check.tcp_speed > 1.0 || check.deviation > 1.0 {
             self.spacing *= CLOSER;
         }
+        if check.polygon > 1.0 {
+            self.polygon /= check.polygon;
+        }
+        self.edges = f64::INFINITY;
     }
 
     /// Tighter for more polishing of a stream that nearly holds.
@@ -97,5 +118,8 @@ impl Margins {
         self.load /= over(check.torque);
         self.speed /= over(check.tcp_speed);
         self.distance /= over(check.deviation);
+        if check.polygon > 1.0 {
+            self.edges = FIRST_DISTANCE.min(self.edges / over(check.polygon));
+        }
     }
 }

@@ -40,6 +40,12 @@ pub trait Plant {
         PathShares::default()
     }
 
+    /// What a place on the polygon of the points has of its limits: its distance from the path and how
+    /// near arm and tool come there to what the cell keeps free. `place` as above.
+    fn polygon_share(&self, _q: &Joints, _place: &mut usize) -> f64 {
+        0.0
+    }
+
     /// Number of steps on a piece in which it is judged, even.
     fn steps(&self, _piece: &Piece) -> usize {
         LEAST_STEPS
@@ -114,5 +120,15 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
             }
         }
     }
+    let mut place = 0;
+    for edge in stream.polygon() {
+        for share in EDGE_PLACES.map(|tau| plant.polygon_share(&edge.at(tau).0, &mut place)) {
+            out.worst_share = out.worst_share.max(share);
+            out.excess += (share - (1.0 - ROOM)).max(0.0);
+        }
+    }
     out
 }
+
+/// Places on the way from one point to the next at which it is judged, shares of it.
+pub(super) const EDGE_PLACES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];

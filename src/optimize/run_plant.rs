@@ -64,4 +64,13 @@ impl Plant for RunPlant<'_> {
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
         [tcp, joints, distance / self.margins.distance, near]
     }
+
+    fn polygon_share(&self, q: &Joints, place: &mut usize) -> f64 {
+        let task = self.work.task;
+        let pose = task.run.legs[0].tool.pose(&fk(task.model, q));
+        let distance = self.work.corridor.polygon_share(&pose, place);
+        let body = self.work.body.as_ref();
+        let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
+        near.max(distance / self.margins.edges)
+    }
 }

@@ -9,7 +9,9 @@
 use super::banded::Banded;
 use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{DIFFERENCES, PathShares, Plant, ROOM, Realised, direction, realise};
+use super::plant::{
+    DIFFERENCES, EDGE_PLACES, PathShares, Plant, ROOM, Realised, direction, realise,
+};
 use super::stream_limits::StreamLimits;
 use super::stream_points::{LimitRow, Points};
 use super::stream_reference::Reference;
@@ -309,7 +311,34 @@ impl<P: Plant> Polish<'_, P> {
                 self.add_place(&place, &lin, &mut model);
             }
         }
+        self.add_polygon(&best.stream, &mut model);
         model
+    }
+
+    /// Adds the limits of the polygon of the points.
+    fn add_polygon(&self, stream: &Stream, model: &mut Quadratic) {
+        let mut near = 0;
+        for (i, edge) in stream.polygon().enumerate() {
+            for tau in EDGE_PLACES {
+                let (q, _, _) = edge.at(tau);
+                let share = self.plant.polygon_share(&q, &mut near);
+                if share <= NEAR {
+                    continue;
+                }
+                let mut weights = Vec::new();
+                for (m, joint) in self.points.joints.iter().enumerate() {
+                    let mut state = q;
+                    state[*joint] += DIFFERENCES[0];
+                    let next = self.plant.polygon_share(&state, &mut near.clone());
+                    let slope = UNIT * (next - share) / DIFFERENCES[0];
+                    for (point, weight) in [(i, 1.0 - tau), (i + 1, tau)] {
+                        let index = self.points.variable(point, m);
+                        weights.extend(index.map(|index| (index, weight * slope)));
+                    }
+                }
+                model.add_share(share, weights.into_iter());
+            }
+        }
     }
 
     /// The change that the quadratic program around `best` proposes. None if there is none.

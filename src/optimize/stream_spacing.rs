@@ -8,6 +8,9 @@ use crate::motion::stream::{DOF, Joints};
 
 /// h³ |q⃛| times this is the error of a quadratic spline.
 const ERROR_CONSTANT: f64 = 0.008_018_753_738_744_8;
+/// h² |q̈⊥| times this is the distance of the polygon of the points from their quadratic spline,
+/// q̈⊥ being the acceleration across the path.
+const POLYGON_CONSTANT: f64 = 0.125;
 /// Samples of the density per shortest interval.
 const SAMPLES: f64 = 5.0;
 /// Largest change of the spacing along the motion, s per s: neighbours differ by a third.
@@ -27,13 +30,21 @@ pub struct Spacing {
     pub longest: f64,
     /// Error that the spline may have, in radians or whatever `lever` makes of them.
     pub tolerance: f64,
+    /// Distance that the polygon of the points may have from the motion, in the same unit.
+    pub polygon: f64,
     /// Weight of each joint in the error: 1 for radians, its distance to the tool for metres.
     pub lever: Joints,
 }
 
 impl Default for Spacing {
     fn default() -> Spacing {
-        Spacing { shortest: 0.05, longest: f64::INFINITY, tolerance: 1e-4, lever: [1.0; DOF] }
+        Spacing {
+            shortest: 0.05,
+            longest: f64::INFINITY,
+            tolerance: 1e-4,
+            polygon: f64::INFINITY,
+            lever: [1.0; DOF],
+        }
     }
 }
 
@@ -58,7 +69,10 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
                 .map(|change| (change / (shortest * shortest)).powi(2))
                 .sum::<f64>()
                 .sqrt();
-            (spacing.tolerance / (ERROR_CONSTANT * jerk)).cbrt().clamp(shortest, longest)
+            let close = (spacing.tolerance / (ERROR_CONSTANT * jerk)).cbrt();
+            let turn = turn(&spacing.lever, &here, &before, &after) / (2.0 * shortest);
+            let beside = (spacing.polygon / (POLYGON_CONSTANT * turn)).sqrt();
+            close.min(beside).clamp(shortest, longest)
         })
         .collect();
     for i in 1..count {
@@ -83,4 +97,15 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
     }
     intervals.push(duration - begin);
     intervals
+}
+
+/// The change of a velocity, weighted by the levers, across its own direction.
+fn turn(lever: &Joints, here: &Joints, before: &Joints, after: &Joints) -> f64 {
+    let change: Joints = std::array::from_fn(|j| lever[j] * (after[j] - before[j]));
+    let along: Joints = std::array::from_fn(|j| lever[j] * here[j]);
+    let dot = |a: &Joints, b: &Joints| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let square = dot(&along, &along);
+    let share = if square > 0.0 { dot(&change, &along) / square } else { 0.0 };
+    let across: Joints = std::array::from_fn(|j| change[j] - share * along[j]);
+    dot(&across, &across).sqrt()
 }

@@ -176,6 +176,7 @@ pub fn retrofit(
             "passed": retrofit.verification.passed,
             "max_ratio": ratios(worst),
             "max_path_deviation_m": worst.deviation_m,
+            "max_polygon_deviation_m": worst.polygon_m,
             "endpoint_error_rad": worst.endpoint_error_rad,
             "intended_error_rad": retrofit.verification.intended_error_rad,
             "checks": checks,

@@ -182,7 +182,8 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
     let mut out = format!(
         "{}: motion energy {:.1} J -> {:.1} J (saves {:.1} %), energy with waits and base load \
          saves {:.1} %\nverified: {}; at most {:.0} % of joint speed, {:.0} % of acceleration, \
-         {:.0} % of torque, {:.0} % of TCP speed; path within {:.2} mm, ends within {:.1e} rad\n",
+         {:.0} % of torque, {:.0} % of TCP speed; path within {:.2} mm, polygon \
+         of the points within {:.2} mm, ends within {:.1e} rad\n",
         model.name,
         before.motion_energy_j,
         after.motion_energy_j,
@@ -194,6 +195,7 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         100.0 * worst.torque,
         100.0 * worst.tcp_speed,
         1e3 * worst.deviation_m,
+        1e3 * worst.polygon_m,
         worst.endpoint_error_rad,
     );
     if retrofit.guard_instructions > 0 {

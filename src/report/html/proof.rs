@@ -75,6 +75,7 @@ pub(super) fn verification(retrofit: &Retrofit) -> Verification {
             share("joint torque", worst.torque),
             share("TCP speed", worst.tcp_speed),
             share("allowed path deviation", worst.deviation),
+            share("allowed deviation of the points' polygon", worst.polygon),
         ],
         deviation_mm: fixed(1e3 * worst.deviation_m, 3),
         endpoint_error_rad: tiny(worst.endpoint_error_rad),
