@@ -80,6 +80,22 @@ fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8
     Some([&bytes[..at], &entry, &bytes[at..]].concat())
 }
 
+/// The list without the lines of modules of these file names.
+pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
+    let is_one = |line: &&[u8]| {
+        let text = String::from_utf8_lossy(line).to_lowercase();
+        let path = text.split(char::from(MARK)).next().unwrap_or_default().trim();
+        let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
+        path.len() > name.len() && names.iter().any(|known| known.to_lowercase() == name)
+    };
+    bytes
+        .split_inclusive(|byte| *byte == b'\n')
+        .filter(|line| !is_one(line))
+        .flatten()
+        .copied()
+        .collect()
+}
+
 /// Where the name of the file begins in the line of a module of this folder.
 fn listed(line: &[u8], folder: &str) -> Option<usize> {
     let separator = line.get(folder.len())?;
@@ -102,6 +118,8 @@ mod tests {
                 .map(|b| String::from_utf8_lossy(&b).into_owned())
         };
         let expected = text.replace("a.mod @ \r\n", "a.mod @ \r\nPROGMOD/J.mod @ \r\n");
+        let shorter = without(expected.as_bytes(), &["j.mod".to_owned()]);
+        assert_eq!(shorter, info);
         assert_eq!(longer("task1"), Some(expected));
         let expected = text.replace("c.mod\r\n", "c.mod\r\nPROGMOD/J.mod @ \r\n");
         assert_eq!(longer("TASK2"), Some(expected));

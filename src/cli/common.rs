@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use super::backup::motion_configuration;
 use super::choice;
 use super::input::{self, Input};
+use super::refresh::Streams;
 use crate::config::{self, Config};
 use crate::effects;
 use crate::kinematics::limits_ok;
@@ -95,6 +96,8 @@ pub struct Job {
     pub input: Input,
     /// The files of the program; their ids count from 0.
     pub files: Vec<Source>,
+    /// The streams that it had, if they are made anew.
+    pub streams: Streams,
     /// The robot.
     pub model: Model,
     /// The configuration.
@@ -108,6 +111,11 @@ pub struct Job {
 }
 
 impl Job {
+    /// Whether streams that the program had are made anew.
+    pub fn is_refreshed(&self) -> bool {
+        !self.streams.modules.is_empty()
+    }
+
     /// The files of other tasks that were read beside those of the program.
     pub fn others(&self) -> impl Iterator<Item = &SourceFile> {
         let is_own = |path: &str| self.files.iter().any(|own| own.file.path == path);
@@ -140,8 +148,15 @@ impl Job {
 /// # Errors
 /// Whatever is missing or wrong, with the way out.
 pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
+    prepare_read(program, input::read(&program.cell.paths)?)
+}
+
+/// The same for a program that was read.
+///
+/// # Errors
+/// As of [`prepare`].
+pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> {
     let args = &program.cell;
-    let input = input::read(&args.paths)?;
     for unreadable in &input.unreadable {
         note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
     }
@@ -193,7 +208,8 @@ pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
             relative: file.relative.clone(),
         })
         .collect();
-    Ok(Job { input, files, model, config, entry, options, inputs })
+    let streams = Streams::default();
+    Ok(Job { input, files, streams, model, config, entry, options, inputs })
 }
 
 /// How a program is simulated, and the inputs whose time is stated, as the user writes them.

@@ -90,6 +90,37 @@ fn extended(bytes: &[u8], neighbour: usize, new: &str) -> Option<Vec<u8>> {
     Some([&bytes[..after], &entry, &bytes[after..]].concat())
 }
 
+/// A list of modules without those of these file names, each with the line that it is alone in.
+pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
+    let mut out = bytes.to_vec();
+    let mut from = 0;
+    while let Some(begin) = find(&out[from..], BEGIN).map(|at| from + at) {
+        let name = begin + BEGIN.len();
+        let Some(length) = find(&out[name..], END) else { break };
+        let listed = String::from_utf8_lossy(&out[name..name + length]).trim().to_lowercase();
+        let listed = listed.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+        let end = name + length + END.len();
+        if names.iter().any(|name| name.to_lowercase() == listed) {
+            let line = out[..begin].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+            let next = out[end..].iter().position(|b| *b == b'\n').map(|i| end + i + 1);
+            let alone = |part: &[u8]| part.iter().all(u8::is_ascii_whitespace);
+            match next {
+                Some(next) if alone(&out[line..begin]) && alone(&out[end..next]) => {
+                    out.drain(line..next);
+                    from = line;
+                }
+                _ => {
+                    out.drain(begin..end);
+                    from = begin;
+                }
+            }
+        } else {
+            from = end;
+        }
+    }
+    out
+}
+
 fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
     bytes.windows(part.len()).position(|window| window == part)
 }
@@ -104,9 +135,11 @@ mod tests {
         let longer = b"<Program>\r\n\t<Module>A.mod</Module>\r\n\t<Module>J.mod</Module>\r\n\
                        </Program>\r\n";
         assert_eq!(extended(lines, 0, "J.mod").as_deref(), Some(longer.as_slice()));
+        assert_eq!(without(longer, &["j.mod".to_owned()]), lines);
         let one = b"<Program><Module>p\\A.mod</Module></Program>";
         let two = b"<Program><Module>p\\A.mod</Module><Module>p\\J.mod</Module></Program>";
         assert_eq!(extended(one, 0, "p/J.mod").as_deref(), Some(two.as_slice()));
+        assert_eq!(without(two, &["J.mod".to_owned()]), one);
         let other = b"<Module>A.mod</Module>\n<Module></Module>\n<Module>p\\B.mod</Module>\n";
         let more = b"<Module>A.mod</Module>\n<Module></Module>\n<Module>p\\B.mod</Module>\n\
                      <Module>p\\J.mod</Module>\n";

@@ -20,6 +20,7 @@ pub mod optimize;
 pub mod output;
 pub mod parse;
 pub mod predict;
+pub mod refresh;
 pub mod robots;
 pub mod rule;
 pub mod signals;
@@ -50,6 +51,7 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
     Optimize(Box<optimize::OptimizeArgs>),
+    Refresh(Box<refresh::RefreshArgs>),
     Generate(generate::GenerateArgs),
     Standstill(standstill::StandstillArgs),
     Excite(Box<excite::ExciteArgs>),
@@ -72,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
+        Command::Refresh(args) => refresh::run(&args),
         Command::Generate(args) => generate::run(&args),
         Command::Standstill(args) => standstill::run(&args),
         Command::Excite(args) => excite::run(&args),

@@ -11,8 +11,8 @@ use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::written::{original, whole_backup, write_folder, write_in_place};
-use super::{backinfo, listing, output, undo};
+use super::written::{now, whole_backup, write_folder, write_in_place};
+use super::{backinfo, input, listing, output, refresh, undo};
 use crate::config::KeepOut;
 use crate::emit::Layout;
 use crate::kinematics::{self, Obstacle, Plane};
@@ -22,7 +22,7 @@ use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{
-    Budget, Form, Objective, OutputKind, Retrofit, SPACING_S, Settings, freed, retrofit, written_in,
+    Budget, Form, Objective, Retrofit, SPACING_S, Settings, freed, retrofit, written_in,
 };
 use crate::text::charset;
 
@@ -198,12 +198,28 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         return take_back(args);
     }
-    let settings_of = |job: &Job| settings(args, job);
-    let job = common::prepare(&args.program)?;
-    let settings = settings_of(&job)?;
+    work(args, &common::prepare(&args.program)?)
+}
+
+/// The same for a program that has streams already, which are made anew.
+///
+/// # Errors
+/// The program has none, and all that [`run`] refuses.
+pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    if args.undo {
+        bail!("refresh takes nothing back: joulepath optimize --undo does");
+    }
+    let mut input = input::read(&args.program.cell.paths)?;
+    let streams = refresh::take_out(&mut input)?;
+    let job = common::prepare_read(&args.program, input)?;
+    work(args, &Job { streams, ..job })
+}
+
+fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
+    let settings = settings(args, job)?;
     // A folder of one task has no list of the controller's modules to be written with it.
     let paths = args.program.cell.paths.as_slice();
-    let backup = whole_backup(paths, &job);
+    let backup = whole_backup(paths, job);
     let lists = backup.is_some() || (args.in_place && args.out.is_none());
     let result = {
         let bar = progress(args.program.cell.quiet);
@@ -214,6 +230,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bar.finish_and_clear();
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
+        refresh::hand_on(job, &mut result);
         listing::add(&mut result, &job.input, &job.files);
         if lists {
             backinfo::add(&mut result, &job.input);
@@ -227,10 +244,10 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, &job, &result, backup)?);
+        written.extend(write_folder(folder, job, &result, backup)?);
     }
     if args.in_place {
-        written.extend(write_in_place(paths, &job, &result)?);
+        written.extend(write_in_place(paths, job, &result)?);
     }
     if let Some(path) = &args.report {
         let html = report::html::optimize_report(&result, &job.files, &job.model, &job.entry)?;
@@ -251,8 +268,8 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
             for path in &written {
                 common::note(args.program.cell.quiet, &format!("wrote {path}"));
             }
-            if args.diff {
-                write!(out, "{}", diff(&job, &result))?;
+            if args.diff || job.is_refreshed() {
+                write!(out, "{}", diff(job, &result))?;
             } else {
                 write!(out, "{}", report::text::retrofit(&job.model, places, &result))?;
             }
@@ -414,17 +431,14 @@ fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 fn diff(job: &Job, result: &Retrofit) -> String {
     let mut text = String::new();
     for file in &result.outputs {
-        if file.kind == OutputKind::Unchanged {
+        let before = now(job, file).unwrap_or_default();
+        if before == file.bytes {
             continue;
         }
-        let before = original(job, file).map_or([].as_slice(), |(_, bytes)| bytes);
         let charset = charset(&file.bytes);
-        let (old, new) = (charset.decode(before), charset.decode(&file.bytes));
-        let from = if file.kind == OutputKind::New {
-            "/dev/null".to_owned()
-        } else {
-            format!("a/{}", file.path)
-        };
+        let (old, new) = (charset.decode(&before), charset.decode(&file.bytes));
+        let from =
+            if before.is_empty() { "/dev/null".to_owned() } else { format!("a/{}", file.path) };
         let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
         text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
     }

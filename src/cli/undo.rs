@@ -60,15 +60,16 @@ enum Kind {
 }
 
 /// Keeps what is needed to take changes of files below `root` back; returns the folder of it.
-/// Nothing of the program is touched.
+/// Nothing of the program is touched. Modules of streams that are made anew may be there; what an
+/// earlier retrofit kept is replaced then, since its data are those of the past.
 ///
 /// # Errors
 /// The folder or a new file is there already, a file lies outside of `root`, or nothing can be
 /// written.
-pub fn keep(root: &Path, changes: &[Change<'_>]) -> anyhow::Result<PathBuf> {
+pub fn keep(root: &Path, changes: &[Change<'_>], streams: &[PathBuf]) -> anyhow::Result<PathBuf> {
     let root = real(root)?;
     let folder = beside(&root)?;
-    if folder.exists() {
+    if folder.exists() && streams.is_empty() {
         bail!(
             "'{}' holds the originals of an earlier --in-place: take that back first (joulepath \
              optimize {} --undo), or move the folder away to keep its changes",
@@ -85,7 +86,7 @@ pub fn keep(root: &Path, changes: &[Change<'_>]) -> anyhow::Result<PathBuf> {
             kept.push((Path::new(ORIGINALS).join(&path), before));
             Kind::Changed
         } else {
-            if change.path.exists() {
+            if change.path.exists() && !streams.contains(&change.path) {
                 bail!(
                     "'{}' exists already and would be overwritten: move it away first, or use --out",
                     change.path.display()
@@ -98,6 +99,10 @@ pub fn keep(root: &Path, changes: &[Change<'_>]) -> anyhow::Result<PathBuf> {
     }
     let manifest = serde_json::to_vec_pretty(&Manifest { version: VERSION, files, folders })?;
     kept.push((MANIFEST.into(), &manifest));
+    if folder.exists() {
+        fs::remove_dir_all(&folder)
+            .with_context(|| format!("cannot replace '{}'", folder.display()))?;
+    }
     output::write_folder(&folder, &kept)?;
     Ok(folder)
 }

@@ -9,6 +9,7 @@ use anyhow::{Context, bail};
 use super::common::Job;
 use super::{output, undo};
 use crate::retrofit::{OutputFile, OutputKind, Retrofit};
+use crate::text::{FileId, SourceFile};
 
 /// The backup, if the command line names the whole of it.
 pub(super) fn whole_backup<'j>(paths: &[PathBuf], job: &'j Job) -> Option<&'j Path> {
@@ -37,10 +38,13 @@ fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
 fn rest_of_backup(
     root: &Path,
     out: &Path,
-    result: &Retrofit,
+    (job, result): (&Job, &Retrofit),
 ) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
     let known: BTreeSet<PathBuf> =
         result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
+    let real = |path: &Path| path.canonicalize().ok();
+    let streams: Vec<_> = job.streams.modules.iter().map(|path| real(path)).collect();
+    let is_stream = |path: &Path| streams.contains(&real(path));
     let mut rest = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -51,7 +55,7 @@ fn rest_of_backup(
             let relative = path.strip_prefix(root).unwrap_or(&path).to_owned();
             if kind.is_dir() && path != out {
                 folders.push(path);
-            } else if kind.is_file() && !known.contains(&relative) {
+            } else if kind.is_file() && !known.contains(&relative) && !is_stream(&path) {
                 let bytes = std::fs::read(&path)
                     .with_context(|| format!("cannot read '{}'", path.display()))?;
                 rest.push((relative, bytes));
@@ -88,7 +92,7 @@ pub(super) fn write_folder(
     let rest = match backup {
         Some(root) => {
             let out = std::path::absolute(folder)?;
-            rest_of_backup(root, &real(&out).unwrap_or(out), result)?
+            rest_of_backup(root, &real(&out).unwrap_or(out), (job, result))?
         }
         None => Vec::new(),
     };
@@ -114,20 +118,25 @@ pub(super) fn write_in_place(
     result: &Retrofit,
 ) -> anyhow::Result<Vec<String>> {
     let mut changes = Vec::new();
-    for file in new_first(result).filter(|file| file.kind != OutputKind::Unchanged) {
-        let path = place(job, file);
-        let before = if file.kind == OutputKind::New {
-            None
-        } else {
-            let bytes = std::fs::read(&path);
-            Some(bytes.with_context(|| format!("cannot read '{}'", path.display()))?)
+    for file in new_first(result) {
+        let (path, after) = (place(job, file), stored(job, file));
+        let before = match original(job, file) {
+            Some((path, bytes)) => {
+                // A file that can't be read can't be restored.
+                let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
+                if now == *after {
+                    continue;
+                }
+                Some(if job.is_refreshed() { encoded(job, file, bytes).into_owned() } else { now })
+            }
+            None => None,
         };
-        changes.push(undo::Change { path, before, after: stored(job, file) });
+        changes.push(undo::Change { path, before, after });
     }
     if changes.is_empty() {
         return Ok(Vec::new());
     }
-    let kept = undo::keep(&program_folder(paths, job)?, &changes)?;
+    let kept = undo::keep(&program_folder(paths, job)?, &changes, &job.streams.modules)?;
     let staged: anyhow::Result<Vec<output::Staged>> =
         changes.iter().map(|change| output::stage(&change.path, &change.after)).collect();
     let staged = staged.inspect_err(|_| {
@@ -135,20 +144,39 @@ pub(super) fn write_in_place(
         let _ = std::fs::remove_dir_all(&kept);
     })?;
     staged.into_iter().try_for_each(output::Staged::put)?;
+    let is_written = |path: &&PathBuf| changes.iter().any(|change| change.path == **path);
+    for path in job.streams.modules.iter().filter(|path| !is_written(path)) {
+        std::fs::remove_file(path)
+            .with_context(|| format!("cannot delete '{}'", path.display()))?;
+    }
     let paths = std::iter::once(&kept).chain(changes.iter().map(|change| &change.path));
     Ok(paths.map(|path| path.display().to_string()).collect())
 }
 
 /// The bytes of an output in the encoding of the file that it stands for.
 fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
+    encoded(job, file, &file.bytes)
+}
+
+fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
     match file.input.and_then(|i| job.files.get(i)) {
-        Some(source) => source.file.stored(&file.bytes),
-        None => Cow::Borrowed(&file.bytes),
+        Some(source) => source.file.stored(bytes),
+        None => Cow::Borrowed(bytes),
     }
 }
 
+/// What the user's file holds in place of an output, decoded as that is.
+pub(super) fn now(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
+    if !job.is_refreshed() {
+        return original(job, file).map(|(_, bytes)| bytes.to_vec());
+    }
+    let path = place(job, file);
+    let bytes = std::fs::read(&path).ok()?;
+    Some(SourceFile::new(FileId(0), path.display().to_string(), bytes).bytes)
+}
+
 /// Path and bytes of the file of the input that an output stands for.
-pub(super) fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
     match (file.kind, file.input) {
         (OutputKind::New, _) => None,
         (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),

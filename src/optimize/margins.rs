@@ -84,6 +84,12 @@ impl Margins {
         }
     }
 
+    /// The largest share of a limit that was asked for.
+    pub(super) fn worst(&self, check: &Check) -> f64 {
+        let polygon = if self.edges.is_infinite() { 0.0 } else { check.polygon };
+        Check { polygon, ..*check }.worst()
+    }
+
     /// Tighter for another attempt from the begin.
     pub(super) fn tighten(&mut self, check: &Check) {
         let load = check.torque.max(check.acceleration);

@@ -254,8 +254,11 @@ impl<'a> Work<'a> {
                         return Err(Reason::NoSaving);
                     }
                     problem = Some(attempt.check.fault());
-                    if attempt.check.worst() < worst {
-                        worst = attempt.check.worst();
+                    let share = margins.worst(&attempt.check);
+                    if share < worst {
+                        // The polygon is asked for from now on.
+                        let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
+                        worst = if is_new { f64::INFINITY } else { share };
                         margins.tighten_a_little(&attempt.check);
                         begun = Some(attempt.intended);
                     } else {

@@ -21,6 +21,7 @@ mod sharing;
 mod signals;
 mod speeds;
 mod verify;
+mod without;
 mod work;
 
 pub use elsewhere::written_in;
@@ -31,6 +32,7 @@ pub use figures::{
 pub use freed::freed;
 pub use outputs::read_again;
 pub use signals::{SignalKind, SignalShift};
+pub use without::{is_streams, prefix, without_streams};
 pub use work::{
     Budget, Form, Objective, RetrofitError, SPACING_S, Settings, Source, read_program, retrofit,
 };
