@@ -10,7 +10,7 @@ use super::common::Job;
 use super::input::Input;
 use super::optimize::{self, OptimizeArgs};
 use super::{backinfo, listing};
-use crate::retrofit::{OutputKind, Retrofit, is_streams, prefix, without_streams};
+use crate::retrofit::{BRAKE_NOTE, OutputKind, Retrofit, is_streams, prefix, without_streams};
 use crate::text::SourceFile;
 
 /// Make the streams of a retrofitted program anew from its present data, and show the difference.
@@ -72,6 +72,9 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
              folder of a retrofitted program, or make one with joulepath optimize"
         );
     }
+    let beside = |path: &PathBuf| Some(path.parent()?.join(BRAKE_NOTE));
+    let notes: Vec<PathBuf> = streams.modules.iter().filter_map(beside).collect();
+    streams.modules.extend(notes.into_iter().filter(|note| note.is_file()));
     input.files.retain(|file| !is_streams(&file.source.bytes));
     for file in &mut input.files {
         for prefix in &prefixes {

@@ -30,7 +30,7 @@ pub use figures::{
     Verification,
 };
 pub use freed::freed;
-pub use outputs::read_again;
+pub use outputs::{BRAKE_NOTE, read_again};
 pub use signals::{SignalKind, SignalShift};
 pub use without::{is_streams, prefix, without_streams};
 pub use work::{

@@ -275,6 +275,9 @@ pub(super) fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }
 
+/// The file with the note on brakes.
+pub const BRAKE_NOTE: &str = "joulepath_brakes.txt";
+
 /// A note for dwells of the emitted program that pay, with the setting that they need.
 pub(super) fn add_brake_note(outputs: &mut Vec<OutputFile>, model: &Model, dwells: &[Dwell]) {
     let paying = dwells.iter().filter(|dwell| dwell.potential_j > 0.0);
@@ -295,7 +298,7 @@ pub(super) fn add_brake_note(outputs: &mut Vec<OutputFile>, model: &Model, dwell
         .fold(f64::INFINITY, f64::min);
     let Ok(text) = emit::brake_note(&model.name, &list, &number(shortest, 1)) else { return };
     outputs.push(OutputFile {
-        path: "joulepath_brakes.txt".to_owned(),
+        path: BRAKE_NOTE.to_owned(),
         kind: OutputKind::New,
         bytes: text.into_bytes(),
         input: None,
