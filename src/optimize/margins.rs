@@ -112,8 +112,8 @@ impl Margins {
         }
         if check.polygon > 1.0 {
             self.polygon /= check.polygon;
+            self.edges = FIRST_DISTANCE;
         }
-        self.edges = f64::INFINITY;
     }
 
     /// Tighter for more polishing of a stream that nearly holds.
