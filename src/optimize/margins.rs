@@ -1,7 +1,6 @@
 //! How far from the limits an attempt at a stream stays.
 
 use super::check::Check;
-use super::corridor::STOP_TOLERANCE;
 
 /// Margin to acceleration and torque limits at first: what a stream between nodes needs.
 const FIRST_MARGIN: f64 = 0.98;
@@ -52,7 +51,7 @@ impl Margins {
             speed: 1.0,
             reach: FIRST_REACH,
             spacing: FIRST_SPACING * tolerance,
-            polygon: STOP_TOLERANCE,
+            polygon: tolerance,
             edges: f64::INFINITY,
             distance: FIRST_DISTANCE,
             room: FIRST_ROOM,

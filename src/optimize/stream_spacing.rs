@@ -11,6 +11,9 @@ const ERROR_CONSTANT: f64 = 0.008_018_753_738_744_8;
 /// h² |q̈⊥| times this is the distance of the polygon of the points from their quadratic spline,
 /// q̈⊥ being the acceleration across the path.
 const POLYGON_CONSTANT: f64 = 0.125;
+/// Shortest interval where the polygon asks for it, share of the shortest one elsewhere: points are
+/// far apart in space where it does.
+const POLYGON_SHORTEST: f64 = 0.8;
 /// Samples of the density per shortest interval.
 const SAMPLES: f64 = 5.0;
 /// Largest change of the spacing along the motion, s per s: neighbours differ by a third.
@@ -49,7 +52,8 @@ impl Default for Spacing {
 }
 
 /// Intervals, s, that add up to `duration`, for a stream that follows `reference` in that time.
-/// None is below the shortest one unless the whole duration is, or much above the longest.
+/// None is below the shortest one, [`POLYGON_SHORTEST`] of it where the polygon asks for that, unless
+/// the whole duration is, or much above the longest.
 pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacing) -> Vec<f64> {
     let shortest = spacing.shortest.max(duration / MOST);
     if !(duration > 2.0 * shortest && duration.is_finite()) {
@@ -72,7 +76,8 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
             let close = (spacing.tolerance / (ERROR_CONSTANT * jerk)).cbrt();
             let turn = turn(&spacing.lever, &here, &before, &after) / (2.0 * shortest);
             let beside = (spacing.polygon / (POLYGON_CONSTANT * turn)).sqrt();
-            close.min(beside).clamp(shortest, longest)
+            let beside = beside.max(POLYGON_SHORTEST * shortest);
+            close.clamp(shortest, longest).min(beside)
         })
         .collect();
     for i in 1..count {
