@@ -251,21 +251,26 @@ impl Corridor {
         let place = &self.places[i].pose;
         let from = pose.translation.vector - place.translation.vector;
         let rotation = place.rotation.coords;
+        let turned = METRES_PER_RADIAN * turn_vector(&rotation, &pose.rotation.coords);
         let aside = |k: usize| {
             let next = &self.places[k].pose;
             let along = next.translation.vector - place.translation.vector;
-            let square = along.norm_squared();
-            let share =
-                if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
-            let sign = if rotation.dot(&next.rotation.coords) < 0.0 { -1.0 } else { 1.0 };
-            let between = rotation.lerp(&(sign * next.rotation.coords), share).normalize();
-            let turn = METRES_PER_RADIAN * turn(&pose.rotation.coords, &between);
-            (from - along * share).norm().hypot(turn)
+            let turns = METRES_PER_RADIAN * turn_vector(&rotation, &next.rotation.coords);
+            let square = along.norm_squared() + turns.norm_squared();
+            let dot = from.dot(&along) + turned.dot(&turns);
+            let share = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
+            (from - along * share).norm().hypot((turned - turns * share).norm())
         };
         let last = self.places.len() - 1;
         let neighbours = [i.saturating_sub(1), (i + 1).min(last)];
         neighbours.map(aside).into_iter().fold(f64::INFINITY, f64::min)
     }
+}
+
+/// From one orientation to another: as long as the angle between them, rad, where it is small.
+fn turn_vector(from: &Vector4<f64>, to: &Vector4<f64>) -> Vector4<f64> {
+    let sign = if from.dot(to) < 0.0 { -1.0 } else { 1.0 };
+    2.0 * (sign * to - from)
 }
 
 /// The angle between two orientations, rad, where it is small; a chord of it where it is large,

@@ -11,7 +11,7 @@ const FIRST_REACH: f64 = 0.002;
 /// Placing of the points at first, share of the tolerance of the path.
 const FIRST_SPACING: f64 = 0.1;
 /// Share of the allowed distance from the path that the polishing may use at first.
-const FIRST_DISTANCE: f64 = 0.95;
+pub(super) const FIRST_DISTANCE: f64 = 0.95;
 
 /// Room to what the cell keeps free at first, m: a motion is looked at in steps.
 const FIRST_ROOM: f64 = 0.005;

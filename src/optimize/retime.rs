@@ -12,7 +12,7 @@ use super::cost::Cost;
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
 use super::freedom::Freedom;
 use super::keep_out;
-use super::margins::Margins;
+use super::margins::{FIRST_DISTANCE, Margins};
 use super::path_energy::EnergyModel;
 use super::path_grid;
 use super::reason::Reason;
@@ -307,7 +307,7 @@ impl<'a> Work<'a> {
 
     /// Least time: the fastest profile, given as much longer as the jerk limit needs.
     fn least_time(&self) -> Result<Retiming, Reason> {
-        let mut margins = Margins::first(self.tolerance());
+        let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = Reason::NoSaving;
         for _ in 0..ATTEMPTS {
