@@ -28,6 +28,9 @@ const LIMIT: f64 = 1.001;
 /// Distances from the path that the documentation allows, mm.
 const OFF_LINE: f64 = 1.0;
 const OFF_JOINT_PATH: f64 = 5.0;
+/// The same for the polygon of the points this near a stop, mm.
+const OFF_NEAR_STOP: f64 = 0.5;
+const NEAR_STOP: f64 = 50.0;
 /// Distance of an end point, mm and degrees.
 const END: f64 = 0.02;
 /// Change of the direction of the tool on a line, rad.
@@ -260,6 +263,28 @@ fn power(model: &Model, tau: &[f64], rigid: &[f64], friction: &[f64], qd: &[f64;
     total + copper + lost * (1.0 - model.drive.regeneration)
 }
 
+/// Where corner zones fail the robot stops at every point and goes straight, in joints, to the next.
+fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
+    const STEPS: usize = 40;
+    let stops = [stream.start, *stream.points.last().unwrap()].map(|q| flange(&q).0);
+    let from = std::iter::once(&stream.start).chain(&stream.points);
+    for (i, (from, to)) in from.zip(&stream.points).enumerate() {
+        for k in 0..=STEPS {
+            let share = k as f64 / STEPS as f64;
+            let place = flange(&std::array::from_fn(|j| from[j] + share * (to[j] - from[j]))).0;
+            let (off, allowed) = if let Way::Line(from, to) = way {
+                (off_line(place, [*from, *to]), OFF_LINE)
+            } else {
+                let nearest = original.iter().map(|p| apart(*p, place)).fold(f64::MAX, f64::min);
+                (nearest, OFF_JOINT_PATH)
+            };
+            let near = stops.iter().any(|stop| apart(*stop, place) < NEAR_STOP);
+            let allowed = if near { OFF_NEAR_STOP } else { allowed };
+            assert!(off <= allowed, "line {}: edge {i}: {off} mm off at {share}", stream.line);
+        }
+    }
+}
+
 /// Holds a stream against the limits, its path and what was promised of it.
 fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way, f64)) {
     let name = format!("line {}", stream.line);
@@ -304,6 +329,7 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
         }
         before = Some((*t, watts, place));
     }
+    judge_polygon(stream, way, &original);
     let (_, reached, ..) = samples[samples.len() - 1];
     match way {
         Way::Joints(to) => {
@@ -378,6 +404,8 @@ fn emitted_points_hold_what_was_promised_of_them() {
             if options[1] == "time" {
                 let time = segment["time_after_s"].as_f64().unwrap();
                 assert!(time <= segment["time_before_s"].as_f64().unwrap() + TIME);
+                let end = stream.points.last().unwrap();
+                judge_polygon(stream, &ways[&stream.line].0, &joint_path(&stream.start, end));
             } else {
                 judge(&model, stream, segment, &ways[&stream.line]);
             }

@@ -23,8 +23,8 @@ pub const JOINT_TOLERANCE: f64 = 0.005;
 pub const ZONE_TOLERANCE: f64 = 0.1;
 /// Allowed distance of the polygon near stops, m: grippers and fixtures are near there.
 pub(super) const STOP_TOLERANCE: f64 = 0.0005;
-/// How much of the path counts as near a stop, m.
-const NEAR_STOP: f64 = 0.05;
+/// How far from a stop the path counts as near it, m: 50 mm, and what lies between places.
+const NEAR_STOP: f64 = 0.05 + 3.0 * SPACING;
 /// By how much the tolerance of the polygon grows behind that, m/m: a motion cannot follow a step.
 const WIDENING: f64 = 0.05;
 /// How many samples ahead and behind the last place are searched for the nearest.
@@ -67,16 +67,10 @@ pub struct Offset {
 
 /// Lowers the tolerances of the polygon near both ends of a path.
 fn near_stops(places: &mut [Place]) {
-    let step =
-        |a: &Place, b: &Place| (a.pose.translation.vector - b.pose.translation.vector).norm();
-    let mut way: Vec<f64> = vec![0.0];
-    way.extend(places.windows(2).scan(0.0, |way, pair| {
-        *way += step(&pair[0], &pair[1]);
-        Some(*way)
-    }));
-    let all = way[way.len() - 1];
-    for (place, way) in places.iter_mut().zip(way) {
-        let beyond = (way.min(all - way) - NEAR_STOP).max(0.0);
+    let stops = [0, places.len() - 1].map(|i| places[i].pose.translation.vector);
+    for place in places {
+        let distances = stops.map(|stop| (place.pose.translation.vector - stop).norm());
+        let beyond = (distances[0].min(distances[1]) - NEAR_STOP).max(0.0);
         place.polygon = place.polygon.min(place.stop_tolerance + WIDENING * beyond);
     }
 }

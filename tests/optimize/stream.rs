@@ -1,6 +1,8 @@
 //! Streams that follow an intended motion.
 
-use joulepath::motion::stream::{DOF, Joints, Stream};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use joulepath::motion::stream::{DOF, Joints, Piece, Stream};
 use joulepath::motion::timing::profile::Profile;
 use joulepath::motion::timing::reachability::time_optimal;
 use joulepath::optimize::energy_program::minimize_energy;
@@ -179,6 +181,36 @@ fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
         let fit = fitted(fit_stream(&reference, intervals, &FREE, &LEVER).unwrap());
         let error = fit.lag.max(fit.deviation);
         assert!(error < 2.0 * tolerance && error > 0.5 * tolerance, "{tolerance}: {error}");
+    }
+}
+
+#[test]
+fn the_polygon_of_the_points_is_as_near_as_the_spacing_was_asked_for() {
+    // Two joints on a quarter of a circle: the polygon goes outside of it.
+    let circle = |t: f64| {
+        let (angle, speed) = (t - (TAU * t).sin() / TAU, 1.0 - (TAU * t).cos());
+        let (q, qd) = (angle * FRAC_PI_2, speed * FRAC_PI_2);
+        let of = |a: f64, b: f64| std::array::from_fn(|j| [a, b, 0.0, 0.0, 0.0, 0.0][j]);
+        (of(q.cos(), q.sin()), of(-q.sin() * qd, q.cos() * qd))
+    };
+    let reference = Reference::sample(1.0, 2000, circle).unwrap();
+    let farthest = |polygon: f64| {
+        let spacing = Spacing { polygon, tolerance: 1.0, ..Spacing::default() };
+        let intervals = adaptive_intervals(&reference, 1.0, &spacing);
+        let fit = fitted(fit_stream(&reference, intervals, &FREE, &LEVER).unwrap());
+        let off = |edge: Piece| {
+            (0..=10)
+                .map(|k| edge.at(f64::from(k) / 10.0).0)
+                .map(|q| (q[0].hypot(q[1]) - 1.0).abs())
+                .fold(0.0, f64::max)
+        };
+        (fit.stream.intervals().len(), fit.stream.polygon().map(off).fold(0.0, f64::max))
+    };
+    let (loose, unasked) = farthest(f64::INFINITY);
+    for polygon in [1e-2, 5e-3, 2e-3] {
+        let (points, found) = farthest(polygon);
+        assert!(points > loose && found < unasked, "{polygon}: {points} {found} {unasked}");
+        assert!(found < 1.5 * polygon, "{polygon}: {points} points, {found}");
     }
 }
 
