@@ -30,6 +30,8 @@ const TOOL: [f64; 3] = [0.0, 0.0, 0.18];
 const FREE: [&str; 3] = ["--free-path", "--deviation", "80"];
 /// Parts of the time between two rows of a trajectory, and of a capsule's line.
 const PARTS: usize = 4;
+/// Parts of the way from one point to the next.
+const EDGE_PARTS: usize = 100;
 /// Half the width of the box, m.
 const WIDTH: f64 = 0.03;
 /// What a figure of a trajectory's text leaves out, m.
@@ -39,6 +41,8 @@ struct Run {
     result: Value,
     /// Joint angles, rad.
     motion: Vec<Vec<f64>>,
+    /// The same from point to point of the streams.
+    polygon: Vec<Vec<f64>>,
 }
 
 impl Run {
@@ -78,12 +82,36 @@ fn optimized(config: &str, options: &[&str]) -> Run {
         "--out",
         &out,
         "--allow-faster-joints",
+        "--layout",
+        "plain",
     ];
     let result: Value =
         serde_json::from_slice(&joulepath(&[&common[..], options].concat())).unwrap();
     assert_eq!(result["verification"]["passed"], true);
     joulepath(&["simulate", &out, "--robot", KNOWN, "--trajectory", &csv]);
-    Run { result, motion: motion(Path::new(&csv)) }
+    let text = fs::read_to_string(folder.path().join("out/Joulepath.mod")).unwrap();
+    Run { result, motion: motion(Path::new(&csv)), polygon: polygon(&text) }
+}
+
+/// The ways from point to point of all streams in a module's text.
+fn polygon(text: &str) -> Vec<Vec<f64>> {
+    let joints = |statement: &str| -> Option<Vec<f64>> {
+        let numbers = statement.split("MoveAbsJ [[").nth(1)?.split(']').next()?;
+        Some(numbers.split(',').map(|x| x.parse::<f64>().unwrap().to_radians()).collect())
+    };
+    let streams = text.split("PROC jpMove").skip(1).map(|rest| rest.split("ENDPROC").next());
+    let mut all = Vec::new();
+    for stream in streams {
+        let points: Vec<Vec<f64>> = stream.unwrap().split(';').filter_map(joints).collect();
+        assert!(points.len() > 2, "{stream:?}");
+        for pair in points.windows(2) {
+            let at = |i: usize| i as f64 / EDGE_PARTS as f64;
+            all.extend((0..=EDGE_PARTS).map(|i| -> Vec<f64> {
+                pair[0].iter().zip(&pair[1]).map(|(a, b)| a + at(i) * (b - a)).collect()
+            }));
+        }
+    }
+    all
 }
 
 fn motion(csv: &Path) -> Vec<Vec<f64>> {
@@ -132,21 +160,52 @@ fn tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
     tool.map(|capsule| (capsule.to, capsule.radius)).collect()
 }
 
-/// Where the free motion passes the farthest from the original path along an axis: the axis, the
-/// place of the surface of the tool, and the distance.
-fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
-    let original = tips(&kept.motion);
+/// From the nearest place of the tip on an original to each place of it on a motion, with that place
+/// and the radius around it.
+fn aways(original: &[Vec<f64>], motion: &[Vec<f64>]) -> Vec<(Vector3<f64>, Point3<f64>, f64)> {
+    let original = tips(original);
     let away = |tip: &Point3<f64>| {
         let all = original.iter().map(|(other, _)| tip - other);
         all.min_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap()
     };
-    let all = tips(&free.motion).into_iter().map(|(tip, radius)| {
-        let away = away(&tip);
+    tips(motion).into_iter().map(|(tip, radius)| (away(&tip), tip, radius)).collect()
+}
+
+/// Where a motion passes the farthest from the original along an axis: the axis, the place of the
+/// surface of the tool, and the distance.
+fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
+    let all = aways(&kept.motion, &free.motion).into_iter().map(|(away, tip, radius)| {
         let mut axis = Vector3::zeros();
         axis[away.iamax()] = away[away.iamax()].signum();
         (axis, tip + axis * radius, away.dot(&axis))
     });
     all.max_by(|a, b| a.2.total_cmp(&b.2)).unwrap()
+}
+
+/// A small box that a motion enters and the original does not, as far out as can be: its middle and
+/// half its width.
+fn small_box(original: &[Vec<f64>], motion: &[Vec<f64>]) -> (Point3<f64>, f64) {
+    let mut all = aways(original, motion);
+    all.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
+    let around = |(away, tip, radius): &(Vector3<f64>, Point3<f64>, f64)| {
+        (tip + away.normalize() * *radius, 0.3 * away.norm())
+    };
+    let far = all.iter().take_while(|(away, ..)| away.norm() > 1e-4).step_by(20).map(around);
+    let corner = 3.0_f64.sqrt();
+    far.clone().find(|(middle, half)| distance(original, middle) > corner * half).unwrap()
+}
+
+/// The least distance of arm and tool from a point.
+fn distance(motion: &[Vec<f64>], point: &Point3<f64>) -> f64 {
+    let model = find(ROBOT).unwrap();
+    let body = Body::new(&model, TOOL.into(), &[]);
+    let all = motion.iter().flat_map(|q| body.capsules(q).split_off(1));
+    all.map(|capsule| {
+        let (along, from) = (capsule.to - capsule.from, point - capsule.from);
+        let share = (from.dot(&along) / along.norm_squared().max(1e-12)).clamp(0.0, 1.0);
+        (from - along * share).norm() - capsule.radius
+    })
+    .fold(f64::INFINITY, f64::min)
 }
 
 #[test]
@@ -163,11 +222,39 @@ fn free_paths_go_round_a_box() {
     assert!(room(&free.motion, &corners) < -0.01 && room(&kept.motion, &corners) > 0.0);
     let [lo, hi] = corners.map(|corner| format!("{:?}", corner.coords.as_slice()));
     let boxed = optimized(&format!("[[keep_out]]\nbox = [{lo}, {hi}]\n"), &FREE);
-    let left = room(&boxed.motion, &corners);
-    assert!(left > -ROUNDING, "{left} m beside the box");
+    for way in [&boxed.motion, &boxed.polygon] {
+        let left = room(way, &corners);
+        assert!(left > -ROUNDING, "{left} m beside the box");
+    }
     let energies = [&free, &boxed, &kept].map(Run::energy);
     assert!(energies.is_sorted() && energies[1] < energies[2], "{energies:?}");
     assert_eq!(boxed.result["segments"][1]["kind"], "path");
+}
+
+/// A path that is kept is kept within millimetres: those must not be in a box, either.
+#[test]
+fn kept_paths_and_their_polygons_go_round_a_box() {
+    let kept = optimized("", &[]);
+    let programmed: Vec<Vec<f64>> = (0..=2000)
+        .map(|i| f64::from(i) / 2000.0)
+        .map(|s| {
+            let ends = [0.0, -12.0, 14.0, 0.0, 60.0, 0.0]
+                .into_iter()
+                .zip([60.0, 20.0, 0.0, -20.0, 65.0, 30.0]);
+            ends.map(|(a, b): (f64, f64)| (a + s * (b - a)).to_radians()).collect()
+        })
+        .collect();
+    for way in [&kept.motion, &kept.polygon] {
+        let (middle, half) = small_box(&programmed, way);
+        assert!(distance(way, &middle) < half);
+        let corners = [-half, half].map(|half| middle.coords.add_scalar(half));
+        let [lo, hi] = corners.map(|corner| format!("{:?}", corner.as_slice()));
+        let boxed = optimized(&format!("[[keep_out]]\nbox = [{lo}, {hi}]\n"), &[]);
+        for way in [&boxed.motion, &boxed.polygon] {
+            let left = distance(way, &middle) - half;
+            assert!(left > -ROUNDING, "{left} m beside the box");
+        }
+    }
 }
 
 #[test]

@@ -8,11 +8,12 @@ use crate::robot::Model;
 
 use super::freedom::Freedom;
 
-/// Arm and tool of a run among what the cell keeps free; `None` where the run keeps to its path,
-/// which is the program's own choice, or where nothing is to be kept free.
+/// Arm and tool of a run among what the cell keeps free; `None` where nothing is to be kept free, or
+/// where the run keeps to a path that comes into it, which is the program's own choice.
 pub fn body<'a>(model: &'a Model, run: &Run, freedom: &Freedom) -> Option<Body<'a>> {
     let free = run.moves.iter().any(|record| freedom.of(&record.movement) > 0.0);
-    if free { around(model, &run.legs.first()?.tool, freedom) } else { None }
+    let body = around(model, &run.legs.first()?.tool, freedom)?;
+    (free || !enters(&body, run)).then_some(body)
 }
 
 /// Arm and tool among what the cell keeps free; `None` where nothing is to be kept free.
@@ -61,8 +62,8 @@ struct Stretch {
 }
 
 /// A room, m, that arm and tool have everywhere along the realised motion of a stream and along the
-/// polygon of its points: that at both ends of a stretch, less what the fastest point can use up on the way. It is looked at
-/// closely where there is little.
+/// polygon of its points: that at both ends of a stretch, less what the fastest point can use up on
+/// the way. It is looked at closely where there is little.
 pub(super) fn least_room(model: &Model, body: &Body<'_>, stream: &Stream) -> f64 {
     let reach: f64 = body.capsules(stream.start()).iter().map(Capsule::length).sum();
     let mut least = f64::INFINITY;
