@@ -22,7 +22,8 @@ use crate::optimize::retime::SLOWEST;
 use crate::report::place::Places;
 use crate::report::{self};
 use crate::retrofit::{
-    Budget, Form, Objective, Retrofit, SPACING_S, Settings, freed, retrofit, written_in,
+    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, freed, is_streams, retrofit,
+    written_in,
 };
 use crate::text::charset;
 
@@ -84,7 +85,8 @@ pub struct OptimizeArgs {
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     time_factor: Option<f64>,
 
-    /// Least time between two points of a stream, s.
+    /// Least time between two points of a stream, s (0.05; 0.04 where the straight ways between them
+    /// would leave the path too far).
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     spacing: Option<f64>,
 
@@ -230,6 +232,13 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
         bar.finish_and_clear();
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
+        if job.files.iter().any(|source| is_streams(&source.file.bytes)) {
+            result.notes.push(
+                "the program has streams already, which stay as they are: joulepath refresh makes \
+                 them anew from the data of today"
+                    .to_owned(),
+            );
+        }
         refresh::hand_on(job, &mut result);
         listing::add(&mut result, &job.input, &job.files);
         if lists {
@@ -296,7 +305,8 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         (None, Some(factor)) => Budget::Factor(positive(factor, "--time-factor")?),
         (None, None) => Budget::AsBefore,
     };
-    let spacing_s = spacing(args.spacing.or(job.config.spacing_s))?;
+    let asked = args.spacing.or(job.config.spacing_s);
+    let spacing_s = spacing(asked)?;
     if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
         bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
     }
@@ -309,6 +319,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         },
         budget,
         spacing_s,
+        closest_s: if asked.is_some() { spacing_s } else { CLOSEST_S },
         freedom: Freedom {
             tcp: bound(args.allow_faster_tcp),
             joints: bound(args.allow_faster_joints),

@@ -59,14 +59,22 @@ enum Kind {
     Added,
 }
 
-/// Keeps what is needed to take changes of files below `root` back; returns the folder of it.
-/// Nothing of the program is touched. Modules of streams that are made anew may be there; what an
-/// earlier retrofit kept is replaced then, since its data are those of the past.
+/// What is needed to take changes back, before it is written.
+pub struct Plan<'a> {
+    folder: PathBuf,
+    files: Vec<(PathBuf, Cow<'a, [u8]>)>,
+}
+
+/// What takes changes of files below `root` back. Modules of streams that are made anew may be there;
+/// what an earlier retrofit kept is replaced then, since its data are those of the past.
 ///
 /// # Errors
-/// The folder or a new file is there already, a file lies outside of `root`, or nothing can be
-/// written.
-pub fn keep(root: &Path, changes: &[Change<'_>], streams: &[PathBuf]) -> anyhow::Result<PathBuf> {
+/// The folder or a new file is there already, or a file lies outside of `root`.
+pub fn plan<'a>(
+    root: &Path,
+    changes: &'a [Change<'_>],
+    streams: &[PathBuf],
+) -> anyhow::Result<Plan<'a>> {
     let root = real(root)?;
     let folder = beside(&root)?;
     if folder.exists() && streams.is_empty() {
@@ -79,11 +87,11 @@ pub fn keep(root: &Path, changes: &[Change<'_>], streams: &[PathBuf]) -> anyhow:
     }
     let mut files = Vec::new();
     let mut folders = Vec::new();
-    let mut kept: Vec<(PathBuf, &[u8])> = Vec::new();
+    let mut kept: Vec<(PathBuf, Cow<'_, [u8]>)> = Vec::new();
     for change in changes {
         let path = below(&root, &change.path)?;
         let kind = if let Some(before) = &change.before {
-            kept.push((Path::new(ORIGINALS).join(&path), before));
+            kept.push((Path::new(ORIGINALS).join(&path), before.into()));
             Kind::Changed
         } else {
             if change.path.exists() && !streams.contains(&change.path) {
@@ -98,13 +106,25 @@ pub fn keep(root: &Path, changes: &[Change<'_>], streams: &[PathBuf]) -> anyhow:
         files.push(Entry { path: shown(&path), change: kind, sha256: checksum(&change.after) });
     }
     let manifest = serde_json::to_vec_pretty(&Manifest { version: VERSION, files, folders })?;
-    kept.push((MANIFEST.into(), &manifest));
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot replace '{}'", folder.display()))?;
+    kept.push((MANIFEST.into(), manifest.into()));
+    Ok(Plan { folder, files: kept })
+}
+
+impl Plan<'_> {
+    /// Writes it; returns its folder. Nothing of the program is touched.
+    ///
+    /// # Errors
+    /// Nothing can be written.
+    pub fn write(&self) -> anyhow::Result<PathBuf> {
+        if self.folder.exists() {
+            fs::remove_dir_all(&self.folder)
+                .with_context(|| format!("cannot replace '{}'", self.folder.display()))?;
+        }
+        let files: Vec<(PathBuf, &[u8])> =
+            self.files.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref())).collect();
+        output::write_folder(&self.folder, &files)?;
+        Ok(self.folder.clone())
     }
-    output::write_folder(&folder, &kept)?;
-    Ok(folder)
 }
 
 /// Takes the changes of the program at `path` back; returns what became of its files, in words.

@@ -124,10 +124,13 @@ pub(super) fn write_in_place(
             Some((path, bytes)) => {
                 // A file that can't be read can't be restored.
                 let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
-                if now == *after {
+                // What has streams already is taken back to what it is without them.
+                let before =
+                    if job.is_refreshed() { encoded(job, file, bytes) } else { (&now).into() };
+                if before == after && now == *after {
                     continue;
                 }
-                Some(if job.is_refreshed() { encoded(job, file, bytes).into_owned() } else { now })
+                Some(before.into_owned())
             }
             None => None,
         };
@@ -136,13 +139,11 @@ pub(super) fn write_in_place(
     if changes.is_empty() {
         return Ok(Vec::new());
     }
-    let kept = undo::keep(&program_folder(paths, job)?, &changes, &job.streams.modules)?;
+    let plan = undo::plan(&program_folder(paths, job)?, &changes, &job.streams.modules)?;
     let staged: anyhow::Result<Vec<output::Staged>> =
         changes.iter().map(|change| output::stage(&change.path, &change.after)).collect();
-    let staged = staged.inspect_err(|_| {
-        // Nothing is changed, so there is nothing to take back.
-        let _ = std::fs::remove_dir_all(&kept);
-    })?;
+    let staged = staged?;
+    let kept = plan.write()?;
     staged.into_iter().try_for_each(output::Staged::put)?;
     let is_written = |path: &&PathBuf| changes.iter().any(|change| change.path == **path);
     for path in job.streams.modules.iter().filter(|path| !is_written(path)) {

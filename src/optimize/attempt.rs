@@ -90,6 +90,7 @@ impl Work<'_> {
             Reference::sample(time, samples, motion).map_err(|error| failed(&error.to_string()))?;
         let mut spacing = Spacing {
             shortest: self.task.spacing_s,
+            closest: self.task.closest_s,
             longest: f64::INFINITY,
             tolerance: margins.spacing,
             polygon: margins.polygon,

@@ -44,6 +44,8 @@ pub struct Task<'a> {
     pub energy_before: EnergyParts,
     /// Least time between two points, s.
     pub spacing_s: f64,
+    /// The same where the polygon of the points would be too far from the path otherwise, s.
+    pub closest_s: f64,
     /// What the stream may do that the run did not.
     pub freedom: &'a Freedom,
     /// What is minimised.
@@ -240,6 +242,7 @@ impl<'a> Work<'a> {
                 Ok,
             );
             let outcome = intended.and_then(|intended| self.realise(intended, &margins));
+            match &outcome { Ok(a) => eprintln!("ATTEMPT {:?} worst {:.3}", a.check.fault(), a.check.worst()), Err(e)=>eprintln!("ATTEMPT {e:?} load {}", margins.load) }
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);

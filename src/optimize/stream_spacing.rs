@@ -11,9 +11,6 @@ const ERROR_CONSTANT: f64 = 0.008_018_753_738_744_8;
 /// h² |q̈⊥| times this is the distance of the polygon of the points from their quadratic spline,
 /// q̈⊥ being the acceleration across the path.
 const POLYGON_CONSTANT: f64 = 0.125;
-/// Shortest interval where the polygon asks for it, share of the shortest one elsewhere: points are
-/// far apart in space where it does.
-const POLYGON_SHORTEST: f64 = 0.8;
 /// Samples of the density per shortest interval.
 const SAMPLES: f64 = 5.0;
 /// Largest change of the spacing along the motion, s per s: neighbours differ by a third.
@@ -29,6 +26,8 @@ const MOST: f64 = 1e4;
 pub struct Spacing {
     /// Shortest interval, s.
     pub shortest: f64,
+    /// The same where the polygon asks for it: points are far apart in space there.
+    pub closest: f64,
     /// Longest interval, s; infinite where only the error bounds it.
     pub longest: f64,
     /// Error that the spline may have, in radians or whatever `lever` makes of them.
@@ -43,6 +42,7 @@ impl Default for Spacing {
     fn default() -> Spacing {
         Spacing {
             shortest: 0.05,
+            closest: 0.04,
             longest: f64::INFINITY,
             tolerance: 1e-4,
             polygon: f64::INFINITY,
@@ -52,10 +52,10 @@ impl Default for Spacing {
 }
 
 /// Intervals, s, that add up to `duration`, for a stream that follows `reference` in that time.
-/// None is below the shortest one, [`POLYGON_SHORTEST`] of it where the polygon asks for that, unless
-/// the whole duration is, or much above the longest.
+/// None is below the shortest one, or the closest one where the polygon asks for that, unless the whole
+/// duration is, or much above the longest.
 pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacing) -> Vec<f64> {
-    let shortest = spacing.shortest.max(duration / MOST);
+    let [shortest, closest] = [spacing.shortest, spacing.closest].map(|s| s.max(duration / MOST));
     if !(duration > 2.0 * shortest && duration.is_finite()) {
         return vec![duration];
     }
@@ -76,8 +76,7 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
             let close = (spacing.tolerance / (ERROR_CONSTANT * jerk)).cbrt();
             let turn = turn(&spacing.lever, &here, &before, &after) / (2.0 * shortest);
             let beside = (spacing.polygon / (POLYGON_CONSTANT * turn)).sqrt();
-            let beside = beside.max(POLYGON_SHORTEST * shortest);
-            close.clamp(shortest, longest).min(beside)
+            close.clamp(shortest, longest).min(beside.max(closest))
         })
         .collect();
     for i in 1..count {

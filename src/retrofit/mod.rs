@@ -34,5 +34,6 @@ pub use outputs::{BRAKE_NOTE, read_again};
 pub use signals::{SignalKind, SignalShift};
 pub use without::{is_streams, prefix, without_streams};
 pub use work::{
-    Budget, Form, Objective, RetrofitError, SPACING_S, Settings, Source, read_program, retrofit,
+    Budget, CLOSEST_S, Form, Objective, RetrofitError, SPACING_S, Settings, Source, read_program,
+    retrofit,
 };

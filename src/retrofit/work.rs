@@ -94,6 +94,8 @@ pub struct Settings {
     pub budget: Budget,
     /// Least time between two points of a stream, s.
     pub spacing_s: f64,
+    /// The same where the polygon of the points would be too far from the path otherwise, s.
+    pub closest_s: f64,
     /// What streams may do that the movements did not.
     pub freedom: Freedom,
     /// What is written.
@@ -113,6 +115,8 @@ pub struct Settings {
 
 /// Spacing of the points that a controller plans in time, s.
 pub const SPACING_S: f64 = 0.05;
+/// The same where the polygon of the points would be too far from the path otherwise, s.
+pub const CLOSEST_S: f64 = 0.04;
 
 impl Default for Settings {
     /// Streams of least energy from `main`, with no freedom.
@@ -123,6 +127,7 @@ impl Default for Settings {
             objective: Objective::default(),
             budget: Budget::default(),
             spacing_s: SPACING_S,
+            closest_s: CLOSEST_S,
             freedom: Freedom::none(),
             form: Form::default(),
             layout: Layout::default(),
@@ -526,6 +531,7 @@ fn retime_all(
                 run,
                 energy_before: energy,
                 spacing_s: settings.spacing_s,
+                closest_s: settings.closest_s,
                 freedom: &settings.freedom,
                 cost: settings.cost,
             };

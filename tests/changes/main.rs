@@ -16,9 +16,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::retrofit::{Budget, Settings, Source, read_program, retrofit};
+use joulepath::retrofit::{
+    Budget, OutputKind, Retrofit, Settings, Source, prefix, read_program, retrofit, without_streams,
+};
 use joulepath::robot::{Model, find};
-use joulepath::text::SourceFile;
+use joulepath::text::{FileId, SourceFile};
 use rayon::prelude::*;
 
 use cell::{Cell, Change, Changed, Counts, apply, is_within, kind, marked};
@@ -111,6 +113,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Op
     if streams == 0 {
         return None;
     }
+    is_taken_out(&name, &original, &result);
     let emitted: Vec<String> = result
         .outputs
         .iter()
@@ -121,6 +124,16 @@ fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Op
     let outside = (0..marks).filter(|mark| !is_within(&whole, *mark)).collect();
     let cell = Cell::new(&original.join("\n"), signals(&original), marks, outside);
     Some(Case { name, original, emitted, cell, slower })
+}
+
+/// Without its streams a retrofit is the original again, to the byte.
+fn is_taken_out(name: &str, original: &[String], result: &Retrofit) {
+    let prefix = result.outputs.iter().find_map(|output| prefix(&output.bytes)).unwrap();
+    for output in result.outputs.iter().filter(|output| output.kind != OutputKind::New) {
+        let file = SourceFile::new(FileId(0), output.path.clone(), output.bytes.clone());
+        let taken = String::from_utf8(without_streams(&file, &prefix)).unwrap();
+        assert_eq!(taken, original[output.input.unwrap()], "{name}");
+    }
 }
 
 /// PERS data of the programs: other tasks may write each of them.

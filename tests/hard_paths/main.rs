@@ -168,6 +168,7 @@ fn streams_keep_all_limits_between_their_points_or_say_why_there_is_none() {
                 run: case.run(),
                 energy_before: EnergyParts::default(),
                 spacing_s: 0.05,
+                closest_s: 0.04,
                 freedom: &freedom,
                 cost: Cost::Electrical,
             };
