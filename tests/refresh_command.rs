@@ -1,0 +1,161 @@
+//! `refresh`: streams are made anew from the data of today.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// With CRLF, a compact IF before a load, and two files.
+const MAIN: &str = "MODULE Main\r\n\
+    PERS loaddata lPart:=[2,[0,0,40],[1,0,0,0],0,0,0];\r\n\
+    PERS bool bPart:=TRUE;\r\n\
+    PROC main()\r\n\
+    \x20   MoveAbsJ jHome,v1000,fine,tool0;\r\n\
+    \x20   IF bPart GripLoad lPart; ! with the part\r\n\
+    \x20   MoveJ Offs(pNest,0,0,80),v1000,z50,tool0;\r\n\
+    \x20   MoveL pNest,v400,fine,tool0;\r\n\
+    \x20   SetDO doGrip,1;\r\n\
+    \x20   WaitTime 0.3;\r\n\
+    \tMoveL Offs(pNest,0,0,80),v400,z50,tool0;\r\n\
+    \tMoveAbsJ jHome,v1000,fine,tool0;\r\n\
+    ENDPROC\r\n\
+    ENDMODULE\r\n";
+const DATA: &str = "MODULE CellData\n\
+    CONST jointtarget jHome:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST robtarget pNest:=[[850,300,800],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    ENDMODULE\n";
+const STREAMS: &str = "Joulepath.mod";
+
+fn joulepath(arguments: &[&str], path: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_joulepath"));
+    command.args(arguments).arg(path).args(["--robot", "IRB1600-10/1.45", "--quiet"]);
+    command.output().unwrap()
+}
+
+fn done(arguments: &[&str], path: &Path) -> String {
+    let output = joulepath(arguments, path);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// All files of a folder.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    entries.map(|entry| (entry.file_name().into(), fs::read(entry.path()).unwrap())).collect()
+}
+
+/// A folder with the program, its data with `from` replaced.
+fn cell(folder: &Path, name: &str, from: &str, to: &str) -> PathBuf {
+    let cell = folder.join(name);
+    fs::create_dir(&cell).unwrap();
+    fs::write(cell.join("Main.mod"), MAIN).unwrap();
+    fs::write(cell.join("CellData.mod"), DATA.replace(from, to)).unwrap();
+    cell
+}
+
+fn edit(path: &Path, from: &str, to: &str) {
+    let text = fs::read_to_string(path).unwrap();
+    assert!(text.contains(from), "{from}: {text}");
+    fs::write(path, text.replace(from, to)).unwrap();
+}
+
+#[test]
+fn nothing_changed_is_no_difference() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = cell(folder.path(), "cell", "", "");
+    done(&["optimize", "--in-place"], &cell);
+    let before = files(&cell);
+    assert!(before[Path::new("Main.mod")] != MAIN.as_bytes());
+    assert_eq!(done(&["refresh"], &cell), "");
+    assert_eq!(done(&["refresh", "--in-place"], &cell), "");
+    assert_eq!(files(&cell), before);
+    done(&["optimize", "--undo"], &cell);
+    assert_eq!(files(&cell)[Path::new("Main.mod")], MAIN.as_bytes());
+}
+
+#[test]
+fn a_position_that_was_taught_anew_has_streams_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (from, to) = ("[850,300,800]", "[850,300,812.5]");
+    let changed = cell(folder.path(), "changed", from, to);
+    let original = files(&changed);
+    done(&["optimize", "--in-place"], &changed);
+    let refreshed = cell(folder.path(), "refreshed", "", "");
+    done(&["optimize", "--in-place"], &refreshed);
+    edit(&refreshed.join("CellData.mod"), from, to);
+
+    let difference = done(&["refresh"], &refreshed);
+    let lines = |sign: &str, part: &str| {
+        difference.lines().any(|line| line.starts_with(sign) && line.contains(part))
+    };
+    assert!(lines("-", "[850,300,800]") && lines("+", "[850,300,812.5]"), "{difference}");
+    assert!(!difference.contains("CellData.mod"), "{difference}");
+    done(&["refresh", "--in-place"], &refreshed);
+    assert_eq!(files(&refreshed), files(&changed));
+    // Elsewhere it is the same.
+    let out = folder.path().join("out");
+    done(&["refresh", "--out", out.to_str().unwrap()], &refreshed);
+    assert_eq!(files(&out), files(&changed));
+    // What is taken back is the program with the data of today.
+    done(&["optimize", "--undo"], &refreshed);
+    assert_eq!(files(&refreshed), original);
+}
+
+#[test]
+fn a_movement_that_was_edited_and_a_stated_serial_number_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = cell(folder.path(), "cell", "", "");
+    done(&["optimize", "--in-place"], &cell);
+    edit(&cell.join("Main.mod"), "MoveL pNest,v400", "MoveL pNest,v200");
+    edit(&cell.join(STREAMS), "SerialNo:=\"\"", "SerialNo:=\"1600-501234\"");
+    edit(&cell.join(STREAMS), "RobotType:=\"1600-10/1.45\"", "RobotType:=\"IRB 1600\"");
+    done(&["refresh", "--in-place"], &cell);
+    let text = |name: &str| fs::read_to_string(cell.join(name)).unwrap();
+    assert!(text(STREAMS).contains("SerialNo:=\"1600-501234\""));
+    assert!(text(STREAMS).contains("RobotType:=\"IRB 1600\""));
+    done(&["optimize", "--undo"], &cell);
+    assert_eq!(text("Main.mod"), MAIN.replace("MoveL pNest,v400", "MoveL pNest,v200"));
+}
+
+#[test]
+fn streams_that_no_longer_pay_are_taken_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = cell(folder.path(), "cell", "", "");
+    done(&["optimize", "--in-place"], &cell);
+    // From now on another task may write the target on the way.
+    edit(&cell.join("CellData.mod"), "CONST robtarget", "PERS robtarget");
+    edit(&cell.join("CellData.mod"), "CONST jointtarget", "PERS jointtarget");
+    let trap = "TRAP tMove\r\n pNest.trans.z:=800; jHome.robax.rax_1:=1;\r\nENDTRAP\r\nENDMODULE";
+    edit(&cell.join("Main.mod"), "ENDMODULE", trap);
+    let connect = "VAR intnum i1;\r\nPROC main()\r\nCONNECT i1 WITH tMove; ISignalDI di1,1,i1;";
+    edit(&cell.join("Main.mod"), "PROC main()", connect);
+    done(&["refresh", "--in-place"], &cell);
+    let text = fs::read_to_string(cell.join("Main.mod")).unwrap();
+    let without = MAIN.replace("ENDMODULE", trap).replace("PROC main()", connect);
+    assert_eq!(text, without);
+    assert!(!cell.join(STREAMS).exists());
+}
+
+#[test]
+fn what_has_no_streams_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = cell(folder.path(), "cell", "", "");
+    let before = files(&cell);
+    for (arguments, says) in [
+        (&["refresh"][..], "no streams of joulepath"),
+        (&["refresh", "--in-place"], "joulepath optimize"),
+        (&["refresh", "--undo"], "optimize --undo"),
+    ] {
+        let output = joulepath(arguments, &cell);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(says), "{arguments:?}: {said}");
+    }
+    assert_eq!(files(&cell), before);
+    // A program with streams is not given streams once more.
+    done(&["optimize", "--in-place"], &cell);
+    let said = done(&["optimize", "--format", "json"], &cell);
+    assert!(said.contains("joulepath refresh"), "{said}");
+}
