@@ -16,9 +16,9 @@ const STEP: f64 = 0.002;
 /// Share of a limit that a joint has at least: one that stands still in the program still holds, and
 /// turns by what is rounding.
 const LEAST: f64 = 0.02;
-/// Speed that a joint has at least, rad/s: one that stands still in the program turns by what is
-/// rounding in the emitted text.
-const LEAST_SPEED: f64 = 1e-5;
+/// Speed that a joint has at least, rad/s: one that all but stands still in the program would leave no
+/// stream for what is rounding. That is 0.06 degrees/s.
+const LEAST_SPEED: f64 = 1e-3;
 /// Share of assumed limits that ways may use that the program does not have.
 const OTHER_WAYS: f64 = 0.5;
 

@@ -242,7 +242,6 @@ impl<'a> Work<'a> {
                 Ok,
             );
             let outcome = intended.and_then(|intended| self.realise(intended, &margins));
-            match &outcome { Ok(a) => eprintln!("ATTEMPT {:?} worst {:.3}", a.check.fault(), a.check.worst()), Err(e)=>eprintln!("ATTEMPT {e:?} load {}", margins.load) }
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);

@@ -2,6 +2,9 @@
 
 use crate::motion::stream::{DOF, Joints};
 
+/// Movement of a joint that is rounding of none, rad: less than the emitted text can say.
+const ROUNDING: f64 = 5e-9;
+
 /// An intended joint motion, sampled so densely that cubic interpolation is exact enough.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
@@ -75,9 +78,9 @@ impl Reference {
         &self.q[self.q.len() - 1]
     }
 
-    /// Whether joint j ever leaves its first position.
+    /// Whether joint j ever leaves its first position by more than rounding.
     pub(super) fn moves(&self, j: usize) -> bool {
-        self.q.iter().any(|q| q[j] != self.q[0][j])
+        self.q.iter().any(|q| (q[j] - self.q[0][j]).abs() > ROUNDING)
     }
 
     /// (q, q̇) at `t` (s), by cubic Hermite interpolation; at rest outside the motion.
