@@ -127,6 +127,7 @@ fn computed(model: &Model, d: &Measured<'_>, fastest: Point) -> (Point, Vec<Opti
             run: d.run,
             energy_before: d.energy,
             spacing_s: 0.05,
+            closest_s: 0.04,
             freedom,
             cost: Cost::Electrical,
         };

@@ -174,6 +174,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
         run,
         energy_before: EnergyParts::default(),
         spacing_s: 0.05,
+        closest_s: 0.04,
         freedom: &freedom,
         cost: Cost::Electrical,
     };

@@ -89,6 +89,7 @@ fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
         run: case.run(),
         energy_before: EnergyParts::default(),
         spacing_s: 0.05,
+        closest_s: 0.04,
         freedom,
         cost: Cost::Electrical,
     }
