@@ -213,3 +213,55 @@ fn a_tool_of_its_module_alone_has_no_equivalent_for_a_guide() {
     let guided = reasons.iter().filter(|reason| reason.starts_with("guided: ")).count();
     assert!(guided > 0, "{reasons:?}");
 }
+
+/// An operator who lowers a speed gets a lower one, in a retimed program as well.
+#[test]
+fn retimed_speeds_follow_the_data_that_they_come_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = "VAR speeddata vWay:=[800,500,5000,1000];\n\
+                CONST speeddata vAll{2}:=[[300,200,5000,1000],[600,300,5000,1000]];\n\
+                FUNC speeddata fSlow()\nRETURN v200;\nENDFUNC\n\
+                PROC main()";
+    let text = program()
+        .replace("PROC main()", data)
+        .replace("MoveJ pC,v300", "MoveJ pC,vWay")
+        .replace("MoveL Offs(pC,0,-100,0),v300", "MoveL Offs(pC,0,-100,0),vAll{1}")
+        .replace("MoveL pD,v500", "MoveL pD,vAll{2}")
+        .replace("MoveJ pC,v1000\\V:=700", "MoveJ pC,fSlow()");
+    let options = ["--emit", "retime", "--time-factor", "1.6", "--input", "diPart=0"];
+    run_text(folder.path(), &text, &options);
+    let retimed = fs::read_to_string(folder.path().join("out/m.mod")).unwrap();
+    let line = |part: &str| retimed.lines().find(|line| line.contains(part)).unwrap();
+    assert!(line("MoveJ pC,[").contains("*vWay.v_ori,vWay.v_leax,vWay.v_reax]"), "{retimed}");
+    assert!(line("MoveL pD,[").contains("*vAll{2}.v_tcp,"), "{retimed}");
+    assert!(line("MoveJ pC,fSlow()").ends_with(",fine,tool0;"), "{retimed}");
+    assert!(line("MoveAbsJ jB,[").contains(",5000,1000]"), "{retimed}");
+
+    let times = |text: &str, name: &str| -> Vec<(u64, f64)> {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+            .args(["simulate", path.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
+            .args(["--quiet", "--input", "diPart=0"])
+            .output()
+            .unwrap();
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let moves = result["moves"].as_array().unwrap();
+        moves
+            .iter()
+            .map(|m| (m["line"].as_u64().unwrap(), m["duration_s"].as_f64().unwrap()))
+            .collect()
+    };
+    for (from, to) in
+        [("[800,500,", "[40,500,"), ("[300,200,", "[20,200,"), ("[600,300", "[30,300")]
+    {
+        let [original, retimed] = [(&text, "a.mod"), (&retimed, "b.mod")]
+            .map(|(text, name)| times(&text.replace(from, to), name));
+        for ((line, original), (other, retimed)) in original.iter().zip(&retimed) {
+            assert!(
+                line == other && *retimed >= original - TIME,
+                "{to}: {line}: {original} {retimed}"
+            );
+        }
+    }
+}

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::notes::end;
-use super::work::{Budget, Objective, RetrofitError, Settings, Way, rounded_up};
+use super::settings::{Budget, Objective, Settings};
+use super::work::{RetrofitError, Way, rounded_up};
 use crate::dynamics::Load;
 use crate::energy::power::holding_w;
 use crate::motion::Simulation;

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use super::figures::{LowerLimits, OutputFile};
 use super::outputs::read_again;
-use super::work::{Settings, Way, read_program};
+use super::settings::Settings;
+use super::work::{Way, read_program};
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::{Simulation, simulate};
 use crate::optimize::reason::Reason;

@@ -17,6 +17,7 @@ mod padding;
 mod recorded;
 mod rests;
 mod segments;
+mod settings;
 mod sharing;
 mod signals;
 mod speeds;
@@ -31,9 +32,7 @@ pub use figures::{
 };
 pub use freed::freed;
 pub use outputs::{BRAKE_NOTE, read_again};
+pub use settings::{Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings};
 pub use signals::{SignalKind, SignalShift};
 pub use without::{is_streams, prefix, without_streams};
-pub use work::{
-    Budget, CLOSEST_S, Form, Objective, RetrofitError, SPACING_S, Settings, Source, read_program,
-    retrofit,
-};
+pub use work::{RetrofitError, Source, read_program, retrofit};

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::figures::{Figures, Padding, Segment, SegmentKind};
-use super::work::{Budget, Objective, Settings, Source};
+use super::settings::{Budget, Objective, Settings};
+use super::work::Source;
 use crate::dynamics::Load;
 use crate::energy::account::at_rest;
 use crate::motion::Simulation;

@@ -4,7 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::outputs::{Writing, argument, compared, place};
-use super::work::{Settings, Source, TIME_TOLERANCE, Way};
+use super::settings::Settings;
+use super::work::{Source, TIME_TOLERANCE, Way};
 use crate::emit::{self, EmittedStream, MotionSettings, Pause};
 use crate::energy::account::{at_rest, run_energy};
 use crate::energy::{Account, EnergyParts};

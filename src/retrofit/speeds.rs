@@ -3,26 +3,28 @@
 //! Runs stand still between each other, so that the virtual controller can try a speed for all of
 //! them at once. What it finds is each run's energy over time; the time of the cycle is then shared
 //! as for streams, and the speeds are searched that take these times. A programmed speed of a line
-//! or arc is never exceeded, zones and targets stay.
+//! or arc is never exceeded, zones and targets stay. What is a datum is written as a share of that
+//! datum: who lowers it lowers the speed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
 use super::goals::cycle;
 use super::outputs::{read_again, unchanged};
+use super::settings::{Budget, Objective, Settings};
 use super::verify::same_order;
 use super::work::{
-    Budget, Objective, RetrofitError, Settings, Source, TIME_TOLERANCE, Way, figures,
-    nothing_to_verify, read_program,
+    RetrofitError, Source, TIME_TOLERANCE, Way, figures, nothing_to_verify, read_program,
 };
 use super::{notes, padding, segments, signals};
 use crate::dynamics::Data;
 use crate::energy::power::power;
 use crate::energy::{Account, account};
-use crate::ir::hir::{ArgKind, Block, Callee, Routine, StmtKind};
+use crate::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::ir::instructions::{MoveForm, movement};
 use crate::ir::movement::Speed;
 use crate::ir::number::number;
+use crate::ir::predefined;
 use crate::ir::program::Program;
 use crate::motion::timeline::{Run, What};
 use crate::motion::{Simulation, simulate};
@@ -48,6 +50,8 @@ const UNCHANGED: f64 = 2e-3;
 const FASTEST: f64 = 7.0;
 /// Decimals of a speed in mm/s and degrees/s.
 const DECIMALS: usize = 1;
+/// Decimals of a share of a speed.
+const SHARE_DECIMALS: usize = 4;
 /// Smallest saving that is worth a change, share of all energy: what is searched on a grid of
 /// factors ends elsewhere by about so much when it is searched again.
 const WORTHWHILE: f64 = 1e-3;
@@ -69,10 +73,17 @@ struct Slot {
     speeds: Vec<Programmed>,
 }
 
+/// The speed argument of a movement.
+#[derive(Clone)]
+struct Argument {
+    span: Span,
+    /// The text of a datum of the program; none of numbers that the text itself has.
+    datum: Option<String>,
+}
+
 /// A speed as programmed.
 struct Programmed {
-    /// The argument.
-    span: Span,
+    argument: Argument,
     speed: Speed,
     /// Whether it may be exceeded.
     ceiling: bool,
@@ -179,7 +190,7 @@ fn ways(sites: &[Site]) -> Vec<Way> {
 
 /// The sites whose speeds can be written in their place; the ways of others get their reason.
 fn slots(before: &Before<'_>, settings: &Settings, ways: &mut [Way]) -> Vec<Slot> {
-    let arguments = speed_arguments(before.program);
+    let arguments = speed_arguments(before.program, before.files);
     let mut slots = Vec::new();
     for (index, site) in before.sites.iter().enumerate() {
         let mut own: Vec<&mut Way> = ways.iter_mut().filter(|way| way.site == index).collect();
@@ -203,17 +214,17 @@ fn slot(
     settings: &Settings,
     index: usize,
     site: &Site,
-    arguments: &BTreeMap<Span, Span>,
+    arguments: &BTreeMap<Span, Argument>,
 ) -> Result<Slot, &'static str> {
     let mut speeds: BTreeMap<Span, Programmed> = BTreeMap::new();
     for event in site.variants.iter().flat_map(|variant| &variant.events) {
         let What::Run(run) = &before.simulation.events[*event].what else { continue };
         for movement in run.moves.iter().map(|record| &record.movement) {
-            let Some(span) = arguments.get(&movement.span).copied() else {
+            let Some(argument) = arguments.get(&movement.span).cloned() else {
                 return Err("its speed is not one argument that can be written anew");
             };
             let ceiling = settings.freedom.bound(movement) == Bound::Original;
-            let here = Programmed { span, speed: movement.speed, ceiling };
+            let here = Programmed { argument, speed: movement.speed, ceiling };
             let known = speeds.entry(movement.span).or_insert(here);
             if known.speed != movement.speed {
                 return Err("its speed is another one in another execution");
@@ -224,16 +235,64 @@ fn slot(
 }
 
 /// The speed argument of each movement that has nothing else that says how fast it is.
-fn speed_arguments(program: &Program) -> BTreeMap<Span, Span> {
+fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<Span, Argument> {
     let mut found = BTreeMap::new();
     let routines = program.modules.iter().flat_map(|module| &module.routines);
     for block in routines.flat_map(Routine::blocks) {
-        of_block(block, &mut found);
+        of_block(block, &|speed| argument(program, files, speed), &mut found);
     }
     found
 }
 
-fn of_block(block: &Block, found: &mut BTreeMap<Span, Span>) {
+/// How a speed argument is written; `None` for what a statement may not say twice.
+fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argument> {
+    let span = speed.span;
+    let is_number = |part: &Expr| matches!(part.kind, ExprKind::Num(_));
+    let datum = match &speed.kind {
+        ExprKind::Aggregate(parts) if parts.iter().all(is_number) => None,
+        ExprKind::Ref(name) if is_predefined(program, &name.key) => None,
+        _ if is_datum(speed) => {
+            let bytes = &files[span.file.0 as usize].file.bytes;
+            let text = std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).ok()?;
+            if text.contains(['\r', '\n']) {
+                return None;
+            }
+            Some(text.to_owned())
+        }
+        _ => return None,
+    };
+    Some(Argument { span, datum })
+}
+
+/// Whether a name is one that every controller knows and that the program does not have itself.
+fn is_predefined(program: &Program, key: &str) -> bool {
+    let is_global = (0..program.modules.len()).any(|m| program.resolve(m, key).is_some());
+    let mut routines = program.modules.iter().flat_map(|module| &module.routines);
+    let is_local = routines.any(|routine| {
+        let mut names = routine.params.iter().map(|param| &param.name);
+        names.any(|name| name.key == key) || routine.data.iter().any(|data| data.name.key == key)
+    });
+    predefined::lookup(key).is_some() && !is_global && !is_local
+}
+
+/// A name with components and elements, without calls.
+fn is_datum(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Ref(_) => true,
+        ExprKind::Field(base, _) => is_datum(base),
+        ExprKind::Index(base, indices) => {
+            let is_index = |index: &Expr| matches!(index.kind, ExprKind::Num(_)) || is_datum(index);
+            is_datum(base) && indices.iter().all(is_index)
+        }
+        _ => false,
+    }
+}
+
+fn of_block(
+    block: &Block,
+    argument: &dyn Fn(&Expr) -> Option<Argument>,
+    found: &mut BTreeMap<Span, Argument>,
+) {
     for stmt in block {
         if let StmtKind::Call(call) = &stmt.kind
             && let Callee::Name(name) = &call.callee
@@ -249,12 +308,15 @@ fn of_block(block: &Block, found: &mut BTreeMap<Span, Span>) {
                 ArgKind::Named(name, _) => name.key == "wobj" || name.key == "z",
                 ArgKind::Conditional(..) => false,
             });
-            if let (Some(speed), true) = (speed, plain) {
-                found.insert(stmt.span, speed.span);
+            if let Some(Arg { kind: ArgKind::Positional(speed), .. }) = speed
+                && plain
+                && let Some(argument) = argument(speed)
+            {
+                found.insert(stmt.span, argument);
             }
         }
         for inner in stmt.kind.blocks() {
-            of_block(inner, found);
+            of_block(inner, argument, found);
         }
     }
 }
@@ -411,8 +473,8 @@ fn as_it_was(
 fn edits(slot: &Slot, factor: f64) -> Vec<Edit> {
     let changed = slot.speeds.iter().filter(|speed| factor_of(speed, factor) != 1.0);
     let text = |programmed: &Programmed| Edit {
-        span: programmed.span,
-        text: speed_text(&programmed.speed, factor_of(programmed, factor)).into_bytes(),
+        span: programmed.argument.span,
+        text: speed_text(programmed, factor_of(programmed, factor)).into_bytes(),
     };
     changed.map(text).collect()
 }
@@ -428,17 +490,22 @@ fn factor_of(programmed: &Programmed, factor: f64) -> f64 {
 }
 
 /// A `speeddata`. External axes stand in runs that are changed.
-fn speed_text(speed: &Speed, factor: f64) -> String {
-    let tcp = down(speed.tcp * 1e3 * factor);
-    let orientation = down(speed.orientation.to_degrees() * factor);
+fn speed_text(Programmed { argument, speed, .. }: &Programmed, factor: f64) -> String {
+    if let Some(datum) = &argument.datum {
+        let share = number(down(factor, 1e4), SHARE_DECIMALS);
+        let scaled = ["v_tcp", "v_ori"].map(|part| format!("{share}*{datum}.{part}"));
+        return format!("[{},{datum}.v_leax,{datum}.v_reax]", scaled.join(","));
+    }
+    let tcp = down(speed.tcp * 1e3 * factor, 10.0);
+    let orientation = down(speed.orientation.to_degrees() * factor, 10.0);
     format!("[{},{},5000,1000]", number(tcp, DECIMALS), number(orientation, DECIMALS))
 }
 
-/// Rounded down to what the text says, so that no ceiling is exceeded by rounding.
-fn down(x: f64) -> f64 {
+/// Rounded down to what the text says, in parts of 1, so that no ceiling is exceeded by rounding.
+fn down(x: f64, parts: f64) -> f64 {
     /// What arithmetic may take from a round figure.
     const SLACK: f64 = 1e-9;
-    ((x * 10.0 + SLACK).floor() / 10.0).max(0.1)
+    (x * parts + SLACK).floor().max(1.0) / parts
 }
 
 /// What a program with other speeds does against the one before.
