@@ -68,8 +68,9 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
     }
     if streams.modules.is_empty() {
         bail!(
-            "no streams of joulepath are in this program, so there is nothing to refresh: name the \
-             folder of a retrofitted program, or make one with joulepath optimize"
+            "no streams of joulepath are among these files, so there is nothing to refresh: name the \
+             folder of a retrofitted program, with its module of streams, or make one with \
+             joulepath optimize"
         );
     }
     let beside = |path: &PathBuf| Some(path.parent()?.join(BRAKE_NOTE));
