@@ -159,3 +159,30 @@ fn distances_that_cannot_be_meant_say_the_way_out() {
     assert_eq!(output.status.code(), Some(2));
     assert!(!folder.path().join("out").exists());
 }
+
+#[test]
+fn another_tool_waits_where_it_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let tool =
+        "PERS tooldata tGun:=[TRUE,[[0,0,80],[1,0,0,0]],[2,[0,0,40],[1,0,0,0],0,0,0]];\nPROC main";
+    let text = program("").replace("tool0", "tGun").replace("PROC main", tool);
+    let result = optimize(folder, &text, &["--dwell-pose=30"]);
+    assert_eq!(rewritten(&result), [9], "{result}");
+    let path = folder.join("out/m.mod");
+    let written = fs::read_to_string(&path).unwrap();
+    let moves = || -> usize {
+        let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+            .current_dir(folder)
+            .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
+            .output()
+            .unwrap();
+        let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
+        simulated["moves"].as_array().unwrap().len()
+    };
+    let with_streams = moves();
+    fs::write(&path, written.replace(",[2,[0,0,40]", ",[4,[0,0,40]")).unwrap();
+    let programmed = text.matches("MoveAbsJ").count() + 2;
+    assert_eq!(moves(), programmed);
+    assert!(with_streams > programmed, "{with_streams}");
+}

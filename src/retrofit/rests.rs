@@ -161,7 +161,10 @@ pub(super) fn emitted(
     let movement = &run.moves.last()?.movement;
     let length = Datum::Num(record.wait.duration?);
     let length = Argument { span: record.wait.constant?, type_name: "num", datum: length };
-    let (parameters, values) = compared(writing, &[length], movement);
+    // Where it stands is guarded; what it holds there is the last movement's.
+    let tool = movement.arguments.iter().find(|argument| argument.span == movement.tool_span);
+    let arguments: Vec<Argument> = std::iter::once(length).chain(tool.cloned()).collect();
+    let (parameters, values) = compared(writing, &arguments, movement);
     let Rest { out, wait_s, back, energy, energy_before_j, .. } = &resting.rest;
     let time = number(event.duration, 3);
     let place = place(writing.files, resting.span);
