@@ -59,6 +59,16 @@ fn optimize(folder: &Path, text: &str, options: &[&str]) -> Value {
     result
 }
 
+/// What the written program does.
+fn simulate(folder: &Path) -> Value {
+    let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
+        .current_dir(folder)
+        .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
+        .output()
+        .unwrap();
+    serde_json::from_slice(&simulated.stdout).unwrap()
+}
+
 fn number(value: &Value, pointer: &str) -> f64 {
     value.pointer(pointer).and_then(Value::as_f64).unwrap()
 }
@@ -91,12 +101,7 @@ fn a_wait_is_spent_where_holding_takes_less() {
     let written = fs::read_to_string(folder.join("out/m.mod")).unwrap();
     assert!(written.contains("ELSE\nWaitTime 40;\nENDIF ! cools down"), "{written}");
     // The promise is what the written program does.
-    let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .current_dir(folder)
-        .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
-        .output()
-        .unwrap();
-    let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
+    let simulated = simulate(folder);
     assert!((number(&simulated, "/energy_j") / energy(&result) - 1.0).abs() < ENERGY);
     assert!((number(&simulated, "/cycle_s") - cycle(&result)).abs() < TIME);
     // There is nothing left to do.
@@ -171,15 +176,7 @@ fn another_tool_waits_where_it_stands() {
     assert_eq!(rewritten(&result), [9], "{result}");
     let path = folder.join("out/m.mod");
     let written = fs::read_to_string(&path).unwrap();
-    let moves = || -> usize {
-        let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-            .current_dir(folder)
-            .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
-            .output()
-            .unwrap();
-        let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
-        simulated["moves"].as_array().unwrap().len()
-    };
+    let moves = || simulate(folder)["moves"].as_array().unwrap().len();
     let with_streams = moves();
     fs::write(&path, written.replace(",[2,[0,0,40]", ",[4,[0,0,40]")).unwrap();
     let programmed = text.matches("MoveAbsJ").count() + 2;
