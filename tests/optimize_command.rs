@@ -427,6 +427,46 @@ fn a_longer_time_is_compared_with_a_padded_original() {
     assert_eq!(number(&result, "/original/padding_s"), 0.0);
 }
 
+/// With assumed limits, too, a run may take the time that it is given. What it loses if the limits
+/// are lower is no more than the original loses: a known wait keeps a reserve for that.
+#[test]
+fn given_time_is_used_where_limits_are_assumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "WaitTime 0.5;\nMoveAbsJ jB,v1000,fine,tP;\nWaitDI diGo,1;"))
+        .unwrap();
+    let path = path.to_str().unwrap();
+    let optimized = |options: &[&str]| {
+        let args = ["optimize", path, "--robot", "IRB1600-10/1.45", "--format", "json", "--quiet"];
+        json(&[&args[..], options].concat())
+    };
+    let plain = optimized(&[]);
+    let late = (number(&plain, "/original/cycle_s") + 1.0).to_string();
+    for form in [&[][..], &["--emit", "retime"]] {
+        for time in [["--input", &format!("diGo={late}")], ["--time-factor", "1.4"]] {
+            let result = optimized(&[&time[..], form].concat());
+            let saved = number(&result, "/motion_saving_percent");
+            assert!(
+                saved > number(&plain, "/motion_saving_percent") + 5.0,
+                "{time:?} {form:?} {saved}"
+            );
+            let cycles =
+                ["original", "optimized"].map(|s| number(&result, &format!("/{s}/cycle_s")));
+            let limits = result["lower_limits"].as_array().unwrap();
+            assert_eq!(limits.len(), 3);
+            for lower in limits {
+                let loss =
+                    |side: &str, planned: f64| number(lower, &format!("/{side}_s")) - planned;
+                let own = loss("original", cycles[0] - number(&result, "/original/padding_s"));
+                assert!(loss("optimized", cycles[1]) <= own + LOSS * cycles[0], "{time:?} {lower}");
+            }
+        }
+    }
+}
+
+/// Share of the cycle by which a retrofit may lose more than the original under lower limits.
+const LOSS: f64 = 0.005;
+
 /// What `command` prints on standard output.
 fn text_of(args: &[&str]) -> String {
     text(&joulepath(args).stdout)

@@ -117,6 +117,8 @@ pub enum Part {
         since: Option<usize>,
         /// s.
         delay: f64,
+        /// What is waited at least, s: a reserve for who may be late.
+        least: f64,
         /// What standing there takes, W.
         holding_w: f64,
     },
@@ -159,12 +161,12 @@ impl Cycle {
                     program.minimize(&Affine::constant(0.0).plus(energy(*run), 1.0));
                 }
                 Part::Fixed(seconds) => now = now.shift(*seconds),
-                Part::Arrival { since, delay, holding_w } => {
+                Part::Arrival { since, delay, least, holding_w } => {
                     let from = since.map_or(Affine::constant(0.0), |part| ends[part].clone());
                     let late = from.shift(*delay).sum(&now.clone().times(-1.0));
-                    // wait ≥ what is left of the delay, wait ≥ 0
+                    // wait ≥ what is left of the delay, wait ≥ the least
                     program.at_most_zero(late.plus(wait(arrival), -1.0));
-                    program.at_most_zero(Affine::constant(0.0).plus(wait(arrival), -1.0));
+                    program.at_most_zero(Affine::constant(*least).plus(wait(arrival), -1.0));
                     let holding = Affine::constant(0.0).plus(wait(arrival), holding_w / UNIT);
                     program.minimize(&holding);
                     now.add(wait(arrival), 1.0);
@@ -230,9 +232,9 @@ fn part_time(part: &Part, times: &[f64], ends: &[f64]) -> f64 {
     match part {
         Part::Run(run) => times[*run],
         Part::Fixed(seconds) => *seconds,
-        Part::Arrival { since, delay, .. } => {
+        Part::Arrival { since, delay, least, .. } => {
             let now = ends.last().copied().unwrap_or(0.0);
-            (since.map_or(0.0, |part| ends[part]) + delay - now).max(0.0)
+            (since.map_or(0.0, |part| ends[part]) + delay - now).max(*least)
         }
     }
 }
@@ -288,7 +290,7 @@ mod tests {
     #[test]
     fn a_known_wait_is_used_up() {
         let curves = [curve(100.0), curve(100.0)];
-        let wait = Part::Arrival { since: None, delay: 3.0, holding_w: 1.0 };
+        let wait = Part::Arrival { since: None, delay: 3.0, least: 0.0, holding_w: 1.0 };
         let waiting = cycle(&[Part::Run(0), wait, Part::Run(1)], 4.5);
         let times = waiting.share(&curves).expect("possible");
         assert!(
@@ -300,13 +302,22 @@ mod tests {
         let energy = waiting.energy(&[1.0, 1.0], &[7.0, 5.0]);
         assert!((energy - (7.0 + 5.0 + 2.0)).abs() < TOLERANCE, "{energy}");
         // The second signal counts from the first one: only the way between has to wait for it.
-        let again = Part::Arrival { since: Some(1), delay: 2.5, holding_w: 1.0 };
+        let again = Part::Arrival { since: Some(1), delay: 2.5, least: 0.0, holding_w: 1.0 };
         let twice = cycle(&[Part::Run(0), wait, Part::Run(1), again], 5.5);
         let times = twice.share(&curves).expect("possible");
         assert!(
             (times[0] - 3.0).abs() < TOLERANCE && (times[1] - 2.5).abs() < TOLERANCE,
             "{times:?}"
         );
+    }
+
+    #[test]
+    fn a_reserve_of_a_wait_is_left() {
+        let wait = Part::Arrival { since: None, delay: 3.0, least: 0.4, holding_w: 1.0 };
+        let waiting = cycle(&[Part::Run(0), wait], 3.0);
+        let times = waiting.share(&[curve(100.0)]).expect("possible");
+        assert!((times[0] - 2.6).abs() < TOLERANCE, "{times:?}");
+        assert!((waiting.time(&times) - 3.0).abs() < TOLERANCE);
     }
 
     #[test]

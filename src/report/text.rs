@@ -206,7 +206,8 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
             retrofit.guards_ms()
         );
     }
-    if retrofit.guard_instructions > 0 && !retrofit.lower_limits.is_empty() {
+    let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
+    if is_rewritten && !retrofit.lower_limits.is_empty() {
         let lower = |lower: &LowerLimits| {
             let percent = 100.0 * (1.0 - lower.share);
             format!("{percent:.0} %: {:.2} s for {:.2} s", lower.optimized_s, lower.original_s)

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::lower_limits::{Lowered, lateness};
 use super::notes::end;
 use super::settings::{Budget, Objective, Settings};
 use super::work::{RetrofitError, Way, rounded_up};
@@ -41,7 +42,7 @@ struct Shared {
 pub(super) fn goals(
     model: &Model,
     settings: &Settings,
-    simulation: &Simulation,
+    (simulation, lowered): (&Simulation, &[Lowered]),
     sites: &[Site],
     ways: &[Way],
     tasks: &[(usize, Task<'_>)],
@@ -71,7 +72,8 @@ pub(super) fn goals(
         }
         Budget::Takt(takt) => (takt, possible(simulation, sites, ways, tasks, takt)?),
     };
-    let mut cycle = cycle(model, settings, simulation, sites, ways, tasks, takt);
+    let original = (simulation, lowered);
+    let mut cycle = cycle(model, settings, original, sites, ways, tasks, takt);
     let mut curves: Vec<Option<Curve<'_>>> = tasks
         .par_iter()
         .zip(&bounds)
@@ -180,11 +182,12 @@ fn possible(
     Ok(tasks.iter().zip(&least).map(bounds).collect())
 }
 
-/// The cycle as the tasks see it. What is left of the takt (s) is spent at its end.
+/// The cycle as the tasks see it. What is left of the takt (s) is spent at its end. Known waits keep
+/// what the original would be late there if its limits were lower than assumed.
 pub(super) fn cycle(
     model: &Model,
     settings: &Settings,
-    simulation: &Simulation,
+    (simulation, lowered): (&Simulation, &[Lowered]),
     sites: &[Site],
     ways: &[Way],
     tasks: &[(usize, Task<'_>)],
@@ -210,9 +213,11 @@ pub(super) fn cycle(
                 }
                 _ => false,
             };
+            let since = simulation.events[..index].iter().rposition(is_same);
             parts[index] = Part::Arrival {
-                since: simulation.events[..index].iter().rposition(is_same),
+                since,
                 delay,
+                least: lateness(simulation, lowered, since, index).min(event.duration),
                 holding_w: holding_w(model, &record.load, &record.q).iter().sum(),
             };
         }

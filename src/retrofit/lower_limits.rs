@@ -55,10 +55,35 @@ pub(super) fn lowered(
     SHARES.par_iter().map(lower).collect()
 }
 
+/// How much later the original may come to an event than it is planned to, s, counted from the end
+/// of another event or from the start of the cycle.
+pub(super) fn lateness(
+    planned: &Simulation,
+    lowered: &[Lowered],
+    since: Option<usize>,
+    event: usize,
+) -> f64 {
+    let way_there = |simulation: &Simulation| {
+        let from = match since {
+            Some(since) => {
+                let since = simulation.events.get(since)?;
+                since.t_start + since.duration
+            }
+            None => 0.0,
+        };
+        Some(simulation.events.get(event)?.t_start - from)
+    };
+    let late = |lower: &Lowered| Some(way_there(&lower.simulation)? - way_there(planned)?);
+    lowered.iter().filter_map(late).fold(0.0, f64::max)
+}
+
 /// How long original and retrofit take under lower limits, and the ways whose streams lose more
-/// than their movements. `whole` says that the events of both are the same.
+/// than their movements. A stream that is slower on purpose may take the time that it was given;
+/// what it loses beyond that counts. `planned` are original and retrofit under the assumed limits;
+/// `whole` says that the events of both are the same.
 pub(super) fn compare(
     lowered: &[Lowered],
+    planned: (&Simulation, &Simulation),
     outputs: &[OutputFile],
     settings: &Settings,
     (sites, ways): (&[Site], &[Way]),
@@ -83,14 +108,17 @@ pub(super) fn compare(
     let loses = |way: &Way| {
         let mut events = sites[way.site].variants[way.variant].events.iter();
         events.find_map(|event| {
+            let duration = |of: &Simulation| Some(of.events.get(*event)?.duration);
+            let given = (duration(planned.1)? - duration(planned.0)?).max(0.0);
             pairs().find_map(|(lower, after)| {
-                let before = lower.simulation.events.get(*event)?.duration;
-                let now = after.events.get(*event)?.duration;
-                (now > LONGER * before + ROUNDING).then(|| {
+                let before = duration(&lower.simulation)?;
+                let now = duration(after)?;
+                (now > LONGER * before + given + ROUNDING).then(|| {
                     Reason::NoStream(format!(
                         "with limits {:.0} % lower than assumed it would take {now:.3} s instead \
-                         of {before:.3} s",
-                        100.0 * (1.0 - lower.share)
+                         of {:.3} s",
+                        100.0 * (1.0 - lower.share),
+                        before + given
                     ))
                 })
             })

@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
 use super::goals::cycle;
+use super::lower_limits::{self, Lowered};
 use super::outputs::{read_again, unchanged};
 use super::settings::{Budget, Objective, Settings};
 use super::verify::same_order;
@@ -63,6 +64,8 @@ pub(super) struct Before<'a> {
     pub(super) files: &'a [Source],
     pub(super) program: &'a Program,
     pub(super) simulation: Simulation,
+    /// Under lower limits.
+    pub(super) lowered: Vec<Lowered>,
     pub(super) account: Account,
     pub(super) sites: &'a [Site],
 }
@@ -158,8 +161,16 @@ pub(super) fn retrofit(
     let compared = (&original, &optimized, padding.as_ref());
     let notes =
         notes::notes(before.files, model, settings, &before.simulation, &segments, compared);
+    let (lower_limits, _) = lower_limits::compare(
+        &before.lowered,
+        (&before.simulation, &tried.simulation),
+        &tried.outputs,
+        settings,
+        (&[], &[]),
+        false,
+    );
     Ok(Retrofit {
-        lower_limits: Vec::new(),
+        lower_limits,
         guard_instructions: 0,
         original,
         padding,
@@ -404,7 +415,8 @@ fn times(
         Budget::AsBefore => before.simulation.cycle_s,
         Budget::Takt(takt) => takt,
     };
-    let mut cycle = cycle(model, settings, &before.simulation, before.sites, ways, &[], takt);
+    let original = (&before.simulation, before.lowered.as_slice());
+    let mut cycle = cycle(model, settings, original, before.sites, ways, &[], takt);
     for (i, slot) in slots.iter().enumerate() {
         for event in before.sites[slot.site].variants.iter().flat_map(|v| &v.events) {
             cycle.parts[*event] = Part::Run(i);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::figures::{Figures, Retrofit, Verification};
 use super::goals::goals;
 use super::guards::Guards;
+use super::lower_limits::Lowered;
 use super::settings::{Budget, Form, Objective, Settings};
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
 use super::{
@@ -269,12 +270,20 @@ pub fn retrofit(
     if settings.form != Form::Streams {
         leave_what_changes(&simulation, &mut sites);
     }
+    let lowered = lower_limits::lowered(&program, entry, model, settings);
     if settings.form == Form::Speeds {
-        let before =
-            speeds::Before { files, program: &program, simulation, account: before, sites: &sites };
+        let before = speeds::Before {
+            files,
+            program: &program,
+            simulation,
+            lowered,
+            account: before,
+            sites: &sites,
+        };
         return speeds::retrofit(before, model, settings, progress);
     }
-    let mut ways = retime_all(model, settings, &simulation, &before, &sites, progress)?;
+    let original = (&simulation, lowered.as_slice());
+    let mut ways = retime_all(model, settings, original, &before, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
     let names = Names::free(&originals);
     let writing = outputs::Writing {
@@ -290,8 +299,6 @@ pub fn retrofit(
     let dwells_before = dwells(model, &simulation);
     let mut restings = rests::restings(model, settings, files, &simulation, &sites, &ways);
 
-    let lowered = lower_limits::lowered(&program, entry, model, settings);
-
     // Each round leaves out what did not hold in the emitted text.
     let mut rounds = 0;
     let (mut checked, lower_limits) = loop {
@@ -303,6 +310,7 @@ pub fn retrofit(
             let kept = (sites.as_slice(), ways.as_slice());
             let (table, weak) = lower_limits::compare(
                 &lowered,
+                (&simulation, &attempt.simulation),
                 &emitted.files,
                 settings,
                 kept,
@@ -411,7 +419,7 @@ fn leave_what_changes(simulation: &Simulation, sites: &mut [Site]) {
 fn retime_all(
     model: &Model,
     settings: &Settings,
-    simulation: &Simulation,
+    (simulation, lowered): (&Simulation, &[Lowered]),
     before: &Account,
     sites: &[Site],
     progress: &(dyn Fn(usize, usize) + Sync),
@@ -444,7 +452,7 @@ fn retime_all(
             Some((*i, task))
         })
         .collect();
-    let mut plan = goals(model, settings, simulation, sites, &ways, &tasks)?;
+    let mut plan = goals(model, settings, (simulation, lowered), sites, &ways, &tasks)?;
     let done = Arc::new(std::sync::atomic::AtomicUsize::new(0));
     let mut outcomes: Vec<(usize, Outcome)> = tasks
         .par_iter()
