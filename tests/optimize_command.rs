@@ -261,6 +261,10 @@ fn unusable_input_names_the_way_out() {
     fs::write(&headless, "MODULE m\nPROC other()\nENDPROC\nENDMODULE\n").unwrap();
     let empty = folder.path().join("empty");
     fs::create_dir(&empty).unwrap();
+    let cell = folder.path().join("cell");
+    fs::create_dir(&cell).unwrap();
+    fs::write(cell.join("m.mod"), program("", "")).unwrap();
+    let within = cell.join("new/out");
     let robot = "IRB1600-10/1.45";
     let cases: Vec<Vec<&str>> = vec![
         vec!["optimize", "no/such/file.mod", "--robot", robot],
@@ -271,6 +275,14 @@ fn unusable_input_names_the_way_out() {
         vec!["optimize", broken.to_str().unwrap()],
         vec!["optimize", "fixtures/hard/waits.mod", "--takt", "10"],
         vec!["optimize", "fixtures/hard/waits.mod", "--spacing", "0"],
+        vec![
+            "optimize",
+            cell.to_str().unwrap(),
+            "--robot",
+            robot,
+            "--out",
+            within.to_str().unwrap(),
+        ],
         vec!["simulate", "fixtures/hard/waits.mod", "--start", "1,2,3"],
         vec!["simulate", "fixtures/hard/waits.mod", "--input", "diReady"],
     ];
@@ -343,6 +355,48 @@ fn the_time_asked_for_has_bounds() {
         writeln!(all, "{args:?}: {}\n{said}", code.unwrap()).unwrap();
     }
     snapshots().bind(|| insta::assert_snapshot!("time", all));
+}
+
+/// A takt that the original itself keeps is possible.
+#[test]
+fn a_takt_above_the_cycle_is_possible() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "")).unwrap();
+    let path = path.to_str().unwrap();
+    let simulated =
+        json(&[&["simulate", path, "--format", "json", "--quiet"][..], &ROBOT].concat());
+    let takt = format!("{:.4}", number(&simulated, "/cycle_s") + 1e-3);
+    let args = ["optimize", path, "--takt", &takt, "--format", "json", "--quiet"];
+    json(&[&args[..], &ROBOT].concat());
+}
+
+/// ModPos changes the text of a movement whose target stands in it.
+#[test]
+fn targets_in_the_movement_are_told() {
+    let own = "MoveAbsJ [[30,0,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tP;";
+    for (statement, is_told) in [(own, true), ("MoveAbsJ jB,v1000,fine,tP;", false)] {
+        let (said, code) = said_of("", statement, &[]);
+        assert_eq!(code, Some(0), "{said}");
+        assert_eq!(said.contains("ModPos there has no effect"), is_told, "{said}");
+    }
+}
+
+/// Strings of RAPID have quotes and backslashes twice.
+#[test]
+fn arguments_in_messages_are_strings_of_rapid() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    let function = "FUNC jointtarget fPlace(string sName\\num nUp)\nRETURN jB;\nENDFUNC\n";
+    let statement = "MoveAbsJ fPlace(\"a\\nUp:=1),v1000,fine,tP;".replace("\"a", "\"a\"");
+    let text = program("", &statement).replace("PROC main", &format!("{function}PROC main"));
+    fs::write(&path, text).unwrap();
+    let out = folder.path().join("out");
+    let (said, code) =
+        said(folder.path(), &["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{said}");
+    let module = fs::read_to_string(out.join("Joulepath.mod")).unwrap();
+    assert!(module.contains("\"fPlace(\"\"a\"\"\\\\nUp:=1)\""), "{module}");
 }
 
 #[test]

@@ -286,3 +286,62 @@ fn a_first_line_from_a_place_that_is_not_known_ends_where_it_is_told_to() {
     let found = segments("", &lines.map(|place| pose("MoveL", place, "v500,fine")));
     assert_eq!(reasons(&found), ["first-movement"], "{found:?}");
 }
+
+/// What an option stands for that the caller of a routine may leave out, no guard can compare.
+#[test]
+fn options_that_the_caller_may_leave_out_are_not_rewritten() {
+    for (option, kind) in
+        [("WObj?W", "PERS wobjdata"), ("V?W", "num"), ("T?W", "num"), ("Z?W", "num")]
+    {
+        let routine = format!(
+            "PROC rGo(\\{kind} W)\nMoveL Offs(pHere,0,90,0),v500,fine,tool0\\{option};\nENDPROC\n\
+             CONST robtarget pHere:={};\nPERS wobjdata wCell:=[FALSE,TRUE,\"\",[[10,20,-30],[1,0,0,0]],\
+             [[0,0,0],[1,0,0,0]]];\n",
+            target(50.0)
+        );
+        let given = if option.starts_with('W') { "wCell" } else { "20" };
+        for call in ["rGo;".to_owned(), format!("rGo\\W:={given};")] {
+            let start = "MoveJ pHere,v1000,fine,tool0;".to_owned();
+            let found = segments(&routine, &[start, call.clone()]);
+            let told = reasons(&found);
+            let own = if option == "T?W" && call != "rGo;" { "timed" } else { "argument" };
+            assert!(told.contains(&own.to_owned()), "{option} {call}: {found:?}");
+        }
+    }
+}
+
+/// Interrupt routines write through functions, too, and by names that are values.
+#[test]
+fn what_interrupt_routines_do_by_functions_counts() {
+    let cases = [
+        ("nQ:=fWrites();", "meanwhile"),
+        ("IF fWrites()=1 THEN\nnQ:=2;\nENDIF", "meanwhile"),
+        ("WaitTime fWrites();", "meanwhile"),
+        ("rCalled;", "meanwhile"),
+        ("bQ:=StrToVal(\"5\",nS);", "meanwhile"),
+        ("nQ:=fSettings();", "interrupt"),
+        ("CallByVar \"rCalled\",1;", "interrupt"),
+        ("SetDataVal \"nS\",nQ;", "interrupt"),
+        ("nQ:=Abs(nS);", ""),
+        ("nQ:=3;", ""),
+    ];
+    let here = target(50.0);
+    for (statement, expected) in cases {
+        let declared = format!(
+            "CONST robtarget pHere:={here};\nVAR num nS:=0;\nVAR num nQ;\nVAR bool bQ;\nVAR intnum iX;\n\
+             FUNC num fWrites()\nnS:=5;\nRETURN 1;\nENDFUNC\n\
+             FUNC num fSettings()\nVelSet 50,500;\nRETURN 1;\nENDFUNC\n\
+             PROC rCalled()\nnQ:=fWrites();\nENDPROC\n\
+             TRAP tX\n{statement}\nENDTRAP\n"
+        );
+        let movements = [
+            "MoveJ pHere,v1000,fine,tool0;",
+            "CONNECT iX WITH tX;",
+            "MoveL Offs(pHere,0,60,-50),v500,z20,tool0;",
+            "MoveL Offs(pHere,0,90,-90+nS),v500,fine,tool0;",
+        ];
+        let found = segments(&declared, &movements.map(str::to_owned));
+        let told = reasons(&found);
+        assert_eq!(told.get(1).map_or("", String::as_str), expected, "{statement}: {found:?}");
+    }
+}

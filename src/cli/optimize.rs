@@ -11,7 +11,7 @@ use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::written::{now, whole_backup, write_folder, write_in_place};
+use super::written::{now, outside, whole_backup, write_folder, write_in_place};
 use super::{backinfo, input, listing, output, refresh, undo};
 use crate::config::KeepOut;
 use crate::emit::Layout;
@@ -222,6 +222,9 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     // A folder of one task has no list of the controller's modules to be written with it.
     let paths = args.program.cell.paths.as_slice();
     let backup = whole_backup(paths, job);
+    if let (Some(folder), None) = (&args.out, backup) {
+        outside(folder, paths)?;
+    }
     let lists = backup.is_some() || (args.in_place && args.out.is_none());
     let result = {
         let bar = progress(args.program.cell.quiet);

@@ -66,6 +66,30 @@ fn rest_of_backup(
     Ok(rest)
 }
 
+/// Refuses a folder for the new program within one of those from which the program is read.
+pub(super) fn outside(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
+    let wanted = std::path::absolute(folder)?;
+    let mut ancestors = wanted.ancestors();
+    let real = ancestors.find_map(|path| path.canonicalize().ok());
+    let around = |path: &&PathBuf| {
+        let root = path.canonicalize().ok().filter(|root| root.is_dir());
+        // The folder itself is told with the file that would be overwritten.
+        root.is_some_and(|root| {
+            real.as_ref().is_some_and(|real| real.starts_with(&root))
+                && wanted.canonicalize().ok() != Some(root)
+        })
+    };
+    if let Some(root) = paths.iter().find(around) {
+        bail!(
+            "'{}' lies in '{}', so that it would be read as a part of the program next time; name a \
+             folder outside of that, or give --in-place",
+            folder.display(),
+            root.display()
+        );
+    }
+    Ok(())
+}
+
 /// The complete program below a folder, of a backup all of it.
 pub(super) fn write_folder(
     folder: &Path,

@@ -1,5 +1,7 @@
 //! Guards: what stands before the movements of a site, and what the module compares for it.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 use tera::{Context, Tera};
 
@@ -9,14 +11,25 @@ use super::stream_module::{end_of_line, has_external};
 use crate::ir::number::number;
 use crate::text::{Charset, Edit, SourceFile, Span};
 
+/// What stands behind the ELSE of a guard: literals in the lines below are not compared.
+pub const EDIT_REMARK: &str = " ! after an edit of these lines: joulepath refresh";
+
 /// Longest line of an inserted condition, characters.
 const LINE: usize = 90;
-/// Longest name of a datum in a message, characters.
-const LABEL: usize = 24;
+/// Longest name of a datum in a message, characters: with the place and a component it fits into the
+/// 80 characters of a string.
+const LABEL: usize = 20;
 /// Longest name of a place in a message, characters.
 const PLACE: usize = 30;
-/// Instructions of a guard that every stream has: its settings, the robot, where it stands.
-const COMMON: usize = 22;
+/// Instructions of a guard that always run: its call and the settings (17), the robot (7), where it
+/// stands, and the count of what runs then (7).
+const COMMON: usize = 31;
+/// Instructions for a way that is looked at.
+const EACH: usize = 5;
+/// Instructions for an argument that is compared but for rounding.
+const ROUNDED: usize = 2;
+/// Instructions that lead to the points of a stream.
+const LEAD: usize = 4;
 
 /// A guard as text.
 #[derive(Serialize)]
@@ -32,10 +45,16 @@ pub(super) struct Guard {
     tell: String,
     tool: String,
     parts: Vec<PartText>,
+    /// Number of streams, alone and in the braces of a declaration.
+    ways: String,
+    count: String,
+    /// Arrays of where the streams start and what they are made for.
+    from: String,
+    made: String,
     /// Arguments of the function that looks at the settings.
     settings: String,
     external: bool,
-    /// Instructions where a stream follows, at most.
+    /// Instructions in a cycle.
     #[serde(skip)]
     pub(super) instructions: usize,
 }
@@ -45,14 +64,28 @@ pub(super) struct Guard {
 struct PartText {
     name: String,
     r#type: &'static str,
-    /// What messages call it.
-    label: String,
     /// The argument; empty for what the module records.
     text: String,
-    /// What stands for it in a comparison, with `{made}` for the record that it is compared with.
+    /// What stands for it in a comparison, before and after the record that it is compared with.
     now: [String; 2],
-    /// Its value in a message, and that of the record compared with.
-    shown: [String; 2],
+    /// What messages call it.
+    label: String,
+}
+
+/// A type that guards compare.
+#[derive(Serialize)]
+pub(super) struct TypeText {
+    name: &'static str,
+    parts: Vec<ComponentText>,
+}
+
+/// A part of a datum that fits into a message.
+#[derive(Serialize)]
+struct ComponentText {
+    /// As it is written behind the datum.
+    dotted: String,
+    /// As messages say it.
+    said: String,
 }
 
 /// The guard of a site.
@@ -75,7 +108,11 @@ pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usiz
         run: format!("{prefix}Run{index}"),
         tell: format!("{prefix}Tell{index}"),
         tool: site.tool.clone(),
-        instructions: COMMON + recorded.switches.len() + 3 * site.streams.len(),
+        ways: site.streams.len().to_string(),
+        count: format!("{{{}}}", site.streams.len()),
+        from: format!("{prefix}From{index}"),
+        made: format!("{prefix}Made{index}"),
+        instructions: instructions(site, recorded),
         parts,
         settings: format!(
             "{},{},{},{}",
@@ -100,25 +137,82 @@ fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
         Some(near) => [format!("{prefix}{near}({own},"), format!(".{name})")],
         None => [own, String::new()],
     };
-    let shown = |record: &str| {
-        let value = |part: &str| format!("ValToStr({record}.{name}{part})");
-        match parameter.type_name {
-            "robtarget" => format!("{}+{}", value(".trans"), value(".rot")),
-            "jointtarget" => value(".robax"),
-            "tooldata" => format!("{}+{}", value(".tframe.trans"), value(".tload.mass")),
-            "wobjdata" => format!("{}+{}", value(".uframe.trans"), value(".oframe.trans")),
-            "loaddata" => format!("{}+{}", value(".mass"), value(".cog")),
-            _ => value(""),
-        }
-    };
     PartText {
         r#type: parameter.type_name,
-        label: parameter.label.chars().take(LABEL).collect(),
+        label: escaped(&parameter.label.chars().take(LABEL).collect::<String>()),
         text: parameter.text.clone().unwrap_or_default(),
         now,
-        shown: [shown("now"), shown("made")],
         name,
     }
+}
+
+/// The types that guards compare, with what is told of each.
+pub(super) fn types(guards: &[&Guard]) -> Vec<TypeText> {
+    let parts = guards.iter().flat_map(|guard| &guard.parts);
+    let names: BTreeSet<&'static str> = parts.map(|part| part.r#type).collect();
+    let text = |name: &'static str| TypeText {
+        name,
+        parts: components(name)
+            .iter()
+            .map(|part| match *part {
+                "" => ComponentText { dotted: String::new(), said: String::new() },
+                part => ComponentText { dotted: format!(".{part}"), said: format!(" {part}") },
+            })
+            .collect(),
+    };
+    names.into_iter().map(text).collect()
+}
+
+/// The parts of a type whose texts are short enough for a string.
+fn components(type_name: &str) -> &'static [&'static str] {
+    match type_name {
+        "robtarget" => &["trans", "rot", "robconf", "extax"],
+        "jointtarget" => &["robax", "extax"],
+        "tooldata" => &[
+            "robhold",
+            "tframe.trans",
+            "tframe.rot",
+            "tload.mass",
+            "tload.cog",
+            "tload.aom",
+            "tload.ix",
+            "tload.iy",
+            "tload.iz",
+        ],
+        "wobjdata" => &[
+            "robhold",
+            "ufprog",
+            "ufmec",
+            "uframe.trans",
+            "uframe.rot",
+            "oframe.trans",
+            "oframe.rot",
+        ],
+        "loaddata" => &["mass", "cog", "aom", "ix", "iy", "iz"],
+        _ => &[""],
+    }
+}
+
+/// The inside of a string of RAPID.
+fn escaped(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('"', "\"\"")
+}
+
+/// Instructions that the guard of a site runs in a cycle. Ways are looked at from the one behind
+/// the last, in a circle.
+fn instructions(site: &Site, recorded: &Recorded) -> usize {
+    let ways = site.streams.len();
+    let rounded = site.parameters.iter().filter(|parameter| parameter.is_computed).count();
+    let each = EACH + ROUNDED * rounded;
+    let mut last = ways - 1;
+    let run = |way: &Option<usize>| {
+        let Some(way) = *way else { return ways * each };
+        let looked_at = (way + ways - last - 1) % ways + 1;
+        last = way;
+        looked_at * each + LEAD
+    };
+    let looks: usize = site.order.iter().map(run).sum();
+    looks + site.order.len() * (COMMON + recorded.switches.len())
 }
 
 /// The end of a place's name: the line counts more than the folder.
@@ -148,6 +242,7 @@ pub(super) fn insertions(
     context.insert("indent", &indent);
     context.insert("guard", guard);
     let arguments = guard.parts.iter().map(|part| part.text.as_str()).filter(|t| !t.is_empty());
+    context.insert("remark", EDIT_REMARK);
     context.insert("arguments", &lines(arguments, &indent));
     let head = tera.render("guard", &context)?;
     let head = head.strip_suffix('\n').unwrap_or(&head).replace('\n', end_of_line);
@@ -180,4 +275,49 @@ fn lines<'t>(arguments: impl Iterator<Item = &'t str>, indent: &str) -> String {
         width += argument.len() + 1;
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emit::{EmittedStream, MotionSettings};
+
+    /// A stream is looked at first that comes after the last one: in their order each costs one look.
+    #[test]
+    fn ways_in_their_order_cost_one_look() {
+        let stream = EmittedStream {
+            start: [0.0; 6],
+            points: Vec::new(),
+            intervals: Vec::new(),
+            pause: None,
+            external: [9e9; 6],
+            values: Vec::new(),
+            origin: String::new(),
+            before: String::new(),
+            after: String::new(),
+        };
+        let site = |order: &[Option<usize>]| Site {
+            span: Span { file: crate::text::FileId(0), start: 0, end: 0 },
+            origin: String::new(),
+            parameters: Vec::new(),
+            settings: MotionSettings {
+                fastest: 0.0,
+                conf_joint: true,
+                conf_linear: true,
+                lines: false,
+            },
+            tool: "tool0".into(),
+            streams: vec![stream.clone(); 4],
+            order: order.to_vec(),
+        };
+        let looks = |order: &[Option<usize>]| {
+            let runs = order.iter().flatten().count();
+            let fixed = order.len() * COMMON + runs * LEAD;
+            (instructions(&site(order), &Recorded::default()) - fixed) / EACH
+        };
+        let [a, b, c, d] = [Some(0), Some(1), Some(2), Some(3)];
+        assert_eq!(looks(&[a, b, c, d, a, b, c, d]), 8);
+        assert_eq!(looks(&[a, a]), 1 + 4);
+        assert_eq!(looks(&[d, None, a]), 4 + 4 + 1);
+    }
 }

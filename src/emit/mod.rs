@@ -20,6 +20,7 @@ pub use generated::{
     EGM_STEP_S, GeneratedMove, GeneratedNames, egm_module, egm_rows, generated_module, jointtarget,
     main_module, stream_time,
 };
+pub use guard::EDIT_REMARK;
 pub use layout::Layout;
 pub use names::{Names, has_streams, missing_streams, own_name};
 pub use site::{

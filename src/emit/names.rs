@@ -78,12 +78,13 @@ pub fn own_name(program: &Program) -> Option<&'static str> {
 }
 
 /// What RAPID declares and streams use.
-const USED: [&str; 23] = [
+const USED: [&str; 24] = [
     "Abs",
     "C_MOTSET",
     "C_PROGDISP",
     "CalcRobT",
     "CJointT",
+    "CSpeedOverride",
     "Distance",
     "ErrWrite",
     "fine",

@@ -19,6 +19,8 @@ pub struct Site {
     pub tool: String,
     /// The streams.
     pub streams: Vec<EmittedStream>,
+    /// Its executions in a cycle, in their order: the index of the stream that runs, if one does.
+    pub order: Vec<Option<usize>>,
 }
 
 /// Something that a guard compares.
@@ -109,7 +111,7 @@ pub struct Emitted {
     pub modules: Vec<(String, String)>,
     /// Insertions into the original files.
     pub edits: Vec<Edit>,
-    /// Instructions that the guard of each site runs at most where a stream follows.
+    /// Instructions that the guard of each site runs in a cycle.
     pub instructions: Vec<usize>,
 }
 

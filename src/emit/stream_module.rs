@@ -3,7 +3,7 @@
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use super::guard::{Guard, guard, insertions};
+use super::guard::{Guard, guard, insertions, types};
 use super::layout::{Layout, parts};
 use super::literal::NO_AXIS;
 use super::names::Names;
@@ -34,10 +34,8 @@ struct StreamText {
     origin: String,
     before: String,
     after: String,
-    start_name: String,
     proc_name: String,
     start: String,
-    made_name: String,
     made: Vec<String>,
     points: Vec<PointText>,
     array: Option<ArrayText>,
@@ -80,6 +78,8 @@ pub struct Emission<'a> {
     pub layout: Layout,
     /// The robot.
     pub robot: &'a Robot,
+    /// The operator's speed override at which streams run, %.
+    pub override_percent: f64,
     /// What the program writes down for the guards.
     pub recorded: &'a Recorded,
     /// What tells the original from others.
@@ -120,6 +120,7 @@ pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitErro
     context.insert("program", emission.program);
     context.insert("p", &names.prefix);
     context.insert("robot", &robot.kind);
+    context.insert("override", &number(emission.override_percent, 6));
     context.insert("posture", &joints(&robot.posture));
     let place: Vec<String> = robot.place.iter().map(|x| number(1e3 * x, 4)).collect();
     context.insert("place", &place.join(","));
@@ -136,6 +137,7 @@ pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitErro
     let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();
     context.insert("labels", &list(&|site| format!("\"{}\"", site.guard.label)).join(","));
     context.insert("zeros", &list(&|_| "0".to_owned()).join(","));
+    context.insert("types", &types(&texts.iter().map(|site| &site.guard).collect::<Vec<_>>()));
     let counts: Vec<usize> = texts
         .iter()
         .map(|site| site.streams.iter().map(|stream| stream.points.len()).sum())
@@ -194,8 +196,6 @@ fn stream_text(
         before: stream.before.clone(),
         after: stream.after.clone(),
         start: format!("[[{}],[{external}]]", joints(&stream.start)),
-        start_name: format!("{prefix}From{index}"),
-        made_name: format!("{prefix}Made{index}"),
         made: made.collect::<Result<_, _>>()?,
         proc_name: format!("{prefix}Move{index}"),
         points,

@@ -302,6 +302,67 @@ impl StmtKind {
             _ => Vec::new(),
         }
     }
+
+    /// The expressions of the statement itself, without those of the statements inside.
+    pub fn exprs(&self) -> Vec<&Expr> {
+        match self {
+            StmtKind::Assign { target, value } => vec![target, value],
+            StmtKind::Call(call) => {
+                let late = match &call.callee {
+                    Callee::Late(expr) => Some(expr),
+                    Callee::Name(_) => None,
+                };
+                late.into_iter().chain(call.args.iter().filter_map(Arg::value)).collect()
+            }
+            StmtKind::If { branches, .. } => branches.iter().map(|(expr, _)| expr).collect(),
+            StmtKind::For { from, to, step, .. } => [from, to].into_iter().chain(step).collect(),
+            StmtKind::While { condition, .. } => vec![condition],
+            StmtKind::Test { value, cases, .. } => {
+                let values = cases.iter().flat_map(|(values, _)| values);
+                std::iter::once(value).chain(values).collect()
+            }
+            StmtKind::Return(expr) | StmtKind::Raise(expr) => expr.iter().collect(),
+            StmtKind::Connect { interrupt, .. } => vec![interrupt],
+            StmtKind::Data(data) => data.init.iter().collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Arg {
+    /// What it hands over; none for a switch.
+    pub fn value(&self) -> Option<&Expr> {
+        match &self.kind {
+            ArgKind::Positional(expr)
+            | ArgKind::Named(_, expr)
+            | ArgKind::Optional(_, Some(expr))
+            | ArgKind::Conditional(_, expr) => Some(expr),
+            ArgKind::Optional(_, None) => None,
+        }
+    }
+}
+
+impl Expr {
+    /// The expressions directly inside.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Field(base, _) | ExprKind::Unary(_, base) => vec![base],
+            ExprKind::Index(base, indices) => std::iter::once(&**base).chain(indices).collect(),
+            ExprKind::Call(_, args) => args.iter().filter_map(Arg::value).collect(),
+            ExprKind::Aggregate(items) => items.iter().collect(),
+            ExprKind::Binary(_, left, right) => vec![left, right],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The data of which it is a place: `d` of `d.x{2}.y`.
+    pub fn base(&self) -> Option<&Ident> {
+        match &self.kind {
+            ExprKind::Ref(name) => Some(name),
+            ExprKind::Field(inner, _) | ExprKind::Index(inner, _) => inner.base(),
+            _ => None,
+        }
+    }
 }
 
 /// A procedure call or instruction.
@@ -340,8 +401,8 @@ pub enum ArgKind {
     Named(Ident, Expr),
     /// `\name := expr`, or `\name` for a switch.
     Optional(Ident, Option<Expr>),
-    /// `\name ? parameter`
-    Conditional(Ident, Ident),
+    /// `\name ? parameter`: given if the parameter is.
+    Conditional(Ident, Expr),
 }
 
 /// An expression.

@@ -321,6 +321,11 @@ pub fn is_writing(key: &str) -> bool {
     WRITING.contains(&key) || written(key).is_some()
 }
 
+/// Instructions that write to data, or call procedures, which they find by a name that is a value.
+pub fn finds_by_name(key: &str) -> bool {
+    matches!(key, "callbyvar" | "setdataval" | "setalldataval")
+}
+
 /// True if a call of this name, not declared in the program, may write to its arguments.
 pub fn may_write(key: &str) -> bool {
     written(key).is_some() || (movement(key).is_none() && !is_harmless(key))

@@ -413,7 +413,9 @@ impl<'a> Lowering<'a> {
                 ArgKind::Optional(name, value.map(|value| self.expr(value)))
             }
             (NodeKind::ConditionalArgument, parameter) => {
-                ArgKind::Conditional(name, self.ident_in(parameter, node))
+                let outer = self.ident_in(parameter, node);
+                let span = outer.span;
+                ArgKind::Conditional(name, Expr { kind: ExprKind::Ref(outer), span })
             }
             (_, Some(value)) => ArgKind::Named(name, self.expr(value)),
             (_, None) => ArgKind::Named(name, self.broken(node)),

@@ -38,6 +38,11 @@ const POSITION: [&str; 8] =
 /// Functions that give the level of a signal, which is their argument.
 const LEVELS: [&str; 7] = ["ainput", "aoutput", "dinput", "doutput", "ginput", "goutput", "testdi"];
 
+/// Whether a function of RAPID (lower-case name) leaves its arguments as they are.
+pub fn only_reads(key: &str) -> bool {
+    functions::lookup(key).is_some() || POSITION.contains(&key) || LEVELS.contains(&key)
+}
+
 struct Walk<'p> {
     program: &'p Program,
     /// Functions that were looked at.
@@ -83,8 +88,8 @@ impl Walk<'_> {
             match &arg.kind {
                 ArgKind::Positional(expr)
                 | ArgKind::Named(_, expr)
-                | ArgKind::Optional(_, Some(expr)) => self.expr(at, expr),
-                ArgKind::Conditional(_, outer) => self.name(at, &outer.key, &outer.text),
+                | ArgKind::Optional(_, Some(expr))
+                | ArgKind::Conditional(_, expr) => self.expr(at, expr),
                 ArgKind::Optional(_, None) => {}
             }
         }

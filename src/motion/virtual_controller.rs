@@ -250,6 +250,10 @@ impl Machine for VirtualController<'_> {
         Some(self.model.kinematics.base * fk(self.model, q))
     }
 
+    fn override_percent(&self) -> f64 {
+        100.0 * self.options.speed_override.unwrap_or(1.0)
+    }
+
     fn robot(&self) -> Option<String> {
         Some(self.model.type_name().to_owned())
     }

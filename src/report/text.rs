@@ -179,6 +179,7 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         String::new(),
     ]);
     let worst = &retrofit.verification.worst;
+    let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
     let mut out = format!(
         "{}: motion energy {:.1} J -> {:.1} J (saves {:.1} %), energy with waits and base load \
          saves {:.1} %\nverified: {}; at most {:.0} % of joint speed, {:.0} % of acceleration, \
@@ -189,7 +190,11 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         after.motion_energy_j,
         retrofit.motion_saving_percent(),
         retrofit.saving_percent(),
-        if retrofit.verification.passed { "passed" } else { "FAILED" },
+        match (retrofit.verification.passed, is_rewritten) {
+            (false, _) => "FAILED",
+            (true, true) => "passed",
+            (true, false) => "nothing was changed",
+        },
         100.0 * worst.velocity,
         100.0 * worst.acceleration,
         100.0 * worst.torque,
@@ -206,7 +211,6 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
             retrofit.guards_ms()
         );
     }
-    let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
     if is_rewritten && !retrofit.lower_limits.is_empty() {
         let lower = |lower: &LowerLimits| {
             let percent = 100.0 * (1.0 - lower.share);

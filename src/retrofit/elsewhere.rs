@@ -2,60 +2,89 @@
 
 use std::collections::BTreeSet;
 
-use crate::ir::hir::{ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
-use crate::ir::instructions::may_write;
+use crate::ir::hir::{Arg, Block, Callee, DataKind, Expr, ExprKind, Routine, StmtKind};
+use crate::ir::instructions::{finds_by_name, may_write};
 use crate::ir::lower;
+use crate::ir::reads::only_reads;
 use crate::syntax;
 use crate::text::SourceFile;
 
 /// Lower-case names of the data to which statements of these files assign, or that they hand to
 /// routines, which may do so.
 pub fn written_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<String> {
-    let mut names = BTreeSet::new();
+    let mut written = Written::default();
     for file in files {
         let parse = syntax::parse(&file.bytes);
-        let modules = lower(file.id, &parse, &file.bytes);
-        let routines = modules.iter().flat_map(|module| &module.routines);
-        for block in routines.flat_map(Routine::blocks) {
-            of_block(block, &mut names);
+        for module in lower(file.id, &parse, &file.bytes) {
+            let shared = module.data.iter().filter(|data| data.kind == DataKind::Pers);
+            written.shared.extend(shared.map(|data| data.name.key.clone()));
+            for block in module.routines.iter().flat_map(Routine::blocks) {
+                written.block(block);
+            }
         }
     }
-    names
+    if written.by_name {
+        written.names.append(&mut written.shared);
+    }
+    written.names
 }
 
-fn of_block(block: &Block, names: &mut BTreeSet<String>) {
-    for stmt in block {
-        match &stmt.kind {
-            StmtKind::Assign { target, .. } => name_of(target, names),
-            StmtKind::Call(call) => {
-                let writes = match &call.callee {
-                    Callee::Name(name) => may_write(&name.key),
-                    Callee::Late(_) => true,
-                };
-                for arg in call.args.iter().filter(|_| writes) {
-                    if let ArgKind::Positional(expr)
-                    | ArgKind::Named(_, expr)
-                    | ArgKind::Optional(_, Some(expr)) = &arg.kind
-                    {
-                        name_of(expr, names);
+#[derive(Default)]
+struct Written {
+    names: BTreeSet<String>,
+    /// `PERS` data of the files.
+    shared: BTreeSet<String>,
+    /// Whether data are written to by a name that is a value: each of `shared` may be meant.
+    by_name: bool,
+}
+
+impl Written {
+    fn block(&mut self, block: &Block) {
+        for stmt in block {
+            match &stmt.kind {
+                StmtKind::Assign { target, .. } => self.place(target),
+                StmtKind::Call(call) => {
+                    let writes = match &call.callee {
+                        Callee::Name(name) => {
+                            self.by_name |= finds_by_name(&name.key);
+                            may_write(&name.key)
+                        }
+                        Callee::Late(_) => true,
+                    };
+                    if writes {
+                        self.places(&call.args);
                     }
                 }
+                _ => {}
             }
-            _ => {}
-        }
-        for inner in stmt.kind.blocks() {
-            of_block(inner, names);
+            for expr in stmt.kind.exprs() {
+                self.expr(expr);
+            }
+            for inner in stmt.kind.blocks() {
+                self.block(inner);
+            }
         }
     }
-}
 
-/// The data that an expression is a place in.
-fn name_of(target: &Expr, names: &mut BTreeSet<String>) {
-    match &target.kind {
-        ExprKind::Ref(name) => {
-            names.insert(name.key.clone());
+    fn expr(&mut self, expr: &Expr) {
+        if let ExprKind::Call(name, args) = &expr.kind
+            && !only_reads(&name.key)
+        {
+            self.places(args);
         }
-        ExprKind::Field(base, _) | ExprKind::Index(base, _) => name_of(base, names),
-        _ => {}
+        for part in expr.parts() {
+            self.expr(part);
+        }
+    }
+
+    fn places(&mut self, args: &[Arg]) {
+        for expr in args.iter().filter_map(Arg::value) {
+            self.place(expr);
+        }
+    }
+
+    /// The data that an expression is a place in.
+    fn place(&mut self, expr: &Expr) {
+        self.names.extend(expr.base().map(|name| name.key.clone()));
     }
 }

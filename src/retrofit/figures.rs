@@ -21,7 +21,7 @@ pub struct Figures {
 
 /// Time of a RAPID instruction, ms. Assumed: ABB publishes none, and a cycle of a PLC program is of
 /// this order; it is to be replaced by a measurement on a controller.
-const INSTRUCTION_MS: f64 = 0.05;
+pub(super) const INSTRUCTION_MS: f64 = 0.05;
 
 /// The cycles where the assumed limits of acceleration and torque are too high.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -165,8 +165,10 @@ fn possible(
 ) -> Result<Vec<(f64, f64)>, RetrofitError> {
     let before = |task: &Task<'_>| task.run.duration();
     let executions = |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
-    let least: Vec<f64> =
-        tasks.par_iter().map(|(_, task)| fastest(task).unwrap_or(before(task))).collect();
+    let least: Vec<f64> = tasks
+        .par_iter()
+        .map(|(_, task)| fastest(task).unwrap_or(f64::MAX).min(before(task)))
+        .collect();
     let movable: f64 = tasks.iter().map(|(i, task)| executions(*i) * before(task)).sum();
     let shortest: f64 = tasks.iter().zip(&least).map(|((i, _), t)| executions(*i) * t).sum();
     let fixed = simulation.cycle_s - movable;

@@ -118,6 +118,12 @@ impl<'p> Guards<'p> {
         parameters
     }
 
+    /// Whether an argument is a target whose numbers stand in the movement.
+    pub(super) fn is_written_target(&self, argument: &Argument) -> bool {
+        matches!(argument.type_name, "robtarget" | "jointtarget")
+            && self.reads(argument.span).is_some_and(|reads| reads.fixed)
+    }
+
     fn reads(&self, span: Span) -> Option<Reads> {
         if let Some(known) = self.known.borrow().get(&span) {
             return Some(known.clone());

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::guards::Guards;
 use crate::emit;
-use crate::ir::hir::{ArgKind, BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
-use crate::ir::instructions::is_movement;
+use crate::ir::hir::{Arg, BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use crate::ir::instructions::{finds_by_name, is_movement};
 use crate::ir::movement::Stop;
 use crate::ir::program::{DataId, Program, RoutineId, Symbol};
+use crate::ir::reads::only_reads;
 use crate::motion::Simulation;
 use crate::motion::timeline::{Run, What};
 use crate::optimize::reason::Reason;
@@ -229,7 +230,13 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
                 reach.call(program, m, &trap);
                 // A list of routines to look at, not a recursion: calls may be deep.
                 while let Some(id) = reach.open.pop() {
-                    reach.block(program, id.module, &program.routine(id).body);
+                    let routine = program.routine(id);
+                    for expr in routine.data.iter().filter_map(|data| data.init.as_ref()) {
+                        reach.expr(program, id.module, expr);
+                    }
+                    for block in routine.blocks() {
+                        reach.block(program, id.module, block);
+                    }
                 }
                 found.push((trap, reach));
             }
@@ -278,6 +285,10 @@ impl Reach {
             if CHANGES_MOVEMENTS.contains(&key.as_str()) {
                 self.changes.get_or_insert(name.to_owned());
             }
+            if finds_by_name(&key) {
+                self.changes
+                    .get_or_insert(format!("{name}, which finds data or procedures by name"));
+            }
             if is_movement(&key) {
                 self.moves.get_or_insert(name.to_owned());
             }
@@ -290,16 +301,25 @@ impl Reach {
     }
 
     fn writes(&mut self, program: &Program, module: usize, target: &Expr) {
-        match &target.kind {
-            ExprKind::Field(base, _) | ExprKind::Index(base, _) => {
-                self.writes(program, module, base);
-            }
-            ExprKind::Ref(name) => {
-                if let Some(Symbol::Data(id)) = program.resolve(module, &name.key) {
-                    self.written.insert(id);
+        if let Some(name) = target.base()
+            && let Some(Symbol::Data(id)) = program.resolve(module, &name.key)
+        {
+            self.written.insert(id);
+        }
+    }
+
+    /// Functions, too, may write to data, their own arguments among them.
+    fn expr(&mut self, program: &Program, module: usize, expr: &Expr) {
+        if let ExprKind::Call(name, args) = &expr.kind {
+            self.call(program, module, &name.text);
+            if !only_reads(&name.key) {
+                for arg in args.iter().filter_map(Arg::value) {
+                    self.writes(program, module, arg);
                 }
             }
-            _ => {}
+        }
+        for part in expr.parts() {
+            self.expr(program, module, part);
         }
     }
 
@@ -309,13 +329,8 @@ impl Reach {
                 self.writes(program, module, target);
             }
             if let StmtKind::Call(call) = &stmt.kind {
-                for arg in &call.args {
-                    if let ArgKind::Positional(expr)
-                    | ArgKind::Named(_, expr)
-                    | ArgKind::Optional(_, Some(expr)) = &arg.kind
-                    {
-                        self.writes(program, module, expr);
-                    }
+                for arg in call.args.iter().filter_map(Arg::value) {
+                    self.writes(program, module, arg);
                 }
                 match &call.callee {
                     Callee::Name(name) => self.call(program, module, &name.text),
@@ -323,6 +338,9 @@ impl Reach {
                         self.changes.get_or_insert("a procedure with a computed name".into());
                     }
                 }
+            }
+            for expr in stmt.kind.exprs() {
+                self.expr(program, module, expr);
             }
             for inner in stmt.kind.blocks() {
                 self.block(program, module, inner);

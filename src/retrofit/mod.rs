@@ -7,6 +7,7 @@ mod elsewhere;
 pub mod figures;
 mod freed;
 mod goals;
+mod guard_cost;
 mod guards;
 mod guided;
 mod hazards;

@@ -31,6 +31,8 @@ pub(super) struct Writing<'a> {
     pub(super) guards: &'a Guards<'a>,
     /// The robot that streams are made for.
     pub(super) robot: Robot,
+    /// The operator's speed override that they are made for, %.
+    pub(super) override_percent: f64,
     /// What the program writes down for them.
     pub(super) recorded: Recorded,
     /// Names that are free.
@@ -60,7 +62,7 @@ pub(super) fn emit(
         for (i, source) in files.iter().enumerate() {
             outputs.push(unchanged(i, source));
         }
-        return Ok(Outputs { files: outputs, guard_instructions: 0 });
+        return Ok(Outputs { files: outputs, guards: Vec::new() });
     }
     let program = hash(&writing.originals);
     let emission = emit::Emission {
@@ -68,6 +70,7 @@ pub(super) fn emit(
         names: &writing.names,
         layout: writing.layout,
         robot: &writing.robot,
+        override_percent: writing.override_percent,
         recorded: &writing.recorded,
         program: &program,
     };
@@ -103,23 +106,16 @@ pub(super) fn emit(
             input: None,
         });
     }
-    let executions = |site: &emit::Site| -> usize {
-        let own = sites.iter().filter(|own| own.span == site.span);
-        let runs = own.flat_map(|own| &own.variants).map(|variant| variant.events.len());
-        let rests = restings.iter().filter(|rest| rest.span == site.span);
-        runs.chain(rests.map(|rest| rest.events.len())).sum()
-    };
-    let guards = emitted_sites.iter().zip(&emitted.instructions);
-    let guard_instructions = guards.map(|(site, count)| executions(site) * count).sum();
-    Ok(Outputs { files: outputs, guard_instructions })
+    let guards = emitted_sites.iter().map(|site| site.span).zip(emitted.instructions).collect();
+    Ok(Outputs { files: outputs, guards })
 }
 
 /// The files of an emitted program.
 pub(super) struct Outputs {
     /// All of them.
     pub(super) files: Vec<OutputFile>,
-    /// RAPID instructions that its guards run in a cycle, at most.
-    pub(super) guard_instructions: usize,
+    /// Places with guards, and the RAPID instructions that these run in a cycle.
+    pub(super) guards: Vec<(Span, usize)>,
 }
 
 /// The files as a reader of the emitted program finds them.
@@ -173,10 +169,17 @@ fn site_of(
     ways: &[Way],
     (index, site): (usize, &Site),
 ) -> Option<emit::Site> {
-    let own = || ways.iter().filter(|way| way.site == index && way.outcome.is_ok());
-    let run = run_of(simulation, sites, own().next()?)?;
-    let streams: Vec<(Vec<Parameter>, EmittedStream)> =
-        own().filter_map(|way| stream(writing, simulation, sites, way)).collect();
+    let first = ways.iter().find(|way| way.site == index && way.outcome.is_ok())?;
+    let run = run_of(simulation, sites, first)?;
+    let mut streams: Vec<(Vec<Parameter>, EmittedStream)> = Vec::new();
+    let mut order: Vec<(usize, Option<usize>)> = Vec::new();
+    for way in ways.iter().filter(|way| way.site == index) {
+        let stream = stream(writing, simulation, sites, way);
+        let runs = stream.is_some().then_some(streams.len());
+        order.extend(site.variants[way.variant].events.iter().map(|event| (*event, runs)));
+        streams.extend(stream);
+    }
+    order.sort_unstable();
     let parameters = streams.first()?.0.clone();
     let movements = || run.moves.iter().map(|record| &record.movement);
     let first = movements().next()?;
@@ -192,6 +195,7 @@ fn site_of(
         },
         tool: argument(writing.files, first.tool_span),
         streams: streams.into_iter().map(|(_, stream)| stream).collect(),
+        order: order.into_iter().map(|(_, runs)| runs).collect(),
     })
 }
 

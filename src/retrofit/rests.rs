@@ -191,6 +191,7 @@ pub(super) fn emitted(
         },
         tool: argument(writing.files, movement.tool_span),
         streams: vec![stream],
+        order: vec![Some(0); resting.events.len()],
     })
 }
 

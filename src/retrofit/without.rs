@@ -2,6 +2,7 @@
 //!
 //! A retrofit only inserts. What it inserted is found again by the names of its module.
 
+use crate::emit::EDIT_REMARK;
 use crate::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::ir::lower;
 use crate::syntax;
@@ -84,6 +85,9 @@ impl Found<'_> {
             return;
         };
         let mut end = stmt.span.start as usize + at + 4;
+        if self.bytes[end..].starts_with(EDIT_REMARK.as_bytes()) {
+            end += EDIT_REMARK.len();
+        }
         let is_end = |b: &u8| matches!(b, b'\r' | b'\n');
         let is_blank = |b: &u8| matches!(b, b' ' | b'\t');
         let eol = match &self.bytes[end..] {

@@ -11,8 +11,8 @@ use super::lower_limits::Lowered;
 use super::settings::{Budget, Form, Objective, Settings};
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
 use super::{
-    guided, hazards, lower_limits, notes, outputs, padding, recorded, rests, segments, signals,
-    speeds, verify,
+    guard_cost, guided, hazards, lower_limits, notes, outputs, padding, recorded, rests, segments,
+    signals, speeds, verify,
 };
 use crate::emit::{self, Names};
 use crate::energy::{Account, EnergyParts, account};
@@ -290,6 +290,7 @@ pub fn retrofit(
         files,
         guards: &guards,
         robot: outputs::robot(model),
+        override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
         recorded: recorded::recorded(&program, files, &names),
         names,
         originals,
@@ -316,6 +317,11 @@ pub fn retrofit(
                 kept,
                 restings.is_empty(),
             );
+            let weak = if weak.is_empty() {
+                guard_cost::costly(model, settings, &simulation, kept, &emitted.guards)
+            } else {
+                weak
+            };
             if weak.is_empty() {
                 break ((emitted, attempt), table);
             }
@@ -347,7 +353,7 @@ pub fn retrofit(
     let is_free = |way: &Way| matches!(&way.outcome, Ok(it) if it.path == PathUse::Left);
     let freed = ways.iter().any(is_free);
     if settings.form == Form::Guided {
-        checked.0.guard_instructions = 0;
+        checked.0.guards.clear();
         checked.0.files =
             guided::files(files, &program, &simulation, &sites, &mut ways, &writing.names)?;
         // The program that runs is the one before.
@@ -369,6 +375,9 @@ pub fn retrofit(
     let original = figures(&simulation, &before).padded(padding.as_ref());
     let compared = (&original, &optimized, padding.as_ref());
     let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
+    if settings.form == Form::Streams {
+        notes.extend(notes::own_targets(files, &guards, &simulation, &sites, &ways));
+    }
     if freed {
         notes.extend(notes::off_path(settings, verification.worst.deviation_m));
     }
@@ -382,7 +391,7 @@ pub fn retrofit(
         lower_limits,
         verification,
         signals: signals::signals(&simulation, &after_simulation),
-        guard_instructions: checked.0.guard_instructions,
+        guard_instructions: checked.0.guards.iter().map(|(_, count)| count).sum(),
         outputs: checked.0.files,
         before: (simulation, before),
         after: (after_simulation, after),

@@ -29,6 +29,8 @@ pub(crate) enum Change {
     Base(f64),
     /// So many passes of the loop that never ends.
     Passes(u32),
+    /// The operator's speed override, share.
+    Override(f64),
 }
 
 /// How a number changes.
@@ -159,7 +161,10 @@ impl Cell {
                 0 => Change::Base(sign(random) * log(random, 0.0005, 0.05)),
                 i => Change::Robot(robots[i % robots.len()]),
             },
-            _ => Change::Passes(1 + random.below(3) as u32),
+            _ => match random.below(3) {
+                0 => Change::Override([0.05, 0.25, 0.5, 0.99][random.below(4)]),
+                _ => Change::Passes(1 + random.below(3) as u32),
+            },
         }
     }
 
@@ -283,6 +288,7 @@ pub(crate) fn apply(files: &[String], model: &Model, changes: &[Change]) -> Chan
             Change::Robot(name) => model = find(name).unwrap(),
             Change::Base(x) => model.kinematics.base.translation.x += x,
             Change::Passes(passes) => options.passes = Some(*passes),
+            Change::Override(share) => options.speed_override = Some(*share),
         }
     }
     let files = texts
@@ -328,6 +334,7 @@ pub(crate) fn kind(change: &Change) -> &'static str {
         Change::Start(_) => "start",
         Change::Robot(_) | Change::Base(_) => "robot",
         Change::Passes(_) => "passes",
+        Change::Override(_) => "override",
     }
 }
 

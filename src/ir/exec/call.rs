@@ -66,9 +66,7 @@ impl Executor<'_> {
                     (params.iter().find(|p| p.name.key == name.key), expr.as_ref())
                 }
                 ArgKind::Conditional(name, outer) => {
-                    if !self.frame().present.contains(&outer.key) {
-                        continue;
-                    }
+                    let Some(outer) = self.given(outer) else { continue };
                     if let Some(param) = params.iter().find(|p| p.name.key == name.key) {
                         present.push(param.name.key.clone());
                         if let Some(cell) = self.cell_of(outer) {

@@ -279,7 +279,7 @@ impl Executor<'_> {
     pub(super) fn assign(&mut self, target: &Expr, value: Value) {
         let value = self.level(value);
         let history = self.history(&value.origin);
-        let input = self.seen_input.take();
+        let input = self.seen_input.take().or_else(|| self.deciding.last().cloned());
         let mut path = Vec::new();
         let mut base = target;
         loop {

@@ -256,8 +256,11 @@ impl Executor<'_> {
     fn if_statement(&mut self, branches: &[(Expr, Block)], otherwise: Option<&Block>) -> Flow {
         // The last condition on inputs: it decides whether a GOTO is reached.
         let mut decided = None;
+        let mut input = None;
         for (condition, block) in branches {
-            match self.condition(condition) {
+            let is = self.condition(condition);
+            input = self.seen_input.clone().or(input);
+            match is {
                 Condition::Known(false) if self.seen_input.is_some() => {
                     self.note_branch(condition, "FALSE", Some(block));
                 }
@@ -270,12 +273,12 @@ impl Executor<'_> {
                     if self.seen_input.is_some() {
                         self.note_branch(condition, "TRUE", otherwise);
                     }
-                    return decided_by(decided, self.block(block));
+                    return decided_by(decided, self.block_by(input, block));
                 }
                 Condition::Assumed(true) => {
                     self.note_branch(condition, "TRUE", otherwise);
                     decided = Some(Poll { condition: condition.clone(), value: true });
-                    return decided_by(decided, self.block(block));
+                    return decided_by(decided, self.block_by(input, block));
                 }
                 Condition::Unknown(why) => {
                     self.unresolved(
@@ -286,14 +289,40 @@ impl Executor<'_> {
             }
         }
         match otherwise {
-            Some(block) => decided_by(decided, self.block(block)),
+            Some(block) => decided_by(decided, self.block_by(input, block)),
             None => Flow::Next,
+        }
+    }
+
+    /// A block that runs because of an input, if there is one: what it assigns depends on that.
+    fn block_by(&mut self, input: Option<Arc<str>>, block: &Block) -> Flow {
+        let depth = self.deciding.len();
+        self.deciding.extend(input);
+        let flow = self.block(block);
+        self.deciding.truncate(depth);
+        flow
+    }
+
+    /// Data that a block would have assigned depend on the input because of which it did not run.
+    fn left_out(&mut self, block: &Block) {
+        for stmt in block {
+            if let StmtKind::Assign { target, .. } = &stmt.kind
+                && let Some(cell) = target.base().and_then(|name| self.cell_of(name))
+            {
+                self.cells[cell].input.clone_from(&self.seen_input);
+            }
+            for inner in stmt.kind.blocks() {
+                self.left_out(inner);
+            }
         }
     }
 
     /// Tells which way an `IF` on inputs went and what the other way holds, if anything moves or
     /// waits there.
     fn note_branch(&mut self, condition: &Expr, taken: &str, left_out: Option<&Block>) {
+        if let Some(block) = left_out {
+            self.left_out(block);
+        }
         let calls = left_out.map_or(0, |block| calls(block));
         if calls == 0 {
             return;
@@ -373,15 +402,15 @@ impl Executor<'_> {
                 }
             }
             if input.is_some() {
-                self.seen_input = input;
+                self.seen_input.clone_from(&input);
                 self.note_case(value, &tested.datum, taken, cases, default);
             }
             if let Some((_, block)) = taken.and_then(|i| cases.get(i)) {
-                return self.block(block);
+                return self.block_by(input, block);
             }
         }
         match default {
-            Some(block) => self.block(block),
+            Some(block) => self.block_by(input, block),
             None => Flow::Next,
         }
     }
@@ -398,10 +427,12 @@ impl Executor<'_> {
         default: Option<&Block>,
     ) {
         let others = cases.iter().enumerate().filter(|(i, _)| taken != Some(*i));
-        let mut left_out: Vec<usize> = others.map(|(_, (_, block))| calls(block)).collect();
-        if taken.is_some() {
-            left_out.extend(default.map(|block| calls(block)));
+        let mut blocks: Vec<&Block> = others.map(|(_, (_, block))| block).collect();
+        blocks.extend(default.filter(|_| taken.is_some()));
+        for block in &blocks {
+            self.left_out(block);
         }
+        let mut left_out: Vec<usize> = blocks.into_iter().map(|block| calls(block)).collect();
         left_out.retain(|calls| *calls > 0);
         let count: usize = left_out.iter().sum();
         if count == 0 {

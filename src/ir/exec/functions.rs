@@ -1,7 +1,7 @@
 //! RAPID's own functions, and calls of the program's.
 
 use super::super::functions::{self, Given};
-use super::super::hir::{Arg, ArgKind, Expr, Ident};
+use super::super::hir::{Arg, ArgKind, Expr, ExprKind, Ident};
 use super::super::program::Symbol;
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
@@ -23,6 +23,10 @@ impl Executor<'_> {
         match name.key.as_str() {
             "present" => return self.present(args),
             "cjointt" => return self.joint_position(expr),
+            "cspeedoverride" => {
+                let percent = self.machine.override_percent();
+                return Value::constant(Datum::Num(percent), "num");
+            }
             "isfile" | "opmode" | "robos" | "runmode" | "gettime" | "cdate" | "ctime" => {
                 return Value::unknown(
                     format!("{} depends on the controller", name.text),
@@ -43,7 +47,12 @@ impl Executor<'_> {
                     let value = inner.as_ref().map(|inner| self.eval(inner));
                     options.push((&option.key, value));
                 }
-                ArgKind::Conditional(..) => {}
+                ArgKind::Conditional(option, outer) => {
+                    if self.given(outer).is_some() {
+                        let value = self.eval(outer);
+                        options.push((&option.key, Some(value)));
+                    }
+                }
             }
         }
         if matches!(
@@ -88,12 +97,18 @@ impl Executor<'_> {
 
     fn present(&mut self, args: &[Arg]) -> Value {
         let given = args.first().is_some_and(|arg| match &arg.kind {
-            ArgKind::Positional(Expr { kind: super::super::hir::ExprKind::Ref(name), .. }) => {
-                self.frame().present.contains(&name.key)
-            }
+            ArgKind::Positional(expr) => self.given(expr).is_some(),
             _ => false,
         });
         Value::constant(Datum::Bool(given), "bool")
+    }
+
+    /// The name of a parameter, if the call of the routine gave it.
+    pub(super) fn given<'e>(&self, parameter: &'e Expr) -> Option<&'e Ident> {
+        match &parameter.kind {
+            ExprKind::Ref(name) if self.frame().present.contains(&name.key) => Some(name),
+            _ => None,
+        }
     }
 
     fn joint_position(&mut self, expr: &Expr) -> Value {

@@ -16,12 +16,16 @@ pub(super) struct Arguments<'e> {
     pub(super) positional: Vec<&'e Expr>,
     /// Lower-case name, as written, and value.
     pub(super) optional: Vec<(&'e str, &'e str, Option<&'e Expr>)>,
+    /// Options that are there only if the routine was called with a parameter, as written: `Z?Zone`.
+    pub(super) conditional: Vec<String>,
 }
 
 impl<'e> Arguments<'e> {
-    pub(super) fn new(args: &'e [Arg]) -> Arguments<'e> {
+    /// Of a call in a routine that was given what `executor` says.
+    pub(super) fn new(executor: &Executor<'_>, args: &'e [Arg]) -> Arguments<'e> {
         let mut positional = Vec::new();
         let mut optional = Vec::new();
+        let mut conditional = Vec::new();
         for arg in args {
             match &arg.kind {
                 ArgKind::Positional(expr) => positional.push(expr),
@@ -31,10 +35,17 @@ impl<'e> Arguments<'e> {
                 ArgKind::Optional(name, expr) => {
                     optional.push((name.key.as_str(), name.text.as_str(), expr.as_ref()));
                 }
-                ArgKind::Conditional(..) => {}
+                ArgKind::Conditional(name, outer) => {
+                    if let ExprKind::Ref(outer) = &outer.kind {
+                        conditional.push(format!("{}?{}", name.text, outer.text));
+                    }
+                    if executor.given(outer).is_some() {
+                        optional.push((name.key.as_str(), name.text.as_str(), Some(outer)));
+                    }
+                }
             }
         }
-        Arguments { positional, optional }
+        Arguments { positional, optional, conditional }
     }
 
     /// Whether an option is given, with or without a value.
@@ -68,7 +79,7 @@ pub(super) enum Length {
 
 impl Executor<'_> {
     pub(super) fn instruction(&mut self, stmt: &Stmt, key: &str, text: &str, args: &[Arg]) -> Flow {
-        let arguments = Arguments::new(args);
+        let arguments = Arguments::new(self, args);
         if let Some(signature) = instructions::movement(key) {
             self.movement(stmt, text, signature, &arguments, args);
             return Flow::Next;

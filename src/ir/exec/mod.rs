@@ -68,6 +68,10 @@ pub trait Machine {
     fn flange(&self, _q: &[f64; 6]) -> Option<Isometry3<f64>> {
         None
     }
+    /// The speed override that the operator has set, %.
+    fn override_percent(&self) -> f64 {
+        100.0
+    }
     /// What the controller calls its robot.
     fn robot(&self) -> Option<String> {
         None
@@ -198,6 +202,8 @@ struct Executor<'a> {
     forced: Option<Span>,
     /// The input that was read last, itself or through data worked out from it.
     seen_input: Option<Arc<str>>,
+    /// The inputs because of which the present statements run, innermost last.
+    deciding: Vec<Arc<str>>,
     /// The error that a handler deals with: RAPID's `ERRNO`.
     errno: Option<Arc<str>>,
     execution: Execution,
@@ -224,6 +230,7 @@ impl<'a> Executor<'a> {
             watchers: 0,
             forced: None,
             seen_input: None,
+            deciding: Vec::new(),
             errno: None,
             execution: Execution::default(),
         }

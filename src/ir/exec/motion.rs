@@ -183,6 +183,7 @@ impl Executor<'_> {
             .iter()
             .filter(|(key, _, _)| !KNOWN_OPTIONS.contains(key))
             .map(|(_, text, _)| (*text).into())
+            .chain(arguments.conditional.iter().map(|text| text.as_str().into()))
             .collect();
         Ok(Movement {
             instruction: text.into(),

@@ -61,13 +61,19 @@ fn told(statements: &str) -> Vec<String> {
 
 /// The same for statements that have that many syntax errors.
 fn told_with_errors(statements: &str, errors: usize) -> Vec<String> {
+    executed(statements, errors).0
+}
+
+/// What a machine is told by statements with that many syntax errors, and the reasons of what was
+/// not followed.
+fn executed(statements: &str, errors: usize) -> (Vec<String>, Vec<String>) {
     let text = format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\nENDMODULE");
     let parse = syntax::parse(text.as_bytes());
     assert!(parse.errors.len() == errors, "{statements}: {:?}", parse.errors);
     let program = Program::new(lower(FileId(0), &parse, text.as_bytes()));
     let mut recorder = Recorder::default();
-    execute(&program, program.entry("main").expect("main"), &mut recorder);
-    recorder.0
+    let execution = execute(&program, program.entry("main").expect("main"), &mut recorder);
+    (recorder.0, execution.unresolved.into_iter().map(|note| note.reason).collect())
 }
 
 #[test]
@@ -181,4 +187,26 @@ fn waits_for_others_are_waits() {
         told("nKey:=1; TPReadFK nKey, \"\", \"\", \"\", \"\", \"\", \"\"; WaitTime nKey;").len(),
         2
     );
+}
+
+/// Data that a branch on an input assigns, or would have assigned, depend on the input.
+#[test]
+fn branches_on_data_that_inputs_chose_are_told() {
+    let later = "IF nKey=1 THEN\nMoveJ p10, v100, fine, tool0;\nENDIF";
+    for first in [
+        "IF diX=1 THEN\nnKey:=1;\nENDIF",
+        "IF diX=1 nKey:=1;",
+        "IF diX=0 THEN\nnKey:=2;\nENDIF",
+        "IF diX=1 THEN\npVar:=p10;\nELSEIF nKey=0 THEN\nnKey:=2;\nENDIF",
+        "TEST giX\nCASE 1:\nnKey:=1;\nENDTEST",
+        "TEST giX\nCASE 0:\nnKey:=2;\nENDTEST",
+    ] {
+        let (told, notes) = executed(&format!("{first}\n{later}"), 0);
+        assert!(told.is_empty(), "{first}: {told:?}");
+        let is_told =
+            notes.iter().any(|note| note.contains("taken as FALSE") && note.contains("X=LEVEL"));
+        assert!(is_told, "{first}: {notes:?}");
+    }
+    let (_, notes) = executed(&format!("IF diX=1 THEN\nnKey:=1;\nENDIF\nnKey:=2;\n{later}"), 0);
+    assert!(notes.is_empty(), "{notes:?}");
 }

@@ -43,7 +43,7 @@ fn shown_arg(arg: &Arg) -> String {
         ArgKind::Named(name, value) => format!("{}={}", name.key, shown(value)),
         ArgKind::Optional(name, None) => format!("\\{}", name.key),
         ArgKind::Optional(name, Some(value)) => format!("\\{}={}", name.key, shown(value)),
-        ArgKind::Conditional(name, parameter) => format!("\\{}?{}", name.key, parameter.key),
+        ArgKind::Conditional(name, parameter) => format!("\\{}?{}", name.key, shown(parameter)),
     }
 }
 
