@@ -80,6 +80,7 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
                 },
                 tool: "tool0".into(),
                 streams: vec![stream(i % 2)],
+                order: vec![Some(0)],
             }
         })
         .collect();
@@ -92,6 +93,7 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
         names: &names,
         layout,
         robot: &Robot { kind: "1600".into(), posture, place },
+        override_percent: 100.0,
         recorded: &Recorded::default(),
         program: "0",
     };

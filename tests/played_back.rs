@@ -117,7 +117,7 @@ fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
 fn read(text: &str) -> Vec<Stream> {
     let mut streams = Vec::new();
     for number in 1.. {
-        let Some(at) = text.find(&format!("CONST jointtarget jpFrom{number}_1:=")) else { break };
+        let Some(at) = text.find(&format!("CONST jointtarget jpFrom{number}{{")) else { break };
         let origin = text[..at].trim_end().rsplit('\n').next().unwrap();
         let line = between(origin, ".mod ", ":").parse().unwrap();
         let mut stream = Stream { line, start: joints(&text[at..]), ..Stream::default() };

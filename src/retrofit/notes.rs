@@ -100,7 +100,7 @@ pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
     })
 }
 
-/// Names the movements behind guards whose target stands in the line itself: ModPos changes the text
+/// Names the movements behind guards whose target stands in the line itself: `ModPos` changes the text
 /// of the line then, which no guard can compare.
 pub(super) fn own_targets(
     files: &[Source],
