@@ -371,7 +371,7 @@ fn a_takt_above_the_cycle_is_possible() {
     json(&[&args[..], &ROBOT].concat());
 }
 
-/// ModPos changes the text of a movement whose target stands in it.
+/// `ModPos` changes the text of a movement whose target stands in it.
 #[test]
 fn targets_in_the_movement_are_told() {
     let own = "MoveAbsJ [[30,0,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tP;";
