@@ -191,8 +191,9 @@ pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
 
 fn changed_since(path: &Path, folder: &Path) -> anyhow::Error {
     anyhow::anyhow!(
-        "'{}' was changed since --in-place wrote it, so nothing is undone: move that file away and \
-         put back what --in-place wrote, or copy the originals from '{}' yourself",
+        "'{}' was changed since --in-place wrote it, so nothing is undone: to keep the change and take \
+         the streams out, run joulepath refresh with --in-place on the program and then --undo; to \
+         lose it, copy the originals from '{}' yourself",
         path.display(),
         folder.join(ORIGINALS).display()
     )
