@@ -34,7 +34,8 @@ fn named(text: &str) -> Vec<&str> {
     let mut named = Vec::new();
     for part in prose {
         named.extend(part.split('`').skip(1).step_by(2));
-        named.extend(part.split("](").skip(1).filter_map(|link| link.split(')').next()));
+        // A link may lead to a place within a page.
+        named.extend(part.split("](").skip(1).filter_map(|link| link.split([')', '#']).next()));
     }
     named
 }

@@ -205,7 +205,9 @@ fn what_has_no_joules_is_told() {
     let said = |args: &[&str]| text(&joulepath(args, folder.path()).stderr);
     let lint = |more: &[&str]| said(&[&["lint", "Cell.mod"], more].concat());
     assert!(lint(&[]).contains("nothing has joules: no robot is named"));
-    assert!(lint(&["--robot", "IRB120-3/0.58"]).contains("has no dynamics"));
+    let bare = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
+    fs::write(folder.path().join("bare.toml"), bare).unwrap();
+    assert!(lint(&["--robot", "bare.toml"]).contains("has no dynamics"));
     assert!(lint(&[&ROBOT[..], &["--entry", "nowhere"]].concat()).contains("--entry NAME"));
     assert_eq!(lint(&ROBOT), "");
     let locked = fs::canonicalize("fixtures/backup/RAPID/TASK2/PROGMOD/Locked.mod").unwrap();

@@ -173,6 +173,7 @@ fn small(path: &str) -> Small {
     segments[2].span.end = (second + home.len()) as u32;
     let retrofit = Retrofit {
         lower_limits: Vec::new(),
+        uncertainty: None,
         guard_instructions: 0,
         original: figures(&before),
         optimized: figures(&after),

@@ -67,6 +67,10 @@ pub struct ProgramArgs {
     #[arg(long = "speed-override", value_name = "PERCENT", allow_negative_numbers = true)]
     pub speed_override: Option<f64>,
 
+    /// Take the robot's estimated numbers as they are, without plausible others and their intervals.
+    #[arg(long = "point-estimate")]
+    pub point_estimate: bool,
+
     /// How often the loop that never ends runs.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub passes: Option<u32>,
@@ -173,7 +177,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
     let name = robot_name(args, &config, &folder).or_else(|| of_task.map(str::to_owned));
     let name = name.with_context(which_robot)?;
     let of_backup = args.robot.is_none() && config.robot.is_none();
-    let model = effects::load(&name).map_err(|error| {
+    let model = effects::load_estimated(&name).map_err(|error| {
         if of_backup {
             anyhow::anyhow!("the robot of the backup is a {name}: {error}; name yours with --robot")
         } else {
@@ -290,7 +294,7 @@ pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
 /// None is named, or it can't be read.
 pub fn robot(args: &CellArgs) -> anyhow::Result<Model> {
     let (config, folder) = configuration(args)?;
-    Ok(effects::load(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
+    Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
 }
 
 /// The robot that options or configuration name.

@@ -204,7 +204,7 @@ struct Motion {
 /// # Errors
 /// A robot without limits, options that make no sense, or output that can't be written.
 pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
-    let model = effects::load(&args.robot)?;
+    let model = effects::load_estimated(&args.robot)?;
     if model.dof != 6 {
         bail!("{} has {} joints; RAPID is written for robots with 6", model.name, model.dof);
     }

@@ -259,11 +259,11 @@ fn robot(
     input: &Input,
 ) -> anyhow::Result<Option<Model>> {
     let model = if let Some(name) = common::robot_name(args, config, folder) {
-        Some(effects::load(&name)?)
+        Some(effects::load_estimated(&name)?)
     } else {
         let named = input.backups.iter().find_map(|(root, backup)| {
             let name = backup.tasks.iter().find_map(|task| task.robot.clone())?;
-            Some((root, effects::load(&name).ok()?))
+            Some((root, effects::load_estimated(&name).ok()?))
         });
         named.map(|(root, model)| common::as_configured(root, model, args.quiet))
     };

@@ -348,6 +348,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             EnergyArg::Velocity => Cost::Velocity,
             EnergyArg::Torque => Cost::Torque,
         },
+        point_estimate: args.program.point_estimate,
         dwell_pose: args.dwell_pose.map(dwell_pose).transpose()?,
         pareto: usize::from(args.pareto),
         written_elsewhere: written_in(job.others()),

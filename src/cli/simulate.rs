@@ -10,6 +10,7 @@ use clap::Args;
 use super::common::{self, Format, ProgramArgs};
 use super::{output, signals};
 use crate::energy::account;
+use crate::energy::plausible::plausibility;
 use crate::energy::trajectory::{STEP, trajectory};
 use crate::motion;
 use crate::report::html::simulate_report;
@@ -69,6 +70,11 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
             output::write(path, page.as_bytes())?;
         }
     }
+    let plausible = if args.program.point_estimate {
+        None
+    } else {
+        plausibility(&job.model, &simulation, &account)
+    };
     let mut notes = job.unused_inputs(&simulation);
     notes.extend(signals::unused_levels(&args.program.cell, &simulation));
     for text in &notes {
@@ -78,8 +84,15 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     match args.program.format {
         Format::Json => {
             let (model, entry) = (&job.model, &job.entry);
-            let value =
-                report::json::simulation(model, entry, places, &simulation, &account, &notes);
+            let value = report::json::simulation(
+                model,
+                entry,
+                places,
+                &simulation,
+                &account,
+                plausible.as_ref(),
+                &notes,
+            );
             serde_json::to_writer_pretty(&mut out, &value)?;
             writeln!(out)?;
         }
@@ -87,7 +100,10 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
             for text in report::text::notes(&job.model, places, &simulation) {
                 common::note(args.program.cell.quiet, &text);
             }
-            write!(out, "{}", report::text::simulation(&job.model, places, &simulation, &account))?;
+            let plausible = plausible.as_ref();
+            let text =
+                report::text::simulation(&job.model, places, &simulation, &account, plausible);
+            write!(out, "{text}")?;
         }
     }
     Ok(ExitCode::SUCCESS)

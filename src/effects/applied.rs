@@ -14,6 +14,14 @@ pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     applied(robot::load(name_or_path)?)
 }
 
+/// The same with estimates in place of what is not known of an arm.
+///
+/// # Errors
+/// As of [`load`].
+pub fn load_estimated(name_or_path: &str) -> Result<Model, RobotError> {
+    applied(robot::prior::estimated(robot::load(name_or_path)?))
+}
+
 /// The same of a text; `file` names it in messages.
 ///
 /// # Errors

@@ -6,7 +6,9 @@
 
 pub mod account;
 pub mod brakes;
+pub mod moments;
 pub mod parts;
+pub mod plausible;
 pub mod power;
 mod quadrature;
 pub mod trajectory;

@@ -530,6 +530,7 @@ fn assembled(
                 key: "ratio".into(),
                 provenance: Some(Provenance::Assumed),
                 source: Some("not known: rotor inertias are given at the joint".into()),
+                sd: None,
             });
         }
         model.sensors.position_offset.fill(0.0);
@@ -572,6 +573,7 @@ fn origin(table: &str, key: &str, source: &str) -> Origin {
         key: key.to_owned(),
         provenance: Some(Provenance::Identified),
         source: Some(source.to_owned()),
+        sd: None,
     }
 }
 

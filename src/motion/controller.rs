@@ -2,7 +2,7 @@
 
 use super::planner::MotionLimits;
 use crate::ir::movement::Settings;
-use crate::path::joint_path::{DOF, Joints};
+use crate::path::joint_path::Joints;
 use crate::robot::Model;
 
 /// Window of the average where the robot's file has none, s. Runs of an IRC5 with an IRB6640: the
@@ -84,8 +84,7 @@ pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
         let speed = list(&model.limits.velocity, share);
         std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
     };
-    let torque =
-        if model.has_dynamics() { list(&model.limits.torque, 1.0) } else { [f64::INFINITY; DOF] };
+    let torque = list(&model.torque_bounds().cloned(), 1.0);
     MotionLimits { acceleration, torque }
 }
 

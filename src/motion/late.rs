@@ -59,7 +59,7 @@ impl Limits {
         Limits {
             velocity: list(&limits.velocity),
             acceleration: list(&limits.acceleration),
-            torque: if model.has_dynamics() { list(&limits.torque) } else { [f64::INFINITY; DOF] },
+            torque: list(&model.torque_bounds().cloned()),
         }
     }
 

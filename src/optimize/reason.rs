@@ -57,6 +57,8 @@ pub enum Reason {
     NoMotion,
     /// Nothing is saved in the time that there is.
     NoSaving,
+    /// It saves in this share of the robots that are plausible, which is too few.
+    UncertainSaving(f64),
     /// The time asked for is below the possible, s.
     TooShort(f64),
     /// No stream within the limits was found.
@@ -106,6 +108,7 @@ impl Reason {
             Reason::NoMotion => "no-motion",
             Reason::NoSaving => "no-saving",
             Reason::TooShort(_) => "too-short",
+            Reason::UncertainSaving(_) => "uncertain-saving",
             Reason::NoStream(_) => "no-stream",
             Reason::KeepOut => "keep-out",
             Reason::TooManyVariants(_) => "too-many-variants",
@@ -128,6 +131,7 @@ impl Reason {
                 | Reason::Guided(_)
                 | Reason::NoMotion
                 | Reason::NoSaving
+                | Reason::UncertainSaving(_)
                 | Reason::Timed
                 | Reason::NotReached
                 | Reason::KeepOut
@@ -153,6 +157,12 @@ impl std::fmt::Display for Reason {
             | Reason::Interrupt(why)
             | Reason::NoStream(why)
             | Reason::Verification(why) => f.write_str(why),
+            Reason::UncertainSaving(share) => write!(
+                f,
+                "it saves in {:.0} % of the robots that are plausible, which is not enough: \
+                 joulepath robots show says what is not known of the robot",
+                100.0 * share
+            ),
             Reason::NotReached => f.write_str("it does not run in the simulated cycle"),
             Reason::CompactIf => f.write_str("a compact IF holds one statement only"),
             Reason::Instruction(name) => write!(f, "{name} does more than move"),

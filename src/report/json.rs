@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::mark::mark;
 use super::place::Places;
+use crate::energy::plausible::{Contribution, Interval, Plausibility};
 use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
@@ -49,6 +50,7 @@ pub fn simulation(
     places: Places<'_>,
     simulation: &Simulation,
     account: &Account,
+    plausible: Option<&Plausibility>,
     notes: &[String],
 ) -> Value {
     let known = model.has_dynamics();
@@ -93,13 +95,32 @@ pub fn simulation(
         "cycle_s": simulation.cycle_s,
         "energy_j": known.then(|| account.total.energy_j()),
         "motion_energy_j": known.then(|| account.total.motion_energy_j()),
+        "energy_interval_j": plausible.map(|p| interval(p.energy_j)),
+        "motion_energy_interval_j": plausible.map(|p| interval(p.motion_energy_j)),
         "energy": Parts::new(&account.total, known),
+        "estimated": plausible.map_or_else(Vec::new, |p| estimated(&p.contributions)),
         "moves": moves,
         "waits": waits,
         "notes": notes,
         "unresolved": unresolved(places, simulation),
         "assumed": assumed(model, simulation),
     })
+}
+
+/// `[low, high]`, in which 90 % of the plausible robots lie.
+fn interval(interval: Interval) -> [f64; 2] {
+    [interval.low, interval.high]
+}
+
+fn estimated(parts: &[Contribution]) -> Vec<Value> {
+    let value = |part: &Contribution| {
+        json!({
+            "group": part.group,
+            "share_of_variance": part.share,
+            "narrowed_by": part.narrowed_by,
+        })
+    };
+    parts.iter().map(value).collect()
 }
 
 fn basis(basis: WaitBasis) -> &'static str {
@@ -163,13 +184,22 @@ pub fn retrofit(
         .iter()
         .map(|(what, held)| json!({ "check": what, "passed": held }))
         .collect();
+    let uncertainty = retrofit.uncertainty.as_ref();
+    let side = |mut value: Value, of: Option<[Interval; 2]>| {
+        value["energy_interval_j"] = json!(of.map(|of| interval(of[0])));
+        value["motion_energy_interval_j"] = json!(of.map(|of| interval(of[1])));
+        value
+    };
     json!({
         "robot": model.name,
         "entry": entry,
-        "original": original(retrofit),
-        "optimized": figures(&retrofit.optimized),
+        "original": side(original(retrofit), uncertainty.map(|u| u.original)),
+        "optimized": side(figures(&retrofit.optimized), uncertainty.map(|u| u.optimized)),
         "saving_percent": retrofit.saving_percent(),
+        "saving_interval_percent": uncertainty.map(|u| interval(u.saving_percent[0])),
         "motion_saving_percent": retrofit.motion_saving_percent(),
+        "motion_saving_interval_percent": uncertainty.map(|u| interval(u.saving_percent[1])),
+        "estimated": uncertainty.map_or_else(Vec::new, |u| estimated(&u.contributions)),
         "potential_j": retrofit.potential_j,
         "segments": segments,
         "verification": {

@@ -5,12 +5,13 @@ use std::fmt::Write;
 use super::mark::mark;
 use super::place::Places;
 use super::table::{Align, table};
+use crate::energy::plausible::{Contribution, Interval, Plausibility};
 use crate::energy::{Account, EnergyParts};
 use crate::ir::movement::Movement;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::retrofit::{LowerLimits, Retrofit, SegmentKind};
-use crate::robot::Model;
+use crate::robot::{Model, Provenance};
 
 /// The table of a simulation.
 pub fn simulation(
@@ -18,6 +19,7 @@ pub fn simulation(
     places: Places<'_>,
     simulation: &Simulation,
     account: &Account,
+    plausible: Option<&Plausibility>,
 ) -> String {
     let known = model.has_dynamics();
     let joules = |parts: &EnergyParts| {
@@ -82,10 +84,30 @@ pub fn simulation(
             p.idle_j,
             p.brake_j
         );
+        if let Some(plausible) = plausible {
+            let Interval { low, high, .. } = plausible.energy_j;
+            let motion = plausible.motion_energy_j;
+            let _ = writeln!(
+                out,
+                "in 90 % of the plausible robots {low:.0} to {high:.0} J, of which motions take {:.0} \
+                 to {:.0} J{}",
+                motion.low,
+                motion.high,
+                contributions(&plausible.contributions)
+            );
+        }
     } else {
         let _ = writeln!(out, "; the robot's file has no dynamics, so no energy");
     }
     out
+}
+
+/// What an interval comes from, and what would narrow it.
+fn contributions(parts: &[Contribution]) -> String {
+    let Some(first) = parts.first() else { return String::new() };
+    let groups: Vec<String> =
+        parts.iter().map(|it| format!("{} {:.0} %", it.group, 100.0 * it.share)).collect();
+    format!("\nof the variance: {}; most would tell {}", groups.join(", "), first.narrowed_by)
 }
 
 /// The instruction, with what it does besides moving.
@@ -104,6 +126,14 @@ pub fn notes(model: &Model, places: Places<'_>, simulation: &Simulation) -> Vec<
     }
     for text in &simulation.assumed {
         notes.push(format!("assumed: {text}"));
+    }
+    let estimated = model.count(Provenance::Estimated);
+    if estimated > 0 {
+        notes.push(format!(
+            "estimated: {estimated} figures of {} follow from its size: every energy has an interval, \
+             and identify or calibrate narrow it",
+            model.name
+        ));
     }
     let assumed = model.assumed();
     if !assumed.is_empty() {
@@ -203,6 +233,19 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         1e3 * worst.polygon_m,
         worst.endpoint_error_rad,
     );
+    if let Some(it) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten) {
+        let [all, motion] = it.saving_percent;
+        let _ = writeln!(
+            out,
+            "in 90 % of the plausible robots it saves {:.1} to {:.1} % of the motion energy, {:.1} to \
+             {:.1} % of all{}",
+            motion.low,
+            motion.high,
+            all.low,
+            all.high,
+            contributions(&it.contributions)
+        );
+    }
     if retrofit.guard_instructions > 0 {
         let _ = writeln!(
             out,

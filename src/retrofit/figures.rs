@@ -185,6 +185,8 @@ pub struct Retrofit {
     pub notes: Vec<String>,
     /// Both cycles if the robot can do less than its file assumes; empty where nothing is assumed.
     pub lower_limits: Vec<LowerLimits>,
+    /// Energies and savings over plausible robots; `None` for a point estimate.
+    pub uncertainty: Option<super::uncertainty::Uncertainty>,
     /// RAPID instructions that guards run in a cycle, at most.
     pub guard_instructions: usize,
     /// The original cycle.

@@ -68,6 +68,8 @@ pub struct Settings {
     /// How far each joint may go to a pose at which waiting takes less, rad; `None` where the robot
     /// waits where it stands.
     pub dwell_pose: Option<f64>,
+    /// Whether the model's numbers are taken as they are, without robots that are as plausible.
+    pub point_estimate: bool,
     /// Points of the curve of energy over time of each segment; 0 for none.
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
@@ -94,6 +96,7 @@ impl Default for Settings {
             layout: Layout::default(),
             cost: Cost::default(),
             dwell_pose: None,
+            point_estimate: false,
             pareto: 0,
             written_elsewhere: BTreeSet::new(),
         }

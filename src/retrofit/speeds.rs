@@ -13,12 +13,14 @@ use super::goals::cycle;
 use super::lower_limits::{self, Lowered};
 use super::outputs::{read_again, unchanged};
 use super::settings::{Budget, Objective, Settings};
+use super::uncertainty::{self, Side};
 use super::verify::same_order;
 use super::work::{
     RetrofitError, Source, TIME_TOLERANCE, Way, figures, nothing_to_verify, read_program,
 };
 use super::{notes, padding, segments, signals};
 use crate::dynamics::Data;
+use crate::energy::plausible::Robots;
 use crate::energy::power::power;
 use crate::energy::{Account, account};
 use crate::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
@@ -169,8 +171,15 @@ pub(super) fn retrofit(
         (&[], &[]),
         false,
     );
+    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    let uncertainty = robots.map(|robots| {
+        let own = Side { simulation: &before.simulation, account: &before.account };
+        let after = Side { simulation: &tried.simulation, account: &tried.account };
+        uncertainty::uncertainty(model, &robots, (own, padding.as_ref()), after)
+    });
     Ok(Retrofit {
         lower_limits,
+        uncertainty,
         guard_instructions: 0,
         original,
         padding,

@@ -10,11 +10,13 @@ use super::guards::Guards;
 use super::lower_limits::Lowered;
 use super::settings::{Budget, Form, Objective, Settings};
 use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, useful};
+use super::uncertainty::{self, Side};
 use super::{
     guard_cost, guided, hazards, lower_limits, notes, outputs, padding, recorded, rests, segments,
     signals, speeds, verify,
 };
 use crate::emit::{self, Names};
+use crate::energy::plausible::Robots;
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
@@ -300,6 +302,8 @@ pub fn retrofit(
     let dwells_before = dwells(model, &simulation);
     let mut restings = rests::restings(model, settings, files, &simulation, &sites, &ways);
 
+    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+
     // Each round leaves out what did not hold in the emitted text.
     let mut rounds = 0;
     let (mut checked, lower_limits) = loop {
@@ -317,6 +321,20 @@ pub fn retrofit(
                 kept,
                 restings.is_empty(),
             );
+            let weak = match &robots {
+                // Where more or less time is asked for, runs may take more energy on purpose.
+                Some(robots)
+                    if weak.is_empty()
+                        && restings.is_empty()
+                        && settings.budget == Budget::AsBefore
+                        && settings.objective == Objective::Energy =>
+                {
+                    let after = Side { simulation: &attempt.simulation, account: &attempt.account };
+                    let before = Side { simulation: &simulation, account: &before };
+                    uncertainty::uncertain_ways(model, robots, before, after, &sites, &ways)
+                }
+                _ => weak,
+            };
             let weak = if weak.is_empty() {
                 guard_cost::costly(model, settings, &simulation, kept, &emitted.guards)
             } else {
@@ -372,6 +390,11 @@ pub fn retrofit(
     let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
     let optimized = figures(&after_simulation, &after);
     let padding = padding::padding(model, &simulation, &optimized);
+    let uncertainty = robots.map(|robots| {
+        let before = Side { simulation: &simulation, account: &before };
+        let after = Side { simulation: &after_simulation, account: &after };
+        uncertainty::uncertainty(model, &robots, (before, padding.as_ref()), after)
+    });
     let original = figures(&simulation, &before).padded(padding.as_ref());
     let compared = (&original, &optimized, padding.as_ref());
     let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
@@ -389,6 +412,7 @@ pub fn retrofit(
         segments,
         notes,
         lower_limits,
+        uncertainty,
         verification,
         signals: signals::signals(&simulation, &after_simulation),
         guard_instructions: checked.0.guards.iter().map(|(_, count)| count).sum(),

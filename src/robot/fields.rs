@@ -355,6 +355,7 @@ impl Fields {
             key: key.to_owned(),
             provenance: node.stated.provenance,
             source: node.stated.source.clone(),
+            sd: node.stated.sd.clone(),
         });
     }
 

@@ -140,7 +140,7 @@ impl ArmLoad {
 
 /// The matrix of `[xx, yy, zz, xy, xz, yz]`; the last three are its entries, not
 /// their negatives.
-fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
+pub(super) fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 

@@ -24,6 +24,7 @@ mod names;
 mod ortho_parallel;
 mod plausibility;
 mod pose_acceleration;
+pub mod prior;
 mod provenance;
 mod readiness;
 mod sensors;

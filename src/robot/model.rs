@@ -5,7 +5,7 @@ use super::controller::Controller;
 use super::drive::{Brakes, Drive, Standstill};
 use super::effect::EffectParameters;
 use super::error::RobotError;
-use super::fields::Fields;
+use super::fields::{Accepts, Fields};
 use super::friction::Friction;
 use super::geometry::Geometry;
 use super::law::Law;
@@ -17,6 +17,12 @@ use super::sensors::Sensors;
 use super::tree::Node;
 use super::wrist::Wrist;
 
+/// Masses of robots \[kg\].
+const ROBOT_MASS: Accepts =
+    Accepts::Between(1.0, 20_000.0, "at least 1 and at most 20000, in kg, of the whole robot");
+/// Payloads \[kg\].
+const PAYLOAD: Accepts = Accepts::Between(0.05, 5000.0, "at least 0.05 and at most 5000, in kg");
+
 /// A robot. Every list has one entry for each joint, from the base on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
@@ -24,6 +30,10 @@ pub struct Model {
     pub name: String,
     /// The file that it was loaded from; `None` for robots of the catalogue.
     pub file: Option<String>,
+    /// The whole robot \[kg\], where its file states it.
+    pub mass: Option<f64>,
+    /// The load that it is made for \[kg\], where its file states it.
+    pub payload: Option<f64>,
     /// Number of joints, 1 to [`MAX_DOF`].
     pub dof: usize,
     /// The chain from base to flange.
@@ -76,11 +86,37 @@ impl Model {
         provenance::assumed(&self.origins)
     }
 
-    /// Whether a number is known: stated by the robot's file and not assumed there.
+    /// Whether a number is known: stated by the robot's file and neither assumed nor estimated.
     #[must_use]
     pub fn is_known(&self, table: &str, key: &str) -> bool {
         let mut origins = self.origins.iter().filter(|o| o.table == table && o.key == key);
-        origins.next().is_some_and(|origin| origin.provenance != Some(Provenance::Assumed))
+        let rough = [Some(Provenance::Assumed), Some(Provenance::Estimated)];
+        origins.next().is_some_and(|origin| !rough.contains(&origin.provenance))
+    }
+
+    /// How many numbers or lists are known in this way.
+    #[must_use]
+    pub fn count(&self, provenance: Provenance) -> usize {
+        self.origins.iter().filter(|origin| origin.provenance == Some(provenance)).count()
+    }
+
+    /// How a number is known, where its origin says so.
+    #[must_use]
+    pub fn provenance_of(&self, table: &str, key: &str) -> Option<Provenance> {
+        self.origin_of(table, key).and_then(|origin| origin.provenance)
+    }
+
+    /// The origin of a number; the key `""` stands for the first of the table.
+    #[must_use]
+    pub fn origin_of(&self, table: &str, key: &str) -> Option<&Origin> {
+        self.origins.iter().find(|o| o.table == table && o.key == key)
+    }
+
+    /// Largest torques that bound how the robot moves \[Nm\]: none that are estimated.
+    #[must_use]
+    pub fn torque_bounds(&self) -> Option<&Vec<f64>> {
+        let estimated = self.provenance_of("limits", "torque") == Some(Provenance::Estimated);
+        self.limits.torque.as_ref().filter(|_| self.has_dynamics() && !estimated)
     }
 
     /// The model of a document whose `extends` has been resolved.
@@ -90,6 +126,8 @@ impl Model {
         let name = robot.text("name")?;
         let name = robot.required("name", name)?;
         robot.text("extends")?;
+        let mass = robot.number("mass", ROBOT_MASS)?;
+        let payload = robot.number("payload", PAYLOAD)?;
 
         let joints = robot.tables("joint")?;
         if let Some(beyond) = joints.get(MAX_DOF) {
@@ -163,6 +201,8 @@ impl Model {
         Ok(Model {
             name,
             file: None,
+            mass,
+            payload,
             dof,
             kinematics,
             limits,

@@ -11,15 +11,18 @@ pub enum Provenance {
     Identified,
     /// Taken from a paper.
     Paper,
+    /// Follows from what is known of the robot, with a spread.
+    Estimated,
     /// Chosen by us because nothing is published; reports list it.
     Assumed,
 }
 
 impl Provenance {
-    pub(super) const WORDS: [(&'static str, Provenance); 4] = [
+    pub(super) const WORDS: [(&'static str, Provenance); 5] = [
         ("datasheet", Provenance::Datasheet),
         ("identified", Provenance::Identified),
         ("paper", Provenance::Paper),
+        ("estimated", Provenance::Estimated),
         ("assumed", Provenance::Assumed),
     ];
 }
@@ -30,13 +33,14 @@ impl fmt::Display for Provenance {
             Provenance::Datasheet => "datasheet",
             Provenance::Identified => "identified",
             Provenance::Paper => "paper",
+            Provenance::Estimated => "estimated",
             Provenance::Assumed => "assumed",
         })
     }
 }
 
 /// The origin of one number or list of a model.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
     /// The table it stands in, such as `limits` or `link 3`.
     pub table: String,
@@ -46,6 +50,8 @@ pub struct Origin {
     pub provenance: Option<Provenance>,
     /// Who says so; `None` where the file does not say.
     pub source: Option<String>,
+    /// Standard deviation of each number, in its unit, or one for all; `None` where nobody says.
+    pub sd: Option<Vec<f64>>,
 }
 
 /// The assumed origins as sentences, one for each run of keys that share a

@@ -35,6 +35,8 @@ impl fmt::Display for Place {
 pub(super) struct Stated {
     pub(super) provenance: Option<Provenance>,
     pub(super) source: Option<String>,
+    /// Of the value itself, not of what lies in it.
+    pub(super) sd: Option<Vec<f64>>,
 }
 
 /// A value with its place and origin.
@@ -135,12 +137,20 @@ impl Builder<'_> {
             if base.is_some_and(|base| table.contains_key(base)) && text_of(name).is_some() {
                 continue;
             }
-            let own = self.stated(
+            if name.strip_suffix("_sd").is_some_and(|base| table.contains_key(base)) {
+                continue;
+            }
+            let mut own = self.stated(
                 table,
                 &format!("{name}_source"),
                 &format!("{name}_provenance"),
                 &stated,
             )?;
+            let sd_key = format!("{name}_sd");
+            own.sd = match table.get(sd_key.as_str()) {
+                Some(sd) => Some(self.deviations(&sd_key, sd, count(value.get_ref()))?),
+                None => None,
+            };
             let node = self.node(key.span().start, value, &own, depth + 1)?;
             entries.insert(name.to_owned(), node);
         }
@@ -166,12 +176,58 @@ impl Builder<'_> {
                     place: self.place(value.span().start).to_string(),
                     key: provenance_key.to_owned(),
                     value: format!("\"{word}\""),
-                    must: "datasheet, identified, paper or assumed".into(),
+                    must: "datasheet, identified, paper, estimated or assumed".into(),
                 });
             };
             stated.provenance = Some(*provenance);
         }
         Ok(stated)
+    }
+
+    /// The standard deviations of a value of so many numbers: one, or one for each.
+    fn deviations(
+        &self,
+        key: &str,
+        value: &Spanned<DeValue<'_>>,
+        numbers: usize,
+    ) -> Result<Vec<f64>, RobotError> {
+        let place = || self.place(value.span().start).to_string();
+        let node = self.node(value.span().start, value, &Stated::default(), 0)?;
+        let items = match node.value {
+            Value::List(items) => items,
+            _ => vec![node],
+        };
+        let mut found = Vec::new();
+        for item in items {
+            match item.value {
+                Value::Number(sd) if sd >= 0.0 && sd.is_finite() => found.push(sd),
+                Value::Number(sd) => {
+                    return Err(RobotError::Value {
+                        place: place(),
+                        key: key.to_owned(),
+                        value: sd.to_string(),
+                        must: "0 or more: a standard deviation".into(),
+                    });
+                }
+                other => {
+                    return Err(RobotError::Type {
+                        place: place(),
+                        key: key.to_owned(),
+                        found: other.kind(),
+                        expected: "a number or a list of numbers".into(),
+                    });
+                }
+            }
+        }
+        if found.len() == 1 || found.len() == numbers {
+            return Ok(found);
+        }
+        Err(RobotError::Length {
+            place: place(),
+            key: key.to_owned(),
+            found: found.len(),
+            expected: format!("1, or {numbers} as the value has"),
+        })
     }
 
     fn text<'v>(&self, key: &str, value: &'v Spanned<DeValue<'_>>) -> Result<&'v str, RobotError> {
@@ -220,6 +276,15 @@ impl Builder<'_> {
             other => Value::Other(kind(other)),
         };
         Ok(Node { place, stated: stated.clone(), value })
+    }
+}
+
+/// How many numbers a value has.
+fn count(value: &DeValue<'_>) -> usize {
+    match value {
+        DeValue::Integer(_) | DeValue::Float(_) => 1,
+        DeValue::Array(items) => items.iter().map(|item| count(item.get_ref())).sum(),
+        _ => 0,
     }
 }
 

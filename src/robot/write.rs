@@ -16,6 +16,11 @@ use super::toml_text::{list, pose, quoted};
 pub fn to_toml(model: &Model) -> String {
     let mut out = Writer { origins: &model.origins, text: String::new() };
     let _ = writeln!(out.text, "name = {}", quoted(&model.name));
+    for (key, value) in [("mass", model.mass), ("payload", model.payload)] {
+        if let Some(value) = value {
+            let _ = writeln!(out.text, "{key} = {}", number(value));
+        }
+    }
     geometry(model, &mut out);
     limits(model, &mut out);
     for (i, link) in model.links.iter().enumerate() {
@@ -104,6 +109,11 @@ impl Writer<'_> {
         }
         for (key, value) in entries {
             let _ = writeln!(self.text, "{key} = {value}");
+            let own = origins.iter().find(|o| o.table == name && o.key == *key);
+            if let Some(sd) = own.and_then(|own| own.sd.as_ref()) {
+                let sd = if let [one] = sd.as_slice() { number(*one) } else { list(sd) };
+                let _ = writeln!(self.text, "{key}_sd = {sd}");
+            }
             if !shared {
                 self.origin(&format!("{key}_"), origin(key));
             }

@@ -1,0 +1,248 @@
+//! How the energy of a motion changes with the robot.
+//!
+//! Along a given motion the torque of a joint is linear in the parameters of the bodies, the rotor,
+//! friction and a spring,
+//!
+//! ```text
+//! τ = τ₀ + Y Δπ + q̈ ΔJ + q̇ Δf_v + s Δf_c + τ_spring Δk,
+//! ```
+//!
+//! so the copper loss is quadratic in them and everything else is linear: a few sums over the motion
+//! tell the energy of any robot. What a drive loses of braking is summed where the model itself
+//! brakes: where that ends the power is zero, so that a shift of the end changes little.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::parts::EnergyParts;
+use crate::dynamics::{
+    Data, Load, RIGID, Regressor, laws, link_parameters, motor_rates, regressor, sense, torque,
+};
+use crate::motion::timeline::{Event, Run, What};
+use crate::path::joint_path::Joints;
+use crate::robot::prior::Plausible;
+use crate::robot::{MAX_DOF, Model, Sharing};
+
+/// Length of an interval with two points, s: sums over a motion are then right to some thousandths.
+const STEP: f64 = 0.1;
+/// Intervals of a motion, at least and at most.
+const STEPS: (f64, f64) = (6.0, 400.0);
+/// Points of Gauss's rule on [0, 1].
+const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+/// Parameters of a joint: rotor, viscous and Coulomb friction, spring.
+const OF_JOINT: usize = 4;
+
+/// Sums over motions and rests.
+#[derive(Clone, Debug)]
+pub struct Moments {
+    joints: Vec<OfJoint>,
+    /// Time with open brakes, s.
+    open_s: f64,
+}
+
+/// Sums of one joint; the first entry is the model's own torque, then come the parameters of the
+/// links from the joint on, then those of the joint.
+#[derive(Clone, Debug)]
+struct OfJoint {
+    /// ∫ φ φᵀ dt in motion, and at rest.
+    moving: DMatrix<f64>,
+    resting: DMatrix<f64>,
+    /// ∫ φ q̇ dt.
+    work: DVector<f64>,
+    /// −∫ φ q̇ dt where the drive burns it.
+    burnt: DVector<f64>,
+}
+
+impl Moments {
+    /// Of nothing.
+    pub fn none(model: &Model) -> Moments {
+        let joint = |j: usize| {
+            let n = 1 + RIGID * (model.dof - j) + OF_JOINT;
+            OfJoint {
+                moving: DMatrix::zeros(n, n),
+                resting: DMatrix::zeros(n, n),
+                work: DVector::zeros(n),
+                burnt: DVector::zeros(n),
+            }
+        };
+        Moments { joints: (0..model.dof).map(joint).collect(), open_s: 0.0 }
+    }
+
+    /// Of an event of a simulation.
+    pub fn of(model: &Model, event: &Event) -> Moments {
+        let mut moments = Moments::none(model);
+        match &event.what {
+            What::Run(run) => moments.run(model, run),
+            What::Wait(wait) => moments.rest(model, &wait.load, &wait.q, event.duration),
+            What::Output(..) | What::Left(_) => {}
+        }
+        moments
+    }
+
+    /// Adds others.
+    pub fn add(&mut self, other: &Moments) {
+        for (sum, joint) in self.joints.iter_mut().zip(&other.joints) {
+            sum.moving += &joint.moving;
+            sum.resting += &joint.resting;
+            sum.work += &joint.work;
+            sum.burnt += &joint.burnt;
+        }
+        self.open_s += other.open_s;
+    }
+
+    /// Adds a run.
+    pub fn run(&mut self, model: &Model, run: &Run) {
+        let moving = run.duration() - run.settling;
+        if moving > 0.0 {
+            let steps = (moving / STEP).ceil().clamp(STEPS.0, STEPS.1);
+            let h = moving / steps;
+            let times = (0..steps as usize).flat_map(|i| POINTS.map(|x| h * (i as f64 + x)));
+            let states: Vec<[Joints; 3]> = times
+                .map(|t| {
+                    let state = run.at(t);
+                    [state.q, state.qd, state.qdd]
+                })
+                .collect();
+            self.sum(model, &run.load, &states, 0.5 * h);
+            self.open_s += moving;
+        }
+        self.rest(model, &run.load, &run.end, run.settling);
+    }
+
+    /// Adds standing still.
+    pub fn rest(&mut self, model: &Model, load: &Load, q: &Joints, duration: f64) {
+        if duration > 0.0 {
+            self.sum(model, load, &[[*q, [0.0; 6], [0.0; 6]]], duration);
+            self.open_s += duration;
+        }
+    }
+
+    /// Adds states that each stand for `weight` seconds.
+    fn sum(&mut self, model: &Model, load: &Load, states: &[[Joints; 3]], weight: f64) {
+        let mut data = Data::new();
+        let mut rows = Regressor::new();
+        let mut features: Vec<DMatrix<f64>> = self
+            .joints
+            .iter()
+            .map(|joint| DMatrix::zeros(states.len(), joint.work.len()))
+            .collect();
+        let mut rates = vec![[0.0; MAX_DOF]; states.len()];
+        let mut burns = vec![[false; MAX_DOF]; states.len()];
+        let resting = states.iter().all(|[_, qd, qdd]| qd.iter().chain(qdd).all(|x| *x == 0.0));
+        for (k, [q, qd, qdd]) in states.iter().enumerate() {
+            let all = torque(model, &mut data, load, q, qd, qdd);
+            regressor(model, &mut rows, q, qd, qdd);
+            let senses = motor_rates(model, qd).map(sense);
+            let [springs, _] = laws(model, f64::INFINITY, [q, qd], &all.rigid, &senses);
+            let mut power = 0.0;
+            for j in 0..model.dof {
+                let tau = all.rigid[j] + all.friction[j];
+                power += tau * qd[j];
+                rates[k][j] = qd[j];
+                burns[k][j] = tau * qd[j] < 0.0;
+                let mut row = features[j].row_mut(k);
+                row[0] = tau;
+                for link in j..model.dof {
+                    for (p, x) in rows.rows[j][link].iter().enumerate() {
+                        row[1 + RIGID * (link - j) + p] = *x;
+                    }
+                }
+                let own = 1 + RIGID * (model.dof - j);
+                for (p, x) in [qdd[j], qd[j], sense(qd[j]), springs[j]].into_iter().enumerate() {
+                    row[own + p] = x;
+                }
+            }
+            if model.drive.sharing == Sharing::Bus {
+                burns[k] = [power < 0.0; MAX_DOF];
+            }
+        }
+        for (j, (joint, phi)) in self.joints.iter_mut().zip(&features).enumerate() {
+            let gram = if resting { &mut joint.resting } else { &mut joint.moving };
+            gram.gemm_tr(weight, phi, phi, 1.0);
+            let qd = DVector::from_iterator(states.len(), rates.iter().map(|rate| rate[j]));
+            joint.work.gemv_tr(weight, phi, &qd, 1.0);
+            let burnt = burns.iter().zip(&rates);
+            let burnt = burnt.map(|(burns, rate)| if burns[j] { -rate[j] } else { 0.0 });
+            let burnt = DVector::from_iterator(states.len(), burnt);
+            joint.burnt.gemv_tr(weight, phi, &burnt, 1.0);
+        }
+    }
+
+    /// How much more energy a robot takes than the model.
+    pub fn change(&self, model: &Model, change: &Change) -> EnergyParts {
+        let mut parts = EnergyParts {
+            idle_j: change.base_w * self.open_s,
+            brake_j: change.coils_w * self.open_s,
+            ..EnergyParts::default()
+        };
+        let left = 1.0 - model.drive.regeneration;
+        for (joint, of) in self.joints.iter().zip(&change.joints) {
+            let quadratic = |gram: &DMatrix<f64>| {
+                of.loss * (gram * &of.values).dot(&of.values) - of.model_loss * gram[(0, 0)]
+            };
+            parts.copper_j += quadratic(&joint.moving);
+            parts.idle_j += quadratic(&joint.resting);
+            let own = of.values.len() - OF_JOINT;
+            let linear = |sums: &DVector<f64>, range: std::ops::Range<usize>| -> f64 {
+                range.map(|i| sums[i] * of.values[i]).sum()
+            };
+            parts.friction_j += linear(&joint.work, own + 1..own + 3);
+            parts.mechanical_j += linear(&joint.work, 1..own + 1);
+            parts.mechanical_j += linear(&joint.work, own + 3..own + 4);
+            parts.drive_j += left * linear(&joint.burnt, 1..of.values.len());
+        }
+        parts
+    }
+}
+
+/// What differs from the model in a robot, as sums take it.
+#[derive(Clone, Debug)]
+pub struct Change {
+    joints: Vec<ChangeOfJoint>,
+    base_w: f64,
+    coils_w: f64,
+}
+
+#[derive(Clone, Debug)]
+struct ChangeOfJoint {
+    values: DVector<f64>,
+    loss: f64,
+    model_loss: f64,
+}
+
+impl Change {
+    /// Of a plausible robot.
+    pub fn of(model: &Model, robot: &Plausible) -> Change {
+        let own = Plausible::of(model);
+        let bodies: Vec<[f64; RIGID]> = robot
+            .links
+            .iter()
+            .zip(&own.links)
+            .map(|(new, old)| {
+                let (new, old) = (link_parameters(new), link_parameters(old));
+                std::array::from_fn(|p| new[p] - old[p])
+            })
+            .collect();
+        let joint = |j: usize| {
+            let of_joint = [
+                robot.rotors[j] - own.rotors[j],
+                robot.viscous[j] - own.viscous[j],
+                robot.coulomb[j] - own.coulomb[j],
+                robot.spring - own.spring,
+            ];
+            let values = std::iter::once(1.0)
+                .chain(bodies[j..].iter().flatten().copied())
+                .chain(of_joint)
+                .collect::<Vec<f64>>();
+            ChangeOfJoint {
+                values: DVector::from_vec(values),
+                loss: robot.loss[j],
+                model_loss: own.loss[j],
+            }
+        };
+        Change {
+            joints: (0..model.dof).map(joint).collect(),
+            base_w: robot.base_w - own.base_w,
+            coils_w: robot.coils_w - own.coils_w,
+        }
+    }
+}

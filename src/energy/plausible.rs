@@ -1,0 +1,172 @@
+//! The energy of a simulation over plausible robots.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::account::Account;
+use super::moments::{Change, Moments};
+use super::parts::EnergyParts;
+use crate::motion::Simulation;
+use crate::robot::Model;
+use crate::robot::prior::{Draws, Spread};
+
+/// Robots that are drawn.
+pub const DRAWS: usize = 512;
+/// Share of them in an interval.
+const WITHIN: f64 = 0.9;
+/// Groups that a report lists, at most.
+const LISTED: usize = 5;
+/// Share of the variance below which a group is not listed.
+const LEAST: f64 = 0.02;
+
+/// A number over plausible robots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Half of the robots lie below.
+    pub median: f64,
+    /// 90 % of them lie between these.
+    pub low: f64,
+    /// As before.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Of the values of all draws.
+    pub fn of(values: &[f64]) -> Interval {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let place = share * (sorted.len().max(1) - 1) as f64;
+            let (i, rest) = (place.floor() as usize, place.fract());
+            let value = |i: usize| sorted.get(i).copied().unwrap_or(0.0);
+            value(i) + rest * (value((i + 1).min(sorted.len().max(1) - 1)) - value(i))
+        };
+        let tail = 0.5 * (1.0 - WITHIN);
+        Interval { median: at(0.5), low: at(tail), high: at(1.0 - tail) }
+    }
+}
+
+/// Something that is not known of the robot, with its share of the variance of a result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contribution {
+    /// What it is.
+    pub group: String,
+    /// Share of the variance.
+    pub share: f64,
+    /// What would tell.
+    pub narrowed_by: &'static str,
+}
+
+/// Robots as plausible as a model, ready for sums.
+pub struct Robots {
+    spread: Spread,
+    draws: Draws,
+    changes: Vec<Change>,
+}
+
+impl Robots {
+    /// Of a model; `None` where it is known, or has no dynamics.
+    pub fn of(model: &Model) -> Option<Robots> {
+        if !model.has_dynamics() {
+            return None;
+        }
+        let spread = Spread::of(model);
+        if spread.latents.is_empty() {
+            return None;
+        }
+        let draws = spread.draws(model, DRAWS);
+        let changes = draws.robots.par_iter().map(|robot| Change::of(model, robot)).collect();
+        Some(Robots { spread, draws, changes })
+    }
+
+    /// What each of the robots takes more than the model, J.
+    pub fn changes(&self, model: &Model, moments: &Moments) -> Vec<EnergyParts> {
+        self.changes.par_iter().map(|change| moments.change(model, change)).collect()
+    }
+
+    /// What the variance of a result comes from, the largest first.
+    pub fn contributions(&self, values: &[f64]) -> Vec<Contribution> {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+        let mut groups: BTreeMap<&str, f64> = BTreeMap::new();
+        for (latent, z) in self.spread.latents.iter().zip(&self.draws.latents) {
+            // The latent numbers are independent, of mean 0 and variance 1.
+            let slope = z.iter().zip(values).map(|(z, x)| z * (x - mean)).sum::<f64>() / count;
+            *groups.entry(&latent.group).or_default() += slope * slope / variance;
+        }
+        // By chance, too, a group explains something.
+        let chance = 1.0 / count;
+        let mut parts: Vec<Contribution> = groups
+            .into_iter()
+            .map(|(group, share)| Contribution {
+                group: group.to_owned(),
+                share: (share - chance).max(0.0),
+                narrowed_by: narrowed_by(group),
+            })
+            .filter(|part| part.share >= LEAST)
+            .collect();
+        parts.sort_by(|a, b| b.share.total_cmp(&a.share));
+        parts.truncate(LISTED);
+        parts
+    }
+}
+
+/// The measurement that would tell most of a group.
+fn narrowed_by(group: &str) -> &'static str {
+    match group {
+        "base power" | "brake coils" => "the cabinet's power at standstill, brakes closed and open",
+        "release of the brakes" => "the cabinet's power while brakes open",
+        "total mass" => "the robot's data sheet: mass in its file",
+        _ if group.starts_with("masses") || group.starts_with("balancer") => {
+            "currents of an excitation (joulepath excite, identify)"
+        }
+        _ => {
+            "the cabinet's power in the running program (joulepath calibrate), or joulepath identify"
+        }
+    }
+}
+
+/// Energies of a simulation over plausible robots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plausibility {
+    /// All energy, J.
+    pub energy_j: Interval,
+    /// That of motions, J.
+    pub motion_energy_j: Interval,
+    /// What the variance of all energy comes from.
+    pub contributions: Vec<Contribution>,
+}
+
+/// The sums of a whole simulation.
+pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
+    let sum = |mut a: Moments, b: Moments| {
+        a.add(&b);
+        a
+    };
+    simulation
+        .events
+        .par_iter()
+        .fold(|| Moments::none(model), |all, event| sum(all, Moments::of(model, event)))
+        .reduce(|| Moments::none(model), sum)
+}
+
+/// How far the energies of a simulation are known.
+pub fn plausibility(
+    model: &Model,
+    simulation: &Simulation,
+    account: &Account,
+) -> Option<Plausibility> {
+    let robots = Robots::of(model)?;
+    let changes = robots.changes(model, &moments(model, simulation));
+    let of = |part: &dyn Fn(&EnergyParts) -> f64| -> Vec<f64> {
+        changes.iter().map(|change| part(&account.total) + part(change)).collect()
+    };
+    let energy = of(&EnergyParts::energy_j);
+    Some(Plausibility {
+        energy_j: Interval::of(&energy),
+        motion_energy_j: Interval::of(&of(&EnergyParts::motion_energy_j)),
+        contributions: robots.contributions(&energy),
+    })
+}

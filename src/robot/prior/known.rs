@@ -1,0 +1,159 @@
+//! What is known of a robot's body: the table of ABB's robots, and what its file states.
+
+use nalgebra::{Matrix3, Vector3};
+
+use serde::Deserialize;
+
+use super::rules::{self, Size};
+use crate::robot::link::symmetric;
+use crate::robot::model::Model;
+
+/// The tables, with sources.
+const ROBOTS: &str = include_str!("robots.toml");
+
+/// Share of the total mass by which it may be wrong (standard deviation of the logarithm), by how it
+/// is known. A data sheet states whole kilograms.
+const MASS_SD: [(&str, f64); 4] =
+    [("maker", 0.01), ("second hand", 0.02), ("memory", 0.05), ("guess", 0.08)];
+
+/// What is known of a robot's body.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    /// The whole robot \[kg\], with the standard deviation of its logarithm and who says so.
+    pub(super) mass: Option<(f64, f64, String)>,
+    /// kg.
+    pub(super) payload: Option<f64>,
+    /// m.
+    pub(super) reach: Option<f64>,
+    /// The part that does not move \[kg\].
+    pub(super) foot: Option<f64>,
+    /// Links by their share of the mass that moves; empty where there are no meshes.
+    pub(super) links: Vec<Shape>,
+    /// Whether the meshes are those of another variant.
+    pub(super) sister: bool,
+    /// Whether a spring or a gas cylinder carries a part of the gravity torque of axis 2.
+    pub(super) balanced: bool,
+    /// rad/s.
+    pub(super) velocity: Option<(Vec<f64>, String)>,
+}
+
+/// A link without its mass, in its joint's frame.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    /// Share of the mass that moves.
+    pub(super) share: f64,
+    /// m.
+    pub(super) com: Vector3<f64>,
+    /// Moments about the centre of mass over the mass \[m²\].
+    pub(super) gyration: Matrix3<f64>,
+}
+
+impl Known {
+    /// Of a robot.
+    pub(super) fn of(model: &Model) -> Known {
+        let mut known = table(&model.name).map_or_else(Known::nothing, |text| Known::read(&text));
+        if let Some(mass) = model.mass {
+            let origin = model.origin_of("", "mass");
+            let sd = origin.and_then(|origin| origin.sd.as_ref()).map_or(0.01, |sd| sd[0] / mass);
+            let source = origin.and_then(|origin| origin.source.clone());
+            known.mass = Some((mass, sd, source.unwrap_or_else(|| "the robot's file".into())));
+        }
+        known.payload = model.payload.or(known.payload);
+        known
+    }
+
+    fn nothing() -> Known {
+        Known {
+            mass: None,
+            payload: None,
+            reach: None,
+            foot: None,
+            links: Vec::new(),
+            sister: false,
+            balanced: false,
+            velocity: None,
+        }
+    }
+
+    fn read(text: &str) -> Known {
+        let Ok(table) = toml::from_str::<Table>(text) else { return Known::nothing() };
+        let sd = MASS_SD.iter().find(|(word, _)| *word == table.mass_trust);
+        let shape = |[share, x, y, z, moments @ ..]: [f64; 10]| Shape {
+            share,
+            com: Vector3::new(x, y, z),
+            gyration: symmetric(moments),
+        };
+        Known {
+            mass: sd.map(|(_, sd)| (table.mass, *sd, table.mass_source)),
+            payload: Some(table.payload),
+            reach: Some(table.reach),
+            foot: Some(table.foot),
+            links: table.links.into_iter().map(shape).collect(),
+            sister: table.sister,
+            balanced: table.balanced,
+            velocity: table.velocity.map(|velocity| (velocity, table.velocity_source)),
+        }
+    }
+}
+
+impl Known {
+    /// The size of the robot: what is not known follows from the rest.
+    pub(super) fn size(&self, model: &Model) -> Size {
+        let reach = self.reach.unwrap_or_else(|| reach(model));
+        let payload = self.payload;
+        let mass = self.mass.as_ref().map(|(mass, ..)| *mass);
+        let payload = payload.unwrap_or_else(|| rules::payload(mass, reach));
+        Size { mass: mass.unwrap_or_else(|| rules::mass(reach, payload)), reach, payload }
+    }
+}
+
+/// From axis 1 to the wrist's centre of the stretched arm \[m\].
+fn reach(model: &Model) -> f64 {
+    let joints = &model.kinematics.joints;
+    let foot = joints.get(1).map_or(0.0, |joint| joint.translation.xy().norm());
+    let wrist = joints.len() - 1;
+    let arm: f64 = joints[2..wrist].iter().map(|joint| joint.translation.norm()).sum();
+    foot + arm
+}
+
+/// A table as it is written.
+#[derive(Deserialize)]
+struct Table {
+    mass: f64,
+    mass_trust: String,
+    mass_source: String,
+    payload: f64,
+    reach: f64,
+    foot: f64,
+    #[serde(default)]
+    sister: bool,
+    #[serde(default)]
+    balanced: bool,
+    velocity: Option<Vec<f64>>,
+    #[serde(default)]
+    velocity_source: String,
+    links: Vec<[f64; 10]>,
+}
+
+/// The text of a robot's table, without its head.
+fn table(name: &str) -> Option<String> {
+    let (_, rest) = ROBOTS.split_once(&format!("\n[\"{name}\"]\n"))?;
+    let end = rest.find("\n[\"").unwrap_or(rest.len());
+    Some(rest[..end].to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{find, names};
+
+    #[test]
+    fn arms_of_the_catalogue_have_their_table() {
+        for name in names().filter(|name| !name.starts_with("IRB14000")) {
+            let known = Known::of(&find(name).unwrap());
+            assert!(known.mass.is_some() && known.payload.is_some(), "{name}");
+            let shares: f64 = known.links.iter().map(|link| link.share).sum();
+            assert!((shares - 1.0).abs() < 1e-3, "{name}: {shares}");
+        }
+    }
+}
