@@ -18,6 +18,7 @@ const ENERGY: f64 = 1e-6;
 fn optimize(input: &Path, out: &Path) -> Value {
     let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
         .args(["optimize", input.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
+        .arg("--point-estimate")
         .args(["--format", "json", "--quiet", "--out", out.to_str().unwrap()])
         .output()
         .unwrap();

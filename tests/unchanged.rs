@@ -111,6 +111,9 @@ impl Case {
     }
 }
 
+/// What stands behind the ELSE of a guard.
+const REMARK: &str = " ! after an edit of these lines: joulepath refresh";
+
 /// Takes the guards out of an output; what is left has to be the original.
 fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> Result<(), String> {
     let end_of_line = match original.iter().position(|b| *b == b'\n') {
@@ -133,7 +136,7 @@ fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> 
         rest = rest
             .strip_prefix(&original[from..span.start])
             .ok_or(format!("bytes before line {place} differ"))?;
-        let otherwise = format!("{end_of_line}{indent}ELSE{end_of_line}{indent}");
+        let otherwise = format!("{end_of_line}{indent}ELSE{REMARK}{end_of_line}{indent}");
         let head = find_bytes(rest, otherwise.as_bytes())
             .ok_or(format!("no guard before line {place}"))?;
         guard_is_plain(&rest[..head], &format!("{end_of_line}{indent}"))
@@ -229,7 +232,7 @@ fn changed_bytes_are_found() {
     let original = b"! a\n  MoveJ p,v,fine,t;\n! b\n";
     let start = find_bytes(original, b"MoveJ").unwrap();
     let span = start..start + "MoveJ p,v,fine,t;".len();
-    let good = "! a\n  IF jpFits1(p,t) THEN\n      jpRun1 t;\n  ELSE\n  MoveJ p,v,fine,t;\n  \
+    let good = "! a\n  IF jpFits1(p,t) THEN\n      jpRun1 t;\n  ELSE ! after an edit of these lines: joulepath refresh\n  MoveJ p,v,fine,t;\n  \
                 ENDIF\n! b\n";
     let check =
         |output: &str| only_guards_added(original, output.as_bytes(), std::slice::from_ref(&span));

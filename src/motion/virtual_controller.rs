@@ -1,26 +1,26 @@
 //! The virtual controller: executes a program and lays its movements on a time line.
 
+mod draft;
 mod load;
 mod replay;
 mod time_limit;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use nalgebra::Isometry3;
 use rayon::prelude::*;
 
+use draft::{Draft, RunDraft, WaitDraft};
 use load::{effective_load, gripped, gripping};
 pub use replay::{Step, replay};
 
 use super::controller::assumed;
-use super::run_plan::{Planned, plan_run};
-use super::sampling::Loaded;
+use super::run_plan::Planned;
 use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord, What};
 use crate::dynamics::Load;
 use crate::ir::exec::{Machine, Note, Waited, execute};
 use crate::ir::instructions::MoveForm;
-use crate::ir::movement::{Movement, Output, Settings, Stop, Target, Tool, Unresolved, Wait};
+use crate::ir::movement::{Movement, Output, Stop, Target, Tool, Unresolved, Wait};
 use crate::ir::program::{Program, RoutineId};
 use crate::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::path::joint_path::{DOF, Joints};
@@ -120,46 +120,6 @@ struct VirtualController<'a> {
     asked: BTreeSet<String>,
     /// Movements that were told.
     moves: usize,
-}
-
-/// A run to a stop that is not planned yet.
-struct RunDraft {
-    movements: Vec<Movement>,
-    legs: Vec<Leg>,
-    /// `\T` of the movements under the overrides, s.
-    times: Vec<Option<f64>>,
-    load: Load,
-    /// In force at its first movement.
-    settings: Arc<Settings>,
-}
-
-/// A wait at joints q (rad) that is not on the time line yet.
-struct WaitDraft {
-    wait: Wait,
-    q: Joints,
-    load: Load,
-}
-
-/// What becomes an event once the time is known.
-enum Draft {
-    Run(Box<RunDraft>),
-    Wait(Box<WaitDraft>),
-    Output(Output, usize),
-    Left(Unresolved),
-}
-
-impl RunDraft {
-    /// The first movements of it alone: the robot stops behind them.
-    fn truncate(&mut self, count: usize) {
-        self.movements.truncate(count);
-        self.legs.truncate(count);
-        self.times.truncate(count);
-    }
-
-    fn plan(&self, model: &Model) -> Planned {
-        let loaded = Loaded { model, load: &self.load };
-        plan_run(loaded, &self.legs, &self.movements, &self.times, &self.settings)
-    }
 }
 
 /// Drafts that are planned together: they share the processors, and an endless program does not

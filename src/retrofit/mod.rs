@@ -21,6 +21,7 @@ mod segments;
 mod settings;
 mod sharing;
 mod signals;
+mod speed_arguments;
 mod speeds;
 mod uncertainty;
 mod verify;
