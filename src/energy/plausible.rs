@@ -123,7 +123,7 @@ fn narrowed_by(group: &str) -> &'static str {
             "currents of an excitation (joulepath excite, identify)"
         }
         _ => {
-            "the cabinet's power in the running program (joulepath calibrate), or joulepath identify"
+            "the cabinet's power in the running program, or currents of an excitation (joulepath identify)"
         }
     }
 }

@@ -131,7 +131,7 @@ pub fn notes(model: &Model, places: Places<'_>, simulation: &Simulation) -> Vec<
     if estimated > 0 {
         notes.push(format!(
             "estimated: {estimated} figures of {} follow from its size: every energy has an interval, \
-             and identify or calibrate narrow it",
+             and joulepath identify narrows it",
             model.name
         ));
     }

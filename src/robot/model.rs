@@ -83,7 +83,13 @@ impl Model {
     /// The assumed numbers, each with its source, as a report lists them.
     #[must_use]
     pub fn assumed(&self) -> Vec<String> {
-        provenance::assumed(&self.origins)
+        provenance::sentences(&self.origins, Provenance::Assumed)
+    }
+
+    /// The estimated numbers in the same way.
+    #[must_use]
+    pub fn estimated(&self) -> Vec<String> {
+        provenance::sentences(&self.origins, Provenance::Estimated)
     }
 
     /// Whether a number is known: stated by the robot's file and neither assumed nor estimated.

@@ -54,30 +54,30 @@ pub struct Origin {
     pub sd: Option<Vec<f64>>,
 }
 
-/// The assumed origins as sentences, one for each run of keys that share a
+/// The origins of a provenance as sentences, one for each run of keys that share a
 /// table and a source.
-pub(super) fn assumed(origins: &[Origin]) -> Vec<String> {
+pub(super) fn sentences(origins: &[Origin], provenance: Provenance) -> Vec<String> {
     let mut sentences: Vec<String> = Vec::new();
     let mut last: Option<(&Origin, String)> = None;
-    for origin in origins.iter().filter(|o| o.provenance == Some(Provenance::Assumed)) {
+    for origin in origins.iter().filter(|o| o.provenance == Some(provenance)) {
         match &mut last {
             Some((head, keys)) if head.table == origin.table && head.source == origin.source => {
                 keys.push_str(", ");
                 keys.push_str(&origin.key);
             }
             _ => {
-                sentences.extend(last.take().map(|(head, keys)| sentence(head, &keys)));
+                sentences.extend(last.take().map(|(head, keys)| sentence(head, &keys, provenance)));
                 last = Some((origin, origin.key.clone()));
             }
         }
     }
-    sentences.extend(last.map(|(head, keys)| sentence(head, &keys)));
+    sentences.extend(last.map(|(head, keys)| sentence(head, &keys, provenance)));
     sentences
 }
 
-fn sentence(head: &Origin, keys: &str) -> String {
+fn sentence(head: &Origin, keys: &str, provenance: Provenance) -> String {
     match &head.source {
-        Some(source) => format!("{}.{keys} (assumed): {source}", head.table),
-        None => format!("{}.{keys} (assumed)", head.table),
+        Some(source) => format!("{}.{keys} ({provenance}): {source}", head.table),
+        None => format!("{}.{keys} ({provenance})", head.table),
     }
 }

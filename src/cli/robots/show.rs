@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 
 use crate::cli::common::Format;
 use crate::effects;
-use crate::robot::Model;
+use crate::robot::{Model, Provenance};
 
 /// Shows one robot.
 pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
-    let model = effects::load(robot)?;
+    let model = effects::load_estimated(robot)?;
     let mut out = std::io::stdout().lock();
     match format {
         Format::Text => write!(out, "{}", text(&model))?,
@@ -50,12 +50,20 @@ fn text(model: &Model) -> String {
         let figures = list.as_ref().map_or_else(|| "not known".into(), |list| degrees(list));
         let _ = writeln!(text, "{what}: {figures}");
     }
-    let dynamics = if model.has_dynamics() { "yes" } else { "no: energies can't be computed" };
+    let estimated = model.provenance_of("link 1", "mass") == Some(Provenance::Estimated);
+    let dynamics = if estimated {
+        "estimated"
+    } else if model.has_dynamics() {
+        "yes"
+    } else {
+        "no: energies can't be computed"
+    };
     let _ = writeln!(text, "dynamics: {dynamics}");
-    let assumed = model.assumed();
-    if !assumed.is_empty() {
-        let _ = writeln!(text, "\nassumed:");
-        for line in assumed {
+    for (title, lines) in [("estimated", model.estimated()), ("assumed", model.assumed())] {
+        if !lines.is_empty() {
+            let _ = writeln!(text, "\n{title}:");
+        }
+        for line in lines {
             let _ = writeln!(text, "  {line}");
         }
     }
@@ -72,6 +80,7 @@ fn document(model: &Model) -> Value {
                 "key": origin.key,
                 "provenance": origin.provenance.map(|p| p.to_string()),
                 "source": origin.source,
+                "sd": origin.sd,
             })
         })
         .collect();
@@ -85,6 +94,7 @@ fn document(model: &Model) -> Value {
         "torque_nm": limits.torque,
         "tcp_speed_m_s": limits.tcp_speed,
         "dynamics": model.has_dynamics(),
+        "estimated": model.estimated(),
         "assumed": model.assumed(),
         "origins": origins,
     })

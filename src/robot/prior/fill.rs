@@ -126,8 +126,9 @@ impl Filling {
         if let Some((velocity, source)) = &known.velocity {
             self.model.limits.velocity = Some(velocity.clone());
             self.note("limits", "velocity", source, None);
-            let noted = self.model.origins.last_mut();
-            noted.into_iter().for_each(|origin| origin.provenance = Some(Provenance::Datasheet));
+            if let Some(origin) = self.model.origins.last_mut() {
+                origin.provenance = Some(Provenance::Datasheet);
+            }
             return;
         }
         let dof = self.model.dof;

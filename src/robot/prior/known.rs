@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn arms_of_the_catalogue_have_their_table() {
         for name in names().filter(|name| !name.starts_with("IRB14000")) {
-            let known = Known::of(&find(name).unwrap());
+            let known = Known::of(&find(name).expect("in the catalogue"));
             assert!(known.mass.is_some() && known.payload.is_some(), "{name}");
             let shares: f64 = known.links.iter().map(|link| link.share).sum();
             assert!((shares - 1.0).abs() < 1e-3, "{name}: {shares}");

@@ -1,6 +1,6 @@
 //! How numbers of an arm go with its size: total mass M (kg), reach R (m), payload p (kg).
 //!
-//! Torques: from the limits of 38 robots of KUKA (kroshu/kuka_robot_descriptions@7766e92a), deviations
+//! Torques: from the limits of 38 robots of KUKA (`kroshu/kuka_robot_descriptions`@7766e92a), deviations
 //! by leaving one out. Friction: levels that eleven ABB configurations state, the friction identified
 //! by Paes et al. 2014 and Obal & Gierlak 2025, over those torques. Motors: ABB's 9C series
 //! (3AUA0000030840 REV C). Standard deviations are of the logarithm.
