@@ -12,7 +12,7 @@ use crate::robot::Model;
 use crate::robot::prior::{Draws, Spread};
 
 /// Robots that are drawn.
-pub const DRAWS: usize = 512;
+pub const DRAWS: usize = 256;
 /// Share of them in an interval.
 const WITHIN: f64 = 0.9;
 /// Groups that a report lists, at most.

@@ -196,7 +196,7 @@ impl Filling {
     fn power(&mut self, size: Size) {
         let base = self.one(
             ("drive", "base_w"),
-            "powers at standstill that ABB publishes of six robots, over their mass",
+            "powers at standstill that are known of three robots, over their mass",
             size.standby(),
         );
         if let Some(base_w) = base {
