@@ -371,15 +371,39 @@ fn a_takt_above_the_cycle_is_possible() {
     json(&[&args[..], &ROBOT].concat());
 }
 
-/// `ModPos` changes the text of a movement whose target stands in it.
+/// `ModPos` changes the text of a movement whose target stands in it: no guard sees that.
 #[test]
-fn targets_in_the_movement_are_told() {
+fn movements_with_the_target_in_them_stay() {
     let own = "MoveAbsJ [[30,0,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tP;";
-    for (statement, is_told) in [(own, true), ("MoveAbsJ jB,v1000,fine,tP;", false)] {
-        let (said, code) = said_of("", statement, &[]);
+    let named = "MoveAbsJ jB,v1000,fine,tP;";
+    for (statement, args, stays) in
+        [(own, &[][..], true), (own, &["--inline-targets"], false), (named, &[], false)]
+    {
+        let (said, code) = said_of("", statement, args);
         assert_eq!(code, Some(0), "{said}");
-        assert_eq!(said.contains("ModPos there has no effect"), is_told, "{said}");
+        assert_eq!(said.contains("inline-target: "), stays, "{said}");
     }
+}
+
+/// An edit of a literal by search and replace changes the guard, too.
+#[test]
+fn guards_repeat_the_literals_of_their_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "MoveAbsJ jB,v1000,fine,tP;")).unwrap();
+    let out = folder.path().join("out");
+    let (text, code) =
+        said(folder.path(), &["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{text}");
+    let file = out.join("m.mod");
+    let time = || {
+        let args = ["simulate", out.to_str().unwrap(), "--format", "json", "--quiet"];
+        number(&json(&[&args[..], &ROBOT].concat()), "/cycle_s")
+    };
+    let before = time();
+    let slower = fs::read_to_string(&file).unwrap().replace("v1000", "v50");
+    fs::write(&file, slower).unwrap();
+    assert!(time() > 2.0 * before);
 }
 
 /// Strings of RAPID have quotes and backslashes twice.

@@ -106,6 +106,11 @@ pub struct OptimizeArgs {
     #[arg(long)]
     allow_faster_joints: bool,
 
+    /// Rewrite movements whose target stands in the movement itself: nobody may change such a target
+    /// by `ModPos` afterwards, because no guard sees it.
+    #[arg(long)]
+    inline_targets: bool,
+
     /// Let joint movements leave their path, and lines and arcs whose statement has the comment
     /// `! joulepath: free` on its line.
     #[arg(long)]
@@ -331,6 +336,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
             keep_out: job.config.keep_out.iter().map(obstacle).collect::<Result<_, _>>()?,
         },
+        inline_targets: args.inline_targets,
         form: match args.emit {
             EmitArg::Absj => Form::Streams,
             EmitArg::Retime => Form::Speeds,

@@ -21,9 +21,9 @@ const LINE: usize = 90;
 const LABEL: usize = 20;
 /// Longest name of a place in a message, characters.
 const PLACE: usize = 30;
-/// Instructions of a guard that always run: its call and the settings (17), the robot (7), where it
+/// Instructions of a guard that always run: its call and the settings (21), the robot (7), where it
 /// stands, and the count of what runs then (7).
-const COMMON: usize = 31;
+const COMMON: usize = 35;
 /// Instructions for a way that is looked at.
 const EACH: usize = 5;
 /// Instructions for an argument that is compared but for rounding.

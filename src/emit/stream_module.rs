@@ -165,7 +165,11 @@ fn stream_text(
     let prefix = &emission.names.prefix;
     let index = format!("{number_of_site}_{way}");
     let made = site.parameters.iter().zip(&stream.values).map(|(parameter, value)| {
-        super::literal::literal(value).ok_or_else(|| EmitError::Value(parameter.label.clone()))
+        let text = match &parameter.text {
+            Some(text) if parameter.is_literal => Some(text.clone()),
+            _ => super::literal::literal(value),
+        };
+        text.ok_or_else(|| EmitError::Value(parameter.label.clone()))
     });
     let count = stream.points.len();
     let last = count.saturating_sub(1);

@@ -133,6 +133,10 @@ pub struct Settings {
     pub path_acceleration: [f64; 2],
     /// `WorldAccLim`: largest acceleration of the TCP, m/s².
     pub world_acceleration: f64,
+    /// `PathResol`, 1 = 100 %: how densely a path is interpolated; none where it is not known.
+    pub path_resolution: Option<f64>,
+    /// `CirPathMode`: how arcs turn the tool, as the controller numbers it.
+    pub circle_mode: u8,
     /// `ConfJ`.
     pub conf_joint: bool,
     /// `ConfL`.
@@ -169,6 +173,8 @@ impl Default for Settings {
             refresh: 1.0,
             path_acceleration: [f64::INFINITY; 2],
             world_acceleration: f64::INFINITY,
+            path_resolution: Some(1.0),
+            circle_mode: 0,
             conf_joint: true,
             conf_linear: true,
             displacement: None,

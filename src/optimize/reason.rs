@@ -9,6 +9,8 @@ pub enum Reason {
     UnknownStart(String),
     /// A target or other argument that may be another one at the next run.
     NotConstant(String),
+    /// Its target stands in the movement itself, where `ModPos` changes the text.
+    InlineTarget,
     /// Something on which it depends may change while it runs.
     Meanwhile(String),
     /// It could not be worked out.
@@ -84,6 +86,7 @@ impl Reason {
             Reason::FirstMovement => "first-movement",
             Reason::UnknownStart(_) => "unknown-start",
             Reason::NotConstant(_) => "not-constant",
+            Reason::InlineTarget => "inline-target",
             Reason::Meanwhile(_) => "meanwhile",
             Reason::Unresolved(_) => "unresolved",
             Reason::NotReached => "not-reached",
@@ -151,6 +154,10 @@ impl std::fmt::Display for Reason {
             }
             Reason::UnknownStart(why) => write!(f, "where it starts is not known ({why})"),
             Reason::NotConstant(what) | Reason::Meanwhile(what) => f.write_str(what),
+            Reason::InlineTarget => f.write_str(
+                "its target stands in the movement itself, where no guard sees that ModPos changes \
+                 it: give the target a name, or allow it with --inline-targets",
+            ),
             Reason::Unresolved(why)
             | Reason::Path(why)
             | Reason::Handler(why)

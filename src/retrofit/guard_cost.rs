@@ -11,7 +11,7 @@ use crate::robot::Model;
 use crate::text::Span;
 
 /// Share of the cycle that all guards may take.
-const MOST: f64 = 0.01;
+const MOST: f64 = 0.005;
 
 /// The ways of sites whose guards take more than their streams save, and of those that save least
 /// for their time where all guards take too much of the cycle. `guards`: places and instructions in

@@ -4,9 +4,10 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::settings::{Form, Settings};
 use super::work::Source;
 use crate::emit::Parameter;
-use crate::ir::hir::{ArgKind, Block, Callee, DataKind, Expr, ExprKind, Scope, StmtKind};
+use crate::ir::hir::{ArgKind, Block, Callee, DataKind, Expr, ExprKind, Scope, StmtKind, UnaryOp};
 use crate::ir::instructions::is_movement;
 use crate::ir::movement::Argument;
 use crate::ir::program::{DataId, Program, RoutineId};
@@ -24,18 +25,21 @@ pub(super) struct Guards<'p> {
     arguments: BTreeMap<Span, (RoutineId, &'p Expr)>,
     /// Data that interrupt routines or other tasks may write at any moment.
     meanwhile: BTreeSet<DataId>,
+    /// Whether targets may be rewritten that stand in the movement itself.
+    inline_targets: bool,
     known: RefCell<BTreeMap<Span, Reads>>,
 }
 
 impl<'p> Guards<'p> {
-    /// `by_interrupts`: data that interrupt routines may write; `elsewhere`: lower-case names of
-    /// `PERS` data that other tasks may write.
+    /// `by_interrupts`: data that interrupt routines may write.
     pub(super) fn new(
         program: &'p Program,
         files: &'p [Source],
         by_interrupts: BTreeSet<DataId>,
-        elsewhere: &BTreeSet<String>,
+        settings: &Settings,
     ) -> Guards<'p> {
+        let elsewhere = &settings.written_elsewhere;
+        let inline_targets = settings.inline_targets || settings.form == Form::Speeds;
         let mut arguments = BTreeMap::new();
         let mut meanwhile = by_interrupts;
         for (m, module) in program.modules.iter().enumerate() {
@@ -52,7 +56,8 @@ impl<'p> Guards<'p> {
                 }
             }
         }
-        Guards { program, files, arguments, meanwhile, known: RefCell::default() }
+        let known = RefCell::default();
+        Guards { program, files, arguments, meanwhile, inline_targets, known }
     }
 
     /// Why no guard can make sure that a run moves as it did.
@@ -69,6 +74,10 @@ impl<'p> Guards<'p> {
         let Some(reads) = self.reads(argument.span) else {
             return Some(Reason::NotConstant("an argument of it stands in no routine".into()));
         };
+        let is_target = matches!(argument.type_name, "robtarget" | "jointtarget");
+        if is_target && reads.fixed && !self.inline_targets {
+            return Some(Reason::InlineTarget);
+        }
         if let Some(effect) = reads.effect {
             return Some(Reason::NotConstant(format!("an argument of it {effect}")));
         }
@@ -100,8 +109,11 @@ impl<'p> Guards<'p> {
     pub(super) fn parameters(&self, arguments: &[Argument]) -> Vec<(Parameter, Datum)> {
         let mut parameters: Vec<(Parameter, Datum)> = Vec::new();
         for argument in arguments {
-            let Some(reads) = self.reads(argument.span) else { continue };
-            if reads.fixed {
+            let Some((_, expr)) = self.arguments.get(&argument.span) else { continue };
+            let fixed = self.reads(argument.span).is_some_and(|reads| reads.fixed);
+            let is_literal = fixed && is_literal(expr);
+            // tool0, wobj0 and load0 are PERS: no constant can be made of them.
+            if is_literal && matches!(expr.kind, ExprKind::Ref(_)) && is_unit(argument.type_name) {
                 continue;
             }
             let text = one_line(self.files, argument.span);
@@ -109,19 +121,14 @@ impl<'p> Guards<'p> {
                 label: text.clone(),
                 text: Some(text),
                 type_name: argument.type_name,
-                is_computed: self.arguments.get(&argument.span).is_none_or(|(_, e)| is_computed(e)),
+                is_computed: !is_literal && is_computed(expr),
+                is_literal,
             };
             if !parameters.iter().any(|(known, _)| *known == parameter) {
                 parameters.push((parameter, argument.datum.clone()));
             }
         }
         parameters
-    }
-
-    /// Whether an argument is a target whose numbers stand in the movement.
-    pub(super) fn is_written_target(&self, argument: &Argument) -> bool {
-        matches!(argument.type_name, "robtarget" | "jointtarget")
-            && self.reads(argument.span).is_some_and(|reads| reads.fixed)
     }
 
     fn reads(&self, span: Span) -> Option<Reads> {
@@ -132,6 +139,21 @@ impl<'p> Guards<'p> {
         let found = reads(self.program, *routine, expr);
         self.known.borrow_mut().insert(span, found.clone());
         Some(found)
+    }
+}
+
+/// Whether data of a type are tools, work objects or loads.
+fn is_unit(type_name: &str) -> bool {
+    matches!(type_name, "tooldata" | "wobjdata" | "loaddata")
+}
+
+/// Whether a value is written out or named, so that a constant may begin with it.
+fn is_literal(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) | ExprKind::Ref(_) => true,
+        ExprKind::Unary(UnaryOp::Minus, number) => matches!(number.kind, ExprKind::Num(_)),
+        ExprKind::Aggregate(items) => items.iter().all(is_literal),
+        _ => false,
     }
 }
 

@@ -1,21 +1,17 @@
 //! What a user should know of a retrofit besides its figures.
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::figures::{Figures, Padding, Segment, SegmentKind};
-use super::guards::Guards;
 use super::settings::{Budget, Objective, Settings};
-use super::work::{Source, Way, run_of};
+use super::work::Source;
 use crate::dynamics::Load;
 use crate::energy::account::at_rest;
 use crate::motion::Simulation;
 use crate::motion::timeline::What;
 use crate::optimize::reason::Reason;
-use crate::optimize::site::Site;
 use crate::path::joint_path::Joints;
 use crate::robot::Model;
-use crate::text::Span;
 
 /// Differences of energy below this are rounding, J.
 const ROUNDING_J: f64 = 1e-3;
@@ -99,41 +95,6 @@ pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
         )
     })
 }
-
-/// Names the movements behind guards whose target stands in the line itself: `ModPos` changes the text
-/// of the line then, which no guard can compare.
-pub(super) fn own_targets(
-    files: &[Source],
-    guards: &Guards<'_>,
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
-) -> Option<String> {
-    let runs = ways.iter().filter(|way| way.outcome.is_ok());
-    let moves = runs.filter_map(|way| run_of(simulation, sites, way)).flat_map(|run| &run.moves);
-    let movements: BTreeSet<Span> = moves
-        .map(|record| &record.movement)
-        .filter(|movement| movement.arguments.iter().any(|it| guards.is_written_target(it)))
-        .map(|movement| movement.span)
-        .collect();
-    let place = |span: &Span| {
-        let file = &files[span.file.0 as usize].file;
-        format!("{}:{}", file.path, file.position(span.start).line)
-    };
-    let places: Vec<String> = movements.iter().take(SHOWN).map(place).collect();
-    let more = movements.len().saturating_sub(SHOWN);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    (!places.is_empty()).then(|| {
-        format!(
-            "targets that are written in the movement itself are not compared: ModPos there has no \
-             effect until joulepath refresh has run, or name them as data ({}{more})",
-            places.join(", ")
-        )
-    })
-}
-
-/// Places that a note names.
-const SHOWN: usize = 5;
 
 /// Says that the original is counted with a wait that it does not have.
 fn padded(original: &Figures, padding: &Padding) -> String {

@@ -262,6 +262,7 @@ pub(super) fn compared(
             label: "GripLoad".to_owned(),
             type_name: "loaddata",
             is_computed: false,
+            is_literal: false,
         };
         compared.extend(load.map(|load| (parameter, load)));
     }

@@ -114,13 +114,11 @@ impl Found<'_> {
 /// What an instruction changes.
 fn change(key: &str, call: &Call) -> Option<Change> {
     let first = call.args.first();
-    let has = |option: &str| {
-        call.args.iter().any(|arg| matches!(&arg.kind, ArgKind::Optional(n, _) if n.key == option))
+    let names = |word: &str| {
+        first
+            .and_then(value)
+            .is_some_and(|expr| matches!(&expr.kind, ExprKind::Ref(name) if name.key == word))
     };
-    let usual = |is: &dyn Fn(&Expr) -> bool| first.and_then(value).is_some_and(is);
-    let names =
-        |word: &str| usual(&|expr| matches!(&expr.kind, ExprKind::Ref(name) if name.key == word));
-    let number = |x: f64| usual(&|expr| matches!(&expr.kind, ExprKind::Num(y) if *y == x));
     Some(match key {
         "gripload" => Change::Load(first.and_then(value)?.span),
         "softact" => Change::Switch("SoftAct", true),
@@ -131,10 +129,6 @@ fn change(key: &str, call: &Call) -> Option<Change> {
         "corrdiscon" | "corrclear" => Change::Switch("CorrCon", false),
         "pathrecstart" => Change::Switch("PathRecStart", true),
         "pathrecstop" => Change::Switch("PathRecStart", false),
-        "speedrefresh" => Change::Switch("SpeedRefresh", !number(100.0)),
-        "pathresol" => Change::Switch("PathResol", !number(100.0)),
-        "worldacclim" => Change::Switch("WorldAccLim", !has("off")),
-        "cirpathmode" => Change::Switch("CirPathMode", !(has("pathframe") || has("objectframe"))),
         "motionprocessmodeset" => {
             Change::Switch("MotionProcessModeSet", !names("optimal_cycle_time_mode"))
         }

@@ -70,6 +70,9 @@ pub struct Settings {
     pub dwell_pose: Option<f64>,
     /// Whether the model's numbers are taken as they are, without robots that are as plausible.
     pub point_estimate: bool,
+    /// Whether movements may become streams whose targets stand in them: `ModPos` would change the
+    /// text of such a movement, behind its guard.
+    pub inline_targets: bool,
     /// Points of the curve of energy over time of each segment; 0 for none.
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
@@ -97,6 +100,7 @@ impl Default for Settings {
             cost: Cost::default(),
             dwell_pose: None,
             point_estimate: false,
+            inline_targets: false,
             pareto: 0,
             written_elsewhere: BTreeSet::new(),
         }

@@ -267,7 +267,7 @@ pub fn retrofit(
         &Settings { freedom: Freedom { loads, ..settings.freedom.clone() }, ..settings.clone() };
     let mut sites = sites(&program, &simulation);
     let by_interrupts = hazards::written_by_interrupts(&program);
-    let guards = Guards::new(&program, files, by_interrupts, &settings.written_elsewhere);
+    let guards = Guards::new(&program, files, by_interrupts, settings);
     hazards::mark(&program, &simulation, &guards, &mut sites);
     if settings.form != Form::Streams {
         leave_what_changes(&simulation, &mut sites);
@@ -398,9 +398,6 @@ pub fn retrofit(
     let original = figures(&simulation, &before).padded(padding.as_ref());
     let compared = (&original, &optimized, padding.as_ref());
     let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
-    if settings.form == Form::Streams {
-        notes.extend(notes::own_targets(files, &guards, &simulation, &sites, &ways));
-    }
     if freed {
         notes.extend(notes::off_path(settings, verification.worst.deviation_m));
     }

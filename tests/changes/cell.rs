@@ -60,8 +60,8 @@ pub(crate) struct Cell {
     pub(crate) signals: Vec<String>,
     /// Marks at which a statement runs in both programs alike.
     pub(crate) outside: Vec<usize>,
-    /// All marks.
-    pub(crate) marks: usize,
+    /// Marks at which another task may write.
+    pub(crate) writes: Vec<usize>,
     /// `PERS` data, which other tasks may write: name and type.
     pub(crate) shared: Vec<(String, String)>,
 }
@@ -116,7 +116,12 @@ fn guard_of(text: &str, at: usize) -> Option<usize> {
 }
 
 impl Cell {
-    pub(crate) fn new(text: &str, signals: Vec<String>, marks: usize, outside: Vec<usize>) -> Cell {
+    pub(crate) fn new(
+        text: &str,
+        signals: Vec<String>,
+        outside: Vec<usize>,
+        writes: Vec<usize>,
+    ) -> Cell {
         let mut slots = Vec::new();
         let mut shared = Vec::new();
         for data in declared(text) {
@@ -139,7 +144,7 @@ impl Cell {
                 });
             }
         }
-        Cell { slots, signals, outside, marks, shared }
+        Cell { slots, signals, outside, writes, shared }
     }
 
     /// A change by chance.
@@ -152,7 +157,7 @@ impl Cell {
                 Change::Input { signal, level: random.below(3) as f64 }
             }
             12..=14 if !self.outside.is_empty() => self.setting(random),
-            15 if self.marks > 0 && !self.shared.is_empty() => self.write(random),
+            15 if !self.writes.is_empty() && !self.shared.is_empty() => self.write(random),
             16 | 17 => Change::Start(std::array::from_fn(|j| {
                 let home = [0.0, -12.0, 14.0, 0.0, 60.0, 0.0][j];
                 f64::to_radians(home + sign(random) * log(random, 0.005, 5.0))
@@ -200,6 +205,8 @@ impl Cell {
             "PDispSet [[12,-7,9],[1,0,0,0]];",
             "PDispOff;",
             "PathAccLim TRUE\\AccMax:=1.5,TRUE\\DecelMax:=1.5;",
+            "WorldAccLim\\On:=1.2;",
+            "SpeedRefresh 40;",
         ];
         let text = settings[random.below(settings.len())].to_owned();
         Change::Statement { mark: self.outside[random.below(self.outside.len())], text }
@@ -218,7 +225,7 @@ impl Cell {
             "bool" => format!("{name}:=NOT {name};"),
             _ => String::new(),
         };
-        Change::Statement { mark: random.below(self.marks), text }
+        Change::Statement { mark: self.writes[random.below(self.writes.len())], text }
     }
 }
 

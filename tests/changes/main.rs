@@ -30,6 +30,8 @@ use support::Random;
 const CHANGES: usize = 10_000;
 /// Changes at once, at most.
 const TOGETHER: usize = 3;
+/// A program with streams for joint movements and lines.
+const MIXED: &str = "pick_place";
 /// Times as long that runs may take where streams are asked for in every place.
 const SLOWER: f64 = 1.2;
 
@@ -48,7 +50,7 @@ fn programs() -> Vec<(String, Vec<String>)> {
     let read =
         |path: &Path| String::from_utf8_lossy(&std::fs::read(path).unwrap()).replace("\r\n", "\n");
     let mut programs = Vec::new();
-    for folder in ["changes", "hard"] {
+    for folder in ["changes", "hard", "lint"] {
         let mut paths: Vec<_> = std::fs::read_dir(fixtures.join(folder))
             .unwrap()
             .map(|entry| entry.unwrap().path())
@@ -60,7 +62,8 @@ fn programs() -> Vec<(String, Vec<String>)> {
             programs.push((name, vec![read(&path)]));
         }
     }
-    for folder in ["pick_place", "paper"] {
+    for folder in ["pick_place", "paper", "backup/RAPID/TASK2/PROGMOD", "backup/RAPID/TASK2/SYSMOD"]
+    {
         let mut paths: Vec<_> = std::fs::read_dir(fixtures.join(folder))
             .unwrap()
             .map(|entry| entry.unwrap().path())
@@ -93,7 +96,22 @@ fn signals(texts: &[String]) -> Vec<String> {
     found.into_iter().filter(|word| word.len() > 2).collect()
 }
 
-fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Option<Case> {
+/// How a program is retrofitted.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// Whether it may take longer than the original.
+    slower: bool,
+    /// Whether other tasks may write its `PERS` data at any moment, or only where no stream runs.
+    elsewhere: bool,
+}
+
+const WAYS: [Way; 3] = [
+    Way { slower: false, elsewhere: true },
+    Way { slower: true, elsewhere: true },
+    Way { slower: false, elsewhere: false },
+];
+
+fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option<Case> {
     let mut marks = 0;
     let mut original = Vec::new();
     for text in &texts {
@@ -103,8 +121,11 @@ fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Op
         marks += count;
     }
     let settings = Settings {
-        budget: if slower { Budget::Factor(SLOWER) } else { Budget::AsBefore },
-        written_elsewhere: shared(&original),
+        budget: if way.slower { Budget::Factor(SLOWER) } else { Budget::AsBefore },
+        written_elsewhere: if way.elsewhere { shared(&original) } else { BTreeSet::new() },
+        // As many streams as there can be.
+        point_estimate: true,
+        inline_targets: true,
         ..Settings::default()
     };
     let result = retrofit(&sources(&original), model, &settings, &|_, _| ()).ok()?;
@@ -121,9 +142,10 @@ fn case((name, texts): (String, Vec<String>), model: &Model, slower: bool) -> Op
         .map(|output| String::from_utf8_lossy(&output.bytes).into_owned())
         .collect();
     let whole = emitted.join("\n");
-    let outside = (0..marks).filter(|mark| !is_within(&whole, *mark)).collect();
-    let cell = Cell::new(&original.join("\n"), signals(&original), marks, outside);
-    Some(Case { name, original, emitted, cell, slower })
+    let outside: Vec<usize> = (0..marks).filter(|mark| !is_within(&whole, *mark)).collect();
+    let writes = if way.elsewhere { (0..marks).collect() } else { outside.clone() };
+    let cell = Cell::new(&original.join("\n"), signals(&original), outside, writes);
+    Some(Case { name, original, emitted, cell, slower: way.slower })
 }
 
 /// Without its streams a retrofit is the original again, to the byte.
@@ -138,7 +160,7 @@ fn is_taken_out(name: &str, original: &[String], result: &Retrofit) {
 
 /// PERS data of the programs: other tasks may write each of them.
 fn shared(texts: &[String]) -> BTreeSet<String> {
-    let cell = Cell::new(&texts.join("\n"), Vec::new(), 0, Vec::new());
+    let cell = Cell::new(&texts.join("\n"), Vec::new(), Vec::new(), Vec::new());
     cell.shared.into_iter().map(|(name, _)| name.to_lowercase()).collect()
 }
 
@@ -162,8 +184,8 @@ fn original_and_retrofit_agree_under_every_change() {
     let programs = programs();
     let cases: Vec<Case> = programs
         .par_iter()
-        .flat_map(|program| [false, true].map(|slower| (program.clone(), slower)))
-        .filter_map(|(program, slower)| case(program, &model, slower))
+        .flat_map(|program| WAYS.map(|way| (program.clone(), way)))
+        .filter_map(|(program, way)| case(program, &model, way))
         .collect();
     let results: Vec<(Option<String>, Vec<&'static str>, bool)> = (0..count)
         .into_par_iter()
@@ -200,12 +222,46 @@ fn original_and_retrofit_agree_under_every_change() {
     let faults: Vec<&String> = results.iter().filter_map(|(fault, ..)| fault.as_ref()).collect();
     let with_streams = results.iter().filter(|(_, _, streams)| *streams).count();
     let summary = format!(
-        "{} cases of {} programs, {count} draws, {with_streams} with streams, {counts:?}",
+        "{} cases of {} of {} programs, {count} draws, {with_streams} with streams, {counts:?}",
         cases.len(),
+        cases.iter().map(|case| &case.name).collect::<BTreeSet<_>>().len(),
         programs.len(),
     );
+    println!("{summary}");
     // A test that compared no streams would say nothing.
     assert!(with_streams * 3 > count, "{summary}");
     let shown: Vec<&str> = faults.iter().take(20).map(|fault| fault.as_str()).collect();
     assert!(faults.is_empty(), "{} faults: {summary}\n{}", faults.len(), shown.join("\n"));
+}
+
+/// What the program is told later at a place where it is not told now must not meet a stream that
+/// knows nothing of it.
+#[test]
+fn settings_that_are_added_later_stop_streams() {
+    let model = find("IRB1600-10/1.45").unwrap();
+    let (name, texts) = programs().into_iter().find(|(name, _)| name == MIXED).unwrap();
+    let case = case((name, texts), &model, WAYS[2]).unwrap();
+    let streams = |statement: &str| {
+        let change = Change::Statement { mark: case.cell.outside[0], text: statement.to_owned() };
+        compare::streams(&run(apply(&case.emitted, &model, &[change])).unwrap().0)
+    };
+    let usual = streams("ConfJ\\On;");
+    assert!(usual > 0);
+    for setting in [
+        "VelSet 90,5000;",
+        "AccSet 90,100;",
+        "AccSet 100,90;",
+        "AccSet 100,100\\FinePointRamp:=90;",
+        "PathAccLim TRUE\\AccMax:=5,FALSE;",
+        "WorldAccLim\\On:=5;",
+        "SpeedRefresh 90;",
+        "PathResol 90;",
+        "PDispSet [[0,0,0.01],[1,0,0,0]];",
+    ] {
+        assert_eq!(streams(setting), 0, "{setting}");
+    }
+    // What acts on arcs and lines only leaves the streams of joint movements.
+    for setting in ["CirPathMode\\CirPointOri;", "SingArea\\Wrist;"] {
+        assert!(streams(setting) < usual, "{setting}");
+    }
 }

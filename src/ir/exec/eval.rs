@@ -123,7 +123,7 @@ impl Executor<'_> {
                     origin: Origin::of(Dependence::Variable("ERRNO".into())),
                 },
                 _ => self
-                    .system_data(&name.key)
+                    .system_data(&name.key, name.span)
                     .or_else(|| predefined::lookup(&name.key))
                     .unwrap_or_else(|| {
                         Value::constant(Datum::Signal(name.text.as_str().into()), "signal")

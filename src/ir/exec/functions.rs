@@ -24,8 +24,7 @@ impl Executor<'_> {
             "present" => return self.present(args),
             "cjointt" => return self.joint_position(expr),
             "cspeedoverride" => {
-                let percent = self.machine.override_percent();
-                return Value::constant(Datum::Num(percent), "num");
+                return self.override_of_speed(args, expr);
             }
             "isfile" | "opmode" | "robos" | "runmode" | "gettime" | "cdate" | "ctime" => {
                 return Value::unknown(

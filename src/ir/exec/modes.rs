@@ -1,18 +1,31 @@
 //! Modes of motion that are not modelled unless they are the usual ones.
 
+use std::sync::Arc;
+
 use super::super::hir::{Expr, ExprKind, Stmt};
+use super::super::movement::Settings;
 use super::Executor;
 use super::instruction::Arguments;
+
+/// Options of `CirPathMode` in the order of their numbers in `C_MOTSET.cirpathreori`.
+/// Source: RAPID reference, `motsetdata`.
+const CIRCLE_MODES: [&str; 6] =
+    ["pathframe", "objectframe", "cirpointori", "wrist45", "wrist46", "wrist56"];
+/// The last of the modes that are simulated.
+const OBJECT_FRAME: usize = 1;
 
 impl Executor<'_> {
     /// `CirPathMode`: how the tool turns on arcs; about the path's frame where nothing is said.
     pub(super) fn circle_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
-        let plain = |key: &str| matches!(key, "pathframe" | "objectframe");
-        if arguments.optional.iter().all(|(key, _, _)| plain(key)) {
+        let mode = CIRCLE_MODES.iter().position(|mode| arguments.has_option(mode)).unwrap_or(0);
+        if mode <= OBJECT_FRAME {
             self.clear_unmodelled(&["cirpathmode"]);
         } else {
             self.unmodelled(stmt, text);
         }
+        let mut settings = Settings::clone(&self.settings);
+        settings.circle_mode = mode as u8;
+        self.settings = Arc::new(settings);
     }
 
     /// `PathResol`: how densely a path is interpolated, 100 % where nothing is said.
@@ -23,6 +36,9 @@ impl Executor<'_> {
         } else {
             self.unmodelled(stmt, text);
         }
+        let mut settings = Settings::clone(&self.settings);
+        settings.path_resolution = percent.map(|percent| percent / 100.0);
+        self.settings = Arc::new(settings);
     }
 
     /// `MotionProcessModeSet`: another tuning of the servo than the one that everything starts with.

@@ -3,9 +3,10 @@
 use nalgebra::Isometry3;
 
 use super::super::convert;
-use super::super::hir::Expr;
+use super::super::hir::{Arg, ArgKind, Expr};
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::Executor;
+use crate::text::Span;
 
 /// Largest TCP speed that `VelSet` allows where the program has not set it, mm/s.
 const USUAL_SPEED: f64 = 5000.0;
@@ -16,10 +17,10 @@ const OFF: f64 = -1.0;
 
 impl Executor<'_> {
     /// The system data of a name in lower case.
-    pub(super) fn system_data(&self, key: &str) -> Option<Value> {
+    pub(super) fn system_data(&self, key: &str, span: Span) -> Option<Value> {
         match key {
             "c_progdisp" => Some(Value::constant(self.displacement(), "progdisp")),
-            "c_motset" => Some(Value::constant(self.motion_settings(), "motsetdata")),
+            "c_motset" => Some(Value::constant(self.motion_settings(span), "motsetdata")),
             _ => None,
         }
     }
@@ -29,7 +30,7 @@ impl Executor<'_> {
         Datum::List(vec![convert::pose_datum(&shift), Datum::nums([0.0; 6])])
     }
 
-    fn motion_settings(&self) -> Datum {
+    fn motion_settings(&self, span: Span) -> Datum {
         let settings = &self.settings;
         let percent = |share: f64| (100.0 * share).round();
         let speed = if settings.speed_max.is_finite() {
@@ -55,15 +56,32 @@ impl Executor<'_> {
             Datum::nums(acc.map(percent)),
             Datum::List(sing.map(|kind| Datum::Bool(area.ends_with(kind))).to_vec()),
             Datum::List(conf.into_iter().chain(zeros).collect()),
-            Datum::Num(0.0),
+            settings.path_resolution.map_or_else(
+                || Datum::unknown("PathResol with a value that is not known", span),
+                |share| Datum::Num(percent(share)),
+            ),
             on.clone(),
             Datum::Num(100.0),
         ];
         all.extend(along.into_iter().chain(back));
-        all.push(Datum::Num(0.0));
+        all.push(Datum::Num(f64::from(settings.circle_mode)));
         all.extend(limit(settings.world_acceleration));
         all.push(on);
         Datum::List(all)
+    }
+
+    /// `CSpeedOverride()`: the operator's override; with `\\CTask` what `SpeedRefresh` makes of it in
+    /// this task.
+    pub(super) fn override_of_speed(&self, args: &[Arg], expr: &Expr) -> Value {
+        let asks = |arg: &Arg| matches!(&arg.kind, ArgKind::Optional(n, _) if n.key == "ctask");
+        let percent = if !args.iter().any(asks) {
+            self.machine.override_percent()
+        } else if self.settings.other.iter().any(|name| name.eq_ignore_ascii_case("speedrefresh")) {
+            return Value::unknown("SpeedRefresh with a value that is not known", expr.span);
+        } else {
+            (100.0 * self.settings.refresh).round()
+        };
+        Value::constant(Datum::Num(percent), "num")
     }
 
     /// `GetSysInfo(\\RobotType)`: what the controller calls its robot.
