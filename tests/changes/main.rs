@@ -227,7 +227,6 @@ fn original_and_retrofit_agree_under_every_change() {
         cases.iter().map(|case| &case.name).collect::<BTreeSet<_>>().len(),
         programs.len(),
     );
-    println!("{summary}");
     // A test that compared no streams would say nothing.
     assert!(with_streams * 3 > count, "{summary}");
     let shown: Vec<&str> = faults.iter().take(20).map(|fault| fault.as_str()).collect();
