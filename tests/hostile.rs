@@ -259,7 +259,7 @@ fn tools_and_places_may_be_named_in_any_way() {
                   MoveJ pC,v1000,fine,tX\\WObj:=wX; ! => stream\nENDPROC";
     let folder = check(&program(handed, "rGo wA,tP;", ""), &[]);
     let written = fs::read_to_string(folder.path().join("out/m.mod")).unwrap();
-    assert!(written.contains("IF jpFits1(pC,tX,wX) THEN"), "{written}");
+    assert!(written.contains("IF jpFits1(pC,v1000,fine,tX,wX) THEN"), "{written}");
     // A name in the encoding of the file.
     let name =
         "PERS tooldata tGr\u{f6}\u{df}e:=[TRUE,[[0,0,90],[1,0,0,0]],[1,[0,0,40],[1,0,0,0],0,0,0]];";

@@ -191,8 +191,8 @@ fn what_changes_is_told_by_a_condition() {
         "{here}VAR robtarget p1;\nPROC go(robtarget p{{*}})\nFOR i FROM 1 TO 2 DO\n\
          MoveL p{{i}},v500,fine,tool0;\nENDFOR\nENDPROC\n\
          CONST robtarget both{{2}}:=[{0},{1}];\n",
-        target(90.0),
-        target(120.0)
+        target(190.0),
+        target(320.0)
     );
     let all = ["p1:=Offs(pHere,0,20,0);", &start, "MoveL p1,v500,fine,tool0;", "go both;"];
     let found = segments(&targets, &all.map(str::to_owned));
