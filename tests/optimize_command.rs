@@ -388,25 +388,58 @@ fn movements_with_the_target_in_them_stay() {
     }
 }
 
-/// An edit of a literal by search and replace changes the guard, too.
+/// Guards compare values: names may be edited everywhere, or get another value.
 #[test]
-fn guards_repeat_the_literals_of_their_lines() {
+fn a_name_with_another_value_keeps_the_stream_out() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "MoveAbsJ jB,v1000,fine,tP;")).unwrap();
+    fs::write(&path, program("", "MoveAbsJ jA,v1000,fine,tP;")).unwrap();
     let out = folder.path().join("out");
-    let (text, code) =
-        said(folder.path(), &["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-    assert_eq!(code, Some(0), "{text}");
-    let file = out.join("m.mod");
+    let options = ["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let (told, code) = said(folder.path(), &options);
+    assert_eq!(code, Some(0), "{told}");
+    let files = ["m.mod", "Joulepath.mod"].map(|name| out.join(name));
+    let written = files.each_ref().map(|file| fs::read_to_string(file).unwrap());
     let time = || {
         let args = ["simulate", out.to_str().unwrap(), "--format", "json", "--quiet"];
         number(&json(&[&args[..], &ROBOT].concat()), "/cycle_s")
     };
     let before = time();
-    let slower = fs::read_to_string(&file).unwrap().replace("v1000", "v50");
-    fs::write(&file, slower).unwrap();
-    assert!(time() > 2.0 * before);
+    let slow = "CONST speeddata v1000:=[50,500,5000,1000];\nPROC main";
+    let changes: [[String; 2]; 3] = [
+        [written[0].replace("v1000", "v50"), written[1].clone()],
+        written.each_ref().map(|text| text.replace("v1000", "v50")),
+        [written[0].replacen("PROC main", slow, 1), written[1].clone()],
+    ];
+    for changed in changes {
+        for (file, text) in files.iter().zip(&changed) {
+            fs::write(file, text).unwrap();
+        }
+        assert!(time() > 2.0 * before, "{}", changed[0]);
+    }
+    // The zones of streams are their own.
+    let small = "CONST zonedata z200:=[FALSE,1,1,1,1,1,1];\nPROC main";
+    fs::write(&files[0], written[0].replacen("PROC main", small, 1)).unwrap();
+    fs::write(&files[1], &written[1]).unwrap();
+    assert!((time() - before).abs() < 1e-6);
+}
+
+/// The time of a stream is stretched by the operator's override as that of the movements is.
+#[test]
+fn streams_for_a_speed_override_take_no_longer() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", "MoveAbsJ jA,v1000,fine,tP;")).unwrap();
+    let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--quiet"];
+    for percent in ["50", "99"] {
+        let options = ["--point-estimate", "--speed-override", percent];
+        let result = json(&[&args[..], &options, &ROBOT].concat());
+        let segments = result["segments"].as_array().unwrap();
+        let streams = segments.iter().filter(|segment| segment["rewritten"] == true).count();
+        assert!(streams > 0, "{result:#}");
+        let longer = number(&result, "/optimized/cycle_s") - number(&result, "/original/cycle_s");
+        assert!(longer < 1e-3, "{longer}");
+    }
 }
 
 /// Strings of RAPID have quotes and backslashes twice.

@@ -332,6 +332,12 @@ fn what_interrupt_routines_do_by_functions_counts() {
         ("rCalled;", "meanwhile"),
         ("bQ:=StrToVal(\"5\",nS);", "meanwhile"),
         ("nQ:=fSettings();", "interrupt"),
+        ("ConfJ\\On;", "interrupt"),
+        ("SingArea\\Wrist;", "interrupt"),
+        ("PathResol 50;", "interrupt"),
+        ("rElsewhere;", "interrupt"),
+        ("nQ:=fElsewhere();", "interrupt"),
+        ("TPWrite \"trap\"\\Num:=ClkRead(ckX);", ""),
         ("CallByVar \"rCalled\",1;", "interrupt"),
         ("SetDataVal \"nS\",nQ;", "interrupt"),
         ("nQ:=Abs(nS);", ""),
@@ -341,6 +347,7 @@ fn what_interrupt_routines_do_by_functions_counts() {
     for (statement, expected) in cases {
         let declared = format!(
             "CONST robtarget pHere:={here};\nVAR num nS:=0;\nVAR num nQ;\nVAR bool bQ;\nVAR intnum iX;\n\
+             VAR clock ckX;\n\
              FUNC num fWrites()\nnS:=5;\nRETURN 1;\nENDFUNC\n\
              FUNC num fSettings()\nVelSet 50,500;\nRETURN 1;\nENDFUNC\n\
              PROC rCalled()\nnQ:=fWrites();\nENDPROC\n\
@@ -355,5 +362,31 @@ fn what_interrupt_routines_do_by_functions_counts() {
         let found = segments(&declared, &movements.map(str::to_owned));
         let told = reasons(&found);
         assert_eq!(told.get(1).map_or("", String::as_str), expected, "{statement}: {found:?}");
+    }
+}
+
+/// A guard evaluates all arguments before the first movement: an error in one of them would come too
+/// early for who goes on after it.
+#[test]
+fn arguments_that_may_end_in_an_error_stay_where_somebody_handles_it() {
+    let here = target(50.0);
+    for (last, handler, expected) in [
+        ("Offs(pHere,0,90,-40/nS)", "ERROR\nTRYNEXT;", "handler"),
+        (
+            "Offs(pHere,0,90,-nH{nS})",
+            "ERROR\nIF ERRNO=ERR_ARRAYINDEX THEN\nTRYNEXT;\nENDIF",
+            "handler",
+        ),
+        ("Offs(pHere,0,90,-nH{nS})", "ERROR\nIF ERRNO=ERR_WAIT_MAXTIME THEN\nTRYNEXT;\nENDIF", ""),
+        ("Offs(pHere,0,90,-40/nS)", "", ""),
+    ] {
+        let declared = format!(
+            "CONST robtarget pHere:={here};\nVAR num nS:=1;\nVAR num nH{{2}}:=[40,50];\n\
+             PROC rGo()\nMoveL Offs(pHere,0,60,-50),v500,z20,tool0;\n\
+             MoveL {last},v500,fine,tool0;\n{handler}\nENDPROC\n"
+        );
+        let movements = ["MoveJ pHere,v1000,fine,tool0;", "rGo;"].map(str::to_owned);
+        let told = reasons(&segments(&declared, &movements));
+        assert_eq!(told.get(1).map_or("", String::as_str), expected, "{last} {handler}");
     }
 }

@@ -35,9 +35,6 @@ pub struct Parameter {
     pub type_name: &'static str,
     /// Whether it is worked out, so that its last digits are those of the controller.
     pub is_computed: bool,
-    /// Whether it is a literal or a name that every controller knows: another value of it is
-    /// another text.
-    pub is_literal: bool,
 }
 
 /// Motion settings on which movements depend.

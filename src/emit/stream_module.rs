@@ -28,6 +28,11 @@ const PLACE_TOLERANCE_MM: f64 = 0.1;
 /// Decimals of a pause, s: with the ways to it and back it takes as long as the wait did.
 const PAUSE_DECIMALS: usize = 7;
 
+/// No speed override, %.
+const WHOLE: f64 = 100.0;
+/// Decimals of a time under an override, s: a part of a time that has [`TIME_DECIMALS`].
+const SHARED_TIME_DECIMALS: usize = 7;
+
 /// A stream as text.
 #[derive(Serialize)]
 struct StreamText {
@@ -165,11 +170,7 @@ fn stream_text(
     let prefix = &emission.names.prefix;
     let index = format!("{number_of_site}_{way}");
     let made = site.parameters.iter().zip(&stream.values).map(|(parameter, value)| {
-        let text = match &parameter.text {
-            Some(text) if parameter.is_literal => Some(text.clone()),
-            _ => super::literal::literal(value),
-        };
-        text.ok_or_else(|| EmitError::Value(parameter.label.clone()))
+        super::literal::literal(value).ok_or_else(|| EmitError::Value(parameter.label.clone()))
     });
     let count = stream.points.len();
     let last = count.saturating_sub(1);
@@ -189,7 +190,7 @@ fn stream_text(
             let pause = stream.pause.filter(|pause| pause.after == i);
             PointText {
                 target: format!("[[{}],[{external}]]", joints(q)),
-                time: number(*t, TIME_DECIMALS),
+                time: time(*t, emission.override_percent),
                 zone: if i == last || pause.is_some() { "fine" } else { "z200" },
                 pause: pause.map_or(String::new(), |pause| number(pause.seconds, PAUSE_DECIMALS)),
             }
@@ -205,6 +206,15 @@ fn stream_text(
         points,
         array,
     })
+}
+
+/// `\T` of a movement that takes `t` seconds: a speed override stretches it.
+fn time(t: f64, override_percent: f64) -> String {
+    if override_percent == WHOLE {
+        number(t, TIME_DECIMALS)
+    } else {
+        number(override_percent / WHOLE * t, SHARED_TIME_DECIMALS)
+    }
 }
 
 /// Whether the targets of a stream name external axes.

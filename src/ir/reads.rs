@@ -3,7 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use super::hir::{Arg, ArgKind, Block, Call, Callee, Expr, ExprKind, ParamMode, Routine, StmtKind};
+use super::hir::{
+    Arg, ArgKind, BinaryOp, Block, Call, Callee, Expr, ExprKind, ParamMode, Routine, StmtKind,
+};
 use super::program::{DataId, Program, RoutineId, Symbol};
 use super::{functions, predefined};
 
@@ -16,10 +18,10 @@ pub struct Reads {
     pub by_reference: bool,
     /// Names that no module declares: signals, presumably.
     pub signals: BTreeSet<String>,
-    /// Whether it reads where the robot is.
-    pub position: bool,
     /// Whether it names nothing but what every controller knows: it never changes.
     pub fixed: bool,
+    /// Whether its evaluation may end in an error: a division, or an element that there may not be.
+    pub may_raise: bool,
     /// The first thing that it does besides giving a value, or that it depends on and nobody can
     /// compare.
     pub effect: Option<String>,
@@ -58,11 +60,15 @@ impl Walk<'_> {
             ExprKind::Ref(name) => self.name(at, &name.key, &name.text),
             ExprKind::Field(base, _) | ExprKind::Unary(_, base) => self.expr(at, base),
             ExprKind::Index(base, indices) => {
+                let is_number = |index: &Expr| matches!(index.kind, ExprKind::Num(_));
+                self.found.may_raise |= !indices.iter().all(is_number);
                 self.expr(at, base);
                 self.all(at, indices);
             }
             ExprKind::Aggregate(items) => self.all(at, items),
-            ExprKind::Binary(_, left, right) => {
+            ExprKind::Binary(operator, left, right) => {
+                let divides = matches!(operator, BinaryOp::Div | BinaryOp::IntDiv | BinaryOp::Mod);
+                self.found.may_raise |= divides && !matches!(right.kind, ExprKind::Num(_));
                 self.expr(at, left);
                 self.expr(at, right);
             }
@@ -132,8 +138,7 @@ impl Walk<'_> {
             }
             Some(_) => self.effect(&format!("calls {text}, which is no function")),
             None if POSITION.contains(&key) => {
-                self.changes = true;
-                self.found.position = true;
+                self.effect("is computed from where the robot stands");
             }
             None if LEVELS.contains(&key) || key == "present" => self.changes = true,
             None if functions::lookup(key).is_some() => {}

@@ -68,6 +68,15 @@ impl<'p> Guards<'p> {
         })
     }
 
+    /// Whether an argument of several movements may end in an error, which then would leave out all of
+    /// them.
+    pub(super) fn may_raise(&self, run: &Run) -> bool {
+        let arguments = run.moves.iter().flat_map(|record| &record.movement.arguments);
+        let may_raise =
+            |argument: &Argument| self.reads(argument.span).is_some_and(|reads| reads.may_raise);
+        run.moves.len() > 1 && arguments.into_iter().any(may_raise)
+    }
+
     /// What speaks against an argument that is evaluated when the run begins, or, `later`, while it
     /// is under way: then it may be another one than the guard saw.
     fn objection(&self, argument: &Argument, later: bool) -> Option<Reason> {
@@ -80,10 +89,6 @@ impl<'p> Guards<'p> {
         }
         if let Some(effect) = reads.effect {
             return Some(Reason::NotConstant(format!("an argument of it {effect}")));
-        }
-        if reads.position {
-            let why = "it is computed from where the robot stands";
-            return Some(Reason::NotConstant(why.into()));
         }
         if !later {
             return None;
@@ -110,10 +115,7 @@ impl<'p> Guards<'p> {
         let mut parameters: Vec<(Parameter, Datum)> = Vec::new();
         for argument in arguments {
             let Some((_, expr)) = self.arguments.get(&argument.span) else { continue };
-            let fixed = self.reads(argument.span).is_some_and(|reads| reads.fixed);
-            let is_literal = fixed && is_literal(expr);
-            // tool0, wobj0 and load0 are PERS: no constant can be made of them.
-            if is_literal && matches!(expr.kind, ExprKind::Ref(_)) && is_unit(argument.type_name) {
+            if differs_by_controller(expr) {
                 continue;
             }
             let text = one_line(self.files, argument.span);
@@ -121,8 +123,7 @@ impl<'p> Guards<'p> {
                 label: text.clone(),
                 text: Some(text),
                 type_name: argument.type_name,
-                is_computed: !is_literal && is_computed(expr),
-                is_literal,
+                is_computed: is_computed(expr),
             };
             if !parameters.iter().any(|(known, _)| *known == parameter) {
                 parameters.push((parameter, argument.datum.clone()));
@@ -142,26 +143,20 @@ impl<'p> Guards<'p> {
     }
 }
 
-/// Whether data of a type are tools, work objects or loads.
-fn is_unit(type_name: &str) -> bool {
-    matches!(type_name, "tooldata" | "wobjdata" | "loaddata")
-}
-
-/// Whether a value is written out or named, so that a constant may begin with it.
-fn is_literal(expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) | ExprKind::Ref(_) => true,
-        ExprKind::Unary(UnaryOp::Minus, number) => matches!(number.kind, ExprKind::Num(_)),
-        ExprKind::Aggregate(items) => items.iter().all(is_literal),
-        _ => false,
-    }
+/// Whether a name has another value on another controller: that of `vmax` is the robot's own, and
+/// versions differ in what `tool0`, `wobj0` and `load0` hold.
+fn differs_by_controller(expr: &Expr) -> bool {
+    let ExprKind::Ref(name) = &expr.kind else { return false };
+    matches!(name.key.as_str(), "vmax" | "tool0" | "wobj0" | "load0")
 }
 
 /// Whether the controller works a value out instead of reading it.
 fn is_computed(expr: &Expr) -> bool {
     match &expr.kind {
-        ExprKind::Ref(_) => false,
+        ExprKind::Ref(_) | ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) => false,
         ExprKind::Field(base, _) | ExprKind::Index(base, _) => is_computed(base),
+        ExprKind::Unary(UnaryOp::Minus, number) => !matches!(number.kind, ExprKind::Num(_)),
+        ExprKind::Aggregate(items) => items.iter().any(is_computed),
         _ => true,
     }
 }

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::guards::Guards;
 use crate::emit;
 use crate::ir::hir::{Arg, BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
-use crate::ir::instructions::{finds_by_name, is_movement};
+use crate::ir::instructions::{finds_by_name, is_movement, is_writing, may_write};
 use crate::ir::movement::Stop;
 use crate::ir::program::{DataId, Program, RoutineId, Symbol};
 use crate::ir::reads::only_reads;
@@ -19,25 +19,58 @@ use crate::text::Span;
 /// Errors that a movement without process or `\Conc` raises while it runs.
 const MOVEMENT_ERRORS: [&str; 3] = ["err_coll_stop", "err_path_stop", "long_jmp_all_err"];
 
+/// Errors of a division and of an element that there is not.
+const ARGUMENT_ERRORS: [&str; 2] = ["err_divzero", "err_arrayindex"];
+
 /// Instructions of an interrupt routine that change how movements run, or what is left of them.
-const CHANGES_MOVEMENTS: [&str; 17] = [
+const CHANGES_MOVEMENTS: [&str; 29] = [
     "accset",
+    "cirpathmode",
     "clearpath",
+    "confj",
+    "confl",
+    "corrclear",
     "corrcon",
+    "corrdiscon",
     "corrwrite",
+    "eoffsoff",
     "eoffson",
     "eoffsset",
     "gripload",
+    "motionprocessmodeset",
     "pathacclim",
+    "pathresol",
     "pdispoff",
     "pdispon",
     "pdispset",
+    "singarea",
     "softact",
+    "softdeact",
+    "speedlimaxis",
     "speedrefresh",
     "stepbwdpath",
+    "tunereset",
     "tuneservo",
     "velset",
     "worldacclim",
+];
+
+/// Functions of RAPID that tell something of the controller or of files and do nothing else.
+const OF_THE_CONTROLLER: [&str; 14] = [
+    "cdate",
+    "clkread",
+    "cspeedoverride",
+    "ctime",
+    "getsysinfo",
+    "gettime",
+    "intno",
+    "isfile",
+    "isstopmoveact",
+    "opmode",
+    "present",
+    "robos",
+    "runmode",
+    "testandset",
 ];
 
 /// Gives the sites and variants that can't be streams their reasons, where they have none yet.
@@ -51,6 +84,7 @@ pub(super) fn mark(
     let interrupt = interrupts(program);
     let moved = external_axes(simulation);
     let whole = of_the_whole(program);
+    let catcher = catcher(program);
     for site in sites {
         for variant in &mut site.variants {
             if variant.reason.is_none() {
@@ -69,6 +103,7 @@ pub(super) fn mark(
                     })
                     .or_else(|| stop_with_time(run))
                     .or_else(|| guards.refusal(run))
+                    .or_else(|| catcher.clone().filter(|_| guards.may_raise(run)))
             });
             if variant.reason.is_none() {
                 variant.reason = reason;
@@ -124,6 +159,39 @@ fn external_axes(simulation: &Simulation) -> BTreeSet<usize> {
     moved
 }
 
+/// A routine that goes on after an error in an argument: the guard evaluates all arguments before the
+/// first movement, so that the error would come earlier.
+fn catcher(program: &Program) -> Option<Reason> {
+    let takes = |(numbers, block): &(Vec<Expr>, Block)| {
+        let named = |number: &Expr| is_number(number, &ARGUMENT_ERRORS);
+        (numbers.is_empty() || numbers.iter().any(named)) && may_take(block)
+    };
+    let routine = routines(program).find(|routine| routine.error.iter().any(takes))?;
+    Some(Reason::Handler(format!(
+        "an argument of it may end in an error that {} handles; the guard would raise it before the \
+         first movement",
+        routine.name.text
+    )))
+}
+
+/// Whether a handler does something after an error in an argument.
+fn may_take(block: &Block) -> bool {
+    block.iter().any(|stmt| match &stmt.kind {
+        StmtKind::If { branches, otherwise } => {
+            otherwise.is_some()
+                || branches.iter().any(|(condition, _)| may_hold(condition, &ARGUMENT_ERRORS))
+        }
+        StmtKind::Test { value, cases, default } if is_errno(value) => {
+            default.is_some()
+                || cases.iter().any(|(values, _)| {
+                    values.iter().any(|number| is_number(number, &ARGUMENT_ERRORS))
+                })
+        }
+        StmtKind::Raise(_) => false,
+        _ => true,
+    })
+}
+
 /// The movements that a handler keeps from being streams.
 fn handlers(program: &Program) -> BTreeMap<Span, Reason> {
     let mut found = BTreeMap::new();
@@ -144,10 +212,9 @@ fn handler_of(routine: &Routine) -> Option<String> {
     if routine.backward.is_some() {
         return Some("its routine has a BACKWARD handler, which goes back step by step".into());
     }
-    let mut taking = routine
-        .error
-        .iter()
-        .filter(|(numbers, _)| numbers.is_empty() || numbers.iter().any(is_movement_error));
+    let mut taking = routine.error.iter().filter(|(numbers, _)| {
+        numbers.is_empty() || numbers.iter().any(|n| is_number(n, &MOVEMENT_ERRORS))
+    });
     let again = taking.find_map(|(_, handler)| resumes(handler))?;
     Some(format!(
         "the error handler of its routine may go on within it ({again}) after an error of any kind"
@@ -166,13 +233,13 @@ fn resumes(block: &Block) -> Option<&'static str> {
         },
         StmtKind::If { branches, otherwise } => branches
             .iter()
-            .filter(|(condition, _)| may_hold(condition))
+            .filter(|(condition, _)| may_hold(condition, &MOVEMENT_ERRORS))
             .map(|(_, block)| block)
             .chain(otherwise)
             .find_map(resumes),
         StmtKind::Test { value, cases, default } if is_errno(value) => cases
             .iter()
-            .filter(|(values, _)| values.iter().any(is_movement_error))
+            .filter(|(values, _)| values.iter().any(|n| is_number(n, &MOVEMENT_ERRORS)))
             .map(|(_, block)| block)
             .chain(default)
             .find_map(resumes),
@@ -180,13 +247,13 @@ fn resumes(block: &Block) -> Option<&'static str> {
     })
 }
 
-/// Whether a condition can hold after an error of a movement.
-fn may_hold(condition: &Expr) -> bool {
+/// Whether a condition can hold after one of some errors.
+fn may_hold(condition: &Expr, errors: &[&str]) -> bool {
     match &condition.kind {
-        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(a) => is_movement_error(b),
-        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(b) => is_movement_error(a),
-        ExprKind::Binary(BinaryOp::And, a, b) => may_hold(a) && may_hold(b),
-        ExprKind::Binary(BinaryOp::Or, a, b) => may_hold(a) || may_hold(b),
+        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(a) => is_number(b, errors),
+        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(b) => is_number(a, errors),
+        ExprKind::Binary(BinaryOp::And, a, b) => may_hold(a, errors) && may_hold(b, errors),
+        ExprKind::Binary(BinaryOp::Or, a, b) => may_hold(a, errors) || may_hold(b, errors),
         _ => true,
     }
 }
@@ -195,9 +262,10 @@ fn is_errno(expr: &Expr) -> bool {
     matches!(&expr.kind, ExprKind::Ref(name) if name.key == "errno")
 }
 
-fn is_movement_error(number: &Expr) -> bool {
+/// Whether a number may be that of one of some errors.
+fn is_number(number: &Expr, errors: &[&str]) -> bool {
     match &number.kind {
-        ExprKind::Ref(name) => MOVEMENT_ERRORS.contains(&name.key.as_str()),
+        ExprKind::Ref(name) => errors.contains(&name.key.as_str()),
         _ => true,
     }
 }
@@ -293,6 +361,10 @@ impl Reach {
                 self.moves.get_or_insert(name.to_owned());
             }
             self.stores_path |= key == "storepath";
+            let is_own = is_movement(&key) || !may_write(&key) || is_writing(&key);
+            if !is_own && !only_reads(&key) && !OF_THE_CONTROLLER.contains(&key.as_str()) {
+                self.changes.get_or_insert(format!("{name}, which is in no file given,"));
+            }
             return;
         };
         if self.seen.insert((id.module, id.index)) {
@@ -329,7 +401,9 @@ impl Reach {
                 self.writes(program, module, target);
             }
             if let StmtKind::Call(call) = &stmt.kind {
-                for arg in call.args.iter().filter_map(Arg::value) {
+                let own = matches!(&call.callee, Callee::Name(name)
+                    if program.resolve(module, &name.key).is_none() && !may_write(&name.key));
+                for arg in call.args.iter().filter_map(Arg::value).filter(|_| !own) {
                     self.writes(program, module, arg);
                 }
                 match &call.callee {

@@ -262,7 +262,6 @@ pub(super) fn compared(
             label: "GripLoad".to_owned(),
             type_name: "loaddata",
             is_computed: false,
-            is_literal: false,
         };
         compared.extend(load.map(|load| (parameter, load)));
     }

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use super::work::Source;
 use crate::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::ir::instructions::{MoveForm, movement};
-use crate::ir::predefined;
 use crate::ir::program::Program;
 use crate::text::Span;
 
@@ -13,7 +12,7 @@ use crate::text::Span;
 #[derive(Clone)]
 pub(super) struct Argument {
     pub(super) span: Span,
-    /// The text of a datum of the program; none of numbers that the text itself has.
+    /// The text of a datum; none of numbers that the text itself has.
     pub(super) datum: Option<String>,
 }
 
@@ -22,18 +21,17 @@ pub(super) fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<S
     let mut found = BTreeMap::new();
     let routines = program.modules.iter().flat_map(|module| &module.routines);
     for block in routines.flat_map(Routine::blocks) {
-        of_block(block, &|speed| argument(program, files, speed), &mut found);
+        of_block(block, &|speed| argument(files, speed), &mut found);
     }
     found
 }
 
 /// How a speed argument is written; `None` for what a statement may not say twice.
-fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argument> {
+fn argument(files: &[Source], speed: &Expr) -> Option<Argument> {
     let span = speed.span;
     let is_number = |part: &Expr| matches!(part.kind, ExprKind::Num(_));
     let datum = match &speed.kind {
         ExprKind::Aggregate(parts) if parts.iter().all(is_number) => None,
-        ExprKind::Ref(name) if is_predefined(program, &name.key) => None,
         _ if is_datum(speed) => {
             let bytes = &files[span.file.0 as usize].file.bytes;
             let text = std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).ok()?;
@@ -45,17 +43,6 @@ fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argumen
         _ => return None,
     };
     Some(Argument { span, datum })
-}
-
-/// Whether a name is one that every controller knows and that the program does not have itself.
-fn is_predefined(program: &Program, key: &str) -> bool {
-    let is_global = (0..program.modules.len()).any(|m| program.resolve(m, key).is_some());
-    let mut routines = program.modules.iter().flat_map(|module| &module.routines);
-    let is_local = routines.any(|routine| {
-        let mut names = routine.params.iter().map(|param| &param.name);
-        names.any(|name| name.key == key) || routine.data.iter().any(|data| data.name.key == key)
-    });
-    predefined::lookup(key).is_some() && !is_global && !is_local
 }
 
 /// A name with components and elements, without calls.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::figures::{Figures, Retrofit, Verification};
+use super::figures::{Figures, LowerLimits, Retrofit, Verification};
 use super::goals::goals;
 use super::guards::Guards;
 use super::lower_limits::Lowered;
@@ -396,6 +396,12 @@ pub fn retrofit(
         uncertainty::uncertainty(model, &robots, (before, padding.as_ref()), after)
     });
     let original = figures(&simulation, &before).padded(padding.as_ref());
+    // A padded original waits less where its movements take longer.
+    let padded = |lower: LowerLimits| match padding {
+        Some(_) => LowerLimits { original_s: lower.original_s.max(original.cycle_s), ..lower },
+        None => lower,
+    };
+    let lower_limits = lower_limits.into_iter().map(padded).collect();
     let compared = (&original, &optimized, padding.as_ref());
     let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
     if freed {

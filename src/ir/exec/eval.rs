@@ -9,6 +9,9 @@ use super::super::program::{DataId, Symbol, Writer};
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::{Cell, CellId, Executor};
 
+/// Elements of an array, at most: more do not fit into a controller.
+const MOST_ELEMENTS: f64 = 100_000.0;
+
 impl Executor<'_> {
     /// The value of an expression.
     pub(super) fn eval(&mut self, expr: &Expr) -> Value {
@@ -203,9 +206,11 @@ impl Executor<'_> {
             ),
             None if !data.dims.is_empty() => {
                 let mut datum = self.default_datum(&data.type_name.key, 0);
+                let mut elements = 1.0;
                 for dim in data.dims.iter().rev() {
                     let n = self.eval(dim).datum.num().unwrap_or(0.0);
-                    if !(0.0..=100_000.0).contains(&n) {
+                    elements *= n;
+                    if !(0.0..=MOST_ELEMENTS).contains(&elements) {
                         return Value::unknown("the array is too large", dim.span);
                     }
                     datum = Datum::List(vec![datum; n as usize]);

@@ -2,6 +2,8 @@
 
 use super::known::{Known, Shape};
 use super::rules::Size;
+use super::skeleton;
+use crate::robot::geometry::Geometry;
 use crate::robot::link::Link;
 use crate::robot::model::Model;
 
@@ -11,18 +13,26 @@ const EVENLY_FILLED: f64 = 0.93;
 /// Distance of a rated load from the flange \[m\].
 const LOAD_DISTANCE: f64 = 0.1;
 
-/// The links of a robot of which there are meshes, and what they follow from.
-pub(super) fn links(known: &Known, size: Size) -> (Vec<Link>, String) {
+/// The links of a robot, of its meshes or of its axes alone, and what they follow from.
+pub(super) fn links(known: &Known, geometry: &Geometry, size: Size) -> (Vec<Link>, String) {
+    if known.links.is_empty() {
+        let (shapes, foot) = skeleton::shapes(geometry, size);
+        let source = "the axes, reach, payload and mass of the robot: a rule of 71 robots of ABB";
+        return (filled(&shapes, size.mass - foot), source.to_owned());
+    }
     let foot = known.foot.unwrap_or_default();
-    let moving = EVENLY_FILLED * (size.mass - foot);
+    let whose = if known.sister { "meshes of a sister" } else { "meshes" };
+    let links = filled(&known.links, EVENLY_FILLED * (size.mass - foot));
+    (links, format!("{whose}, evenly filled, and the mass of the robot"))
+}
+
+fn filled(shapes: &[Shape], moving: f64) -> Vec<Link> {
     let body = |shape: &Shape| Link {
         mass: shape.share * moving,
         com: shape.com,
         inertia: shape.gyration * (shape.share * moving),
     };
-    let whose = if known.sister { "meshes of a sister" } else { "meshes" };
-    let links = known.links.iter().map(body).collect();
-    (links, format!("{whose}, evenly filled, and the mass of the robot"))
+    shapes.iter().map(body).collect()
 }
 
 /// Distances along the stretched arm from joint 2: of each joint and of the flange \[m\].

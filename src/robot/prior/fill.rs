@@ -18,12 +18,15 @@ const ENGAGE_S: f64 = 0.1;
 /// Time of the planner from one acceleration limit to the other \[s\].
 const RAMP_S: f64 = 0.1;
 
+/// Joints of an arm that a prior is made for.
+const ARM: std::ops::RangeInclusive<usize> = 5..=7;
+
 /// The model with all that it lacks of dynamics, limits and power, estimated from its size. What it has
-/// stays. A robot without dynamics of which there are no meshes stays as it is.
+/// stays. A chain that is no arm stays as it is.
 #[must_use]
 pub fn estimated(model: Model) -> Model {
     let known = Known::of(&model);
-    if known.links.len() != model.dof {
+    if !ARM.contains(&model.dof) {
         return model;
     }
     let size = known.size(&model);
@@ -91,7 +94,7 @@ impl Filling {
         if !self.model.links.is_empty() {
             return;
         }
-        let (links, source) = links(known, size);
+        let (links, source) = links(known, &self.model.kinematics, size);
         self.model.links = links;
         for i in 1..=self.model.dof {
             for key in ["mass", "com", "inertia"] {

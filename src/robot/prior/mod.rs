@@ -13,6 +13,7 @@ mod fill;
 mod hypercube;
 mod known;
 mod rules;
+mod skeleton;
 mod spread;
 
 pub use fill::estimated;

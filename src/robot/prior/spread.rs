@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::hypercube::standard_normals;
 use super::known::Known;
 use super::rules;
+use super::skeleton;
 use crate::robot::link::Link;
 use crate::robot::model::Model;
 use crate::robot::provenance::Provenance;
@@ -15,12 +16,19 @@ use crate::robot::provenance::Provenance;
 /// meshes and makers' masses: 0.13 and 0.20 about axes 2 and 3, 0.14 to 0.25 of inertias.
 const LINK_MASS: [f64; 2] = [0.18, 0.33];
 const LINK_INERTIA: f64 = 0.35;
+/// The same of links that follow from the axes alone; and the power of the way that is left to the flange
+/// by which all links vary together.
+const AXES_LINK_MASS: [f64; 2] = [0.25, 0.6];
+const TILT: f64 = 0.163;
 /// Standard deviation of a centre of mass over the distance of the joints.
 const CENTRE: f64 = 0.03;
 /// The shortest such distance over the length of the arm.
 const SHORTEST: f64 = 0.1;
 /// Deviation of the logarithm of the mass that moves, beside that of the total mass.
 const MOVING: f64 = 0.05;
+const AXES_MOVING: f64 = 0.08;
+/// The same of centres that follow from the axes alone.
+const AXES_CENTRE: f64 = 0.05;
 /// Part of a deviation that is left of one that a paper states, or an identification without its own
 /// deviations; chosen.
 const PAPER: f64 = 0.3;
@@ -114,9 +122,17 @@ impl Spread {
             model.provenance_of(&table, "mass") == Some(Provenance::Estimated)
         };
         let shared_mass = (0..dof).all(estimated);
+        let by_axes = shared_mass && known.links.is_empty();
         if shared_mass {
             let total = known.mass.as_ref().map_or(rules::MASS_BY_SIZE, |(_, sd, _)| *sd);
-            add("total mass", vec![(Target::AllMasses, total.hypot(MOVING))]);
+            let moving = if by_axes { AXES_MOVING } else { MOVING };
+            add("total mass", vec![(Target::AllMasses, total.hypot(moving))]);
+            if by_axes {
+                let middles = skeleton::middles(&model.kinematics);
+                let tilt = middles.iter().enumerate();
+                let tilt = tilt.map(|(i, way)| (Target::Mass(i), -TILT * way.ln()));
+                add("masses of the links towards the flange", tilt.collect());
+            }
         }
         let length: f64 = model.kinematics.joints.iter().map(|j| j.translation.norm()).sum();
         for i in 0..dof {
@@ -125,13 +141,19 @@ impl Spread {
             let distance = next.max(SHORTEST * length);
             let mass = stated(model, &table, "mass", 0, model.links[i].mass);
             let mass = mass.unwrap_or_else(|| {
-                LINK_MASS[usize::from(i >= 3)] * looseness(model, &table, "mass")
+                let rough = if by_axes {
+                    AXES_LINK_MASS[usize::from(i + 2 >= dof)]
+                } else {
+                    LINK_MASS[usize::from(i >= 3)]
+                };
+                rough * looseness(model, &table, "mass")
             });
             let group = format!("masses of link {}", i + 1);
             add(&group, vec![(Target::Mass(i), mass)]);
             for axis in 0..3 {
                 let own = stated(model, &table, "com", axis, 1.0);
-                let rough = CENTRE * distance * looseness(model, &table, "com");
+                let centre = if by_axes { AXES_CENTRE } else { CENTRE };
+                let rough = centre * distance * looseness(model, &table, "com");
                 add(&group, vec![(Target::Centre(i, axis), own.unwrap_or(rough))]);
             }
             let inertia = LINK_INERTIA * looseness(model, &table, "inertia");
