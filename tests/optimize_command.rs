@@ -429,7 +429,8 @@ fn a_name_with_another_value_keeps_the_stream_out() {
 fn streams_for_a_speed_override_take_no_longer() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "MoveAbsJ jA,v1000,fine,tP;")).unwrap();
+    fs::write(&path, program("", "MoveAbsJ jB,v1000,fine,tP;\nMoveAbsJ jA,v1000,fine,tP;"))
+        .unwrap();
     let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--quiet"];
     for percent in ["50", "99"] {
         let options = ["--point-estimate", "--speed-override", percent];

@@ -71,7 +71,10 @@ fn speed(statement: &str) -> f64 {
         Some(name) => name.parse().unwrap(),
         None => {
             let literal = statement.split(",[").last().unwrap();
-            literal.split(',').next().unwrap().parse().unwrap()
+            let first = literal.split(',').next().unwrap();
+            let Some((share, name)) = first.split_once("*v") else { return first.parse().unwrap() };
+            let named: f64 = name.strip_suffix(".v_tcp").unwrap().parse().unwrap();
+            share.parse::<f64>().unwrap() * named
         }
     }
 }
@@ -236,7 +239,9 @@ fn retimed_speeds_follow_the_data_that_they_come_from() {
     assert!(line("MoveL pD,[").contains("*vAll{2}.v_tcp,"), "{retimed}");
     assert!(line("MoveJ pC,fSlow()").ends_with(",fine,tool0;"), "{retimed}");
     // Names that every controller has as well: who replaces v1000 by v100 gets that.
-    assert!(line("MoveAbsJ jB,[").contains("*v1000.v_ori,v1000.v_leax,v1000.v_reax]"), "{retimed}");
+    assert!(line("MoveAbsJ jA,[").contains("*v1000.v_ori,v1000.v_leax,v1000.v_reax]"), "{retimed}");
+    // What vmax is depends on the controller.
+    assert!(line("MoveAbsJ jB,[").contains(",5000,1000]"), "{retimed}");
 
     let times = |text: &str, name: &str| -> Vec<(u64, f64)> {
         let path = folder.path().join(name);

@@ -371,14 +371,14 @@ fn what_interrupt_routines_do_by_functions_counts() {
 fn arguments_that_may_end_in_an_error_stay_where_somebody_handles_it() {
     let here = target(50.0);
     for (last, handler, expected) in [
-        ("Offs(pHere,0,90,-40/nS)", "ERROR\nTRYNEXT;", "handler"),
+        ("Offs(pHere,0,90,-40/nS)", "ERROR\nTRYNEXT;", true),
+        ("Offs(pHere,0,90,-nH{nS})", "ERROR\nIF ERRNO=ERR_ARRAYINDEX THEN\nTRYNEXT;\nENDIF", true),
         (
             "Offs(pHere,0,90,-nH{nS})",
-            "ERROR\nIF ERRNO=ERR_ARRAYINDEX THEN\nTRYNEXT;\nENDIF",
-            "handler",
+            "ERROR\nIF ERRNO=ERR_WAIT_MAXTIME THEN\nTRYNEXT;\nENDIF",
+            false,
         ),
-        ("Offs(pHere,0,90,-nH{nS})", "ERROR\nIF ERRNO=ERR_WAIT_MAXTIME THEN\nTRYNEXT;\nENDIF", ""),
-        ("Offs(pHere,0,90,-40/nS)", "", ""),
+        ("Offs(pHere,0,90,-40/nS)", "", false),
     ] {
         let declared = format!(
             "CONST robtarget pHere:={here};\nVAR num nS:=1;\nVAR num nH{{2}}:=[40,50];\n\
@@ -387,6 +387,7 @@ fn arguments_that_may_end_in_an_error_stay_where_somebody_handles_it() {
         );
         let movements = ["MoveJ pHere,v1000,fine,tool0;", "rGo;"].map(str::to_owned);
         let told = reasons(&segments(&declared, &movements));
-        assert_eq!(told.get(1).map_or("", String::as_str), expected, "{last} {handler}");
+        let is_told = told.iter().any(|reason| reason == "handler");
+        assert_eq!(is_told, expected, "{last} {handler}: {told:?}");
     }
 }

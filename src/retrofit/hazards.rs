@@ -55,8 +55,9 @@ const CHANGES_MOVEMENTS: [&str; 29] = [
     "worldacclim",
 ];
 
-/// Functions of RAPID that tell something of the controller or of files and do nothing else.
-const OF_THE_CONTROLLER: [&str; 14] = [
+/// Functions of RAPID that tell something of the controller or of files, or write to their arguments,
+/// and do nothing else.
+const OF_THE_CONTROLLER: [&str; 15] = [
     "cdate",
     "clkread",
     "cspeedoverride",
@@ -70,6 +71,7 @@ const OF_THE_CONTROLLER: [&str; 14] = [
     "present",
     "robos",
     "runmode",
+    "strtoval",
     "testandset",
 ];
 
@@ -363,7 +365,7 @@ impl Reach {
             self.stores_path |= key == "storepath";
             let is_own = is_movement(&key) || !may_write(&key) || is_writing(&key);
             if !is_own && !only_reads(&key) && !OF_THE_CONTROLLER.contains(&key.as_str()) {
-                self.changes.get_or_insert(format!("{name}, which is in no file given,"));
+                self.changes.get_or_insert(format!("{name}, of which nothing is known here,"));
             }
             return;
         };

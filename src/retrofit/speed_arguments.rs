@@ -21,17 +21,21 @@ pub(super) fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<S
     let mut found = BTreeMap::new();
     let routines = program.modules.iter().flat_map(|module| &module.routines);
     for block in routines.flat_map(Routine::blocks) {
-        of_block(block, &|speed| argument(files, speed), &mut found);
+        of_block(block, &|speed| argument(program, files, speed), &mut found);
     }
     found
 }
 
 /// How a speed argument is written; `None` for what a statement may not say twice.
-fn argument(files: &[Source], speed: &Expr) -> Option<Argument> {
+fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argument> {
     let span = speed.span;
     let is_number = |part: &Expr| matches!(part.kind, ExprKind::Num(_));
     let datum = match &speed.kind {
         ExprKind::Aggregate(parts) if parts.iter().all(is_number) => None,
+        // Its value is that of the controller.
+        ExprKind::Ref(name) if name.key == "vmax" && program.resolve_global("vmax").is_none() => {
+            None
+        }
         _ if is_datum(speed) => {
             let bytes = &files[span.file.0 as usize].file.bytes;
             let text = std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).ok()?;

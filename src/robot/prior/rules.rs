@@ -125,11 +125,13 @@ pub(super) fn loss(peak: f64) -> Rough {
     Rough { value: 4.0 * (peak / 10.0).powf(-1.4), sd: LOSS_SD }
 }
 
+/// Payload over the mass of the robot where it is not known: the middle of ABB's robots.
+const PAYLOAD: f64 = 0.1;
+
 /// Payload of an arm of that mass (kg) and reach (m) \[kg\].
 pub(super) fn payload(mass: Option<f64>, reach: f64) -> f64 {
-    // The rule of the mass, turned round; a robot of which nothing is known carries 10 kg at 1.4 m.
-    let of_mass = |mass: f64| 10.0 * (mass / (113.0 * reach.powf(1.79))).powf(1.0 / 0.26);
-    mass.map_or(5.0 * reach * reach, of_mass).clamp(0.5, 500.0)
+    // A robot of which nothing is known carries 10 kg at 1.4 m.
+    mass.map_or(5.0 * reach * reach, |mass| PAYLOAD * mass).clamp(0.5, 1000.0)
 }
 
 /// Mass of an arm of that reach (m) and payload (kg) \[kg\]: of ABB's industrial robots, with a standard

@@ -20,6 +20,8 @@ const LINK_INERTIA: f64 = 0.35;
 /// by which all links vary together.
 const AXES_LINK_MASS: [f64; 2] = [0.25, 0.6];
 const TILT: f64 = 0.163;
+/// The same where the payload is not known, which the rule asks for.
+const TILT_WITHOUT_PAYLOAD: f64 = 0.26;
 /// Standard deviation of a centre of mass over the distance of the joints.
 const CENTRE: f64 = 0.03;
 /// The shortest such distance over the length of the arm.
@@ -128,9 +130,10 @@ impl Spread {
             let moving = if by_axes { AXES_MOVING } else { MOVING };
             add("total mass", vec![(Target::AllMasses, total.hypot(moving))]);
             if by_axes {
+                let power = if known.payload.is_some() { TILT } else { TILT_WITHOUT_PAYLOAD };
                 let middles = skeleton::middles(&model.kinematics);
                 let tilt = middles.iter().enumerate();
-                let tilt = tilt.map(|(i, way)| (Target::Mass(i), -TILT * way.ln()));
+                let tilt = tilt.map(|(i, way)| (Target::Mass(i), -power * way.ln()));
                 add("masses of the links towards the flange", tilt.collect());
             }
         }
