@@ -113,13 +113,8 @@ fn dwells_of_a_program_have_places() {
 #[test]
 fn what_is_missing_is_said() {
     let pose = "0,0,0,0,0,0";
-    let folder = tempfile::tempdir().unwrap();
-    let bare = folder.path().join("bare.toml");
-    std::fs::write(&bare, "extends = \"IRB120-3/0.58\"\nname = \"another\"\n").unwrap();
-    let bare = bare.to_str().unwrap();
     for (args, way_out) in [
         (vec!["--pose", pose], "--robot NAME"),
-        (vec!["--robot", bare, "--pose", pose], "[[link]]"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0"], "six axis positions"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0,0,0,900"], "joint 6"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "1e300,0,0,0,0,0"], "at 1.000e300 deg"),
@@ -130,4 +125,14 @@ fn what_is_missing_is_said() {
         assert_eq!(output.status.code(), Some(2), "{args:?}");
         assert!(message.contains(way_out), "{message}");
     }
+}
+
+/// An arm of which nobody knows the bodies gets estimated ones.
+#[test]
+fn an_unknown_arm_has_estimates() {
+    let folder = tempfile::tempdir().unwrap();
+    let bare = folder.path().join("bare.toml");
+    std::fs::write(&bare, "extends = \"IRB120-3/0.58\"\nname = \"another\"\n").unwrap();
+    let result = json(&["--robot", bare.to_str().unwrap(), "--pose", "0,0,0,0,0,0"]);
+    assert!(result["poses"][0]["holding_w"].as_f64().unwrap() > 0.0, "{result}");
 }
