@@ -339,6 +339,15 @@ fn said_of(declarations: &str, statements: &str, args: &[&str]) -> (String, Opti
     said(folder.path(), &[&["optimize", path.to_str().unwrap()], args].concat())
 }
 
+/// The JSON of a retrofit of such a program.
+fn optimized(statements: &str, options: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.mod");
+    fs::write(&path, program("", statements)).unwrap();
+    let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--quiet"];
+    json(&[&args[..], options].concat())
+}
+
 #[test]
 fn the_time_asked_for_has_bounds() {
     let cases: [&[&str]; 6] = [
@@ -427,14 +436,10 @@ fn a_name_with_another_value_keeps_the_stream_out() {
 /// The time of a stream is stretched by the operator's override as that of the movements is.
 #[test]
 fn streams_for_a_speed_override_take_no_longer() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "MoveAbsJ jB,v1000,fine,tP;\nMoveAbsJ jA,v1000,fine,tP;"))
-        .unwrap();
-    let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--quiet"];
     for percent in ["50", "99"] {
+        let statements = "MoveAbsJ jB,v1000,fine,tP;\nMoveAbsJ jA,v1000,fine,tP;";
         let options = ["--point-estimate", "--speed-override", percent];
-        let result = json(&[&args[..], &options, &ROBOT].concat());
+        let result = optimized(statements, &[&options[..], &ROBOT].concat());
         let segments = result["segments"].as_array().unwrap();
         let streams = segments.iter().filter(|segment| segment["rewritten"] == true).count();
         assert!(streams > 0, "{result:#}");
@@ -546,14 +551,9 @@ fn a_longer_time_is_compared_with_a_padded_original() {
 /// are lower is no more than the original loses: a known wait keeps a reserve for that.
 #[test]
 fn given_time_is_used_where_limits_are_assumed() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "WaitTime 0.5;\nMoveAbsJ jB,v1000,fine,tP;\nWaitDI diGo,1;"))
-        .unwrap();
-    let path = path.to_str().unwrap();
+    let statements = "WaitTime 0.5;\nMoveAbsJ jB,v1000,fine,tP;\nWaitDI diGo,1;";
     let optimized = |options: &[&str]| {
-        let args = ["optimize", path, "--robot", "IRB1600-10/1.45", "--format", "json", "--quiet"];
-        json(&[&args[..], options].concat())
+        optimized(statements, &[&["--robot", "IRB1600-10/1.45"], options].concat())
     };
     let plain = optimized(&[]);
     let late = (number(&plain, "/original/cycle_s") + 1.0).to_string();

@@ -628,3 +628,13 @@ fn a_wait_for_several_inputs_ends_with_the_one_that_decides() {
     assert_eq!(ends("WHILE di3=0 OR di4=0 DO\nWaitTime 0.1;\nENDWHILE"), 5.5);
     assert_eq!(ends("WHILE di3=0 AND di4=0 DO\nWaitTime 0.1;\nENDWHILE"), 4.0);
 }
+
+/// An array of which no memory holds the elements is told, not built.
+#[test]
+fn arrays_beyond_all_memory_are_not_built() {
+    let body = "VAR num all{10000,10000,10000};\nall{1,1,1}:=1;\nMoveJ a,v1000,fine,tool0;\n\
+                MoveJ b,[all{1,1,2}+100,500,5000,1000],fine,tool0;";
+    let simulation = simulated(body);
+    let told = reasons(&simulation);
+    assert!(told.iter().any(|reason| reason.contains("too large")), "{told:?}");
+}

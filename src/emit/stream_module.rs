@@ -28,10 +28,11 @@ const PLACE_TOLERANCE_MM: f64 = 0.1;
 /// Decimals of a pause, s: with the ways to it and back it takes as long as the wait did.
 const PAUSE_DECIMALS: usize = 7;
 
-/// No speed override, %.
-const WHOLE: f64 = 100.0;
-/// Decimals of a time under an override, s: a part of a time that has [`TIME_DECIMALS`].
-const SHARED_TIME_DECIMALS: usize = 7;
+/// Speed override at which movements take their `\T`, %.
+const FULL_SPEED: f64 = 100.0;
+/// Decimals of a `\T` that is stretched by an override, s: it is a share of a time that has
+/// [`TIME_DECIMALS`].
+const STRETCHED_DECIMALS: usize = 7;
 
 /// A stream as text.
 #[derive(Serialize)]
@@ -210,10 +211,10 @@ fn stream_text(
 
 /// `\T` of a movement that takes `t` seconds: a speed override stretches it.
 fn time(t: f64, override_percent: f64) -> String {
-    if override_percent == WHOLE {
+    if override_percent == FULL_SPEED {
         number(t, TIME_DECIMALS)
     } else {
-        number(override_percent / WHOLE * t, SHARED_TIME_DECIMALS)
+        number(override_percent / FULL_SPEED * t, STRETCHED_DECIMALS)
     }
 }
 

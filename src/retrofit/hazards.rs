@@ -363,8 +363,8 @@ impl Reach {
                 self.moves.get_or_insert(name.to_owned());
             }
             self.stores_path |= key == "storepath";
-            let is_own = is_movement(&key) || !may_write(&key) || is_writing(&key);
-            if !is_own && !only_reads(&key) && !OF_THE_CONTROLLER.contains(&key.as_str()) {
+            let is_instruction = is_movement(&key) || !may_write(&key) || is_writing(&key);
+            if !is_instruction && !only_reads(&key) && !OF_THE_CONTROLLER.contains(&key.as_str()) {
                 self.changes.get_or_insert(format!("{name}, of which nothing is known here,"));
             }
             return;
@@ -403,10 +403,12 @@ impl Reach {
                 self.writes(program, module, target);
             }
             if let StmtKind::Call(call) = &stmt.kind {
-                let own = matches!(&call.callee, Callee::Name(name)
+                let only_reads = matches!(&call.callee, Callee::Name(name)
                     if program.resolve(module, &name.key).is_none() && !may_write(&name.key));
-                for arg in call.args.iter().filter_map(Arg::value).filter(|_| !own) {
-                    self.writes(program, module, arg);
+                if !only_reads {
+                    for arg in call.args.iter().filter_map(Arg::value) {
+                        self.writes(program, module, arg);
+                    }
                 }
                 match &call.callee {
                     Callee::Name(name) => self.call(program, module, &name.text),

@@ -9,8 +9,8 @@ use super::super::program::{DataId, Symbol, Writer};
 use super::super::value::{Datum, Dependence, Origin, Value};
 use super::{Cell, CellId, Executor};
 
-/// Elements of an array, at most: more do not fit into a controller.
-const MOST_ELEMENTS: f64 = 100_000.0;
+/// Elements of an array that is followed, at most: larger ones take too much memory and time.
+const MOST_ELEMENTS: f64 = 1_000_000.0;
 
 impl Executor<'_> {
     /// The value of an expression.

@@ -2,9 +2,8 @@
 //!
 //! A gear or a tube weighs what the moment of all that it carries asks for: of the rest of the arm and
 //! of the payload. So masses follow from the way that is left to the flange. Drives are lumps at the
-//! bearings, tubes run between them. Constants are fitted to the meshes of 71 robots of ABB in 18 families,
-//! each family left out once: the moments about axes 2 and 3 then have standard deviations of 0.16 and
-//! 0.26 of their logarithm against the meshes (docs/robots.md).
+//! bearings, tubes run between them. Constants are fitted to the meshes of 71 robots of ABB; how near the rule
+//! comes to them is in docs/robots.md.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
@@ -38,11 +37,11 @@ const SHORT: f64 = 1e-9;
 
 type Point = Vector3<f64>;
 
-/// The line of the arm at the angles 0.
+/// The line of the arm at the angles 0, in the frame of its base.
 struct Line {
     /// Foot, bearings, flange \[m\].
     points: Vec<Point>,
-    /// Rotations of the joints' frames and their origins.
+    /// Rotations of the joints' frames, and their origins \[m\].
     frames: Vec<(Matrix3<f64>, Point)>,
 }
 
@@ -92,10 +91,13 @@ fn nearest((at, axis): &(Point, Unit<Point>), other: &(Point, Unit<Point>)) -> O
         .then(|| at + axis.into_inner() * (other.0 - at).cross(&other.1).dot(&cross) / square)
 }
 
-/// A body about its own centre.
+/// A body in the frame of the base.
 struct Body {
+    /// kg.
     mass: f64,
+    /// Its centre \[m\].
     at: Point,
+    /// About its centre \[kg m²\].
     inertia: Matrix3<f64>,
 }
 
