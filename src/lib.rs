@@ -3,6 +3,7 @@
 //! The layers, lowest first; `docs/architecture.md` is the map of the code.
 
 pub mod blind;
+pub mod calibrate;
 pub mod cli;
 pub mod config;
 pub mod diagnostics;

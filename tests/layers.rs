@@ -21,7 +21,7 @@ const fn layer(name: &'static str, imports: &'static [&'static str]) -> Layer {
 }
 
 /// Lowest first. A layer may be planned and not exist yet.
-const LAYERS: [Layer; 23] = [
+const LAYERS: [Layer; 24] = [
     layer("text", &[]),
     layer("syntax", &["text"]),
     layer("diagnostics", &["text"]),
@@ -43,7 +43,8 @@ const LAYERS: [Layer; 23] = [
     layer("generate", &["retrofit"]),
     layer("gap", &["log", "effects", "identify", "motion", "energy"]),
     layer("blind", &["robot"]),
-    layer("report", &["retrofit", "excite", "identify", "lint", "gap", "blind"]),
+    layer("calibrate", &["log", "energy"]),
+    layer("report", &["calibrate", "retrofit", "excite", "identify", "lint", "gap", "blind"]),
     layer("config", &["retrofit", "lint"]),
 ];
 

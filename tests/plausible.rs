@@ -6,7 +6,7 @@ use std::path::Path;
 
 use joulepath::dynamics::{Data, Load, gravity, torque};
 use joulepath::effects::applied;
-use joulepath::energy::moments::Change;
+use joulepath::energy::change::Change;
 use joulepath::energy::plausible::moments;
 use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::{Options, Simulation, simulate};

@@ -3,6 +3,7 @@
 pub mod backinfo;
 pub mod backup;
 pub mod blind;
+pub mod calibrate;
 pub mod choice;
 pub mod common;
 pub mod diagnose;
@@ -57,6 +58,7 @@ enum Command {
     Excite(Box<excite::ExciteArgs>),
     Streamtest(streamtest::StreamtestArgs),
     Identify(Box<identify::IdentifyArgs>),
+    Calibrate(Box<calibrate::CalibrateArgs>),
     Predict(predict::PredictArgs),
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
@@ -80,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Excite(args) => excite::run(&args),
         Command::Streamtest(args) => streamtest::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::Calibrate(args) => calibrate::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),

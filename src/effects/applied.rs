@@ -1,5 +1,6 @@
 //! Robot files with effects.
 
+use crate::robot::prior::Plausible;
 use crate::robot::{self, EffectParameters, Given, Law, Model, RobotError, nearest};
 
 use super::effect::{Effect, Form, Of, Parameter, padded};
@@ -19,7 +20,26 @@ pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
 /// # Errors
 /// As of [`load`].
 pub fn load_estimated(name_or_path: &str) -> Result<Model, RobotError> {
-    applied(robot::prior::estimated(robot::load(name_or_path)?))
+    with_estimates(robot::load(name_or_path)?)
+}
+
+/// A model with estimates in place of what is not known of an arm, and with its effects.
+///
+/// # Errors
+/// As of [`load`].
+pub fn with_estimates(model: Model) -> Result<Model, RobotError> {
+    let model = applied(robot::prior::estimated(model))?;
+    robot::prior::check_calibration(&model)?;
+    Ok(model)
+}
+
+/// A plausible robot as a model of its own.
+///
+/// # Errors
+/// Its effects lead to what no robot has.
+pub fn drawn(model: &Model, robot: &Plausible) -> Result<Model, RobotError> {
+    // Laws are those of the effects: they are worked out anew.
+    applied(Model { laws: Vec::new(), ..robot.applied(model) })
 }
 
 /// The same of a text; `file` names it in messages.

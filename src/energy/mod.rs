@@ -5,7 +5,10 @@
 //! motion energy.
 
 pub mod account;
+pub mod along;
 pub mod brakes;
+pub mod change;
+mod features;
 pub mod moments;
 pub mod parts;
 pub mod plausible;

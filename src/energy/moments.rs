@@ -13,13 +13,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::change::Change;
+use super::features::{self, OF_JOINT};
 use super::parts::EnergyParts;
-use crate::dynamics::{
-    Data, Load, RIGID, Regressor, laws, link_parameters, motor_rates, regressor, sense, torque,
-};
+use crate::dynamics::{Data, Load, Regressor};
 use crate::motion::timeline::{Event, Run, What};
 use crate::path::joint_path::Joints;
-use crate::robot::prior::Plausible;
 use crate::robot::{MAX_DOF, Model, Sharing};
 
 /// Length of an interval with two points, s: sums over a motion are then right to some thousandths.
@@ -28,8 +27,6 @@ const STEP: f64 = 0.1;
 const STEPS: (f64, f64) = (6.0, 400.0);
 /// Points of Gauss's rule on [0, 1].
 const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
-/// Parameters of a joint: rotor, viscous and Coulomb friction, spring.
-const OF_JOINT: usize = 4;
 
 /// Sums over motions and rests.
 #[derive(Clone, Debug)]
@@ -56,7 +53,7 @@ impl Moments {
     /// Of nothing.
     pub fn none(model: &Model) -> Moments {
         let joint = |j: usize| {
-            let n = 1 + RIGID * (model.dof - j) + OF_JOINT;
+            let n = features::count(model, j);
             OfJoint {
                 moving: DMatrix::zeros(n, n),
                 resting: DMatrix::zeros(n, n),
@@ -78,15 +75,15 @@ impl Moments {
         moments
     }
 
-    /// Adds others.
-    pub fn add(&mut self, other: &Moments) {
+    /// Adds others, `times` as often.
+    pub fn add(&mut self, other: &Moments, times: f64) {
         for (sum, joint) in self.joints.iter_mut().zip(&other.joints) {
-            sum.moving += &joint.moving;
-            sum.resting += &joint.resting;
-            sum.work += &joint.work;
-            sum.burnt += &joint.burnt;
+            sum.moving += &joint.moving * times;
+            sum.resting += &joint.resting * times;
+            sum.work += &joint.work * times;
+            sum.burnt += &joint.burnt * times;
         }
-        self.open_s += other.open_s;
+        self.open_s += times * other.open_s;
     }
 
     /// Adds a run.
@@ -129,27 +126,13 @@ impl Moments {
         let mut burns = vec![[false; MAX_DOF]; states.len()];
         let resting = states.iter().all(|[_, qd, qdd]| qd.iter().chain(qdd).all(|x| *x == 0.0));
         for (k, [q, qd, qdd]) in states.iter().enumerate() {
-            let all = torque(model, &mut data, load, q, qd, qdd);
-            regressor(model, &mut rows, q, qd, qdd);
-            let senses = motor_rates(model, qd).map(sense);
-            let [springs, _] = laws(model, f64::INFINITY, [q, qd], &all.rigid, &senses);
+            let scratch = (&mut data, &mut rows);
+            let tau = features::write(model, scratch, load, [q, qd, qdd], (&mut features, k));
             let mut power = 0.0;
             for j in 0..model.dof {
-                let tau = all.rigid[j] + all.friction[j];
-                power += tau * qd[j];
+                power += tau[j] * qd[j];
                 rates[k][j] = qd[j];
-                burns[k][j] = tau * qd[j] < 0.0;
-                let mut row = features[j].row_mut(k);
-                row[0] = tau;
-                for link in j..model.dof {
-                    for (p, x) in rows.rows[j][link].iter().enumerate() {
-                        row[1 + RIGID * (link - j) + p] = *x;
-                    }
-                }
-                let own = 1 + RIGID * (model.dof - j);
-                for (p, x) in [qdd[j], qd[j], sense(qd[j]), springs[j]].into_iter().enumerate() {
-                    row[own + p] = x;
-                }
+                burns[k][j] = tau[j] * qd[j] < 0.0;
             }
             if model.drive.sharing == Sharing::Bus {
                 burns[k] = [power < 0.0; MAX_DOF];
@@ -191,58 +174,5 @@ impl Moments {
             parts.drive_j += left * linear(&joint.burnt, 1..of.values.len());
         }
         parts
-    }
-}
-
-/// What differs from the model in a robot, as sums take it.
-#[derive(Clone, Debug)]
-pub struct Change {
-    joints: Vec<ChangeOfJoint>,
-    base_w: f64,
-    coils_w: f64,
-}
-
-#[derive(Clone, Debug)]
-struct ChangeOfJoint {
-    values: DVector<f64>,
-    loss: f64,
-    model_loss: f64,
-}
-
-impl Change {
-    /// Of a plausible robot.
-    pub fn of(model: &Model, robot: &Plausible) -> Change {
-        let own = Plausible::of(model);
-        let bodies: Vec<[f64; RIGID]> = robot
-            .links
-            .iter()
-            .zip(&own.links)
-            .map(|(new, old)| {
-                let (new, old) = (link_parameters(new), link_parameters(old));
-                std::array::from_fn(|p| new[p] - old[p])
-            })
-            .collect();
-        let joint = |j: usize| {
-            let of_joint = [
-                robot.rotors[j] - own.rotors[j],
-                robot.viscous[j] - own.viscous[j],
-                robot.coulomb[j] - own.coulomb[j],
-                robot.spring - own.spring,
-            ];
-            let values = std::iter::once(1.0)
-                .chain(bodies[j..].iter().flatten().copied())
-                .chain(of_joint)
-                .collect::<Vec<f64>>();
-            ChangeOfJoint {
-                values: DVector::from_vec(values),
-                loss: robot.loss[j],
-                model_loss: own.loss[j],
-            }
-        };
-        Change {
-            joints: (0..model.dof).map(joint).collect(),
-            base_w: robot.base_w - own.base_w,
-            coils_w: robot.coils_w - own.coils_w,
-        }
     }
 }

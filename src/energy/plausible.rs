@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::account::Account;
-use super::moments::{Change, Moments};
+use super::change::Change;
+use super::moments::Moments;
 use super::parts::EnergyParts;
 use crate::motion::Simulation;
 use crate::robot::Model;
@@ -47,7 +49,8 @@ impl Interval {
     }
 }
 
-/// Something that is not known of the robot, with its share of the variance of a result.
+/// Something that is not known of the robot, with the share of the variance of a result that would go
+/// if it were known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// What it is.
@@ -90,19 +93,17 @@ impl Robots {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
         let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
-        let mut groups: BTreeMap<&str, f64> = BTreeMap::new();
+        let mut groups: BTreeMap<&str, Vec<&Vec<f64>>> = BTreeMap::new();
         for (latent, z) in self.spread.latents.iter().zip(&self.draws.latents) {
-            // The latent numbers are independent, of mean 0 and variance 1.
-            let slope = z.iter().zip(values).map(|(z, x)| z * (x - mean)).sum::<f64>() / count;
-            *groups.entry(&latent.group).or_default() += slope * slope / variance;
+            groups.entry(&latent.group).or_default().push(z);
         }
-        // By chance, too, a group explains something.
-        let chance = 1.0 / count;
+        let centred: Vec<f64> = values.iter().map(|x| x - mean).collect();
         let mut parts: Vec<Contribution> = groups
             .into_iter()
-            .map(|(group, share)| Contribution {
+            .map(|(group, latents)| Contribution {
                 group: group.to_owned(),
-                share: (share - chance).max(0.0),
+                // By chance, too, a group explains something.
+                share: (explained(&latents, &centred) / variance - latents.len() as f64 / count).max(0.0),
                 narrowed_by: narrowed_by(group),
             })
             .filter(|part| part.share >= LEAST)
@@ -112,6 +113,21 @@ impl Robots {
         parts
     }
 }
+
+/// Variance that would go if the latent numbers of a group were known: what a linear function of them
+/// explains. Draws of a calibrated robot are correlated.
+fn explained(latents: &[&Vec<f64>], centred: &[f64]) -> f64 {
+    let count = centred.len() as f64;
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / count;
+    let n = latents.len();
+    let gram = DMatrix::from_fn(n, n, |i, k| product(latents[i], latents[k]));
+    let with = DVector::from_iterator(n, latents.iter().map(|z| product(z, centred)));
+    let solved = gram.svd(true, true).solve(&with, SINGULAR);
+    solved.map_or(0.0, |slopes| slopes.dot(&with))
+}
+
+/// Singular values of latent numbers below this are none.
+const SINGULAR: f64 = 1e-9;
 
 /// The measurement that would tell most of a group.
 fn narrowed_by(group: &str) -> &'static str {
@@ -142,7 +158,7 @@ pub struct Plausibility {
 /// The sums of a whole simulation.
 pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     let sum = |mut a: Moments, b: Moments| {
-        a.add(&b);
+        a.add(&b, 1.0);
         a
     };
     simulation

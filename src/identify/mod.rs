@@ -43,7 +43,7 @@ pub use misses::Misses;
 pub use prepare::{Hints, prepare};
 pub use quality::{Grade, Quality};
 pub use samples::{Block, Samples, Source};
-pub use torque::{Torques, torques};
+pub use torque::{Torques, per_ampere, torques};
 pub use units::{beyond_range, check_angles, check_torques, weight_factor};
 pub use whiteness::Whiteness;
 pub use work::{Free, Identified, Settings, identify};

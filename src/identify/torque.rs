@@ -79,7 +79,10 @@ pub fn torques(model: &Model, log: &Log) -> Result<Torques, IdentifyError> {
 }
 
 /// Torque at the joint for a current of 1 A rms \[Nm/A\].
-fn per_ampere(model: &Model) -> Result<Vec<f64>, IdentifyError> {
+///
+/// # Errors
+/// The model has no torque constants.
+pub fn per_ampere(model: &Model) -> Result<Vec<f64>, IdentifyError> {
     let motors = model.motors.as_ref();
     let constants = motors.and_then(|motors| motors.torque_constant.as_ref());
     match (motors, constants) {

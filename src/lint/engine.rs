@@ -266,7 +266,7 @@ fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
     let model = job.model?;
     let simulation = simulate(program, entry, model, &job.options);
     let account = account(model, &simulation);
-    Some(Cycle::new(simulation, account, job.options.clone()))
+    Some(Cycle::new(model, simulation, account, job.options.clone()))
 }
 
 /// Drops what comments take back, and adds what comments take back in vain.

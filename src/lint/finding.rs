@@ -66,9 +66,10 @@ impl Finding {
 pub struct Saving {
     /// J.
     pub energy_j: f64,
-    /// J: the least, with every part of the energy off by its share to the bad side.
+    /// J: 90 % of the plausible robots save more than `low_j` and less than `high_j`, 5 % on each side
+    /// left out.
     pub low_j: f64,
-    /// J: the most.
+    /// As before.
     pub high_j: f64,
     /// s; negative where the change takes longer.
     pub time_s: f64,

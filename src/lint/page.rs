@@ -12,9 +12,9 @@ What `joulepath lint` finds, from the rules' own files (`src/lint/rules`); `joul
 shows one of them. A test keeps this page fresh.
 
 **Savings** are the difference of two simulated cycles, with and without the change that the
-message names. They are told per simulated cycle. The interval is what comes out where every part
-of the energy is off by its share to the good or the bad side: rigid body 10 %, friction 25 %,
-copper 25 %, drive 50 %, idle 30 %, brakes 50 %. Without a robot, without dynamics, and where the
+message names. They are told per simulated cycle. The interval holds what the change saves in 90 % of
+the robots that are as plausible as the one given (docs/energy.md): it is wide for an estimated
+robot, narrow for an identified or a calibrated one. Without a robot, without dynamics, and where the
 cycle does not come by, nothing is told: `saving_j` is null. Findings whose saving is below the
 threshold (1 J, `--threshold`, or `[lint]` of the configuration) are not told, and neither is a
 change that saves nothing or whose interval reaches below zero.

@@ -5,18 +5,18 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use super::finding::{Per, Saving};
+use crate::dynamics::Load;
 use crate::energy::account::at_rest;
+use crate::energy::moments::Moments;
+use crate::energy::plausible::{Interval, Robots};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::movement::{Movement, Output, Wait};
-use crate::motion::timeline::{Run, Simulation, WaitBasis, What};
+use crate::motion::timeline::{Event, Run, Simulation, WaitBasis, What};
 use crate::motion::{Options, Step, replay};
 use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
 use crate::text::Span;
 
-/// Share by which a part of the energy may be off, without a calibration: rigid body, friction,
-/// copper, drive, idle, brakes. Chosen; docs/lints.md tells them.
-const DOUBT: [f64; 6] = [0.1, 0.25, 0.25, 0.5, 0.3, 0.5];
 /// Largest distance between two places that count as one, rad.
 const SAME: f64 = 1e-4;
 /// Runs behind a change that may begin elsewhere because of it.
@@ -30,6 +30,8 @@ pub struct Cycle {
     pub simulation: Simulation,
     /// The joules of it.
     pub account: Account,
+    /// Robots as plausible as the one it was simulated with.
+    robots: Option<Robots>,
     /// How it was simulated.
     pub options: Options,
     /// The events that hold each statement, in order.
@@ -40,7 +42,12 @@ pub struct Cycle {
 
 impl Cycle {
     /// Of a simulation and its energy.
-    pub fn new(simulation: Simulation, account: Account, options: Options) -> Cycle {
+    pub fn new(
+        model: &Model,
+        simulation: Simulation,
+        account: Account,
+        options: Options,
+    ) -> Cycle {
         let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
         let mut concurrent = false;
         for (index, event) in simulation.events.iter().enumerate() {
@@ -61,7 +68,8 @@ impl Cycle {
                 What::Output(..) | What::Left(_) => {}
             }
         }
-        Cycle { simulation, account, options, events, concurrent }
+        let robots = Robots::of(model);
+        Cycle { simulation, account, robots, options, events, concurrent }
     }
 
     /// Events that hold one of some statements, in order.
@@ -108,10 +116,12 @@ impl Weighed {
 pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 
 /// What a change does to the cycle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Difference {
     /// Energy that it saves.
     pub saved: EnergyParts,
+    /// The same of all parts with plausible robots \[J\]; empty where nothing of the robot is uncertain.
+    pub plausible_j: Vec<f64>,
     /// Time that it saves, s.
     pub time_s: f64,
     /// Time that it would take more without any wait that takes it up, s.
@@ -121,18 +131,13 @@ pub struct Difference {
 impl Difference {
     /// What it is worth.
     pub fn weighed(&self) -> Weighed {
-        let parts = &self.saved;
-        let energy_j = parts.energy_j();
-        let list = [
-            parts.mechanical_j,
-            parts.friction_j,
-            parts.copper_j,
-            parts.drive_j,
-            parts.idle_j,
-            parts.brake_j,
-        ];
-        let off: f64 = list.iter().zip(DOUBT).map(|(part, share)| part.abs() * share).sum();
-        let (low_j, high_j) = (energy_j - off, energy_j + off);
+        let energy_j = self.saved.energy_j();
+        let (low_j, high_j) = if self.plausible_j.is_empty() {
+            (energy_j, energy_j)
+        } else {
+            let Interval { low, high, .. } = Interval::of(&self.plausible_j);
+            (low, high)
+        };
         if low_j <= 0.0 {
             return Weighed::Nothing;
         }
@@ -156,29 +161,80 @@ pub fn difference(
     if !model.has_dynamics() {
         return None;
     }
-    let (saved, replayed) = replayed(model, cycle, spans, change)?;
-    let (more, time_s) = laid_out(model, cycle, &cycle.options.inputs, &replayed);
-    let (_, alone_s) = laid_out(model, cycle, &BTreeMap::new(), &replayed);
-    Some(Difference { saved: saved - more, time_s, longer_s: -alone_s })
+    let (parts, mut rests) = replayed(model, cycle, spans, change)?;
+    let (more, time_s) = laid_out(cycle, &cycle.options.inputs, &parts);
+    let (_, alone_s) = laid_out(cycle, &BTreeMap::new(), &parts);
+    rests.extend(more);
+    let mut saved = EnergyParts::default();
+    for Replayed { range, after, .. } in &parts {
+        for part in cycle.account.events[range.clone()].iter().flatten() {
+            saved += *part;
+        }
+        saved += account(model, after).total * -1.0;
+    }
+    for rest in &rests {
+        let lasts = rest.longer_s.abs();
+        saved += at_rest(model, &rest.load, &rest.q, lasts) * -rest.longer_s.signum();
+    }
+    let plausible_j = match &cycle.robots {
+        // What costs with the robot itself is not told.
+        Some(robots) if saved.energy_j() > 0.0 => {
+            let sums = sums(model, cycle, &parts, &rests);
+            let changes = robots.changes(model, &sums);
+            changes.iter().map(|change| saved.energy_j() + change.energy_j()).collect()
+        }
+        _ => Vec::new(),
+    };
+    Some(Difference { saved, plausible_j, time_s, longer_s: -alone_s })
 }
 
-/// A part of the cycle, as events, with what it is after a change and the rest behind it, s.
-type Replayed = (RangeInclusive<usize>, Simulation, f64);
+/// Sums of what is saved, over the parts that are replayed.
+fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
+    let mut sums = Moments::none(model);
+    for Replayed { range, after, .. } in parts {
+        for event in &cycle.simulation.events[range.clone()] {
+            sums.add(&Moments::of(model, event), 1.0);
+        }
+        for event in &after.events {
+            sums.add(&Moments::of(model, event), -1.0);
+        }
+    }
+    for rest in rests {
+        let mut of = Moments::none(model);
+        of.rest(model, &rest.load, &rest.q, rest.longer_s.abs());
+        sums.add(&of, -rest.longer_s.signum());
+    }
+    sums
+}
 
-/// The parts of the cycle that a change touches, and the energy that is saved in them.
+/// A part of the cycle, as events, with what it is after a change.
+struct Replayed {
+    range: RangeInclusive<usize>,
+    after: Simulation,
+    /// The rest behind it, s.
+    longer_s: f64,
+}
+
+/// Standing still for longer, or shorter.
+struct Rest {
+    load: Load,
+    q: Joints,
+    longer_s: f64,
+}
+
+/// The parts of the cycle that a change touches, and the rests behind them.
 fn replayed(
     model: &Model,
     cycle: &Cycle,
     spans: &[Span],
     change: &Change<'_>,
-) -> Option<(EnergyParts, Vec<Replayed>)> {
+) -> Option<(Vec<Replayed>, Vec<Rest>)> {
     let simulation = &cycle.simulation;
     let touched = cycle.touched(spans);
     if touched.is_empty() || touched.len() > MOST_EXECUTIONS || cycle.concurrent {
         return None;
     }
-    let mut saved = EnergyParts::default();
-    let mut replayed: Vec<Replayed> = Vec::new();
+    let (mut replayed, mut rests) = (Vec::new(), Vec::new());
     let mut next = 0;
     while next < touched.len() {
         let mut window = window(simulation, touched[next], spans, change);
@@ -192,16 +248,12 @@ fn replayed(
         while next < touched.len() && touched[next] <= *range.end() {
             next += 1;
         }
-        let (more, longer) = rest_behind(model, simulation, &range, &after, rest);
-        let parts = &cycle.account.events[range.clone()];
-        let mut before = EnergyParts::default();
-        for part in parts.iter().flatten() {
-            before += *part;
-        }
-        saved += before - account(model, &after).total - more;
-        replayed.push((range, after, longer));
+        let behind = rest_behind(simulation, &range, &after, rest);
+        let longer_s = behind.as_ref().map_or(0.0, |rest| rest.longer_s);
+        rests.extend(behind);
+        replayed.push(Replayed { range, after, longer_s });
     }
-    Some((saved, replayed))
+    Some((replayed, rests))
 }
 
 /// From the run at or before an event to the next run; to the event alone if it is a run that
@@ -348,58 +400,49 @@ fn steps(
 }
 
 /// The rest between the last run of a window and a run right behind it, which a replay does not
-/// know: what it costs, and its time.
+/// know.
 fn rest_behind(
-    model: &Model,
     simulation: &Simulation,
     window: &RangeInclusive<usize>,
     after: &Simulation,
-    rest: f64,
-) -> (EnergyParts, f64) {
+    longer_s: f64,
+) -> Option<Rest> {
     let next = simulation.events[window.end() + 1..].iter().find(|it| !it.is_within_next_run());
     let moves_on = next.is_some_and(|it| it.duration > 0.0 && matches!(it.what, What::Run(_)));
     let last = after.events.last().filter(|event| moves_on && event.duration > 0.0);
     match last.map(|event| &event.what) {
-        Some(What::Run(run)) => (at_rest_behind(model, run, rest), rest),
-        _ => (EnergyParts::default(), 0.0),
+        Some(What::Run(run)) => Some(Rest { load: run.load.clone(), q: run.end, longer_s }),
+        _ => None,
     }
-}
-
-fn at_rest_behind(model: &Model, run: &Run, longer: f64) -> EnergyParts {
-    at_rest(model, &run.load, &run.end, longer)
 }
 
 /// The time that the whole cycle saves; waits for inputs whose time is stated take up what
 /// comes before them. Also what these waits take more.
 fn laid_out(
-    model: &Model,
     cycle: &Cycle,
     inputs: &BTreeMap<String, f64>,
     replayed: &[Replayed],
-) -> (EnergyParts, f64) {
+) -> (Vec<Rest>, f64) {
     let simulation = &cycle.simulation;
     if inputs.is_empty() {
         // No wait takes anything up: what is laid out again is all that changes.
-        let saved = replayed.iter().map(|(range, after, longer)| {
+        let saved = replayed.iter().map(|Replayed { range, after, longer_s }| {
             let before: f64 = simulation.events[range.clone()].iter().map(|it| it.duration).sum();
-            before - after.events.iter().map(|it| it.duration).sum::<f64>() - longer
+            before - after.events.iter().map(|it| it.duration).sum::<f64>() - longer_s
         });
-        return (EnergyParts::default(), saved.sum());
+        return (Vec::new(), saved.sum());
     }
     let mut clock = Clock { inputs, waited: BTreeMap::new(), time: 0.0 };
-    let mut more = EnergyParts::default();
+    let mut more = Vec::new();
     let mut index = 0;
     let mut windows = replayed.iter().peekable();
     while index < simulation.events.len() {
-        if let Some((range, after, longer)) = windows.next_if(|(range, ..)| *range.start() == index)
-        {
-            for event in &after.events {
-                more += clock.passes(model, event, true);
-            }
-            clock.time += longer;
-            index = range.end() + 1;
+        if let Some(part) = windows.next_if(|part| *part.range.start() == index) {
+            more.extend(part.after.events.iter().filter_map(|event| clock.passes(event, true)));
+            clock.time += part.longer_s;
+            index = part.range.end() + 1;
         } else {
-            more += clock.passes(model, &simulation.events[index], false);
+            more.extend(clock.passes(&simulation.events[index], false));
             index += 1;
         }
     }
@@ -413,15 +456,10 @@ struct Clock<'c> {
 }
 
 impl Clock<'_> {
-    /// Lets an event pass; what it takes more than its own time says.
-    fn passes(
-        &mut self,
-        model: &Model,
-        event: &crate::motion::timeline::Event,
-        replayed: bool,
-    ) -> EnergyParts {
+    /// Lets an event pass; what a wait takes more than its own time says.
+    fn passes(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
         let mut duration = event.duration;
-        let mut more = EnergyParts::default();
+        let mut more = None;
         if let What::Wait(wait) = &event.what
             && (replayed || wait.basis == WaitBasis::Input)
             && let Some(signal) = &wait.wait.signal
@@ -430,9 +468,8 @@ impl Clock<'_> {
             let key = signal.to_lowercase();
             let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
             duration = (at - self.time).max(0.0);
-            let longer = duration - event.duration;
-            let sign = longer.signum();
-            more = at_rest(model, &wait.load, &wait.q, longer.abs()) * sign;
+            let longer_s = duration - event.duration;
+            more = Some(Rest { load: wait.load.clone(), q: wait.q, longer_s });
             self.waited.insert(key, self.time + duration);
         }
         self.time += duration;

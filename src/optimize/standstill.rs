@@ -6,11 +6,14 @@
 //! numerical and statistical problems", J. ACM 8, 1961).
 
 use crate::dynamics::Load;
+use crate::effects::drawn;
 use crate::energy::brakes::break_even_s;
+use crate::energy::plausible::{DRAWS, Interval};
 use crate::energy::power::holding_w;
 use crate::kinematics::{limits_ok, radical_inverse};
 use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
+use crate::robot::prior::Spread;
 
 /// Positions of each joint at which the search starts, as shares of the distance;
 /// staying comes first, so that it wins among equals.
@@ -40,6 +43,27 @@ pub struct Standing {
     pub best: Joints,
     /// Its holding power, W.
     pub best_w: f64,
+    /// What is known of it where the robot is uncertain.
+    pub plausible: Option<Range>,
+}
+
+/// Standing over plausible robots.
+#[derive(Clone, Debug)]
+pub struct Range {
+    /// Holding power \[W\].
+    pub holding_w: Interval,
+    /// Break-even time \[s\]; `None` where in some robot nothing is spared.
+    pub break_even_s: Option<Interval>,
+}
+
+/// Robots as plausible as a model, as models.
+pub fn plausible_models(model: &Model) -> Vec<Model> {
+    let spread = Spread::of(model);
+    if spread.latents.is_empty() || !model.has_dynamics() {
+        return Vec::new();
+    }
+    let robots = spread.draws(model, DRAWS).robots;
+    robots.iter().filter_map(|robot| drawn(model, robot).ok()).collect()
 }
 
 impl Standing {
@@ -50,8 +74,14 @@ impl Standing {
 }
 
 /// A loaded robot at rest at `q`, and the best pose inside the position limits that
-/// no joint is more than `distance` \[rad\] away from.
-pub fn standing(model: &Model, load: &Load, q: &Joints, distance: f64) -> Standing {
+/// no joint is more than `distance` \[rad\] away from; over `robots` as plausible as the model.
+pub fn standing(
+    model: &Model,
+    robots: &[Model],
+    load: &Load,
+    q: &Joints,
+    distance: f64,
+) -> Standing {
     let per_joint_w = holding_w(model, load, q);
     let best = best_nearby(model, load, q, distance);
     Standing {
@@ -60,6 +90,17 @@ pub fn standing(model: &Model, load: &Load, q: &Joints, distance: f64) -> Standi
         break_even_s: break_even_s(model, per_joint_w.iter().sum()),
         best,
         best_w: total(model, load, &best),
+        plausible: (!robots.is_empty()).then(|| range(robots, load, q)),
+    }
+}
+
+fn range(robots: &[Model], load: &Load, q: &Joints) -> Range {
+    let holding: Vec<f64> = robots.iter().map(|robot| total(robot, load, q)).collect();
+    let times = robots.iter().zip(&holding).map(|(robot, w)| break_even_s(robot, *w));
+    let times: Option<Vec<f64>> = times.collect();
+    Range {
+        holding_w: Interval::of(&holding),
+        break_even_s: times.map(|times| Interval::of(&times)),
     }
 }
 
@@ -208,7 +249,7 @@ mod tests {
         for n in 1..=12 {
             let q = spread(n, &range(0), &range(1));
             let distance = 60.0_f64.to_radians();
-            let best = standing(&model, &load, &q, distance).best_w;
+            let best = standing(&model, &[], &load, &q, distance).best_w;
             let search = Search { model: &model, load: &load, from: &q, distance };
             let [low, high] = [-distance, distance].map(|by| q.map(|angle| angle + by));
             for other in SPREAD + 1..=SPREAD + 200 {

@@ -1,5 +1,6 @@
 //! Results as text, JSON and HTML.
 
+pub mod calibrate;
 pub mod diagnose;
 pub mod html;
 pub mod identify;

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::place::Place;
 use super::table::{Align, table};
+use crate::energy::plausible::Interval;
 use crate::optimize::standstill::Standing;
 use crate::path::joint_path::Joints;
 use crate::robot::Model;
@@ -30,6 +31,11 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
                 "break_even_s": standing.break_even_s,
                 "best_nearby": { "q_deg": degrees(&standing.best), "holding_w": standing.best_w },
             });
+            if let Some(range) = &standing.plausible {
+                let interval = |x: &Interval| json!([x.low, x.high]);
+                value["holding_interval_w"] = interval(&range.holding_w);
+                value["break_even_interval_s"] = json!(range.break_even_s.as_ref().map(interval));
+            }
             if let Some((place, duration)) = &pose.dwell {
                 value["file"] = json!(place.file);
                 value["line"] = json!(place.first);
@@ -62,6 +68,7 @@ pub fn text(poses: &[Pose]) -> String {
         .iter()
         .map(|pose| {
             let standing = &pose.standing;
+            let range = standing.plausible.as_ref();
             let dwell = pose.dwell.as_ref().map_or_else(String::new, |(place, duration)| {
                 format!("{}:{} {duration:.2} s", place.file, place.first)
             });
@@ -69,14 +76,26 @@ pub fn text(poses: &[Pose]) -> String {
                 dwell,
                 list(&degrees(&standing.q)),
                 list(&standing.per_joint_w),
-                format!("{:.1} W", standing.holding_w()),
-                standing.break_even_s.map_or_else(|| "-".into(), |s| format!("{s:.2} s")),
+                format!("{:.1} W{}", standing.holding_w(), within(range.map(|r| &r.holding_w), 1)),
+                standing.break_even_s.map_or_else(
+                    || "-".into(),
+                    |s| {
+                        let range = range.and_then(|range| range.break_even_s.as_ref());
+                        format!("{s:.2} s{}", within(range, 2))
+                    },
+                ),
                 list(&degrees(&standing.best)),
                 format!("{:.1} W", standing.best_w),
             ]
         })
         .collect();
     table(&header, &rows)
+}
+
+/// An interval behind its number.
+fn within(interval: Option<&Interval>, digits: usize) -> String {
+    let text = |x: &Interval| format!(" ({:.digits$} to {:.digits$})", x.low, x.high);
+    interval.map_or_else(String::new, text)
 }
 
 /// In degrees, without the rounding errors of the conversion.

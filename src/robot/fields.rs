@@ -275,7 +275,8 @@ impl Fields {
             .collect()
     }
 
-    fn numbers(
+    /// A list of `len` numbers, as the words `expected` say.
+    pub(super) fn numbers(
         &mut self,
         key: &str,
         len: usize,

@@ -5,6 +5,7 @@
 //! catalogue by a name as people write it ([`find`]). SI units and radians
 //! throughout; joint numbers count from 1 in files and messages, from 0 in code.
 
+mod calibration;
 mod catalogue;
 mod controller;
 mod drive;
@@ -35,6 +36,7 @@ mod urdf;
 mod wrist;
 mod write;
 
+pub use calibration::Calibration;
 pub use catalogue::{find, names};
 pub use controller::Controller;
 pub use drive::{Brakes, Drive, Sharing, Standstill};

@@ -1,6 +1,7 @@
 //! The immutable model of one robot.
 
 use super::MAX_DOF;
+use super::calibration::Calibration;
 use super::controller::Controller;
 use super::drive::{Brakes, Drive, Standstill};
 use super::effect::EffectParameters;
@@ -63,6 +64,8 @@ pub struct Model {
     pub effects: Vec<EffectParameters>,
     /// The laws of these effects.
     pub laws: Vec<Law>,
+    /// Robots that fit what was measured, where the model is one of them.
+    pub calibration: Option<Calibration>,
     /// The origin of every number, in the order of the fields above.
     pub origins: Vec<Origin>,
 }
@@ -201,6 +204,7 @@ impl Model {
             Some(table) => EffectParameters::read_all(table, dof, &mut origins)?,
             None => Vec::new(),
         };
+        let calibration = robot.table("calibration")?.map(Calibration::read).transpose()?;
         // How an identification came to its numbers is for people; nothing is computed from it.
         robot.take("identification");
         origins.extend(robot.finish()?);
@@ -223,6 +227,7 @@ impl Model {
             sensors: Sensors::exact(dof),
             effects,
             laws: Vec::new(),
+            calibration,
             origins,
         })
     }

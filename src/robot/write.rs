@@ -85,6 +85,13 @@ pub fn to_toml(model: &Model) -> String {
             out.table(&format!("[{table}]"), &table, &entries);
         }
     }
+    if let Some(calibration) = &model.calibration {
+        let _ = writeln!(out.text, "\n[calibration]\nrobots = {}", calibration.robots);
+        let _ = writeln!(out.text, "\n[calibration.draws]");
+        for (name, draws) in &calibration.draws {
+            let _ = writeln!(out.text, "{} = {}", quoted(name), list(draws));
+        }
+    }
     out.text
 }
 

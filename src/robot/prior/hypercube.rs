@@ -27,7 +27,8 @@ impl Chance {
 
 /// `count` draws of `numbers` independent standard normal numbers, the same for a `seed`:
 /// `[number][draw]`.
-pub(super) fn standard_normals(numbers: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
+#[must_use]
+pub fn standard_normals(numbers: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut chance = Chance(seed);
     let strata: Vec<f64> = (0..count).map(|i| quantile((i as f64 + 0.5) / count as f64)).collect();
     (0..numbers)

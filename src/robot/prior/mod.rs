@@ -17,4 +17,5 @@ mod skeleton;
 mod spread;
 
 pub use fill::estimated;
-pub use spread::{Draws, Latent, Plausible, Spread};
+pub use hypercube::standard_normals;
+pub use spread::{Draws, Latent, Plausible, Spread, check_calibration};

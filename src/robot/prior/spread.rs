@@ -6,6 +6,9 @@ use super::hypercube::standard_normals;
 use super::known::Known;
 use super::rules;
 use super::skeleton;
+use crate::robot::calibration::Calibration;
+use crate::robot::effect::Given;
+use crate::robot::error::RobotError;
 use crate::robot::link::Link;
 use crate::robot::model::Model;
 use crate::robot::provenance::Provenance;
@@ -61,6 +64,8 @@ enum Target {
 pub struct Latent {
     /// What it is, as reports name it.
     pub group: String,
+    /// The group, with a number where it has several: `masses of link 2, 3`.
+    pub name: String,
     /// What it changes, and by how much: standard deviations of logarithms, or m.
     terms: Vec<(Target, f64)>,
 }
@@ -115,7 +120,12 @@ impl Spread {
         let mut add = |group: &str, terms: Vec<(Target, f64)>| {
             let terms: Vec<(Target, f64)> = terms.into_iter().filter(|(_, sd)| *sd > 0.0).collect();
             if !terms.is_empty() {
-                latents.push(Latent { group: group.to_owned(), terms });
+                let before = latents.iter().filter(|known: &&Latent| known.group == group).count();
+                let name = match before {
+                    0 => group.to_owned(),
+                    n => format!("{group}, {}", n + 1),
+                };
+                latents.push(Latent { group: group.to_owned(), name, terms });
             }
         };
         let dof = model.links.len();
@@ -204,23 +214,36 @@ impl Spread {
         add("brake coils", vec![(Target::Coils, coils)]);
         let release = size.release().sd * looseness(model, "brakes", "energy_per_release_j");
         add("release of the brakes", vec![(Target::Release, release)]);
-        if model.effects.iter().any(|effect| effect.id == "gravity_spring") {
+        if model.effects.iter().any(|effect| effect.id == SPRING_EFFECT) {
             let sd = SPRING * looseness(model, "effects.gravity_spring", "stiffness");
             add("balancer of axis 2", vec![(Target::Spring, sd)]);
         }
         Spread { latents, shared_mass }
     }
 
-    /// So many plausible robots, the same each time.
+    /// So many plausible robots, the same each time; of a calibrated robot those that fit its log.
     #[must_use]
     pub fn draws(&self, model: &Model, count: usize) -> Draws {
-        let latents = standard_normals(self.latents.len(), count, SEED);
+        let latents = match &model.calibration {
+            Some(calibration) => self.calibrated(calibration),
+            None => standard_normals(self.latents.len(), count, SEED),
+        };
+        let count = latents.first().map_or(0, Vec::len);
         let robots = (0..count).map(|draw| self.robot(model, |k| latents[k][draw])).collect();
         Draws { latents, robots }
     }
 
+    /// The draws of a calibration; what it does not name is as it is.
+    fn calibrated(&self, calibration: &Calibration) -> Vec<Vec<f64>> {
+        let of = |latent: &Latent| {
+            let found = calibration.draws.iter().find(|(name, _)| *name == latent.name);
+            found.map_or_else(|| vec![0.0; calibration.robots], |(_, draws)| draws.clone())
+        };
+        self.latents.iter().map(of).collect()
+    }
+
     /// The robot at these latent numbers.
-    fn robot(&self, model: &Model, z: impl Fn(usize) -> f64) -> Plausible {
+    pub fn robot(&self, model: &Model, z: impl Fn(usize) -> f64) -> Plausible {
         let dof = model.links.len();
         let mut robot = Plausible::of(model);
         let mut all = 1.0;
@@ -268,6 +291,25 @@ impl Spread {
 
 /// Standard deviation of the logarithm of what a balancer carries.
 const SPRING: f64 = 0.3;
+const SPRING_EFFECT: &str = "gravity_spring";
+
+/// A calibration that names what the spread of its robot does not have belongs to another one.
+///
+/// # Errors
+/// It does.
+pub fn check_calibration(model: &Model) -> Result<(), RobotError> {
+    let Some(calibration) = &model.calibration else { return Ok(()) };
+    let known: Vec<String> = Spread::of(model).latents.into_iter().map(|l| l.name).collect();
+    match calibration.draws.iter().find(|(name, _)| !known.contains(name)) {
+        Some((name, _)) => Err(RobotError::UnknownKey {
+            place: calibration.place.clone(),
+            key: name.clone(),
+            table: "[calibration.draws]".into(),
+            known,
+        }),
+        None => Ok(()),
+    }
+}
 
 /// Deviations of the part that all have in common, and of the own one, for a share of the variance.
 fn parted(common: f64) -> (f64, f64) {
@@ -294,7 +336,8 @@ fn looseness(model: &Model, table: &str, key: &str) -> f64 {
 }
 
 impl Plausible {
-    /// The model with these numbers; springs stay.
+    /// The model with these numbers. What its effects do is worked out anew from the changed ones
+    /// (`effects::applied`).
     #[must_use]
     pub fn applied(&self, model: &Model) -> Model {
         let mut new = model.clone();
@@ -307,6 +350,14 @@ impl Plausible {
             motors.loss_constant.clone_from(&self.loss);
         }
         new.drive.base_w = self.base_w;
+        for effect in new.effects.iter_mut().filter(|effect| effect.id == SPRING_EFFECT) {
+            for (_, given) in effect.values.iter_mut().filter(|(name, _)| name == "stiffness") {
+                match given {
+                    Given::Robot(value) => *value *= self.spring,
+                    Given::Joints(values) => values.iter_mut().for_each(|x| *x *= self.spring),
+                }
+            }
+        }
         if let Some(brakes) = &mut new.brakes {
             brakes.power_released_w = self.coils_w;
             brakes.energy_per_release_j = self.release_j;

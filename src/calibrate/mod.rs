@@ -1,0 +1,208 @@
+//! What the measured power of a running program tells of its robot.
+//!
+//! Plausible robots ([`Spread`](crate::robot::prior::Spread)) differ in the power that they take in a
+//! program. Of a log of the cabinet's power, cycles are found, folded onto the simulated cycle and
+//! averaged in windows. Then each of the plausible robots is moved to one that fits the log (randomised
+//! maximum likelihood, D. Oliver, N. He, A. Reynolds, "Conditioning permeability fields to pressure
+//! data", ECMOR 1996): of a linear model these are exact draws of the posterior.
+
+mod aligned;
+mod cycle;
+mod fold;
+mod posterior;
+mod refusal;
+
+use rayon::prelude::*;
+
+use crate::effects::with_estimates;
+use crate::energy::along::{Along, Instant};
+use crate::energy::change::Change;
+use crate::energy::plausible::{Plausibility, plausibility};
+use crate::energy::{account, plausible::DRAWS};
+use crate::log::Log;
+use crate::motion::Simulation;
+use crate::robot::prior::Spread;
+use crate::robot::{Calibration, Model, from_toml, to_toml};
+
+use cycle::Cycle;
+use fold::Windows;
+use posterior::{Data, Fit};
+
+pub use refusal::Refusal;
+
+/// Robots that are moved to the log.
+const ROBOTS: usize = 128;
+/// Share of the variance of the power over the cycle that the fitted robot has to explain.
+const EXPLAINS: f64 = 0.75;
+/// Deviations from the plausible robots' mean beyond which a log belongs to none of them.
+const FAR: f64 = 4.0;
+
+/// A robot as the log tells it.
+#[derive(Clone, Debug)]
+pub struct Calibrated {
+    /// The robot, with its draws.
+    pub model: Model,
+    /// How well its energies in the program were known.
+    pub before: Plausibility,
+    /// How well they are now.
+    pub after: Plausibility,
+    /// Robots that were moved to the log.
+    pub robots: usize,
+    /// What was found in the log.
+    pub found: Found,
+    /// Groups that are known better now: name, standard deviation left of one.
+    pub narrowed: Vec<(String, f64)>,
+}
+
+/// What was found in the log.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Whether the power was in kW.
+    pub kilowatts: bool,
+    /// Cycles that were used.
+    pub cycles: usize,
+    /// Duration of the cycles over the simulated one.
+    pub pace: f64,
+    /// Share of the variance of the power that the fitted robot explains.
+    pub explained: f64,
+    /// What the fitted robot leaves unexplained over the noise of the log.
+    pub misfit: f64,
+    /// Whether the torques of the joints were used.
+    pub torques: bool,
+}
+
+/// Moves plausible robots to the log of a program.
+///
+/// # Errors
+/// The log is not of the program, or not of the robot.
+pub fn calibrate(
+    model: &Model,
+    simulation: &Simulation,
+    log: &Log,
+    torques: Option<&[Vec<f64>]>,
+) -> Result<Calibrated, Refusal> {
+    if model.calibration.is_some() {
+        return Err(Refusal::Again { name: model.name.clone() });
+    }
+    let before = plausibility(model, simulation, &account(model, simulation));
+    let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
+    let spread = Spread::of(model);
+    let cycle = Cycle::of(model, simulation)?;
+    let aligned = aligned::align(&cycle, log)?;
+    let windows = fold::fold(&cycle, log, &aligned, torques);
+    let instants: Vec<Instant> = windows.times.iter().map(|t| cycle.at(*t)).collect();
+    let along = Along::of(model, &instants, windows.ranges.clone());
+    check_size(model, &spread, &along, &windows)?;
+    let data = Data::of(&along, &windows);
+    let fit = Fit { model, spread: &spread, along: &along, data: &data };
+    let likely = fit.most_likely();
+    let explained = data.explained(&likely.means);
+    if explained < EXPLAINS {
+        return Err(Refusal::Program { explained });
+    }
+    let misfit = fit.misfit_over_noise(&likely);
+    let data = data.with_noise(misfit.max(1.0));
+    let fit = Fit { data: &data, ..fit };
+    let draws = fit.draws(&likely.z, ROBOTS);
+    if draws.len() * 2 < ROBOTS {
+        return Err(Refusal::Fit { fitted: draws.len(), robots: ROBOTS });
+    }
+    let calibrated = centred(model, &spread, &draws)?;
+    let simulated = account(&calibrated, simulation);
+    let after = plausibility(&calibrated, simulation, &simulated);
+    let after = after.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
+    Ok(Calibrated {
+        narrowed: narrowed(&spread, &draws),
+        model: calibrated,
+        before,
+        after,
+        robots: ROBOTS,
+        found: Found {
+            kilowatts: aligned.kilowatts,
+            cycles: aligned.passes.len(),
+            pace: aligned.pace(),
+            explained,
+            misfit,
+            torques: torques.is_some(),
+        },
+    })
+}
+
+/// A log whose power is far from that of all plausible robots belongs to another one.
+fn check_size(
+    model: &Model,
+    spread: &Spread,
+    along: &Along<'_>,
+    windows: &Windows,
+) -> Result<(), Refusal> {
+    let size = |power: &[f64]| {
+        let mean = power.iter().sum::<f64>() / power.len() as f64;
+        let square: f64 = power.iter().map(|w| (w - mean).powi(2)).sum();
+        [mean, (square / power.len() as f64).sqrt()]
+    };
+    let robots = spread.draws(model, DRAWS).robots;
+    let sizes: Vec<[f64; 2]> = robots
+        .par_iter()
+        .map(|robot| size(along.means(&Change::of(model, robot)).power.as_slice()))
+        .collect();
+    let measured = size(&windows.power);
+    for (i, what) in ["mean power", "swing of the power"].into_iter().enumerate() {
+        let logs: Vec<f64> = sizes.iter().map(|size| size[i].max(f64::MIN_POSITIVE).ln()).collect();
+        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+        let sd = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / logs.len() as f64;
+        let sd = sd.sqrt().max(f64::MIN_POSITIVE);
+        if (measured[i].ln() - mean).abs() > FAR * sd {
+            let [low, high] = [-2.0, 2.0].map(|k: f64| (mean + k * sd).exp());
+            return Err(Refusal::Robot {
+                name: model.name.clone(),
+                what,
+                measured: measured[i],
+                low,
+                high,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The model at the middle of the draws, and the draws from there.
+fn centred(model: &Model, spread: &Spread, draws: &[Vec<f64>]) -> Result<Model, Refusal> {
+    let count = draws.len() as f64;
+    let middle: Vec<f64> = (0..spread.latents.len())
+        .map(|k| draws.iter().map(|z| z[k]).sum::<f64>() / count)
+        .collect();
+    let mut new = spread.robot(model, |k| middle[k]).applied(model);
+    let rounded = |x: f64| (x * ROUND).round() / ROUND;
+    let of = |k: usize| draws.iter().map(|z| rounded(z[k] - middle[k])).collect::<Vec<f64>>();
+    let names = spread.latents.iter().enumerate();
+    new.calibration = Some(Calibration {
+        robots: draws.len(),
+        draws: names.map(|(k, latent)| (latent.name.clone(), of(k))).collect(),
+        place: String::new(),
+    });
+    // What the file will say is what is used.
+    let read = from_toml("the calibrated robot", &to_toml(&new)).and_then(with_estimates);
+    read.map_err(|error| Refusal::Model { reason: error.to_string() })
+}
+
+/// Draws are written with so many steps in a standard deviation.
+const ROUND: f64 = 1e4;
+
+/// Standard deviation that is left of each group, the smallest first.
+fn narrowed(spread: &Spread, draws: &[Vec<f64>]) -> Vec<(String, f64)> {
+    let count = draws.len() as f64;
+    let variance = |k: usize| {
+        let mean = draws.iter().map(|z| z[k]).sum::<f64>() / count;
+        draws.iter().map(|z| (z[k] - mean).powi(2)).sum::<f64>() / (count - 1.0)
+    };
+    let mut groups: Vec<(String, f64)> = Vec::new();
+    for (k, latent) in spread.latents.iter().enumerate() {
+        let left = variance(k).sqrt();
+        match groups.iter_mut().find(|(group, _)| *group == latent.group) {
+            Some((_, least)) => *least = least.min(left),
+            None => groups.push((latent.group.clone(), left)),
+        }
+    }
+    groups.sort_by(|a, b| a.1.total_cmp(&b.1));
+    groups
+}

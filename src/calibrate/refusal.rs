@@ -1,0 +1,106 @@
+//! Why a log does not calibrate a robot.
+
+use thiserror::Error;
+
+/// Why a log does not calibrate a robot.
+#[derive(Clone, Debug, Error)]
+pub enum Refusal {
+    /// There is nothing to learn.
+    #[error(
+        "nothing of {name} is estimated: there is nothing to calibrate; run the program with --robot as it is"
+    )]
+    Known {
+        /// The robot.
+        name: String,
+    },
+    /// A calibrated robot.
+    #[error(
+        "{name} is calibrated already: give the robot that its file was made from, with a log over more cycles"
+    )]
+    Again {
+        /// The robot.
+        name: String,
+    },
+    /// Nothing moves.
+    #[error("the simulated cycle takes no time: there is nothing to compare the log with")]
+    Nothing,
+    /// Too short.
+    #[error(
+        "the log holds {log_s:.1} s and no whole cycle of {cycle_s:.1} s: log the power over several cycles, or say when inputs come (--input)"
+    )]
+    Short {
+        /// s.
+        log_s: f64,
+        /// s.
+        cycle_s: f64,
+    },
+    /// Cycles of another length.
+    #[error(
+        "the log is of another program: its cycles take {measured_s:.1} s, the simulated one {cycle_s:.1} s; say when inputs come (--input) if waits are longer"
+    )]
+    Length {
+        /// s.
+        measured_s: f64,
+        /// s.
+        cycle_s: f64,
+    },
+    /// Commands that do not fit.
+    #[error(
+        "the log is of another program: the column `cmd` counts {measured} movements a cycle, the simulated cycle has {simulated}"
+    )]
+    Commands {
+        /// Movements in the log.
+        measured: usize,
+        /// Movements of the program.
+        simulated: usize,
+    },
+    /// The power goes another way.
+    #[error(
+        "the log is of another program: nowhere does its power go like the simulated cycle's (correlation {correlation:.2}, at least {least:.2}); say when inputs come (--input) if waits differ, or log `cmd`"
+    )]
+    Shape {
+        /// The best one.
+        correlation: f64,
+        /// What is asked for.
+        least: f64,
+    },
+    /// No plausible robot has that power over the cycle.
+    #[error(
+        "the log is of another program: the robot that fits it best explains {:.0} % of how the power changes over the cycle, at least 75 % are asked for",
+        100.0 * explained.max(0.0)
+    )]
+    Program {
+        /// Share of the variance.
+        explained: f64,
+    },
+    /// The power is of another size.
+    #[error(
+        "the log is of another robot, or its unit is not W or kW: the {what} is {measured:.0} W, plausible {name} robots have {low:.0} to {high:.0} W in this program"
+    )]
+    Robot {
+        /// The robot.
+        name: String,
+        /// What differs.
+        what: &'static str,
+        /// W.
+        measured: f64,
+        /// W.
+        low: f64,
+        /// W.
+        high: f64,
+    },
+    /// Too few draws fit.
+    #[error("only {fitted} of {robots} plausible robots can be moved to the log: is it of this program and robot?")]
+    Fit {
+        /// Those that fit.
+        fitted: usize,
+        /// All.
+        robots: usize,
+    },
+    /// The result is no robot.
+    #[error("the calibrated robot can't be used: {reason}")]
+    Model {
+        /// Why.
+        reason: String,
+    },
+}

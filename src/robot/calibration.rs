@@ -1,0 +1,43 @@
+//! Robots that are as plausible as a calibrated one: `[calibration]`.
+
+use super::error::RobotError;
+use super::fields::{Accepts, Fields};
+
+/// Most robots of a calibration.
+const MOST: f64 = 4096.0;
+/// Latent numbers are standard normal: none lies beyond these.
+const FARTHEST: f64 = 20.0;
+
+/// Draws that fit what was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// How many.
+    pub robots: usize,
+    /// Name of each latent number, and its difference from the model in each draw, in standard
+    /// deviations of the estimate.
+    pub draws: Vec<(String, Vec<f64>)>,
+    /// Where the table stands.
+    pub place: String,
+}
+
+impl Calibration {
+    pub(super) fn read(mut fields: Fields) -> Result<Calibration, RobotError> {
+        let place = fields.place();
+        let count = Accepts::Between(2.0, MOST, "a whole number from 2 to 4096");
+        let robots = fields.number("robots", count)?;
+        let robots = fields.required("robots", robots)? as usize;
+        let mut draws = Vec::new();
+        if let Some(mut table) = fields.table("draws")? {
+            let far = Accepts::Between(-FARTHEST, FARTHEST, "at least -20 and at most 20");
+            let expected = format!("{robots}, one for each robot");
+            for name in table.keys() {
+                if let Some(list) = table.numbers(&name, robots, &expected, far)? {
+                    draws.push((name, list));
+                }
+            }
+            table.finish()?;
+        }
+        fields.finish()?;
+        Ok(Calibration { robots, draws, place })
+    }
+}
