@@ -120,3 +120,53 @@ fn experiment() {
     }
     eprintln!("{name}: {inside:?} of {ok} of {count}");
 }
+
+#[test]
+fn debug_along() {
+    use joulepath::energy::along::{Along, Instant};
+    use joulepath::energy::change::Change;
+    let name = std::env::var("ROBOT").unwrap_or("IRB6700-200/2.6".into());
+    let model = robot(&name);
+    let simulation = simulated(&model, "fixtures/pick_place");
+    let spread = Spread::of(&model);
+    let z = standard_normals(spread.latents.len(), 20, 4711);
+    let samples = trajectory(&model, &simulation);
+    // loads
+    let mut instants = Vec::new();
+    let mut times = Vec::new();
+    use joulepath::motion::timeline::What;
+    for event in simulation.events.iter().filter(|e| e.duration > 0.0) {
+        let n = (event.duration / 0.02) as usize;
+        for i in 0..n {
+            let t = event.duration * (i as f64 + 0.5) / n as f64;
+            times.push(event.t_start + t);
+            instants.push(match &event.what {
+                What::Run(run) => { let s = run.at(t); Instant { load: run.load.clone(), state: [s.q, s.qd, s.qdd] } }
+                What::Wait(w) => Instant::rest(&w.load, &w.q),
+                _ => continue,
+            });
+        }
+    }
+    let windows = (0..instants.len()).map(|i| i..i + 1).collect();
+    let along = Along::of(&model, &instants, windows);
+    for i in 0..3 {
+        let plausible = spread.robot(&model, |k| z[k][i]);
+        let truth = drawn(&model, &plausible);
+        let tr = trajectory(&truth, &simulation);
+        let means = along.means(&Change::of(&model, &plausible));
+        let mut worst: Vec<(f64, usize, f64, f64)> = Vec::new();
+        for (k, t) in times.iter().enumerate() {
+            let p = tr.partition_point(|s| s.t < *t).max(1).min(tr.len() - 1);
+            let (a, b) = (&tr[p - 1], &tr[p]);
+            let s = (t - a.t) / (b.t - a.t).max(1e-12);
+            let (x, y) = (a.electrical_w.unwrap(), b.electrical_w.unwrap());
+            let exact = x + s * (y - x);
+            worst.push(((means.power[k] - exact).abs(), k, exact, means.power[k]));
+        }
+        let rms = (worst.iter().map(|w| w.0 * w.0).sum::<f64>() / worst.len() as f64).sqrt();
+        worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+        eprintln!("rms {rms:.1}");
+        for (d, k, e, m) in worst.iter().step_by(worst.len() / 12) { eprintln!("  {d:.1} at {:.2} exact {e:.1} along {m:.1} rest {}", times[*k], instants[*k].state[1].iter().all(|x| *x == 0.0)); }
+    }
+    let _ = samples;
+}

@@ -7,7 +7,7 @@ use super::cycle::Cycle;
 use crate::log::{Channel, Log, median_step};
 
 /// Instants of a cycle, and windows, at most about.
-const INSTANTS: f64 = 1200.0;
+const INSTANTS: f64 = 2000.0;
 const WINDOWS: f64 = 100.0;
 /// Robust standard deviation over the median of absolute values.
 const OF_MEDIAN: f64 = 1.4826;
@@ -33,6 +33,8 @@ struct Bin {
     rows: f64,
     t: f64,
     power: f64,
+    /// Power of the cycle's robot at the same instants.
+    expected: f64,
     torque: Vec<f64>,
 }
 
@@ -52,7 +54,7 @@ pub(super) fn fold(
     let torque_noise: Vec<f64> = torques.iter().map(|tau| differences(tau, |_| true).sqrt()).collect();
     let width = (cycle.duration / INSTANTS).max(median_step(t));
     let count = (cycle.duration / width).ceil() as usize + 1;
-    let empty = Bin { rows: 0.0, t: 0.0, power: 0.0, torque: vec![0.0; torques.len()] };
+    let empty = Bin { rows: 0.0, t: 0.0, power: 0.0, expected: 0.0, torque: vec![0.0; torques.len()] };
     let mut bins = vec![empty; count];
     for segment in aligned.passes.iter().flat_map(|pass| &pass.segments) {
         let from = t.partition_point(|t| *t < segment.log.start);
@@ -63,6 +65,7 @@ pub(super) fn fold(
             bin.rows += 1.0;
             bin.t += at;
             bin.power += power[i];
+            bin.expected += cycle.power(at);
             for (sum, tau) in bin.torque.iter_mut().zip(torques) {
                 *sum += tau[i];
             }
@@ -71,7 +74,10 @@ pub(super) fn fold(
     bins.retain(|bin| bin.rows > 0.0);
     for bin in &mut bins {
         bin.t = (bin.t / bin.rows).min(cycle.duration);
-        bin.power /= bin.rows;
+        // The mean over the rows of a bin is not the power at their mean time: where the power bends,
+        // both differ by as much for the cycle's robot.
+        let bent = bin.expected / bin.rows - cycle.power(bin.t);
+        bin.power = bin.power / bin.rows - bent;
         bin.torque.iter_mut().for_each(|sum| *sum /= bin.rows);
     }
     let mut windows = Windows {

@@ -14,7 +14,7 @@ mod refusal;
 
 use rayon::prelude::*;
 
-use crate::effects::with_estimates;
+use crate::effects::{drawn, with_estimates};
 use crate::energy::along::{Along, Instant};
 use crate::energy::change::Change;
 use crate::energy::plausible::{Plausibility, plausibility};
@@ -24,8 +24,9 @@ use crate::motion::Simulation;
 use crate::robot::prior::Spread;
 use crate::robot::{Calibration, Model, from_toml, to_toml};
 
+use aligned::{Aligned, align};
 use cycle::Cycle;
-use fold::Windows;
+use fold::{Windows, fold};
 use posterior::{Data, Fit};
 
 pub use refusal::Refusal;
@@ -71,6 +72,28 @@ pub struct Found {
     pub torques: bool,
 }
 
+/// A log on a cycle.
+struct Folded<'a> {
+    aligned: Aligned,
+    windows: Windows,
+    along: Along<'a>,
+}
+
+impl<'a> Folded<'a> {
+    fn of(
+        model: &'a Model,
+        cycle: &Cycle<'_>,
+        log: &Log,
+        torques: Option<&[Vec<f64>]>,
+    ) -> Result<Folded<'a>, Refusal> {
+        let aligned = align(cycle, log)?;
+        let windows = fold(cycle, log, &aligned, torques);
+        let instants: Vec<Instant> = windows.times.iter().map(|t| cycle.at(*t)).collect();
+        let along = Along::of(model, &instants, windows.ranges.clone());
+        Ok(Folded { aligned, windows, along })
+    }
+}
+
 /// Moves plausible robots to the log of a program.
 ///
 /// # Errors
@@ -88,18 +111,23 @@ pub fn calibrate(
     let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
     let spread = Spread::of(model);
     let cycle = Cycle::of(model, simulation)?;
-    let aligned = aligned::align(&cycle, log)?;
-    let windows = fold::fold(&cycle, log, &aligned, torques);
-    let instants: Vec<Instant> = windows.times.iter().map(|t| cycle.at(*t)).collect();
-    let along = Along::of(model, &instants, windows.ranges.clone());
-    check_size(model, &spread, &along, &windows)?;
-    let data = Data::of(&along, &windows);
-    let fit = Fit { model, spread: &spread, along: &along, data: &data };
-    let likely = fit.most_likely();
+    let rough = Folded::of(model, &cycle, log, torques)?;
+    check_size(model, &spread, &rough)?;
+    let data = Data::of(&rough.along, &rough.windows);
+    let likely = Fit { model, spread: &spread, along: &rough.along, data: &data }.most_likely();
     let explained = data.explained(&likely.means);
     if explained < EXPLAINS {
         return Err(Refusal::Program { explained });
     }
+    // Once more, with the cycle of a robot that is near the log.
+    let near = spread.robot(model, |k| likely.z[k]);
+    let near = drawn(model, &near).map_err(|error| Refusal::Model { reason: error.to_string() })?;
+    let cycle = Cycle::of(&near, simulation)?;
+    let Folded { aligned, windows, along } = Folded::of(model, &cycle, log, torques)?;
+    let data = Data::of(&along, &windows);
+    let fit = Fit { model, spread: &spread, along: &along, data: &data };
+    let likely = fit.most_likely();
+    let explained = data.explained(&likely.means);
     let misfit = fit.misfit_over_noise(&likely);
     let data = data.with_noise(misfit.max(1.0));
     let fit = Fit { data: &data, ..fit };
@@ -132,8 +160,7 @@ pub fn calibrate(
 fn check_size(
     model: &Model,
     spread: &Spread,
-    along: &Along<'_>,
-    windows: &Windows,
+    Folded { along, windows, .. }: &Folded<'_>,
 ) -> Result<(), Refusal> {
     let size = |power: &[f64]| {
         let mean = power.iter().sum::<f64>() / power.len() as f64;

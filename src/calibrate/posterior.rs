@@ -199,7 +199,7 @@ impl Fit<'_> {
     ) -> (DMatrix<f64>, DVector<f64>) {
         let z = z.as_slice();
         let slopes = Slopes::at(self.model, self.spread, z);
-        let (by_power, by_torque) = self.along.slopes(&self.change(z), &slopes);
+        let (by_power, by_torque) = self.along.slopes(&self.change(z), &slopes, !self.data.torque.is_empty());
         let count = z.len();
         let mut normal = DMatrix::zeros(count, count);
         let mut gradient = DVector::zeros(count);

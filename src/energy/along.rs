@@ -167,8 +167,14 @@ impl<'a> Along<'a> {
         }
     }
 
-    /// Slopes of the means by the latent numbers: of the powers, and of the torques of each joint.
-    pub fn slopes(&self, robot: &Change, slopes: &Slopes) -> (DMatrix<f64>, Vec<DMatrix<f64>>) {
+    /// Slopes of the means by the latent numbers: of the powers, and of the torques of each joint if
+    /// they are asked for.
+    pub fn slopes(
+        &self,
+        robot: &Change,
+        slopes: &Slopes,
+        with_torques: bool,
+    ) -> (DMatrix<f64>, Vec<DMatrix<f64>>) {
         let (_, torques) = self.terms(robot);
         let left = 1.0 - self.model.drive.regeneration;
         let braking: Vec<bool> = (0..self.rates.len())
@@ -198,7 +204,9 @@ impl<'a> Along<'a> {
             let squares =
                 DVector::from_iterator(self.windows.len(), self.windows.iter().map(square));
             by_power += squares * slopes.loss.row(j);
-            by_torque.push(sums(&|_| 1.0) * &slopes.joints[j]);
+            if with_torques {
+                by_torque.push(sums(&|_| 1.0) * &slopes.joints[j]);
+            }
         }
         for mut row in by_power.row_iter_mut() {
             row += slopes.supply_w.transpose();

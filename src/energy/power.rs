@@ -3,7 +3,7 @@
 use super::parts::EnergyParts;
 use super::quadrature::{Powers, integral};
 use crate::dynamics::{
-    Data, Load, Torque, gravity, kinetic_energy, motor_rates, motor_torques, potential_energy,
+    Data, Load, Torque, kinetic_energy, motor_rates, motor_torques, potential_energy,
     torque, torque_each,
 };
 use crate::motion::timed::{JointState, TimedMotion};
@@ -104,7 +104,9 @@ pub fn holding_w(model: &Model, load: &Load, q: &Joints) -> Joints {
 }
 
 fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; MAX_DOF] {
-    let tau = motor_torques(model, gravity(model, data, load, q));
+    // Gravity, and what a balancer carries of it.
+    let still = torque(model, data, load, q, &[], &[]).rigid;
+    let tau = motor_torques(model, still);
     std::array::from_fn(|j| {
         if j >= model.dof {
             return 0.0;
