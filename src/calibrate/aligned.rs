@@ -236,9 +236,8 @@ impl Curve<'_> {
         let thin = (rows.len() / FINE).max(1);
         let fit = |begin: f64, pace: f64| {
             let rows = self.rows(begin, pace).step_by(thin);
-            let (logged, simulated): (Vec<f64>, Vec<f64>) = rows
-                .map(|i| (self.power[i], self.cycle.power((self.t[i] - begin) / pace)))
-                .unzip();
+            let (logged, simulated): (Vec<f64>, Vec<f64>) =
+                rows.map(|i| (self.power[i], self.cycle.power((self.t[i] - begin) / pace))).unzip();
             correlation(&logged, &simulated)
         };
         let step = (duration / COARSE).max(median_step(self.t));
@@ -283,7 +282,7 @@ fn highest(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Correlation of two series; 0 where one does not change.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len()) as f64;
     let (mut sa, mut sb, mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (x, y) in a.iter().zip(b) {

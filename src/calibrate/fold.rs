@@ -51,10 +51,12 @@ pub(super) fn fold(
         log.column(Channel::Power).unwrap_or_default().iter().map(|w| w * unit).collect();
     let torques = torques.unwrap_or_default();
     let noise = Noise::of(&power);
-    let torque_noise: Vec<f64> = torques.iter().map(|tau| differences(tau, |_| true).sqrt()).collect();
+    let torque_noise: Vec<f64> =
+        torques.iter().map(|tau| differences(tau, |_| true).sqrt()).collect();
     let width = (cycle.duration / INSTANTS).max(median_step(t));
     let count = (cycle.duration / width).ceil() as usize + 1;
-    let empty = Bin { rows: 0.0, t: 0.0, power: 0.0, expected: 0.0, torque: vec![0.0; torques.len()] };
+    let empty =
+        Bin { rows: 0.0, t: 0.0, power: 0.0, expected: 0.0, torque: vec![0.0; torques.len()] };
     let mut bins = vec![empty; count];
     for segment in aligned.passes.iter().flat_map(|pass| &pass.segments) {
         let from = t.partition_point(|t| *t < segment.log.start);

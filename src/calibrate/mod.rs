@@ -21,7 +21,7 @@ use crate::energy::plausible::{Plausibility, plausibility};
 use crate::energy::{account, plausible::DRAWS};
 use crate::log::Log;
 use crate::motion::Simulation;
-use crate::robot::prior::Spread;
+use crate::robot::prior::{Plausible, Spread};
 use crate::robot::{Calibration, Model, from_toml, to_toml};
 
 use aligned::{Aligned, align};
@@ -35,6 +35,8 @@ pub use refusal::Refusal;
 const ROBOTS: usize = 128;
 /// Share of the variance of the power over the cycle that the fitted robot has to explain.
 const EXPLAINS: f64 = 0.75;
+/// Correlation of the power in windows with the model's from which on it is the program's.
+const ALIKE: f64 = 0.8;
 /// Deviations from the plausible robots' mean beyond which a log belongs to none of them.
 const FAR: f64 = 4.0;
 
@@ -110,12 +112,17 @@ pub fn calibrate(
     let before = plausibility(model, simulation, &account(model, simulation));
     let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
     let spread = Spread::of(model);
+    let own = Change::of(model, &Plausible::of(model));
     let cycle = Cycle::of(model, simulation)?;
     let rough = Folded::of(model, &cycle, log, torques)?;
-    check_size(model, &spread, &rough)?;
     let data = Data::of(&rough.along, &rough.windows);
     let likely = Fit { model, spread: &spread, along: &rough.along, data: &data }.most_likely();
     let explained = data.explained(&likely.means);
+    // The shape of the power tells the program, its size the robot.
+    if explained < EXPLAINS && data.likeness(&rough.along.means(&own)) < ALIKE {
+        return Err(Refusal::Program { explained });
+    }
+    check_size(model, &spread, &rough)?;
     if explained < EXPLAINS {
         return Err(Refusal::Program { explained });
     }

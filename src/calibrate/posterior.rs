@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::aligned::correlation;
 use super::fold::Windows;
 use crate::energy::along::{Along, Means, Slopes};
 use crate::energy::change::Change;
@@ -63,6 +64,11 @@ impl Data {
         let mean = self.power.mean();
         let all: f64 = self.power.iter().map(|w| (w - mean).powi(2)).sum();
         1.0 - (&self.power - &means.power).norm_squared() / all.max(f64::MIN_POSITIVE)
+    }
+
+    /// Correlation of the power with that of a robot.
+    pub(super) fn likeness(&self, means: &Means) -> f64 {
+        correlation(self.power.as_slice(), means.power.as_slice())
     }
 
     /// Which of the residuals count.
@@ -199,7 +205,8 @@ impl Fit<'_> {
     ) -> (DMatrix<f64>, DVector<f64>) {
         let z = z.as_slice();
         let slopes = Slopes::at(self.model, self.spread, z);
-        let (by_power, by_torque) = self.along.slopes(&self.change(z), &slopes, !self.data.torque.is_empty());
+        let (by_power, by_torque) =
+            self.along.slopes(&self.change(z), &slopes, !self.data.torque.is_empty());
         let count = z.len();
         let mut normal = DMatrix::zeros(count, count);
         let mut gradient = DVector::zeros(count);

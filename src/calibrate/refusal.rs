@@ -90,7 +90,9 @@ pub enum Refusal {
         high: f64,
     },
     /// Too few draws fit.
-    #[error("only {fitted} of {robots} plausible robots can be moved to the log: is it of this program and robot?")]
+    #[error(
+        "only {fitted} of {robots} plausible robots can be moved to the log: is it of this program and robot?"
+    )]
     Fit {
         /// Those that fit.
         fitted: usize,

@@ -55,7 +55,10 @@ pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
     let log = log::read_from(file, &ColumnMap::parse(&args.map)?).with_context(|| shown.clone())?;
     for rejected in log.rejected.iter().take(SHOWN) {
-        common::note(quiet, &format!("{shown}: row {} is left out: {}", rejected.row, rejected.reason));
+        common::note(
+            quiet,
+            &format!("{shown}: row {} is left out: {}", rejected.row, rejected.reason),
+        );
     }
     if log.rejected.len() > SHOWN {
         let more = log.rejected.len() - SHOWN;

@@ -55,7 +55,9 @@ mod waves;
 mod wrist_coupling;
 mod zone_blending;
 
-pub use applied::{applied, drawn, from_toml, load, load_estimated, of_the_whole_motion, with_estimates};
+pub use applied::{
+    applied, drawn, from_toml, load, load_estimated, of_the_whole_motion, with_estimates,
+};
 pub use bodies::added as with_body;
 pub use effect::{
     Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,

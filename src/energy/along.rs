@@ -125,10 +125,14 @@ impl<'a> Along<'a> {
         along
     }
 
+    /// Torques of a robot by joint, an entry for each instant \[Nm\].
+    pub fn torques(&self, robot: &Change) -> Vec<DVector<f64>> {
+        self.features.iter().zip(&robot.joints).map(|(phi, of)| phi * &of.values).collect()
+    }
+
     /// Power of each instant that goes with joints \[W\], and torques by joint \[Nm\].
     fn terms(&self, robot: &Change) -> (Vec<f64>, Vec<DVector<f64>>) {
-        let torques: Vec<DVector<f64>> =
-            self.features.iter().zip(&robot.joints).map(|(phi, of)| phi * &of.values).collect();
+        let torques = self.torques(robot);
         let terms = (0..self.rates.len()).map(|i| {
             let tau = |j: usize| torques[j][i];
             let copper = robot.joints.iter().enumerate();
@@ -161,10 +165,7 @@ impl<'a> Along<'a> {
                 self.windows.iter().map(|w| mean(w, &|i| tau[i])),
             )
         });
-        Means {
-            power: DVector::from_iterator(self.windows.len(), power),
-            torque: torque.collect(),
-        }
+        Means { power: DVector::from_iterator(self.windows.len(), power), torque: torque.collect() }
     }
 
     /// Slopes of the means by the latent numbers: of the powers, and of the torques of each joint if
@@ -198,9 +199,8 @@ impl<'a> Along<'a> {
             };
             let sums = |weight: &dyn Fn(usize) -> f64| self.sums(j, weight);
             by_power += sums(&of_power) * &slopes.joints[j];
-            let square = |w: &Range<usize>| {
-                w.clone().map(|i| tau[i] * tau[i]).sum::<f64>() / w.len() as f64
-            };
+            let square =
+                |w: &Range<usize>| w.clone().map(|i| tau[i] * tau[i]).sum::<f64>() / w.len() as f64;
             let squares =
                 DVector::from_iterator(self.windows.len(), self.windows.iter().map(square));
             by_power += squares * slopes.loss.row(j);

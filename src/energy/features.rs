@@ -2,9 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::dynamics::{
-    Data, Load, RIGID, Regressor, laws, motor_rates, regressor, sense, torque,
-};
+use crate::dynamics::{Data, Load, RIGID, Regressor, laws, motor_rates, regressor, sense, torque};
 use crate::robot::{MAX_DOF, Model};
 
 /// Parameters of a joint: rotor, viscous and Coulomb friction, spring.

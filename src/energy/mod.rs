@@ -9,6 +9,7 @@ pub mod along;
 pub mod brakes;
 pub mod change;
 mod features;
+mod mean;
 pub mod moments;
 pub mod parts;
 pub mod plausible;

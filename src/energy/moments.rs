@@ -150,6 +150,12 @@ impl Moments {
         }
     }
 
+    /// ∫ τ² dt of a joint of a robot, in motion and at rest \[(Nm)² s\].
+    pub fn square(&self, joint: usize, robot: &Change) -> f64 {
+        let (sums, values) = (&self.joints[joint], &robot.joints[joint].values);
+        (&sums.moving * values + &sums.resting * values).dot(values)
+    }
+
     /// How much more energy a robot takes than the model.
     pub fn change(&self, model: &Model, change: &Change) -> EnergyParts {
         let mut parts = EnergyParts {

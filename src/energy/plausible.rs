@@ -64,8 +64,8 @@ pub struct Contribution {
 /// Robots as plausible as a model, ready for sums.
 pub struct Robots {
     spread: Spread,
-    draws: Draws,
-    changes: Vec<Change>,
+    pub(super) draws: Draws,
+    pub(super) changes: Vec<Change>,
 }
 
 impl Robots {
@@ -81,6 +81,11 @@ impl Robots {
         let draws = spread.draws(model, DRAWS);
         let changes = draws.robots.par_iter().map(|robot| Change::of(model, robot)).collect();
         Some(Robots { spread, draws, changes })
+    }
+
+    /// What differs in each of the robots.
+    pub fn drawn(&self) -> &[Change] {
+        &self.changes
     }
 
     /// What each of the robots takes more than the model, J.
@@ -103,7 +108,8 @@ impl Robots {
             .map(|(group, latents)| Contribution {
                 group: group.to_owned(),
                 // By chance, too, a group explains something.
-                share: (explained(&latents, &centred) / variance - latents.len() as f64 / count).max(0.0),
+                share: (explained(&latents, &centred) / variance - latents.len() as f64 / count)
+                    .max(0.0),
                 narrowed_by: narrowed_by(group),
             })
             .filter(|part| part.share >= LEAST)

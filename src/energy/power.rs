@@ -3,8 +3,8 @@
 use super::parts::EnergyParts;
 use super::quadrature::{Powers, integral};
 use crate::dynamics::{
-    Data, Load, Torque, kinetic_energy, motor_rates, motor_torques, potential_energy,
-    torque, torque_each,
+    Data, Load, Torque, kinetic_energy, motor_rates, motor_torques, potential_energy, torque,
+    torque_each,
 };
 use crate::motion::timed::{JointState, TimedMotion};
 use crate::path::joint_path::Joints;

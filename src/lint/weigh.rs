@@ -42,12 +42,7 @@ pub struct Cycle {
 
 impl Cycle {
     /// Of a simulation and its energy.
-    pub fn new(
-        model: &Model,
-        simulation: Simulation,
-        account: Account,
-        options: Options,
-    ) -> Cycle {
+    pub fn new(model: &Model, simulation: Simulation, account: Account, options: Options) -> Cycle {
         let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
         let mut concurrent = false;
         for (index, event) in simulation.events.iter().enumerate() {

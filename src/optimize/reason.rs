@@ -61,6 +61,9 @@ pub enum Reason {
     NoSaving,
     /// It saves in this share of the robots that are plausible, which is too few.
     UncertainSaving(f64),
+    /// A joint, from 1, has more to do than in the original cycle, which is all that is known of what it can;
+    /// no more in this share of the plausible robots.
+    AsksMore(usize, f64),
     /// The time asked for is below the possible, s.
     TooShort(f64),
     /// No stream within the limits was found.
@@ -112,6 +115,7 @@ impl Reason {
             Reason::NoSaving => "no-saving",
             Reason::TooShort(_) => "too-short",
             Reason::UncertainSaving(_) => "uncertain-saving",
+            Reason::AsksMore(..) => "asks-more",
             Reason::NoStream(_) => "no-stream",
             Reason::KeepOut => "keep-out",
             Reason::TooManyVariants(_) => "too-many-variants",
@@ -135,6 +139,7 @@ impl Reason {
                 | Reason::NoMotion
                 | Reason::NoSaving
                 | Reason::UncertainSaving(_)
+                | Reason::AsksMore(..)
                 | Reason::Timed
                 | Reason::NotReached
                 | Reason::KeepOut
@@ -169,6 +174,17 @@ impl std::fmt::Display for Reason {
                 "it saves in {:.0} % of the robots that are plausible, which is not enough: \
                  joulepath robots show says what is not known of the robot",
                 100.0 * share
+            ),
+            Reason::AsksMore(joint, share) if *share > 0.0 => write!(
+                f,
+                "joint {joint} would need no more torque than in the original cycle in {:.0} % of the \
+                 robots that are plausible, which is not enough: its limit is not known",
+                100.0 * share
+            ),
+            Reason::AsksMore(joint, _) => write!(
+                f,
+                "joint {joint} would have more to do than anywhere in the original cycle: its limits \
+                 are not known"
             ),
             Reason::NotReached => f.write_str("it does not run in the simulated cycle"),
             Reason::CompactIf => f.write_str("a compact IF holds one statement only"),

@@ -74,8 +74,7 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
     };
     let (before, after) = (&calibrated.before, &calibrated.after);
     let _ = writeln!(out, "{}", change("energy of the cycle", &before.energy_j, &after.energy_j));
-    let motion =
-        change("of which motions", &before.motion_energy_j, &after.motion_energy_j);
+    let motion = change("of which motions", &before.motion_energy_j, &after.motion_energy_j);
     let _ = writeln!(out, "{motion}");
     let groups: Vec<String> = narrower(calibrated)
         .take(NAMED)

@@ -3,6 +3,7 @@
 //! Parse, simulate, optimise, emit; then read the emitted text again, simulate
 //! that, and compare. What does not hold keeps its original moves.
 
+mod demand;
 mod elsewhere;
 pub mod figures;
 mod freed;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::demand::{Demand, demanding_ways};
 use super::figures::{Figures, LowerLimits, Retrofit, Verification};
 use super::goals::goals;
 use super::guards::Guards;
@@ -16,7 +17,7 @@ use super::{
     signals, speeds, verify,
 };
 use crate::emit::{self, Names};
-use crate::energy::plausible::Robots;
+use crate::energy::plausible::{Robots, moments};
 use crate::energy::{Account, EnergyParts, account};
 use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
@@ -285,7 +286,15 @@ pub fn retrofit(
         return speeds::retrofit(before, model, settings, progress);
     }
     let original = (&simulation, lowered.as_slice());
-    let mut ways = retime_all(model, settings, original, &before, &sites, progress)?;
+    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    // What is minimised is the mean over the plausible robots.
+    let mean = robots.as_ref().and_then(|all| all.mean(model, &moments(model, &simulation)));
+    let (aim, of_aim) = match &mean {
+        Some(mean) => (mean, account(mean, &simulation)),
+        None => (model, before.clone()),
+    };
+    let demand = robots.as_ref().map(|all| Demand::of(model, all, simulation.events.iter()));
+    let mut ways = retime_all(aim, settings, original, &of_aim, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
     let names = Names::free(&originals);
     let writing = outputs::Writing {
@@ -301,8 +310,6 @@ pub fn retrofit(
     };
     let dwells_before = dwells(model, &simulation);
     let mut restings = rests::restings(model, settings, files, &simulation, &sites, &ways);
-
-    let robots = if settings.point_estimate { None } else { Robots::of(model) };
 
     // Each round leaves out what did not hold in the emitted text.
     let mut rounds = 0;
@@ -332,6 +339,12 @@ pub fn retrofit(
                     let after = Side { simulation: &attempt.simulation, account: &attempt.account };
                     let before = Side { simulation: &simulation, account: &before };
                     uncertainty::uncertain_ways(model, robots, before, after, &sites, &ways)
+                }
+                _ => weak,
+            };
+            let weak = match (&robots, &demand) {
+                (Some(robots), Some(demand)) if weak.is_empty() => {
+                    demanding_ways(model, robots, demand, &attempt.simulation, kept)
                 }
                 _ => weak,
             };

@@ -9,6 +9,7 @@ use super::skeleton;
 use crate::robot::calibration::Calibration;
 use crate::robot::effect::Given;
 use crate::robot::error::RobotError;
+use crate::robot::geometry::Coupling;
 use crate::robot::link::Link;
 use crate::robot::model::Model;
 use crate::robot::provenance::Provenance;
@@ -27,6 +28,9 @@ const TILT: f64 = 0.163;
 const TILT_WITHOUT_PAYLOAD: f64 = 0.26;
 /// Standard deviation of a centre of mass over the distance of the joints.
 const CENTRE: f64 = 0.03;
+/// Deviation of the logarithm of the masses of links 2 and 3 by the rods beside them, which share the
+/// weight of the forearm and its motor otherwise than a serial arm does; chosen.
+const RODS: f64 = 0.15;
 /// The shortest such distance over the length of the arm.
 const SHORTEST: f64 = 0.1;
 /// Deviation of the logarithm of the mass that moves, beside that of the total mass.
@@ -139,6 +143,10 @@ impl Spread {
             let total = known.mass.as_ref().map_or(rules::MASS_BY_SIZE, |(_, sd, _)| *sd);
             let moving = if by_axes { AXES_MOVING } else { MOVING };
             add("total mass", vec![(Target::AllMasses, total.hypot(moving))]);
+            if model.kinematics.coupling == Coupling::Parallelogram {
+                let rods = [1, 2].map(|i| (Target::Mass(i), RODS)).to_vec();
+                add("rods of the parallelogram", rods);
+            }
             if by_axes {
                 let power = if known.payload.is_some() { TILT } else { TILT_WITHOUT_PAYLOAD };
                 let middles = skeleton::middles(&model.kinematics);

@@ -1,0 +1,203 @@
+//! Every robot of the catalogue, and an arm of which only a URDF without inertias is known, with every
+//! command that needs dynamics, on a program laid into its workspace.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use joulepath::kinematics::{fk, limits_ok};
+use joulepath::robot::{Model, find, load, names};
+use rayon::prelude::*;
+use tempfile::TempDir;
+
+/// Sine of axis 5 at a pose, at least: no pose is near a singular one.
+const BENT: f64 = 0.35;
+/// Height and distance of the wrist from axis 1 over its largest reach in the tries.
+const HEIGHT: f64 = 0.15;
+const FAR: [f64; 2] = [0.45, 0.9];
+/// Poses that are tried for a robot.
+const TRIES: usize = 20_000;
+/// Length of lines over that reach.
+const LINE: f64 = 0.08;
+
+/// Poses that a robot can take in front of it, well away from singular ones.
+fn poses(model: &Model) -> Vec<[f64; 6]> {
+    let mut random = fastrand::Rng::with_seed(27);
+    let tries: Vec<([f64; 6], [f64; 3])> = (0..TRIES)
+        .map(|_| {
+            let mut q: [f64; 6] = std::array::from_fn(|j| {
+                let [low, high] = model.limits.position[j];
+                let (low, high) = (low.max(-2.0), high.min(2.0));
+                low + (high - low) * random.f64()
+            });
+            q[0] *= 0.5;
+            (q, fk(model, &q).translation.vector.into())
+        })
+        .filter(|(q, _)| limits_ok(model, q).is_ok() && q[4].sin().abs() > BENT)
+        .collect();
+    let distance = |at: &[f64; 3]| at[0].hypot(at[1]);
+    let reach = tries.iter().map(|(_, at)| distance(at)).fold(0.0, f64::max);
+    let inside = tries.iter().filter(|(_, at)| {
+        at[2] > HEIGHT * reach && (FAR[0]..FAR[1]).contains(&(distance(at) / reach)) && at[0] > 0.0
+    });
+    inside.map(|(q, _)| *q).collect()
+}
+
+fn jointtarget(q: &[f64; 6]) -> String {
+    let degrees: Vec<String> = q.iter().map(|x| format!("{:.3}", x.to_degrees())).collect();
+    format!("[[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]", degrees.join(","))
+}
+
+/// A robtarget in the pose `q`, moved up.
+fn robtarget(model: &Model, q: &[f64; 6], up: f64) -> String {
+    let pose = fk(model, q);
+    let at = pose.translation.vector;
+    let r = pose.rotation.quaternion();
+    let quarter = |angle: f64| (angle / std::f64::consts::FRAC_PI_2).floor();
+    format!(
+        "[[{:.3},{:.3},{:.3}],[{:.8},{:.8},{:.8},{:.8}],[{},{},{},0],[9E9,9E9,9E9,9E9,9E9,9E9]]",
+        1e3 * at.x,
+        1e3 * at.y,
+        1e3 * (at.z + up),
+        r.w,
+        r.i,
+        r.j,
+        r.k,
+        quarter(q[0]),
+        quarter(q[3]),
+        quarter(q[5])
+    )
+}
+
+/// A cycle of joint movements, a line up and down, and waits.
+fn program(model: &Model) -> String {
+    let poses = poses(model);
+    assert!(poses.len() >= 3, "{}: only {} poses", model.name, poses.len());
+    let reach = poses.iter().map(|q| fk(model, q).translation.vector.xy().norm());
+    let line = LINE * reach.fold(0.0, f64::max);
+    let mut text = String::from("MODULE Generated\n");
+    for (name, q) in ["jA", "jB", "jC"].into_iter().zip(&poses) {
+        let _ = writeln!(text, "  CONST jointtarget {name}:={};", jointtarget(q));
+    }
+    let _ = writeln!(text, "  CONST robtarget pUp:={};", robtarget(model, &poses[1], line));
+    let _ = writeln!(text, "  CONST robtarget pB:={};", robtarget(model, &poses[1], 0.0));
+    text += "  PROC main()
+    ConfL\\Off;
+    MoveAbsJ jA,v1000,fine,tool0;
+    MoveAbsJ jB,v1500,fine,tool0;
+    MoveL pUp,v200,z10,tool0;
+    MoveL pB,v200,fine,tool0;
+    WaitTime 2;
+    MoveAbsJ jC,v1500,z50,tool0;
+    MoveAbsJ jA,v1000,fine,tool0;
+    WaitTime 4;
+  ENDPROC
+ENDMODULE
+";
+    text
+}
+
+fn joulepath(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(arguments).output().unwrap()
+}
+
+/// Of so many robots one runs the commands that take long.
+const ONE_IN: usize = 6;
+
+/// What goes wrong with a robot.
+fn faults(model: &Model, robot: &str, slow: bool) -> Vec<String> {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("generated.mod");
+    std::fs::write(&path, program(model)).unwrap();
+    let out = folder.path().join("out");
+    let excitation = folder.path().join("excitation");
+    let [path, out, excitation] = [&path, &out, &excitation].map(|p| p.to_str().unwrap());
+    let common = ["--robot", robot, "--format", "json", "--quiet"];
+    let with = |own: &[&str]| joulepath(&[own, &common[..]].concat());
+    let mut runs = vec![
+        ("simulate", with(&["simulate", path]), "energy_interval_j"),
+        ("lint", with(&["lint", path]), "cycle_energy_j"),
+        ("standstill", with(&["standstill", path]), "holding_interval_w"),
+    ];
+    if slow {
+        let small = ["--cycles", "2", "--harmonics", "1,3", "--spacing", "0.1"];
+        let design = with(&[&["excite", "--out", excitation], &small[..]].concat());
+        runs.push(("excite", design, "condition"));
+        let optimized = with(&["optimize", path, "--out", out]);
+        runs.push(("optimize", optimized, "saving_interval_percent"));
+    }
+    let mut faults = Vec::new();
+    for (command, output, key) in runs {
+        // `lint` tells of findings by its exit code.
+        let code = output.status.code();
+        let text = String::from_utf8_lossy(&output.stdout);
+        let done = code == Some(0) || (command == "lint" && code == Some(1));
+        if !done || !text.contains(key) || text.contains(&format!("\"{key}\": null")) {
+            let said = String::from_utf8_lossy(&output.stderr);
+            faults.push(format!("{} {command}: {code:?} {said}", model.name));
+        }
+    }
+    faults
+}
+
+/// Faults of all robots; one in so many runs the commands that take long.
+fn faults_of_all(one_in: usize) -> String {
+    let all: Vec<Model> = names().map(|name| find(name).unwrap()).filter(|m| m.dof == 6).collect();
+    assert!(all.len() >= 70, "{}", all.len());
+    let each = all.par_iter().enumerate();
+    let faults: Vec<String> =
+        each.flat_map_iter(|(i, m)| faults(m, &m.name, i % one_in == 0)).collect();
+    faults.join("\n")
+}
+
+#[test]
+fn every_six_axis_robot_of_the_catalogue_runs_each_command() {
+    let faults = faults_of_all(ONE_IN);
+    assert!(faults.is_empty(), "{faults}");
+}
+
+#[test]
+#[ignore = "ten minutes in release: cargo test --release --test all_robots -- --ignored"]
+fn every_six_axis_robot_of_the_catalogue_runs_the_slow_commands_too() {
+    let faults = faults_of_all(1);
+    assert!(faults.is_empty(), "{faults}");
+}
+
+/// Origins (m, rad), of the joints of an arm that no table knows, about their z axes.
+const ARM: [([f64; 3], [f64; 3]); 6] = [
+    ([0.0, 0.0, 0.35], [0.0, 0.0, 0.0]),
+    ([0.08, 0.0, 0.0], [-1.570_796, 0.0, 0.0]),
+    ([0.0, -0.6, 0.0], [0.0, 0.0, 0.0]),
+    ([0.55, 0.0, 0.0], [1.570_796, 0.0, 1.570_796]),
+    ([0.0, 0.0, 0.0], [-1.570_796, 0.0, 0.0]),
+    ([0.0, 0.0, 0.0], [1.570_796, 0.0, 0.0]),
+];
+
+#[test]
+fn an_arm_of_a_urdf_without_inertias_runs_each_command() {
+    let mut text = String::from("<robot name=\"unknown arm\"><link name=\"l0\"/>");
+    for (i, (xyz, rpy)) in ARM.iter().enumerate() {
+        let list = |x: &[f64; 3]| format!("{} {} {}", x[0], x[1], x[2]);
+        let _ = write!(
+            text,
+            "<link name=\"l{}\"/><joint name=\"j{}\" type=\"revolute\"><parent link=\"l{i}\"/>\
+             <child link=\"l{}\"/><origin xyz=\"{}\" rpy=\"{}\"/><axis xyz=\"0 0 1\"/>\
+             <limit lower=\"-2.6\" upper=\"2.6\" velocity=\"3.5\" effort=\"0\"/></joint>",
+            i + 1,
+            i + 1,
+            i + 1,
+            list(xyz),
+            list(rpy)
+        );
+    }
+    text += "</robot>";
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("arm.urdf");
+    std::fs::write(&path, text).unwrap();
+    let path: &Path = &path;
+    let path = path.to_str().unwrap();
+    let faults = faults(&load(path).unwrap(), path, true);
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
