@@ -17,7 +17,7 @@ use joulepath::kinematics::limits_ok;
 use joulepath::motion::{Options, simulate};
 use joulepath::retrofit::{Settings, Source, read_program, retrofit};
 use joulepath::robot::prior::Spread;
-use joulepath::robot::{Friction, Model, find, from_toml, load, to_toml};
+use joulepath::robot::{Model, find, from_toml, load, to_toml};
 use joulepath::text::{FileId, SourceFile};
 use rayon::prelude::*;
 
@@ -233,32 +233,20 @@ fn rate(held: Option<&Vec<bool>>) -> String {
     format!("{:.0} % of {}", 100.0 * count as f64 / held.len() as f64, held.len())
 }
 
+/// Tables of a robot file that are left out.
+const DYNAMICS: [&str; 9] =
+    ["link", "arm_load", "friction", "motors", "wrist", "drive", "brakes", "standstill", "effects"];
+
 /// The robot without its dynamics, estimated.
 fn unknown(model: &Model, name: &str) -> Model {
-    let dynamic = |table: &str| {
-        table.starts_with("link ")
-            || table.starts_with("effects")
-            || ["friction", "motors", "drive", "brakes", "standstill", "wrist"].contains(&table)
-    };
-    let bare = from_toml(name, &to_toml(model)).unwrap();
-    let mut origins = bare.origins.clone();
-    origins.retain(|origin| {
-        !dynamic(&origin.table) && !(origin.table == "limits" && origin.key == "torque")
-    });
-    let mut limits = bare.limits.clone();
-    limits.torque = None;
-    let bare = Model {
-        links: Vec::new(),
-        friction: Friction::none(bare.dof),
-        motors: None,
-        brakes: None,
-        effects: Vec::new(),
-        laws: Vec::new(),
-        limits,
-        origins,
-        ..bare
-    };
-    with_estimates(bare).unwrap()
+    let mut table: toml::Table = toml::from_str(&to_toml(model)).unwrap();
+    for key in DYNAMICS {
+        table.remove(key);
+    }
+    let limits = table.get_mut("limits").and_then(toml::Value::as_table_mut).unwrap();
+    limits.retain(|key, _| !key.starts_with("torque"));
+    let text = toml::to_string(&table).unwrap();
+    with_estimates(from_toml(name, &text).unwrap()).unwrap()
 }
 
 #[derive(Clone, Copy)]

@@ -12,6 +12,7 @@ mod features;
 mod mean;
 pub mod moments;
 pub mod parts;
+mod peaks;
 pub mod plausible;
 pub mod power;
 mod quadrature;

@@ -9,6 +9,7 @@ use super::account::Account;
 use super::change::Change;
 use super::moments::Moments;
 use super::parts::EnergyParts;
+use super::peaks::peaks;
 use crate::motion::Simulation;
 use crate::robot::Model;
 use crate::robot::prior::{Draws, Spread};
@@ -157,6 +158,8 @@ pub struct Plausibility {
     pub energy_j: Interval,
     /// That of motions, J.
     pub motion_energy_j: Interval,
+    /// Largest torque of each joint \[Nm\].
+    pub torque_nm: Vec<Interval>,
     /// What the variance of all energy comes from.
     pub contributions: Vec<Contribution>,
 }
@@ -189,6 +192,7 @@ pub fn plausibility(
     Some(Plausibility {
         energy_j: Interval::of(&energy),
         motion_energy_j: Interval::of(&of(&EnergyParts::motion_energy_j)),
+        torque_nm: peaks(model, &robots, simulation),
         contributions: robots.contributions(&energy),
     })
 }

@@ -11,6 +11,7 @@ use crate::ir::movement::Movement;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::retrofit::{LowerLimits, Retrofit, SegmentKind};
+use crate::robot::prior::is_mass_known;
 use crate::robot::{Model, Provenance};
 
 /// The table of a simulation.
@@ -129,9 +130,14 @@ pub fn notes(model: &Model, places: Places<'_>, simulation: &Simulation) -> Vec<
     }
     let estimated = model.count(Provenance::Estimated);
     if estimated > 0 {
+        let mass = if is_mass_known(model) {
+            ""
+        } else {
+            "; its mass is not known: intervals are wider, state mass in its file (kg, of the whole robot)"
+        };
         notes.push(format!(
             "estimated: {estimated} figures of {} follow from its size: every energy has an interval, \
-             and joulepath identify narrows it",
+             joulepath calibrate narrows it by a log of power, joulepath identify by currents{mass}",
             model.name
         ));
     }

@@ -19,7 +19,7 @@ use crate::robot::Model;
 /// Share of the plausible robots in which the torque stays below.
 const ENOUGH: f64 = 0.95;
 /// Time between two instants that are looked at \[s\], and what a peak between them may add.
-const STEP: f64 = 0.01;
+const STEP: f64 = 0.02;
 const BETWEEN: f64 = 1.01;
 
 /// What the joints of plausible robots have to do in a motion.

@@ -263,9 +263,8 @@ pub fn retrofit(
     let (program, entry) = read_program(files, &settings.entry)?;
     let simulation = simulate(&program, entry, model, &settings.options);
     let before = account(model, &simulation);
-    let loads = Some(Loads::shown(model, &simulation));
-    let settings =
-        &Settings { freedom: Freedom { loads, ..settings.freedom.clone() }, ..settings.clone() };
+    let given = settings;
+    let settings = &showing(model, &simulation, given);
     let mut sites = sites(&program, &simulation);
     let by_interrupts = hazards::written_by_interrupts(&program);
     let guards = Guards::new(&program, files, by_interrupts, settings);
@@ -294,7 +293,8 @@ pub fn retrofit(
         None => (model, before.clone()),
     };
     let demand = robots.as_ref().map(|all| Demand::of(model, all, simulation.events.iter()));
-    let mut ways = retime_all(aim, settings, original, &of_aim, &sites, progress)?;
+    let goal = showing(aim, &simulation, given);
+    let mut ways = retime_all(aim, &goal, original, &of_aim, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
     let names = Names::free(&originals);
     let writing = outputs::Writing {
@@ -436,6 +436,12 @@ pub fn retrofit(
         before: (simulation, before),
         after: (after_simulation, after),
     })
+}
+
+/// Settings with what a robot has to do in the original: streams ask no more of its joints.
+fn showing(model: &Model, simulation: &Simulation, settings: &Settings) -> Settings {
+    let loads = Some(Loads::shown(model, simulation));
+    Settings { freedom: Freedom { loads, ..settings.freedom.clone() }, ..settings.clone() }
 }
 
 pub(super) fn figures(simulation: &Simulation, account: &Account) -> Figures {

@@ -19,7 +19,7 @@ const ENGAGE_S: f64 = 0.1;
 const RAMP_S: f64 = 0.1;
 
 /// Joints of an arm that a prior is made for.
-const ARM: std::ops::RangeInclusive<usize> = 5..=7;
+pub(super) const ARM: std::ops::RangeInclusive<usize> = 5..=7;
 
 /// The model with all that it lacks of dynamics, limits and power, estimated from its size. What it has
 /// stays. A chain that is no arm stays as it is.

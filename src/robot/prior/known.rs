@@ -4,7 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use serde::Deserialize;
 
+use super::fill::ARM;
 use super::rules::{self, Size};
+use crate::robot::error::RobotError;
 use crate::robot::link::symmetric;
 use crate::robot::model::Model;
 
@@ -105,6 +107,40 @@ impl Known {
         let payload = payload.unwrap_or_else(|| rules::payload(mass, reach));
         Size { mass: mass.unwrap_or_else(|| rules::mass(reach, payload)), reach, payload }
     }
+}
+
+/// Factor by which a stated mass may differ from that of ABB's robots of the same reach and payload: the
+/// lightest arms that are sold are a fifth of it.
+const ABSURD: f64 = 15.0;
+
+/// A mass that no arm of the robot's reach has is a mistake, of its unit for instance.
+///
+/// # Errors
+/// It is one.
+pub fn check_mass(model: &Model) -> Result<(), RobotError> {
+    let Some(mass) = model.mass.filter(|_| ARM.contains(&model.dof)) else { return Ok(()) };
+    let known = Known { mass: None, ..Known::of(model) };
+    let Size { mass: usual, reach, .. } = known.size(model);
+    if (mass / usual).ln().abs() <= ABSURD.ln() {
+        return Ok(());
+    }
+    Err(RobotError::Value {
+        place: model.file.clone().unwrap_or_else(|| model.name.clone()),
+        key: "mass".into(),
+        value: mass.to_string(),
+        must: format!(
+            "the mass of the whole robot in kg, {:.0} to {:.0} for an arm of {reach:.2} m reach; leave it \
+             out if it is not known",
+            usual / ABSURD,
+            usual * ABSURD
+        ),
+    })
+}
+
+/// Whether the mass of the whole robot is known.
+#[must_use]
+pub fn is_mass_known(model: &Model) -> bool {
+    Known::of(model).mass.is_some()
 }
 
 /// From axis 1 to the wrist's centre of the stretched arm \[m\].

@@ -18,4 +18,5 @@ mod spread;
 
 pub use fill::estimated;
 pub use hypercube::standard_normals;
+pub use known::{check_mass, is_mass_known};
 pub use spread::{Draws, Latent, Plausible, Spread, check_calibration};
