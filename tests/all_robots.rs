@@ -3,6 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -55,7 +56,7 @@ fn robtarget(model: &Model, q: &[f64; 6], up: f64) -> String {
     let pose = fk(model, q);
     let at = pose.translation.vector;
     let r = pose.rotation.quaternion();
-    let quarter = |angle: f64| (angle / std::f64::consts::FRAC_PI_2).floor();
+    let quarter = |angle: f64| (angle / FRAC_PI_2).floor();
     format!(
         "[[{:.3},{:.3},{:.3}],[{:.8},{:.8},{:.8},{:.8}],[{},{},{},0],[9E9,9E9,9E9,9E9,9E9,9E9]]",
         1e3 * at.x,
@@ -168,11 +169,11 @@ fn every_six_axis_robot_of_the_catalogue_runs_the_slow_commands_too() {
 /// Origins (m, rad), of the joints of an arm that no table knows, about their z axes.
 const ARM: [([f64; 3], [f64; 3]); 6] = [
     ([0.0, 0.0, 0.35], [0.0, 0.0, 0.0]),
-    ([0.08, 0.0, 0.0], [-1.570_796, 0.0, 0.0]),
+    ([0.08, 0.0, 0.0], [-FRAC_PI_2, 0.0, 0.0]),
     ([0.0, -0.6, 0.0], [0.0, 0.0, 0.0]),
-    ([0.55, 0.0, 0.0], [1.570_796, 0.0, 1.570_796]),
-    ([0.0, 0.0, 0.0], [-1.570_796, 0.0, 0.0]),
-    ([0.0, 0.0, 0.0], [1.570_796, 0.0, 0.0]),
+    ([0.55, 0.0, 0.0], [FRAC_PI_2, 0.0, FRAC_PI_2]),
+    ([0.0, 0.0, 0.0], [-FRAC_PI_2, 0.0, 0.0]),
+    ([0.0, 0.0, 0.0], [FRAC_PI_2, 0.0, 0.0]),
 ];
 
 #[test]

@@ -10,6 +10,7 @@ use joulepath::energy::account;
 use joulepath::energy::plausible::{Interval, plausibility};
 use joulepath::energy::trajectory::trajectory;
 use joulepath::log::{Channel, Log};
+use joulepath::motion::timeline::What;
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::retrofit::{Settings, Source, read_program, retrofit};
 use joulepath::robot::prior::{Spread, standard_normals};
@@ -77,6 +78,8 @@ struct Recording {
     cycles: f64,
     /// What 1 W is in the log.
     unit: f64,
+    /// Whether the number of the movement is logged.
+    commands: bool,
 }
 
 /// The power of a robot in a program, as a meter logs it that starts anywhere.
@@ -98,17 +101,37 @@ fn log(model: &Model, simulation: &Simulation, recording: &Recording) -> Log {
         t.push(100.0 + at);
         power.push((low + share * (high - low)) * (1.0 + recording.noise * noise) * recording.unit);
     }
+    let mut numbers: Vec<(f64, f64)> = Vec::new();
+    for event in &simulation.events {
+        let What::Run(run) = &event.what else { continue };
+        let moves = run.moves.iter().map(|m| event.t_start + m.t_start);
+        numbers.extend(moves.zip(run.moves.iter().map(|m| m.duration)));
+    }
+    let command = |t: &f64| {
+        let now = (t - 100.0 + begin) % duration;
+        let running = numbers.iter().position(|(from, lasts)| (*from..from + lasts).contains(&now));
+        running.map_or(0.0, |index| index as f64 + 1.0)
+    };
+    let commands: Vec<f64> = t.iter().map(command).collect();
     let rows = (0..t.len() as u64).map(|i| i + 2).collect();
-    Log {
-        channels: vec![Channel::Time, Channel::Power],
-        values: vec![t, power],
+    let all = Log {
+        channels: vec![Channel::Time, Channel::Power, Channel::Command],
+        values: vec![t, power, commands],
         rows,
         rejected: Vec::new(),
         degrees: Vec::new(),
-    }
+    };
+    if recording.commands { all } else { without_commands(all) }
 }
 
-const METER: Recording = Recording { step: 0.02, noise: 0.02, seed: 1, cycles: 2.5, unit: 1.0 };
+fn without_commands(mut log: Log) -> Log {
+    log.channels.pop();
+    log.values.pop();
+    log
+}
+
+const METER: Recording =
+    Recording { step: 0.02, noise: 0.02, seed: 1, cycles: 2.5, unit: 1.0, commands: false };
 
 fn holds(Interval { low, high, .. }: Interval, x: f64) -> bool {
     (low..=high).contains(&x)
@@ -195,7 +218,7 @@ fn logs_of_other_programs_and_robots_are_refused() {
 }
 
 #[test]
-fn kilowatts_numbers_of_cycles_and_commands_are_understood() {
+fn kilowatts_and_numbers_of_movements_are_understood() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let plain = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();
@@ -204,7 +227,9 @@ fn kilowatts_numbers_of_cycles_and_commands_are_understood() {
     assert!(of_kw.found.kilowatts && !plain.found.kilowatts);
     let width = |i: Interval| i.high - i.low;
     let before = width(plain.before.energy_j);
-    for found in [&plain, &of_kw] {
+    let with_commands = log(&model, &program, &Recording { commands: true, ..METER });
+    let of_commands = calibrate(&model, &program, &with_commands, None).unwrap();
+    for found in [&plain, &of_kw, &of_commands] {
         assert!(width(found.after.energy_j) < 0.1 * before, "{:?}", found.after.energy_j);
     }
 }

@@ -103,14 +103,8 @@ fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass
         let [(number, from), (_, to)] = [pair[0], pair[1]];
         // The first and the last movement of a log may be parts.
         let simulated = match number.checked_sub(1) {
-            Some(index) if last != usize::MAX => Some(cycle.moves[index]),
-            Some(_) => None,
-            None if (1..=cycle.moves.len()).contains(&last) => {
-                let (begin, lasts) = cycle.moves[last - 1];
-                let next = cycle.moves.get(last).map_or(cycle.duration, |(begin, _)| *begin);
-                Some((begin + lasts, next - begin - lasts))
-            }
-            None => None,
+            Some(index) => (last != usize::MAX).then(|| cycle.moves[index]),
+            None => last.checked_sub(1).and_then(|before| cycle.wait_behind(before)),
         };
         if number > 0 {
             if passes.is_empty() || (last != usize::MAX && number <= last) {

@@ -87,6 +87,13 @@ impl<'a> Cycle<'a> {
         self.power[i] + rest * (next - self.power[i])
     }
 
+    /// Begin and duration of what lies between a movement and the next one, s.
+    pub(super) fn wait_behind(&self, movement: usize) -> Option<(f64, f64)> {
+        let (begin, lasts) = self.moves.get(movement)?;
+        let next = self.moves.get(movement + 1).map_or(self.duration, |(begin, _)| *begin);
+        Some((begin + lasts, next - begin - lasts))
+    }
+
     /// From when to when each event lasts, s from the start of the pass.
     pub(super) fn pieces(&self) -> impl Iterator<Item = Range<f64>> {
         self.events.iter().map(|event| {

@@ -23,7 +23,7 @@ pub(super) fn peaks(model: &Model, robots: &Robots, simulation: &Simulation) -> 
     let all: Vec<Vec<f64>> = robots
         .drawn()
         .par_iter()
-        .map(|robot| along.torques(robot).iter().map(|tau| tau.amax()).collect())
+        .map(|robot| along.torques(robot).iter().map(nalgebra::Matrix::amax).collect())
         .collect();
     (0..model.dof)
         .map(|j| Interval::of(&all.iter().map(|tau| tau[j]).collect::<Vec<f64>>()))

@@ -175,16 +175,11 @@ impl std::fmt::Display for Reason {
                  joulepath robots show says what is not known of the robot",
                 100.0 * share
             ),
-            Reason::AsksMore(joint, share) if *share > 0.0 => write!(
+            Reason::AsksMore(joint, share) => write!(
                 f,
                 "joint {joint} would need no more torque than in the original cycle in {:.0} % of the \
                  robots that are plausible, which is not enough: its limit is not known",
                 100.0 * share
-            ),
-            Reason::AsksMore(joint, _) => write!(
-                f,
-                "joint {joint} would have more to do than anywhere in the original cycle: its limits \
-                 are not known"
             ),
             Reason::NotReached => f.write_str("it does not run in the simulated cycle"),
             Reason::CompactIf => f.write_str("a compact IF holds one statement only"),

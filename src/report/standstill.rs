@@ -32,9 +32,9 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
                 "best_nearby": { "q_deg": degrees(&standing.best), "holding_w": standing.best_w },
             });
             if let Some(range) = &standing.plausible {
-                let interval = |x: &Interval| json!([x.low, x.high]);
-                value["holding_interval_w"] = interval(&range.holding_w);
-                value["break_even_interval_s"] = json!(range.break_even_s.as_ref().map(interval));
+                let pair = |x: &Interval| [x.low, x.high];
+                value["holding_interval_w"] = json!(pair(&range.holding_w));
+                value["break_even_interval_s"] = json!(range.break_even_s.as_ref().map(pair));
             }
             if let Some((place, duration)) = &pose.dwell {
                 value["file"] = json!(place.file);

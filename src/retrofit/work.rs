@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::demand::{Demand, demanding_ways};
+use super::demand::{Demand, demanding_ways, tighter};
 use super::figures::{Figures, LowerLimits, Retrofit, Verification};
 use super::goals::goals;
 use super::guards::Guards;
@@ -294,6 +294,7 @@ pub fn retrofit(
     };
     let demand = robots.as_ref().map(|all| Demand::of(model, all, simulation.events.iter()));
     let goal = showing(aim, &simulation, given);
+    let goal = if demand.is_some() { tighter(model, goal) } else { goal };
     let mut ways = retime_all(aim, &goal, original, &of_aim, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
     let names = Names::free(&originals);
