@@ -47,9 +47,9 @@ fn main() {
         power: true,
     }];
     for (name, file, friction) in [
-        ("UR10", "ur10", false),
+        ("UR10", "ur10", true),
         ("UR5e", "ur5e", false),
-        ("Panda", "panda", true),
+        ("Panda", "panda", false),
         ("TX40", "tx40", true),
     ] {
         let path =

@@ -2,7 +2,7 @@
 //!
 //! That a robot can do what it does already is known. Accelerations of streams stay below those of the
 //! original cycle anyway ([`Loads`](crate::optimize::allowed::Loads)); where limits of torque are
-//! estimated or assumed, so does the largest torque of each joint in 95 % of the plausible robots.
+//! estimated, so does the largest torque of each joint in 95 % of the plausible robots.
 
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use crate::motion::timeline::{Event, What};
 use crate::optimize::reason::Reason;
 use crate::optimize::site::Site;
 use crate::path::joint_path::DOF;
-use crate::robot::Model;
+use crate::robot::{Model, Provenance};
 
 /// Share of the plausible robots in which the torque stays below.
 const ENOUGH: f64 = 0.95;
@@ -27,11 +27,14 @@ const BETWEEN: f64 = 1.01;
 /// one robot is above it with every other one. Chosen on an IRB1600-10/1.45 and an IRB2600-20/1.65.
 const PLANNED: f64 = 0.9;
 
-/// The settings with tighter torques where no limit of the robot is known.
-pub(super) fn tighter(model: &Model, mut settings: Settings) -> Settings {
-    if !model.is_known("limits", "torque")
-        && let Some(loads) = &mut settings.freedom.loads
-    {
+/// Whether nothing is known of the torques that a robot can do.
+pub(super) fn is_estimated(model: &Model) -> bool {
+    model.provenance_of("limits", "torque") == Some(Provenance::Estimated)
+}
+
+/// The settings with tighter torques.
+pub(super) fn tighter(mut settings: Settings) -> Settings {
+    if let Some(loads) = &mut settings.freedom.loads {
         loads.torque.iter_mut().for_each(|torque| *torque *= PLANNED);
     }
     settings
@@ -88,9 +91,6 @@ pub(super) fn demanding_ways(
     after: &Simulation,
     (sites, ways): (&[Site], &[Way]),
 ) -> Vec<(usize, Reason)> {
-    if model.is_known("limits", "torque") {
-        return Vec::new();
-    }
     let kept = ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok());
     kept.filter_map(|(index, way)| {
         let event = *sites[way.site].variants[way.variant].events.first()?;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::demand::{Demand, demanding_ways, tighter};
+use super::demand::{Demand, demanding_ways, is_estimated, tighter};
 use super::figures::{Figures, LowerLimits, Retrofit, Verification};
 use super::goals::goals;
 use super::guards::Guards;
@@ -286,15 +286,17 @@ pub fn retrofit(
     }
     let original = (&simulation, lowered.as_slice());
     let robots = if settings.point_estimate { None } else { Robots::of(model) };
-    // What is minimised is the mean over the plausible robots.
-    let mean = robots.as_ref().and_then(|all| all.mean(model, &moments(model, &simulation)));
+    // Of a robot of whose limits nothing is known the dynamics are estimated, too: the mean over the
+    // plausible robots is minimised, and no more asked of them than what they do already.
+    let uncertain = robots.as_ref().filter(|_| is_estimated(model));
+    let mean = uncertain.and_then(|all| all.mean(model, &moments(model, &simulation)));
     let (aim, of_aim) = match &mean {
         Some(mean) => (mean, account(mean, &simulation)),
         None => (model, before.clone()),
     };
-    let demand = robots.as_ref().map(|all| Demand::of(model, all, simulation.events.iter()));
+    let demand = uncertain.map(|all| Demand::of(model, all, simulation.events.iter()));
     let goal = showing(aim, &simulation, given);
-    let goal = if demand.is_some() { tighter(model, goal) } else { goal };
+    let goal = if demand.is_some() { tighter(goal) } else { goal };
     let mut ways = retime_all(aim, &goal, original, &of_aim, &sites, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
     let names = Names::free(&originals);
