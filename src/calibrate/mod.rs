@@ -1,6 +1,6 @@
 //! What the measured power of a running program tells of its robot.
 //!
-//! Plausible robots ([`Spread`](crate::robot::prior::Spread)) differ in the power that they take in a
+//! Plausible robots ([`Spread`]) differ in the power that they take in a
 //! program. Of a log of the cabinet's power, cycles are found, folded onto the simulated cycle and
 //! averaged in windows. Then each of the plausible robots is moved to one that fits the log (randomised
 //! maximum likelihood, D. Oliver, N. He, A. Reynolds, "Conditioning permeability fields to pressure

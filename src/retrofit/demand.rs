@@ -1,7 +1,7 @@
 //! Streams ask no more of a joint than the original motion, where nobody says what it can do.
 //!
 //! That a robot can do what it does already is known. Accelerations of streams stay below those of the
-//! original cycle anyway ([`Loads`](crate::optimize::allowed::Loads)); where limits of torque are
+//! original cycle anyway (`optimize::allowed::Loads`); where limits of torque are
 //! estimated, so does the largest torque of each joint in 95 % of the plausible robots.
 
 use rayon::prelude::*;
