@@ -2,20 +2,22 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::path::Path;
+mod support;
 
 use joulepath::calibrate::{Refusal, calibrate};
+use joulepath::dynamics::{Data, torque};
 use joulepath::effects::{drawn, with_estimates};
 use joulepath::energy::account;
 use joulepath::energy::plausible::{Interval, plausibility};
-use joulepath::energy::trajectory::trajectory;
+use joulepath::energy::trajectory::{Sample, trajectory};
 use joulepath::log::{Channel, Log};
-use joulepath::motion::timeline::What;
+use joulepath::motion::timeline::{Event, What};
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::retrofit::{Settings, Source, read_program, retrofit};
 use joulepath::robot::prior::{Spread, standard_normals};
 use joulepath::robot::{Model, find, from_toml, to_toml};
 use joulepath::text::{FileId, SourceFile};
+use rayon::prelude::*;
 
 /// A program of another cycle.
 const OTHER: &str = "MODULE Other
@@ -45,18 +47,7 @@ fn source(text: &str) -> Vec<Source> {
 }
 
 fn pick_place() -> Vec<Source> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/pick_place");
-    let mut files = Vec::new();
-    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    paths.sort();
-    for path in
-        paths.iter().filter(|path| path.extension().is_some_and(|e| e == "mod" || e == "sys"))
-    {
-        let id = FileId(files.len() as u32);
-        let file = SourceFile::new(id, path.display().to_string(), std::fs::read(path).unwrap());
-        files.push(Source { relative: file.path.clone(), file });
-    }
-    files
+    support::modules("pick_place")
 }
 
 fn simulated(model: &Model, files: &[Source]) -> Simulation {
@@ -78,29 +69,46 @@ struct Recording {
     cycles: f64,
     /// What 1 W is in the log.
     unit: f64,
-    /// Whether the number of the movement is logged.
-    commands: bool,
+    marks: Marks,
+}
+
+/// What a log says of where the program is.
+#[derive(Clone, Copy)]
+enum Marks {
+    None,
+    /// The number of the movement.
+    Commands,
+    /// The number of the repetition.
+    Cycles,
 }
 
 /// The power of a robot in a program, as a meter logs it that starts anywhere.
 fn log(model: &Model, simulation: &Simulation, recording: &Recording) -> Log {
+    recorded(model, simulation, recording).0
+}
+
+/// The same, and the torques of its joints.
+fn recorded(model: &Model, simulation: &Simulation, recording: &Recording) -> (Log, Vec<Vec<f64>>) {
     let samples = trajectory(model, simulation);
     let duration = simulation.cycle_s;
     let count = (recording.cycles * duration / recording.step) as usize;
-    let noise = &standard_normals(1, count, recording.seed)[0];
-    let mut random = fastrand::Rng::with_seed(recording.seed);
-    let begin = duration * random.f64();
-    let (mut t, mut power) = (Vec::new(), Vec::new());
-    for (i, noise) in noise.iter().enumerate() {
-        let at = recording.step * i as f64;
-        let now = (at + begin) % duration;
-        let place = samples.partition_point(|sample| sample.t < now).min(samples.len() - 1);
-        let (a, b) = (&samples[place.saturating_sub(1)], &samples[place]);
-        let share = if b.t > a.t { (now - a.t) / (b.t - a.t) } else { 0.0 };
-        let [low, high] = [a, b].map(|sample| sample.electrical_w.unwrap());
-        t.push(100.0 + at);
-        power.push((low + share * (high - low)) * (1.0 + recording.noise * noise) * recording.unit);
-    }
+    let mut noise = standard_normals(1 + model.dof, count, recording.seed).into_iter();
+    let begin = duration * fastrand::Rng::with_seed(recording.seed).f64();
+    let t: Vec<f64> = (0..count).map(|i| recording.step * i as f64).collect();
+    let mut column = |value: &dyn Fn(&Sample) -> f64| -> Vec<f64> {
+        let noise = noise.next().unwrap();
+        let noisy = t.iter().zip(noise).map(|(t, noise)| {
+            let now = (t + begin) % duration;
+            let place = samples.partition_point(|sample| sample.t < now).min(samples.len() - 1);
+            let (a, b) = (&samples[place.saturating_sub(1)], &samples[place]);
+            let share = if b.t > a.t { (now - a.t) / (b.t - a.t) } else { 0.0 };
+            (value(a) + share * (value(b) - value(a))) * (1.0 + recording.noise * noise)
+        });
+        noisy.collect()
+    };
+    let power = column(&|sample| sample.electrical_w.unwrap());
+    let torques: Vec<Vec<f64>> =
+        (0..model.dof).map(|j| column(&|sample| sample.power.as_ref().unwrap().tau[j])).collect();
     let mut numbers: Vec<(f64, f64)> = Vec::new();
     for event in &simulation.events {
         let What::Run(run) = &event.what else { continue };
@@ -108,30 +116,33 @@ fn log(model: &Model, simulation: &Simulation, recording: &Recording) -> Log {
         numbers.extend(moves.zip(run.moves.iter().map(|m| m.duration)));
     }
     let command = |t: &f64| {
-        let now = (t - 100.0 + begin) % duration;
+        let now = (t + begin) % duration;
         let running = numbers.iter().position(|(from, lasts)| (*from..from + lasts).contains(&now));
         running.map_or(0.0, |index| index as f64 + 1.0)
     };
-    let commands: Vec<f64> = t.iter().map(command).collect();
-    let rows = (0..t.len() as u64).map(|i| i + 2).collect();
-    let all = Log {
-        channels: vec![Channel::Time, Channel::Power, Channel::Command],
-        values: vec![t, power, commands],
-        rows,
+    let mut all = Log {
+        channels: vec![Channel::Time, Channel::Power],
+        values: vec![t.clone(), power.iter().map(|w| w * recording.unit).collect()],
+        rows: (0..t.len() as u64).map(|i| i + 2).collect(),
         rejected: Vec::new(),
         degrees: Vec::new(),
     };
-    if recording.commands { all } else { without_commands(all) }
-}
-
-fn without_commands(mut log: Log) -> Log {
-    log.channels.pop();
-    log.values.pop();
-    log
+    match recording.marks {
+        Marks::None => {}
+        Marks::Commands => {
+            all.channels.push(Channel::Command);
+            all.values.push(t.iter().map(command).collect());
+        }
+        Marks::Cycles => {
+            all.channels.push(Channel::Cycle);
+            all.values.push(t.iter().map(|t| ((t + begin) / duration).floor()).collect());
+        }
+    }
+    (all, torques)
 }
 
 const METER: Recording =
-    Recording { step: 0.02, noise: 0.02, seed: 1, cycles: 2.5, unit: 1.0, commands: false };
+    Recording { step: 0.02, noise: 0.02, seed: 1, cycles: 2.5, unit: 1.0, marks: Marks::None };
 
 fn holds(Interval { low, high, .. }: Interval, x: f64) -> bool {
     (low..=high).contains(&x)
@@ -170,6 +181,45 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
 /// Half of the interval of the saving over the saving, at most.
 const OF_USE: f64 = 0.5;
 
+/// Share of plausible robots whose joints need no more torque in a run than in the original cycle, and
+/// what a peak between two instants may add.
+const NO_MORE: f64 = 0.95;
+const BETWEEN: f64 = 1.02;
+
+/// Whether each run of a retrofit asks no more torque of the joints than the original cycle, robot by
+/// robot, each with its own dynamics.
+fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool {
+    let robots = Spread::of(model).draws(model, 0).robots;
+    let robots: Vec<Model> = robots.iter().map(|robot| drawn(model, robot).unwrap()).collect();
+    let peaks = |robot: &Model, event: &Event| {
+        let mut most = [0.0_f64; 6];
+        let What::Run(run) = &event.what else { return most };
+        let steps = (event.duration / 0.01).ceil().max(1.0);
+        for i in 0..=steps as usize {
+            let s = run.at(event.duration * i as f64 / steps);
+            let tau = torque(robot, &mut Data::new(), &run.load, &s.q, &s.qd, &s.qdd);
+            for j in 0..6 {
+                most[j] = most[j].max((tau.rigid[j] + tau.friction[j]).abs());
+            }
+        }
+        most
+    };
+    let originals: Vec<[f64; 6]> = robots
+        .par_iter()
+        .map(|robot| {
+            let all = before.events.iter().map(|event| peaks(robot, event));
+            all.fold([0.0; 6], |a, b| std::array::from_fn(|j| f64::max(a[j], b[j])))
+        })
+        .collect();
+    after.events.iter().all(|event| {
+        let own: Vec<[f64; 6]> = robots.par_iter().map(|robot| peaks(robot, event)).collect();
+        (0..6).all(|j| {
+            let within = own.iter().zip(&originals).filter(|(a, b)| a[j] <= BETWEEN * b[j]).count();
+            within as f64 >= NO_MORE * robots.len() as f64
+        })
+    })
+}
+
 #[test]
 fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
     let files = pick_place();
@@ -186,6 +236,7 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
         let settings = Settings { entry: "main".into(), ..Settings::default() };
         let done = retrofit(&files, &found.model, &settings, &|_, _| ()).unwrap();
         let Interval { median, low, high } = done.uncertainty.unwrap().saving_percent[1];
+        assert!(asks_no_more(&found.model, &done.before.0, &done.after.0), "{name}");
         let width = 0.5 * (high - low);
         assert!(width <= OF_USE * median && median > 0.0, "{name}: {median} {low} {high}");
     }
@@ -218,7 +269,7 @@ fn logs_of_other_programs_and_robots_are_refused() {
 }
 
 #[test]
-fn kilowatts_and_numbers_of_movements_are_understood() {
+fn kilowatts_and_numbers_of_movements_and_cycles_are_understood() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let plain = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();
@@ -227,10 +278,50 @@ fn kilowatts_and_numbers_of_movements_are_understood() {
     assert!(of_kw.found.kilowatts && !plain.found.kilowatts);
     let width = |i: Interval| i.high - i.low;
     let before = width(plain.before.energy_j);
-    let with_commands = log(&model, &program, &Recording { commands: true, ..METER });
+    let with_commands = log(&model, &program, &Recording { marks: Marks::Commands, ..METER });
     let of_commands = calibrate(&model, &program, &with_commands, None).unwrap();
-    for found in [&plain, &of_kw, &of_commands] {
+    let with_cycles = log(&model, &program, &Recording { marks: Marks::Cycles, ..METER });
+    let of_cycles = calibrate(&model, &program, &with_cycles, None).unwrap();
+    for found in [&plain, &of_kw, &of_commands, &of_cycles] {
         assert!(width(found.after.energy_j) < 0.1 * before, "{:?}", found.after.energy_j);
+    }
+}
+
+#[test]
+fn torques_tell_more_than_power_alone() {
+    let model = robot("IRB2600-20/1.65");
+    let program = simulated(&model, &pick_place());
+    let spread = Spread::of(&model);
+    let z = standard_normals(spread.latents.len(), 8, 5);
+    let truth = drawn(&model, &spread.robot(&model, |k| z[k][2])).unwrap();
+    let (log, torques) = recorded(&truth, &program, &METER);
+    // Shares of the spread of the friction that are left, by joint.
+    let left = |torques: Option<&[Vec<f64>]>| -> Vec<f64> {
+        let found = calibrate(&model, &program, &log, torques).unwrap();
+        let friction = (1..=model.dof).map(|j| format!("friction of joint {j}"));
+        let of = |group: String| found.narrowed.iter().find(|(name, _)| *name == group).unwrap().1;
+        friction.map(of).collect()
+    };
+    let (alone, with) = (left(None), left(Some(&torques)));
+    assert!(with.iter().zip(&alone).all(|(with, alone)| with < alone), "{with:?}, {alone:?}");
+}
+
+#[test]
+fn logs_without_use_are_refused() {
+    let model = robot("IRB2600-20/1.65");
+    let program = simulated(&model, &pick_place());
+    let own = log(&model, &program, &METER);
+    let short = own.of_rows(&(0..500).collect::<Vec<usize>>());
+    let seldom = log(
+        &model,
+        &program,
+        &Recording { step: 20.0, cycles: 20.0, marks: Marks::Cycles, ..METER },
+    );
+    let mut negative = own.clone();
+    negative.values[1].iter_mut().for_each(|w| *w = -*w);
+    for log in [short, seldom, negative] {
+        let refusal = calibrate(&model, &program, &log, None).unwrap_err();
+        assert!(!refusal.to_string().is_empty());
     }
 }
 

@@ -2,18 +2,18 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::path::Path;
+mod support;
 
 use joulepath::dynamics::{Data, Load, gravity, torque};
-use joulepath::effects::applied;
+use joulepath::effects::{applied, drawn, with_estimates};
 use joulepath::energy::change::Change;
-use joulepath::energy::plausible::moments;
+use joulepath::energy::plausible::{Robots, moments, plausibility};
+use joulepath::energy::power::holding_w;
 use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::retrofit::{Source, read_program};
+use joulepath::retrofit::read_program;
 use joulepath::robot::prior::{Spread, estimated};
-use joulepath::robot::{Coupling, Model, find};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::robot::{Coupling, Model, find, from_toml, to_toml};
 
 /// Robots that are compared.
 const ROBOTS: usize = 12;
@@ -29,17 +29,7 @@ const COARSE: f64 = 0.006;
 const FAR: [f64; 3] = [0.5, 0.75, 0.6];
 
 fn simulated(model: &Model) -> (Simulation, Account) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/pick_place");
-    let mut files = Vec::new();
-    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    paths.sort();
-    for path in
-        paths.iter().filter(|path| path.extension().is_some_and(|e| e == "mod" || e == "sys"))
-    {
-        let id = FileId(files.len() as u32);
-        let file = SourceFile::new(id, path.display().to_string(), std::fs::read(path).unwrap());
-        files.push(Source { relative: file.path.clone(), file });
-    }
+    let files = support::modules("pick_place");
     let (program, entry) = read_program(&files, "main").unwrap();
     let simulation = simulate(&program, entry, model, &Options::default());
     let account = account(model, &simulation);
@@ -145,4 +135,60 @@ fn an_arm_without_dynamics_gets_them() {
             }
         }
     }
+}
+
+/// Difference of the mean robot's energy and the mean of the robots, over the latter.
+const MEAN_OFF: f64 = 0.01;
+
+#[test]
+fn the_mean_robot_takes_the_mean_of_the_energies() {
+    let model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
+    let (simulation, _) = simulated(&model);
+    let robots = Robots::of(&model).unwrap();
+    let mean = robots.mean(&model, &moments(&model, &simulation)).unwrap();
+    let draws = Spread::of(&model).draws(&model, robots.drawn().len()).robots;
+    let each = draws
+        .iter()
+        .map(|robot| account(&drawn(&model, robot).unwrap(), &simulation).total.motion_energy_j());
+    let expected = each.sum::<f64>() / draws.len() as f64;
+    let found = account(&mean, &simulation).total.motion_energy_j();
+    assert!((found - expected).abs() < MEAN_OFF * expected, "{found:.0} J, {expected:.0} J");
+    let own = account(&model, &simulation).total.motion_energy_j();
+    assert!((own - expected).abs() > MEAN_OFF * expected, "the model itself takes {own:.0} J");
+}
+
+#[test]
+fn a_balancer_helps_to_hold() {
+    let model = with_estimates(find("IRB6700-200/2.6").unwrap()).unwrap();
+    let without = Model { laws: Vec::new(), ..model.clone() };
+    let forwards = [0.0, 1.0, 0.0, 0.0, 0.5, 0.0];
+    let [with, without] = [&model, &without].map(|m| holding_w(m, &Load::none(), &forwards)[1]);
+    // Copper loss goes with the square of the torque.
+    let torque = torque(&model, &mut Data::new(), &Load::none(), &forwards, &[], &[]).rigid[1];
+    let loss = model.motors.as_ref().unwrap().loss_constant[1];
+    assert!((with - loss * torque * torque).abs() < 1e-9 * with, "{with} W");
+    assert!(with < 0.5 * without, "{with} W, {without} W");
+}
+
+#[test]
+fn masses_that_no_arm_has_are_refused_by_name() {
+    let bare = find("IRB2600-20/1.65").unwrap();
+    let text = to_toml(&Model { name: "an arm".into(), ..bare });
+    let with_mass = |mass: &str| {
+        let text = text.replacen('\n', &format!("\nmass = {mass}\n"), 1);
+        let model = from_toml("arm.toml", &text).map_err(|error| error.to_string())?;
+        with_estimates(model).map_err(|error| error.to_string())
+    };
+    for mass in ["-250.0", "0.0", "2.5", "19000.0", "1e6"] {
+        let said = with_mass(mass).unwrap_err();
+        assert!(said.contains("mass") && said.contains("kg"), "{mass}: {said}");
+    }
+    let stated = with_mass("280.0").unwrap();
+    let unknown = with_estimates(from_toml("arm.toml", &text).unwrap()).unwrap();
+    let of = |model: &Model| {
+        let (simulation, own) = simulated(model);
+        let all = plausibility(model, &simulation, &own).unwrap().motion_energy_j;
+        (all.high / all.low).ln()
+    };
+    assert!(of(&unknown) > of(&stated), "{} {}", of(&unknown), of(&stated));
 }

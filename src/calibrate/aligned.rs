@@ -11,6 +11,8 @@ const LEAST: f64 = 0.6;
 /// How much longer or shorter a cycle may be than simulated, as a share, and steps of the search.
 const PACE: f64 = 0.05;
 const PACES: usize = 10;
+/// Cycles of a log that are searched for, at most.
+const CYCLES: f64 = 200.0;
 /// Points of a cycle in the search, and in the refinement.
 const COARSE: f64 = 400.0;
 const FINE: usize = 3000;
@@ -172,7 +174,7 @@ impl Curve<'_> {
     fn search(&self) -> Result<Vec<(f64, f64)>, Refusal> {
         let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
         let step = self.cycle.duration / COARSE;
-        let count = ((last - first) / step) as usize + 1;
+        let count = ((last - first) / step).min(CYCLES * COARSE) as usize + 1;
         let logged = self.means(first, step, count);
         let mut best: (f64, f64, Vec<f64>) = (f64::NEG_INFINITY, 1.0, Vec::new());
         for i in 0..=2 * PACES {

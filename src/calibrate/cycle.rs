@@ -32,13 +32,13 @@ impl<'a> Cycle<'a> {
     /// Of a simulation.
     ///
     /// # Errors
-    /// It takes no time.
+    /// It takes no time, or never ends.
     pub(super) fn of(model: &Model, simulation: &'a Simulation) -> Result<Cycle<'a>, Refusal> {
         let first = simulation.repeats_from.unwrap_or(0);
         let events = simulation.events.get(first..).unwrap_or_default();
         let start = events.first().map_or(0.0, |event| event.t_start);
         let duration = simulation.cycle_s - start;
-        if duration <= 0.0 {
+        if events.is_empty() || duration <= 0.0 || !duration.is_finite() {
             return Err(Refusal::Nothing);
         }
         let mut moves = Vec::new();

@@ -33,6 +33,8 @@ pub use refusal::Refusal;
 
 /// Robots that are moved to the log.
 const ROBOTS: usize = 128;
+/// Windows of the cycle with rows, at least.
+const LEAST_WINDOWS: usize = 10;
 /// Share of the variance of the power over the cycle that the fitted robot has to explain.
 const EXPLAINS: f64 = 0.75;
 /// Correlation of the power in windows with the model's from which on it is the program's.
@@ -90,6 +92,9 @@ impl<'a> Folded<'a> {
     ) -> Result<Folded<'a>, Refusal> {
         let aligned = align(cycle, log)?;
         let windows = fold(cycle, log, &aligned, torques);
+        if windows.power.len() < LEAST_WINDOWS {
+            return Err(Refusal::Sparse { windows: windows.power.len(), least: LEAST_WINDOWS });
+        }
         let instants: Vec<Instant> = windows.times.iter().map(|t| cycle.at(*t)).collect();
         let along = Along::of(model, &instants, windows.ranges.clone());
         Ok(Folded { aligned, windows, along })
@@ -120,11 +125,11 @@ pub fn calibrate(
     let explained = data.explained(&likely.means);
     // The shape of the power tells the program, its size the robot.
     if explained < EXPLAINS && data.likeness(&rough.along.means(&own)) < ALIKE {
-        return Err(Refusal::Program { explained });
+        return Err(Refusal::Program { explained, least: EXPLAINS });
     }
     check_size(model, &spread, &rough)?;
     if explained < EXPLAINS {
-        return Err(Refusal::Program { explained });
+        return Err(Refusal::Program { explained, least: EXPLAINS });
     }
     // Once more, with the cycle of a robot that is near the log.
     let near = spread.robot(model, |k| likely.z[k]);
@@ -185,7 +190,9 @@ fn check_size(
         let mean = logs.iter().sum::<f64>() / logs.len() as f64;
         let sd = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / logs.len() as f64;
         let sd = sd.sqrt().max(f64::MIN_POSITIVE);
-        if (measured[i].ln() - mean).abs() > FAR * sd {
+        let off = (measured[i].ln() - mean).abs();
+        // A power below 0 has no logarithm: it is refused, too.
+        if off.is_nan() || off > FAR * sd {
             let [low, high] = [-2.0, 2.0].map(|k: f64| (mean + k * sd).exp());
             return Err(Refusal::Robot {
                 name: model.name.clone(),

@@ -205,13 +205,13 @@ impl Fit<'_> {
     ) -> (DMatrix<f64>, DVector<f64>) {
         let z = z.as_slice();
         let slopes = Slopes::at(self.model, self.spread, z);
-        let (by_power, by_torque) =
-            self.along.slopes(&self.change(z), &slopes, !self.data.torque.is_empty());
+        let by_power = self.along.power_slopes(&self.change(z), &slopes);
         let count = z.len();
         let mut normal = DMatrix::zeros(count, count);
         let mut gradient = DVector::zeros(count);
         let windows = self.data.power.len();
-        let torque = self.data.torque.iter().map(|(_, sd)| sd).zip(by_torque);
+        let torque = self.data.torque.iter().map(|(_, sd)| sd);
+        let torque = torque.zip(self.along.torque_slopes(&slopes));
         let all = std::iter::once((&self.data.power_sd, by_power)).chain(torque);
         for (part, (sd, mut slope)) in all.enumerate() {
             for (mut row, sd) in slope.row_iter_mut().zip(sd.iter()) {

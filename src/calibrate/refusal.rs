@@ -21,9 +21,21 @@ pub enum Refusal {
         /// The robot.
         name: String,
     },
-    /// Nothing moves.
-    #[error("the simulated cycle takes no time: there is nothing to compare the log with")]
+    /// No time passes, or it never ends.
+    #[error(
+        "the simulated cycle takes no time or never ends: there is nothing to compare the log with; see joulepath simulate"
+    )]
     Nothing,
+    /// Too few rows.
+    #[error(
+        "the log has rows in only {windows} of about 100 parts of the cycle, at least {least} are asked for: log the power more often"
+    )]
+    Sparse {
+        /// Parts with rows.
+        windows: usize,
+        /// What is asked for.
+        least: usize,
+    },
     /// Too short.
     #[error(
         "the log holds {log_s:.1} s and no whole cycle of {cycle_s:.1} s: log the power over several cycles, or say when inputs come (--input)"
@@ -66,12 +78,14 @@ pub enum Refusal {
     },
     /// No plausible robot has that power over the cycle.
     #[error(
-        "the log is of another program: the robot that fits it best explains {:.0} % of how the power changes over the cycle, at least 75 % are asked for",
-        100.0 * explained.max(0.0)
+        "the log is of another program: the robot that fits it best explains {:.0} % of how the power changes over the cycle, at least {:.0} % are asked for",
+        100.0 * explained.max(0.0), 100.0 * least
     )]
     Program {
         /// Share of the variance.
         explained: f64,
+        /// What is asked for.
+        least: f64,
     },
     /// The power is of another size.
     #[error(

@@ -168,15 +168,9 @@ impl<'a> Along<'a> {
         Means { power: DVector::from_iterator(self.windows.len(), power), torque: torque.collect() }
     }
 
-    /// Slopes of the means by the latent numbers: of the powers, and of the torques of each joint if
-    /// they are asked for.
-    pub fn slopes(
-        &self,
-        robot: &Change,
-        slopes: &Slopes,
-        with_torques: bool,
-    ) -> (DMatrix<f64>, Vec<DMatrix<f64>>) {
-        let (_, torques) = self.terms(robot);
+    /// Slopes of the mean powers by the latent numbers, a row for each window.
+    pub fn power_slopes(&self, robot: &Change, slopes: &Slopes) -> DMatrix<f64> {
+        let torques = self.torques(robot);
         let left = 1.0 - self.model.drive.regeneration;
         let braking: Vec<bool> = (0..self.rates.len())
             .map(|i| {
@@ -185,7 +179,6 @@ impl<'a> Along<'a> {
             })
             .collect();
         let mut by_power = DMatrix::zeros(self.windows.len(), slopes.supply_w.len());
-        let mut by_torque = Vec::new();
         for (j, of) in robot.joints.iter().enumerate() {
             let tau = &torques[j];
             let of_power = |i: usize| {
@@ -197,21 +190,25 @@ impl<'a> Along<'a> {
                 let work = if burnt { rate * (1.0 - left) } else { rate };
                 2.0 * of.loss * tau[i] + if self.rests[i] { 0.0 } else { work }
             };
-            let sums = |weight: &dyn Fn(usize) -> f64| self.sums(j, weight);
-            by_power += sums(&of_power) * &slopes.joints[j];
+            by_power += self.sums(j, &of_power) * &slopes.joints[j];
             let square =
                 |w: &Range<usize>| w.clone().map(|i| tau[i] * tau[i]).sum::<f64>() / w.len() as f64;
             let squares =
                 DVector::from_iterator(self.windows.len(), self.windows.iter().map(square));
             by_power += squares * slopes.loss.row(j);
-            if with_torques {
-                by_torque.push(sums(&|_| 1.0) * &slopes.joints[j]);
-            }
         }
         for mut row in by_power.row_iter_mut() {
             row += slopes.supply_w.transpose();
         }
-        (by_power, by_torque)
+        by_power
+    }
+
+    /// The same of the mean torques of each joint.
+    pub fn torque_slopes<'s>(
+        &'s self,
+        slopes: &'s Slopes,
+    ) -> impl Iterator<Item = DMatrix<f64>> + 's {
+        slopes.joints.iter().enumerate().map(|(j, slopes)| self.sums(j, &|_| 1.0) * slopes)
     }
 
     /// Weighted means of the features of a joint, a row for each window.

@@ -25,7 +25,7 @@ impl Robots {
         let of_mean = Change::of(model, &mean);
         for j in 0..model.dof {
             let square = along.square(j, &of_mean);
-            let copper = robots.iter().zip(&self.changes);
+            let copper = robots.iter().zip(self.drawn());
             let copper: f64 = copper.map(|(it, change)| it.loss[j] * along.square(j, change)).sum();
             if square > 0.0 {
                 mean.loss[j] = copper / robots.len() as f64 / square;

@@ -67,21 +67,27 @@ impl Moments {
     /// Of an event of a simulation.
     pub fn of(model: &Model, event: &Event) -> Moments {
         let mut moments = Moments::none(model);
+        moments.event(model, event);
+        moments
+    }
+
+    /// Adds an event.
+    pub fn event(&mut self, model: &Model, event: &Event) {
         match &event.what {
-            What::Run(run) => moments.run(model, run),
-            What::Wait(wait) => moments.rest(model, &wait.load, &wait.q, event.duration),
+            What::Run(run) => self.run(model, run),
+            What::Wait(wait) => self.rest(model, &wait.load, &wait.q, event.duration),
             What::Output(..) | What::Left(_) => {}
         }
-        moments
     }
 
     /// Adds others, `times` as often.
     pub fn add(&mut self, other: &Moments, times: f64) {
         for (sum, joint) in self.joints.iter_mut().zip(&other.joints) {
-            sum.moving += &joint.moving * times;
-            sum.resting += &joint.resting * times;
-            sum.work += &joint.work * times;
-            sum.burnt += &joint.burnt * times;
+            let more = |sum: &mut f64, x: f64| *sum += times * x;
+            sum.moving.zip_apply(&joint.moving, more);
+            sum.resting.zip_apply(&joint.resting, more);
+            sum.work.zip_apply(&joint.work, more);
+            sum.burnt.zip_apply(&joint.burnt, more);
         }
         self.open_s += times * other.open_s;
     }

@@ -11,6 +11,7 @@ use super::moments::Moments;
 use super::parts::EnergyParts;
 use super::peaks::peaks;
 use crate::motion::Simulation;
+use crate::motion::timeline::Event;
 use crate::robot::Model;
 use crate::robot::prior::{Draws, Spread};
 
@@ -20,6 +21,8 @@ pub const DRAWS: usize = 256;
 const WITHIN: f64 = 0.9;
 /// Groups that a report lists, at most.
 const LISTED: usize = 5;
+/// Events whose sums are worked out together.
+const PART: usize = 16;
 /// Share of the variance below which a group is not listed.
 const LEAST: f64 = 0.02;
 
@@ -66,7 +69,7 @@ pub struct Contribution {
 pub struct Robots {
     spread: Spread,
     pub(super) draws: Draws,
-    pub(super) changes: Vec<Change>,
+    changes: Vec<Change>,
 }
 
 impl Robots {
@@ -166,15 +169,18 @@ pub struct Plausibility {
 
 /// The sums of a whole simulation.
 pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
+    let none = || Moments::none(model);
+    let with = |mut all: Moments, event: &Event| {
+        all.event(model, event);
+        all
+    };
     let sum = |mut a: Moments, b: Moments| {
         a.add(&b, 1.0);
         a
     };
-    simulation
-        .events
-        .par_iter()
-        .fold(|| Moments::none(model), |all, event| sum(all, Moments::of(model, event)))
-        .reduce(|| Moments::none(model), sum)
+    // Each part has sums of its own: few parts.
+    let parts = simulation.events.par_chunks(PART);
+    parts.map(|events| events.iter().fold(none(), with)).reduce(none, sum)
 }
 
 /// How far the energies of a simulation are known.

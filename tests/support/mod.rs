@@ -9,7 +9,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use joulepath::retrofit::Source;
 use joulepath::syntax::{self, Element, Parse};
+use joulepath::text::{FileId, SourceFile};
 
 /// Most looks at a token per token: constant, whatever the input.
 const STEPS_PER_TOKEN: u64 = 8;
@@ -28,6 +30,21 @@ pub(crate) fn fixtures(folder: &str) -> Vec<(String, Vec<u8>)> {
         (path.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read(&path).unwrap())
     };
     paths.into_iter().map(read).collect()
+}
+
+/// The modules of a program in a folder of `fixtures`.
+pub(crate) fn modules(folder: &str) -> Vec<Source> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(folder);
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "mod" || e == "sys"));
+    paths.sort();
+    let source = |(i, path): (usize, PathBuf)| {
+        let shown = path.display().to_string();
+        let file = SourceFile::new(FileId(i as u32), shown, std::fs::read(path).unwrap());
+        Source { relative: file.path.clone(), file }
+    };
+    paths.into_iter().enumerate().map(source).collect()
 }
 
 /// The path of a folder of `fixtures/syntax`.
