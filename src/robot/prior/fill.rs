@@ -2,7 +2,7 @@
 
 use super::bodies::{links, rated_inertia};
 use super::known::Known;
-use super::rules::{self, Rough, Size};
+use super::rules::{self, Maker, Rough, Size};
 use crate::robot::drive::{Brakes, Drive, Sharing};
 use crate::robot::effect::{EffectParameters, Given};
 use crate::robot::model::Model;
@@ -146,9 +146,17 @@ impl Filling {
     fn friction(&mut self, size: Size) {
         let dof = self.model.dof;
         let speeds = self.model.limits.velocity.clone().unwrap_or_default();
-        let source = "friction over the largest torque, as of eleven ABB configurations and two identifications";
+        let maker = Maker::of(&self.model.name);
+        let source = match maker {
+            Maker::Abb => {
+                "friction over the largest torque, as of eleven ABB configurations and two identifications"
+            }
+            Maker::Other => {
+                "friction over the largest torque, as of five identified arms of five makers"
+            }
+        };
         let part = |j: usize, share: f64| {
-            let friction = size.friction(j, dof);
+            let friction = size.friction(maker, j, dof);
             Rough { value: share * friction.value, sd: friction.sd }
         };
         let coulomb = self.by_joint(("friction", "coulomb"), source, &|j| part(j, rules::COULOMB));

@@ -1,9 +1,25 @@
 //! How numbers of an arm go with its size: total mass M (kg), reach R (m), payload p (kg).
 //!
 //! Torques: from the limits of 38 robots of KUKA (`kroshu/kuka_robot_descriptions`@7766e92a), deviations
-//! by leaving one out. Friction: levels that eleven ABB configurations state, the friction identified
-//! by Paes et al. 2014 and Obal & Gierlak 2025, over those torques. Motors: ABB's 9C series
-//! (3AUA0000030840 REV C). Standard deviations are of the logarithm.
+//! by leaving one out. Friction of ABB's robots: levels that eleven configurations state, the friction
+//! identified by Paes et al. 2014 and Obal & Gierlak 2025, over those torques; of others: that of five
+//! arms of five makers (docs/robots.md names them). Motors: ABB's 9C series (3AUA0000030840 REV C).
+//! Standard deviations are of the logarithm.
+
+/// Whose robot it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Maker {
+    Abb,
+    Other,
+}
+
+impl Maker {
+    /// By the name of the robot.
+    pub(super) fn of(name: &str) -> Maker {
+        let name = name.to_uppercase();
+        if name.contains("IRB") || name.contains("CRB") { Maker::Abb } else { Maker::Other }
+    }
+}
 
 /// Size of an arm.
 #[derive(Clone, Copy, Debug)]
@@ -32,14 +48,14 @@ const TORQUE: [(f64, f64, f64); 6] = [
     (5.1, 0.94, 0.42),
     (2.7, 0.96, 0.41),
 ];
-/// Friction at half of the speed over the largest torque.
+/// Friction at half of the speed over the largest torque, of ABB's robots.
 const FRICTION: [(f64, f64); 6] =
     [(0.042, 0.52), (0.060, 0.50), (0.068, 0.63), (0.089, 0.81), (0.133, 0.61), (0.108, 0.78)];
 /// Share of that friction that does not go with the speed, and its deviation.
 pub(super) const COULOMB: f64 = 0.4;
 pub(super) const COULOMB_SD: f64 = 0.3;
-/// Share of the variance of friction that all joints have in common.
-pub(super) const COMMON_FRICTION: f64 = 0.35;
+/// The friction of other makers' robots over that, and its deviation.
+const OTHER_FRICTION: (f64, f64) = (3.5, 0.91);
 /// Speed at a reach of 2 m and a payload of 20 kg \[degrees/s\], powers of both, deviation: of 52 robots
 /// of the catalogue, the mass adds nothing.
 const SPEED: [(f64, f64, f64, f64); 6] = [
@@ -73,9 +89,10 @@ impl Size {
     }
 
     /// Friction of a joint at half of its speed \[Nm\].
-    pub(super) fn friction(&self, joint: usize, dof: usize) -> Rough {
+    pub(super) fn friction(&self, maker: Maker, joint: usize, dof: usize) -> Rough {
         let (share, sd) = FRICTION[Size::place(joint, dof)];
-        Rough { value: share * self.torque(joint, dof).value, sd }
+        let (factor, sd) = if maker == Maker::Abb { (1.0, sd) } else { OTHER_FRICTION };
+        Rough { value: factor * share * self.torque(joint, dof).value, sd }
     }
 
     /// Largest speed of a joint \[rad/s\].
@@ -108,6 +125,11 @@ impl Size {
     pub(super) fn release(&self) -> Rough {
         Rough { value: 12.0 * (self.mass / 250.0).sqrt(), sd: 0.6 }
     }
+}
+
+/// Share of the variance of friction that all joints have in common.
+pub(super) fn common_friction(maker: Maker) -> f64 {
+    if maker == Maker::Abb { 0.35 } else { 0.59 }
 }
 
 /// Gear ratio of a joint of the speed `velocity` \[rad/s\].
