@@ -22,7 +22,7 @@ const LINK_MASS: [f64; 2] = [0.18, 0.33];
 const LINK_INERTIA: f64 = 0.35;
 /// The same of links that follow from the axes alone; and the power of the way that is left to the flange
 /// by which all links vary together. All four are the deviations of ABB's meshes from the rule times 1.3,
-/// which the bodies of 17 arms of eight other makers ask for (docs/robots.md).
+/// which the bodies of 17 arms of seven other makers ask for (docs/robots.md).
 const AXES_LINK_MASS: [f64; 2] = [0.33, 0.78];
 const TILT: f64 = 0.21;
 /// The same where the payload is not known, which the rule asks for.
