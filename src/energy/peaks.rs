@@ -9,7 +9,8 @@ use crate::motion::Simulation;
 use crate::motion::timeline::{Event, What};
 use crate::robot::{MAX_DOF, Model};
 
-/// Time between two instants that are looked at \[s\].
+/// Time between two instants that are looked at \[s\]: peaks of fixtures/hard/encoding.mod are within 2 % of
+/// those at half of it.
 const STEP: f64 = 0.02;
 /// Instants of a joint at which plausible robots are looked at: those with the model's largest torques,
 /// each the largest within this time \[s\].
