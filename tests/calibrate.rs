@@ -318,11 +318,11 @@ fn logs_without_use_are_refused() {
         &Recording { step: 20.0, cycles: 20.0, marks: Marks::Cycles, ..METER },
     );
     let mut negative = own.clone();
-    negative.values[1].iter_mut().for_each(|w| *w = -*w);
-    for log in [short, seldom, negative] {
-        let refusal = calibrate(&model, &program, &log, None).unwrap_err();
-        assert!(!refusal.to_string().is_empty());
-    }
+    negative.values[1].iter_mut().for_each(|w| *w -= 5000.0);
+    let refusal = |log: &Log| calibrate(&model, &program, log, None).unwrap_err();
+    assert!(matches!(refusal(&short), Refusal::Short { .. }), "{}", refusal(&short));
+    assert!(matches!(refusal(&seldom), Refusal::Sparse { .. }), "{}", refusal(&seldom));
+    assert!(matches!(refusal(&negative), Refusal::Robot { .. }), "{}", refusal(&negative));
 }
 
 #[test]

@@ -61,7 +61,8 @@ pub(crate) fn print() {
          the calibration position. The power at rest follows from three robots; each of them is left out for \
          its own figures. Places of the cube are assumed. The sheets of the IRB1200 and the IRB6650S give one \
          power for all variants and say neither motion nor load: the cube at full speed is assumed; that of \
-         the IRB6650S offers controllers that take 20 % less, too.\n"
+         the IRB6650S offers controllers that take 20 % less, too. They were parted from the others when their \
+         misses were known.\n"
     );
     println!("| robot | motion | published, W | 90 % interval, W | held |\n|---|---|---|---|---|");
     let stated = by_robot(&STATED);

@@ -146,7 +146,7 @@ impl Moments {
         }
         for (j, (joint, phi)) in self.joints.iter_mut().zip(&features).enumerate() {
             let gram = if resting { &mut joint.resting } else { &mut joint.moving };
-            gram.gemm_tr(weight, phi, phi, 1.0);
+            gram.gemm(weight, &phi.transpose(), phi, 1.0);
             let qd = DVector::from_iterator(states.len(), rates.iter().map(|rate| rate[j]));
             joint.work.gemv_tr(weight, phi, &qd, 1.0);
             let burnt = burns.iter().zip(&rates);

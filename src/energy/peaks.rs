@@ -6,12 +6,12 @@ use super::along::{Along, Instant};
 use super::plausible::{Interval, Robots};
 use crate::dynamics::{Data, torque};
 use crate::motion::Simulation;
-use crate::motion::timeline::{Event, What};
+use crate::motion::timeline::{Event, Run, What};
 use crate::robot::{MAX_DOF, Model};
 
-/// Time between two instants that are looked at \[s\]: peaks of fixtures/hard/encoding.mod are within 2 % of
-/// those at half of it.
+/// Time between two instants that are looked at \[s\], and parts of it that are looked at around a peak.
 const STEP: f64 = 0.02;
+const PARTS: i32 = 8;
 /// Instants of a joint at which plausible robots are looked at: those with the model's largest torques,
 /// each the largest within this time \[s\].
 const MOST: usize = 6;
@@ -33,56 +33,73 @@ pub(super) fn peaks(model: &Model, robots: &Robots, simulation: &Simulation) -> 
         .collect()
 }
 
-/// A look at a run: the time in the cycle, the event, the time in it, torques by joint \[s, Nm\].
-type Look = (f64, usize, f64, [f64; MAX_DOF]);
+/// A look at a run of a simulation.
+struct Look<'s> {
+    event: &'s Event,
+    run: &'s Run,
+    /// Time in the run \[s\].
+    t: f64,
+    /// Absolute torques of the model \[Nm\].
+    torque: [f64; MAX_DOF],
+}
+
+impl<'s> Look<'s> {
+    fn at(model: &Model, data: &mut Data, (event, run): (&'s Event, &'s Run), t: f64) -> Look<'s> {
+        let state = run.at(t);
+        let tau = torque(model, data, &run.load, &state.q, &state.qd, &state.qdd);
+        let torque = std::array::from_fn(|j| (tau.rigid[j] + tau.friction[j]).abs());
+        Look { event, run, t, torque }
+    }
+
+    /// Time in the simulation \[s\].
+    fn time(&self) -> f64 {
+        self.event.t_start + self.t
+    }
+
+    /// The instant of the joint's largest torque around this look.
+    fn peak(&self, model: &Model, data: &mut Data, joint: usize) -> Instant {
+        let around = (1 - PARTS..PARTS).map(|i| self.t + STEP * f64::from(i) / f64::from(PARTS));
+        let (mut t, mut most) = (self.t, self.torque[joint]);
+        for near in around.filter(|t| (0.0..=self.event.duration).contains(t)) {
+            let torque = Look::at(model, data, (self.event, self.run), near).torque[joint];
+            if torque > most {
+                (t, most) = (near, torque);
+            }
+        }
+        let state = self.run.at(t);
+        Instant { load: self.run.load.clone(), state: [state.q, state.qd, state.qdd] }
+    }
+}
 
 /// Instants at which some joint has one of its largest torques.
 fn largest(model: &Model, simulation: &Simulation) -> Vec<Instant> {
-    let looks: Vec<Look> = simulation
-        .events
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|(index, event)| looks(model, index, event))
-        .collect();
-    let mut chosen: Vec<&Look> = Vec::new();
+    let looks: Vec<Look> =
+        simulation.events.par_iter().flat_map_iter(|event| looks(model, event)).collect();
+    let mut data = Data::new();
+    let mut instants = Vec::new();
     for j in 0..model.dof {
         let mut order: Vec<&Look> = looks.iter().collect();
-        let most = (MOST * NEAR).min(order.len());
-        if most == 0 {
-            break;
+        let larger = |a: &&Look, b: &&Look| b.torque[j].total_cmp(&a.torque[j]);
+        if order.len() > MOST * NEAR {
+            order.select_nth_unstable_by(MOST * NEAR, larger);
+            order.truncate(MOST * NEAR);
         }
-        let larger = |a: &&Look, b: &&Look| b.3[j].total_cmp(&a.3[j]);
-        order.select_nth_unstable_by(most - 1, larger);
-        order.truncate(most);
         order.sort_by(larger);
         let mut own: Vec<&Look> = Vec::new();
         for look in order {
-            if own.len() < MOST && own.iter().all(|other| (other.0 - look.0).abs() > APART) {
+            if own.len() < MOST && own.iter().all(|it| (it.time() - look.time()).abs() > APART) {
                 own.push(look);
             }
         }
-        chosen.extend(own);
+        instants.extend(own.into_iter().map(|look| look.peak(model, &mut data, j)));
     }
-    let instant = |(_, index, t, _): &Look| match &simulation.events[*index].what {
-        What::Run(run) => {
-            let state = run.at(*t);
-            Some(Instant { load: run.load.clone(), state: [state.q, state.qd, state.qdd] })
-        }
-        _ => None,
-    };
-    chosen.into_iter().filter_map(instant).collect()
+    instants
 }
 
-fn looks(model: &Model, index: usize, event: &Event) -> Vec<Look> {
+fn looks<'s>(model: &Model, event: &'s Event) -> Vec<Look<'s>> {
     let What::Run(run) = &event.what else { return Vec::new() };
     let mut data = Data::new();
     let steps = (event.duration / STEP).ceil().max(1.0);
-    let look = |i: usize| {
-        let t = event.duration * i as f64 / steps;
-        let state = run.at(t);
-        let tau = torque(model, &mut data, &run.load, &state.q, &state.qd, &state.qdd);
-        let tau = std::array::from_fn(|j| (tau.rigid[j] + tau.friction[j]).abs());
-        (event.t_start + t, index, t, tau)
-    };
-    (0..=steps as usize).map(look).collect()
+    let times = (0..=steps as usize).map(|i| event.duration * i as f64 / steps);
+    times.map(|t| Look::at(model, &mut data, (event, run), t)).collect()
 }

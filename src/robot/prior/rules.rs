@@ -14,10 +14,14 @@ pub(super) enum Maker {
 }
 
 impl Maker {
-    /// By the name of the robot.
+    /// By the name of the robot: ABB's have IRB or CRB before their number.
     pub(super) fn of(name: &str) -> Maker {
         let name = name.to_uppercase();
-        if name.contains("IRB") || name.contains("CRB") { Maker::Abb } else { Maker::Other }
+        let is_number = |text: &str| {
+            text.trim_start_matches([' ', '_', '-']).starts_with(|c: char| c.is_ascii_digit())
+        };
+        let has = |letters: &str| name.split(letters).skip(1).any(is_number);
+        if has("IRB") || has("CRB") { Maker::Abb } else { Maker::Other }
     }
 }
 
@@ -56,6 +60,8 @@ pub(super) const COULOMB: f64 = 0.4;
 pub(super) const COULOMB_SD: f64 = 0.3;
 /// The friction of other makers' robots over that, and its deviation.
 const OTHER_FRICTION: (f64, f64) = (3.5, 0.91);
+/// Share of the variance of friction that all joints have in common, of ABB's robots and of others.
+const COMMON_FRICTION: [f64; 2] = [0.35, 0.59];
 /// Speed at a reach of 2 m and a payload of 20 kg \[degrees/s\], powers of both, deviation: of 52 robots
 /// of the catalogue, the mass adds nothing.
 const SPEED: [(f64, f64, f64, f64); 6] = [
@@ -129,7 +135,7 @@ impl Size {
 
 /// Share of the variance of friction that all joints have in common.
 pub(super) fn common_friction(maker: Maker) -> f64 {
-    if maker == Maker::Abb { 0.35 } else { 0.59 }
+    COMMON_FRICTION[usize::from(maker == Maker::Other)]
 }
 
 /// Gear ratio of a joint of the speed `velocity` \[rad/s\].
@@ -164,3 +170,19 @@ pub(super) fn mass(reach: f64, payload: f64) -> f64 {
 
 /// Deviation of the logarithm of that mass where the class of the robot is not known.
 pub(super) const MASS_BY_SIZE: f64 = 0.55;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn makers_are_known_by_the_name() {
+        for name in ["IRB1600-10/1.45 of line 4", "abb_irb_2400", "ABB IRB 120", "CRB15000-5/0.95"]
+        {
+            assert_eq!(Maker::of(name), Maker::Abb, "{name}");
+        }
+        for name in ["Kirby 3", "IRB", "an arm", ""] {
+            assert_eq!(Maker::of(name), Maker::Other, "{name}");
+        }
+    }
+}
