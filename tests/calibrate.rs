@@ -13,6 +13,7 @@ use joulepath::energy::trajectory::{Sample, trajectory};
 use joulepath::log::{Channel, Log};
 use joulepath::motion::timeline::{Event, What};
 use joulepath::motion::{Options, Simulation, simulate};
+use joulepath::report::html::optimize_report;
 use joulepath::retrofit::{Settings, Source, read_program, retrofit};
 use joulepath::robot::prior::{Spread, standard_normals};
 use joulepath::robot::{Model, find, from_toml, to_toml};
@@ -235,6 +236,14 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
         let found = calibrate(&model, &simulation, &log, None).unwrap();
         let settings = Settings { entry: "main".into(), ..Settings::default() };
         let done = retrofit(&files, &found.model, &settings, &|_, _| ()).unwrap();
+        for segment in &done.segments {
+            let (after, bound) = (segment.energy_after_j, segment.lower_bound_j);
+            assert!(bound.is_none_or(|bound| bound <= after), "{name}: {bound:?} J, {after} J");
+        }
+        let page = optimize_report(&done, &files, &found.model, "main").unwrap();
+        for told in ["plausible robots it saves", "of the variance", "most would tell"] {
+            assert!(page.contains(told), "{name}: {told}");
+        }
         let Interval { median, low, high } = done.uncertainty.unwrap().saving_percent[1];
         assert!(asks_no_more(&found.model, &done.before.0, &done.after.0), "{name}");
         let width = 0.5 * (high - low);

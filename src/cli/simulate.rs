@@ -51,6 +51,11 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let account = account(&job.model, &simulation);
     let sources = job.sources();
     let places = Places::new(&sources);
+    let plausible = if args.program.point_estimate {
+        None
+    } else {
+        plausibility(&job.model, &simulation, &account)
+    };
     if args.trajectory.is_some() || args.report.is_some() {
         let rows = simulation.cycle_s / STEP;
         if rows > MAX_ROWS {
@@ -66,15 +71,11 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
         }
         if let Some(path) = &args.report {
             let (model, entry) = (&job.model, &job.entry);
-            let page = simulate_report(&simulation, &account, &samples, &sources, model, entry)?;
+            let energies = (&account, plausible.as_ref());
+            let page = simulate_report(&simulation, energies, &samples, &sources, model, entry)?;
             output::write(path, page.as_bytes())?;
         }
     }
-    let plausible = if args.program.point_estimate {
-        None
-    } else {
-        plausibility(&job.model, &simulation, &account)
-    };
     let mut notes = job.unused_inputs(&simulation);
     notes.extend(signals::unused_levels(&args.program.cell, &simulation));
     for text in &notes {

@@ -8,6 +8,7 @@ pub mod json;
 pub mod lint;
 mod mark;
 pub mod place;
+mod plausible;
 pub mod standstill;
 pub mod svg;
 pub mod table;

@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use super::mark::mark;
 use super::place::Places;
+use super::plausible::{energies, saving};
 use super::table::{Align, table};
-use crate::energy::plausible::{Contribution, Interval, Plausibility};
+use crate::energy::plausible::Plausibility;
 use crate::energy::{Account, EnergyParts};
 use crate::ir::movement::Movement;
 use crate::motion::Simulation;
@@ -85,30 +86,13 @@ pub fn simulation(
             p.idle_j,
             p.brake_j
         );
-        if let Some(plausible) = plausible {
-            let Interval { low, high, .. } = plausible.energy_j;
-            let motion = plausible.motion_energy_j;
-            let _ = writeln!(
-                out,
-                "in 90 % of the plausible robots {low:.0} to {high:.0} J, of which motions take {:.0} \
-                 to {:.0} J{}",
-                motion.low,
-                motion.high,
-                contributions(&plausible.contributions)
-            );
+        for line in plausible.map(energies).unwrap_or_default() {
+            let _ = writeln!(out, "{line}");
         }
     } else {
         let _ = writeln!(out, "; the robot's file has no dynamics, so no energy");
     }
     out
-}
-
-/// What an interval comes from, and what would narrow it.
-fn contributions(parts: &[Contribution]) -> String {
-    let Some(first) = parts.first() else { return String::new() };
-    let groups: Vec<String> =
-        parts.iter().map(|it| format!("{} {:.0} %", it.group, 100.0 * it.share)).collect();
-    format!("\nof the variance: {}; most would tell {}", groups.join(", "), first.narrowed_by)
 }
 
 /// The instruction, with what it does besides moving.
@@ -239,18 +223,8 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         1e3 * worst.polygon_m,
         worst.endpoint_error_rad,
     );
-    if let Some(it) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten) {
-        let [all, motion] = it.saving_percent;
-        let _ = writeln!(
-            out,
-            "in 90 % of the plausible robots it saves {:.1} to {:.1} % of the motion energy, {:.1} to \
-             {:.1} % of all{}",
-            motion.low,
-            motion.high,
-            all.low,
-            all.high,
-            contributions(&it.contributions)
-        );
+    for line in saving(retrofit) {
+        let _ = writeln!(out, "{line}");
     }
     if retrofit.guard_instructions > 0 {
         let _ = writeln!(

@@ -84,6 +84,16 @@ pub(super) fn notes(
     notes
 }
 
+/// Says what is minimised, and what joints are asked, where torque limits are not known.
+pub(super) fn of_mean(model: &Model) -> String {
+    format!(
+        "the torque limits of {} are estimated: streams minimise the mean energy over plausible robots \
+         (--pareto shows that mean, too), and ask no more torque of any joint than the original cycle \
+         does in 95 % of them",
+        model.name
+    )
+}
+
 /// Says how far streams leave the programmed path where nothing is known of the cell.
 pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
     settings.freedom.keep_out.is_empty().then(|| {

@@ -394,7 +394,7 @@ pub fn retrofit(
         after_simulation = simulate(&program, entry, model, &settings.options);
         after = account(model, &after_simulation);
     }
-    let segments = segments::segments(
+    let mut segments = segments::segments(
         (&simulation, &before),
         (&after_simulation, &after),
         &sites,
@@ -402,6 +402,12 @@ pub fn retrofit(
         (&dwells_before, &restings),
         &not_reached(&program, &simulation),
     );
+    if mean.is_some() {
+        // The bounds are of the mean robot, the energies of the model.
+        for segment in &mut segments {
+            segment.lower_bound_j = None;
+        }
+    }
     outputs::add_brake_note(&mut checked.0.files, model, &dwells(model, &after_simulation));
     let potential_j = dwells_before.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b);
     let optimized = figures(&after_simulation, &after);
@@ -420,6 +426,7 @@ pub fn retrofit(
     let lower_limits = lower_limits.into_iter().map(padded).collect();
     let compared = (&original, &optimized, padding.as_ref());
     let mut notes = notes::notes(files, model, settings, &simulation, &segments, compared);
+    notes.extend(mean.is_some().then(|| notes::of_mean(model)));
     if freed {
         notes.extend(notes::off_path(settings, verification.worst.deviation_m));
     }

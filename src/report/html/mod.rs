@@ -25,6 +25,7 @@ pub use simulation::simulate_report;
 use tera::{Context, Tera};
 
 use super::place::Places;
+use super::plausible::saving;
 use crate::retrofit::{Retrofit, Source};
 use crate::robot::Model;
 use crate::text::SourceFile;
@@ -59,6 +60,8 @@ pub fn optimize_report(
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", &model.name);
     context.insert("entry", entry);
+    context.insert("plausible", &saving(retrofit));
+    context.insert("notes", &retrofit.notes);
     context.insert("summary", &summary::summary(retrofit));
     context.insert("segments", &segments::segments(retrofit, places));
     context.insert("energy_time", &energy_time::energy_time(retrofit, places));

@@ -11,11 +11,13 @@ use super::ReportError;
 use super::format::{joules, seconds};
 use super::source::text;
 use crate::energy::Account;
+use crate::energy::plausible::Plausibility;
 use crate::energy::trajectory::Sample;
 use crate::motion::Simulation;
 use crate::motion::timeline::{WaitBasis, What};
 use crate::path::joint_path::DOF;
 use crate::report::place::Places;
+use crate::report::plausible::energies;
 use crate::report::svg::{Curve, Plot, Rule, Scale, Size, escape};
 use crate::robot::Model;
 use crate::text::{SourceFile, Span};
@@ -87,7 +89,7 @@ struct Noted {
 /// A template that does not fit its data.
 pub fn simulate_report(
     simulation: &Simulation,
-    account: &Account,
+    (account, plausible): (&Account, Option<&Plausibility>),
     samples: &[Sample],
     files: &[SourceFile],
     model: &Model,
@@ -103,6 +105,7 @@ pub fn simulate_report(
     context.insert("cycle", &seconds(simulation.cycle_s));
     context.insert("energy", &known.then(|| joules(account.total.energy_j())));
     context.insert("motion_energy", &known.then(|| joules(account.total.motion_energy_j())));
+    context.insert("plausible", &plausible.map(energies).unwrap_or_default());
     context.insert("movements", &steps.iter().filter(|step| !step.waits).count());
     context.insert("waits", &steps.iter().filter(|step| step.waits).count());
     context.insert("unknown", &steps.iter().filter(|step| step.unknown).count());
