@@ -6,8 +6,8 @@ mod support;
 
 use joulepath::dynamics::{Data, Load, gravity, torque};
 use joulepath::effects::{applied, drawn, with_estimates};
-use joulepath::energy::change::Change;
-use joulepath::energy::plausible::{Robots, moments, plausibility};
+use joulepath::energy::change::Changes;
+use joulepath::energy::plausible::{DRAWS, Robots, moments, plausibility};
 use joulepath::energy::power::holding_w;
 use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::{Options, Simulation, simulate};
@@ -44,7 +44,7 @@ fn sums_over_a_motion_tell_the_energy_of_each_robot() {
     let draws = Spread::of(&model).draws(&model, ROBOTS);
     for robot in &draws.robots {
         let theirs = account(&robot.applied(&model), &simulation).total;
-        let change = sums.change(&model, &Change::of(&model, robot));
+        let change = sums.changes(&model, &Changes::of_one(&model, robot))[0];
         for (name, part) in PARTS {
             let exact = part(&theirs) - part(&own.total);
             let found = part(&change);
@@ -146,7 +146,7 @@ fn the_mean_robot_takes_the_mean_of_the_energies() {
     let (simulation, _) = simulated(&model);
     let robots = Robots::of(&model).unwrap();
     let mean = robots.mean(&model, &moments(&model, &simulation)).unwrap();
-    let draws = Spread::of(&model).draws(&model, robots.drawn().len()).robots;
+    let draws = Spread::of(&model).draws(&model, DRAWS).robots;
     let each = draws
         .iter()
         .map(|robot| account(&drawn(&model, robot).unwrap(), &simulation).total.motion_energy_j());

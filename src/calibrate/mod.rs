@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::effects::{drawn, with_estimates};
 use crate::energy::along::{Along, Instant};
-use crate::energy::change::Change;
+use crate::energy::change::Changes;
 use crate::energy::plausible::{Plausibility, plausibility};
 use crate::energy::{account, plausible::DRAWS};
 use crate::log::Log;
@@ -117,7 +117,7 @@ pub fn calibrate(
     let before = plausibility(model, simulation, &account(model, simulation));
     let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
     let spread = Spread::of(model);
-    let own = Change::of(model, &Plausible::of(model));
+    let own = Changes::of_one(model, &Plausible::of(model));
     let cycle = Cycle::of(model, simulation)?;
     let rough = Folded::of(model, &cycle, log, torques)?;
     let data = Data::of(&rough.along, &rough.windows);
@@ -182,7 +182,7 @@ fn check_size(
     let robots = spread.draws(model, DRAWS).robots;
     let sizes: Vec<[f64; 2]> = robots
         .par_iter()
-        .map(|robot| size(along.means(&Change::of(model, robot)).power.as_slice()))
+        .map(|robot| size(along.means(&Changes::of_one(model, robot)).power.as_slice()))
         .collect();
     let measured = size(&windows.power);
     for (i, what) in ["mean power", "swing of the power"].into_iter().enumerate() {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::aligned::correlation;
 use super::fold::Windows;
 use crate::energy::along::{Along, Means, Slopes};
-use crate::energy::change::Change;
+use crate::energy::change::Changes;
 use crate::robot::Model;
 use crate::robot::prior::{Spread, standard_normals};
 
@@ -147,8 +147,8 @@ impl Fit<'_> {
         self.along.means(&self.change(z))
     }
 
-    fn change(&self, z: &[f64]) -> Change {
-        Change::of(self.model, &self.spread.robot(self.model, |k| z[k]))
+    fn change(&self, z: &[f64]) -> Changes {
+        Changes::of_one(self.model, &self.spread.robot(self.model, |k| z[k]))
     }
 
     /// The robot that is nearest to `prior` and to the log with more `noise`, from `start` on

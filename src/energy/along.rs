@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::change::Change;
+use super::change::Changes;
 use super::features;
 use super::power::{power_at, supply_w};
 use crate::dynamics::{Data, Load, Regressor};
@@ -80,15 +80,16 @@ impl Slopes {
         for k in 0..count {
             let moved = |step: f64| {
                 let robot = spread.robot(model, |i| z[i] + if i == k { step } else { 0.0 });
-                Change::of(model, &robot)
+                Changes::of_one(model, &robot)
             };
             let (high, low) = (moved(STEP), moved(-STEP));
             let scale = 0.5 / STEP;
             for (j, (a, b)) in high.joints.iter().zip(&low.joints).enumerate() {
-                slopes.joints[j].set_column(k, &((&a.values - &b.values) * scale));
-                slopes.loss[(j, k)] = (a.loss - b.loss) * scale;
+                let slope = (a.values.column(0) - b.values.column(0)) * scale;
+                slopes.joints[j].set_column(k, &slope);
+                slopes.loss[(j, k)] = (a.loss[0] - b.loss[0]) * scale;
             }
-            let supply = |change: &Change| change.base_w + change.coils_w;
+            let supply = |robot: &Changes| robot.base_w[0] + robot.coils_w[0];
             slopes.supply_w[k] = (supply(&high) - supply(&low)) * scale;
         }
         slopes
@@ -119,24 +120,24 @@ impl<'a> Along<'a> {
             let power = power_at(model, &mut data, load, state);
             supplies.push(supply_w(model, &mut data, load, state, &power));
         }
-        let own = Change::of(model, &Plausible::of(model));
+        let own = Changes::of_one(model, &Plausible::of(model));
         let (terms, _) = along.terms(&own);
         along.rest_w = supplies.iter().zip(terms).map(|(all, term)| all - term).collect();
         along
     }
 
-    /// Torques of a robot by joint, an entry for each instant \[Nm\].
-    pub fn torques(&self, robot: &Change) -> Vec<DVector<f64>> {
-        self.features.iter().zip(&robot.joints).map(|(phi, of)| phi * &of.values).collect()
+    /// Torques by joint: a row for each instant, a column for each robot \[Nm\].
+    pub fn torques(&self, robots: &Changes) -> Vec<DMatrix<f64>> {
+        self.features.iter().zip(&robots.joints).map(|(phi, of)| phi * &of.values).collect()
     }
 
     /// Power of each instant that goes with joints \[W\], and torques by joint \[Nm\].
-    fn terms(&self, robot: &Change) -> (Vec<f64>, Vec<DVector<f64>>) {
+    fn terms(&self, robot: &Changes) -> (Vec<f64>, Vec<DMatrix<f64>>) {
         let torques = self.torques(robot);
         let terms = (0..self.rates.len()).map(|i| {
             let tau = |j: usize| torques[j][i];
             let copper = robot.joints.iter().enumerate();
-            let copper: f64 = copper.map(|(j, of)| of.loss * tau(j) * tau(j)).sum();
+            let copper: f64 = copper.map(|(j, of)| of.loss[0] * tau(j) * tau(j)).sum();
             if self.rests[i] {
                 return copper;
             }
@@ -152,9 +153,9 @@ impl<'a> Along<'a> {
     }
 
     /// Means of the windows for a robot.
-    pub fn means(&self, robot: &Change) -> Means {
+    pub fn means(&self, robot: &Changes) -> Means {
         let (terms, torques) = self.terms(robot);
-        let supply = robot.base_w + robot.coils_w;
+        let supply = robot.base_w[0] + robot.coils_w[0];
         let mean = |window: &Range<usize>, value: &dyn Fn(usize) -> f64| {
             window.clone().map(value).sum::<f64>() / window.len() as f64
         };
@@ -169,7 +170,7 @@ impl<'a> Along<'a> {
     }
 
     /// Slopes of the mean powers by the latent numbers, a row for each window.
-    pub fn power_slopes(&self, robot: &Change, slopes: &Slopes) -> DMatrix<f64> {
+    pub fn power_slopes(&self, robot: &Changes, slopes: &Slopes) -> DMatrix<f64> {
         let torques = self.torques(robot);
         let left = 1.0 - self.model.drive.regeneration;
         let braking: Vec<bool> = (0..self.rates.len())
@@ -188,7 +189,7 @@ impl<'a> Along<'a> {
                     Sharing::None => tau[i] * rate < 0.0,
                 };
                 let work = if burnt { rate * (1.0 - left) } else { rate };
-                2.0 * of.loss * tau[i] + if self.rests[i] { 0.0 } else { work }
+                2.0 * of.loss[0] * tau[i] + if self.rests[i] { 0.0 } else { work }
             };
             by_power += self.sums(j, &of_power) * &slopes.joints[j];
             let square =

@@ -9,7 +9,7 @@
 //!
 //! follows from the second moments, and the mean robot's constant c is the one that gives it.
 
-use super::change::Change;
+use super::change::Changes;
 use super::moments::Moments;
 use super::plausible::Robots;
 use crate::dynamics::{RIGID, link_of, link_parameters};
@@ -22,11 +22,11 @@ impl Robots {
     pub fn mean(&self, model: &Model, along: &Moments) -> Option<Model> {
         let robots = &self.draws.robots;
         let mut mean = mean(robots)?;
-        let of_mean = Change::of(model, &mean);
+        let of_mean = Changes::of_one(model, &mean);
         for j in 0..model.dof {
-            let square = along.square(j, &of_mean);
-            let copper = robots.iter().zip(self.drawn());
-            let copper: f64 = copper.map(|(it, change)| it.loss[j] * along.square(j, change)).sum();
+            let square = along.squares(j, &of_mean)[0];
+            let copper = robots.iter().zip(along.squares(j, self.drawn()));
+            let copper: f64 = copper.map(|(robot, square)| robot.loss[j] * square).sum();
             if square > 0.0 {
                 mean.loss[j] = copper / robots.len() as f64 / square;
             }

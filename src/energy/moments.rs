@@ -13,7 +13,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::change::Change;
+use super::change::Changes;
 use super::features::{self, OF_JOINT};
 use super::parts::EnergyParts;
 use crate::dynamics::{Data, Load, Regressor};
@@ -27,6 +27,9 @@ const STEP: f64 = 0.1;
 const STEPS: (f64, f64) = (6.0, 400.0);
 /// Points of Gauss's rule on [0, 1].
 const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+/// Columns that are multiplied at once: few enough for the cache.
+const COLUMNS: usize = 64;
 
 /// Sums over motions and rests.
 #[derive(Clone, Debug)]
@@ -156,35 +159,53 @@ impl Moments {
         }
     }
 
-    /// ∫ τ² dt of a joint of a robot, in motion and at rest \[(Nm)² s\].
-    pub fn square(&self, joint: usize, robot: &Change) -> f64 {
-        let (sums, values) = (&self.joints[joint], &robot.joints[joint].values);
-        (&sums.moving * values + &sums.resting * values).dot(values)
+    /// ∫ τ² dt of a joint, in motion and at rest, robot by robot \[(Nm)² s\].
+    pub fn squares(&self, joint: usize, robots: &Changes) -> Vec<f64> {
+        let (sums, values) = (&self.joints[joint], &robots.joints[joint].values);
+        quadratic(&(&sums.moving + &sums.resting), values)
     }
 
-    /// How much more energy a robot takes than the model.
-    pub fn change(&self, model: &Model, change: &Change) -> EnergyParts {
-        let mut parts = EnergyParts {
-            idle_j: change.base_w * self.open_s,
-            brake_j: change.coils_w * self.open_s,
-            ..EnergyParts::default()
-        };
+    /// How much more energy each of some robots takes than the model.
+    pub fn changes(&self, model: &Model, robots: &Changes) -> Vec<EnergyParts> {
+        let rests =
+            robots.base_w.iter().zip(&robots.coils_w).map(|(base_w, coils_w)| EnergyParts {
+                idle_j: base_w * self.open_s,
+                brake_j: coils_w * self.open_s,
+                ..EnergyParts::default()
+            });
+        let mut all: Vec<EnergyParts> = rests.collect();
         let left = 1.0 - model.drive.regeneration;
-        for (joint, of) in self.joints.iter().zip(&change.joints) {
-            let quadratic = |gram: &DMatrix<f64>| {
-                of.loss * (gram * &of.values).dot(&of.values) - of.model_loss * gram[(0, 0)]
-            };
-            parts.copper_j += quadratic(&joint.moving);
-            parts.idle_j += quadratic(&joint.resting);
-            let own = of.values.len() - OF_JOINT;
-            let linear = |sums: &DVector<f64>, range: std::ops::Range<usize>| -> f64 {
-                range.map(|i| sums[i] * of.values[i]).sum()
-            };
-            parts.friction_j += linear(&joint.work, own + 1..own + 3);
-            parts.mechanical_j += linear(&joint.work, 1..own + 1);
-            parts.mechanical_j += linear(&joint.work, own + 3..own + 4);
-            parts.drive_j += left * linear(&joint.burnt, 1..of.values.len());
+        for (joint, of) in self.joints.iter().zip(&robots.joints) {
+            let own = of.values.nrows() - OF_JOINT;
+            let [moving, resting] =
+                [&joint.moving, &joint.resting].map(|gram| quadratic(gram, &of.values));
+            for (robot, parts) in all.iter_mut().enumerate() {
+                let copper = |gram: &DMatrix<f64>, square: &[f64]| {
+                    of.loss[robot] * square[robot] - of.model_loss * gram[(0, 0)]
+                };
+                parts.copper_j += copper(&joint.moving, &moving);
+                parts.idle_j += copper(&joint.resting, &resting);
+                let values = of.values.column(robot);
+                let linear = |sums: &DVector<f64>, range: std::ops::Range<usize>| -> f64 {
+                    range.map(|i| sums[i] * values[i]).sum()
+                };
+                parts.friction_j += linear(&joint.work, own + 1..own + 3);
+                parts.mechanical_j += linear(&joint.work, 1..own + 1);
+                parts.mechanical_j += linear(&joint.work, own + 3..own + 4);
+                parts.drive_j += left * linear(&joint.burnt, 1..values.len());
+            }
         }
-        parts
+        all
     }
+}
+
+/// `vᵀ G v` of each column v.
+fn quadratic(gram: &DMatrix<f64>, values: &DMatrix<f64>) -> Vec<f64> {
+    let mut squares = Vec::with_capacity(values.ncols());
+    for first in (0..values.ncols()).step_by(COLUMNS) {
+        let values = values.columns(first, COLUMNS.min(values.ncols() - first));
+        let product = gram * values;
+        squares.extend(product.column_iter().zip(values.column_iter()).map(|(a, b)| a.dot(&b)));
+    }
+    squares
 }

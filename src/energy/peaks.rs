@@ -1,5 +1,6 @@
 //! The largest torque of each joint over plausible robots.
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::along::{Along, Instant};
@@ -23,14 +24,11 @@ const NEAR: usize = 12;
 pub(super) fn peaks(model: &Model, robots: &Robots, simulation: &Simulation) -> Vec<Interval> {
     let instants = largest(model, simulation);
     let along = Along::of(model, &instants, Vec::new());
-    let all: Vec<Vec<f64>> = robots
-        .drawn()
-        .par_iter()
-        .map(|robot| along.torques(robot).iter().map(nalgebra::Matrix::amax).collect())
-        .collect();
-    (0..model.dof)
-        .map(|j| Interval::of(&all.iter().map(|tau| tau[j]).collect::<Vec<f64>>()))
-        .collect()
+    let torques = along.torques(robots.drawn());
+    let largest = |torques: DMatrix<f64>| -> Vec<f64> {
+        torques.column_iter().map(|of_robot| of_robot.amax()).collect()
+    };
+    torques.into_iter().map(|torques| Interval::of(&largest(torques))).collect()
 }
 
 /// A look at a run of a simulation.

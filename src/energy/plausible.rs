@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::account::Account;
-use super::change::Change;
+use super::change::Changes;
 use super::moments::Moments;
 use super::parts::EnergyParts;
 use super::peaks::peaks;
@@ -21,8 +21,8 @@ pub const DRAWS: usize = 256;
 const WITHIN: f64 = 0.9;
 /// Groups that a report lists, at most.
 const LISTED: usize = 5;
-/// Events whose sums are worked out together.
-const PART: usize = 16;
+/// Parts of a simulation whose sums are worked out beside each other; each takes memory.
+const PARTS: usize = 4;
 /// Share of the variance below which a group is not listed.
 const LEAST: f64 = 0.02;
 
@@ -69,7 +69,7 @@ pub struct Contribution {
 pub struct Robots {
     spread: Spread,
     pub(super) draws: Draws,
-    changes: Vec<Change>,
+    changes: Changes,
 }
 
 impl Robots {
@@ -83,18 +83,18 @@ impl Robots {
             return None;
         }
         let draws = spread.draws(model, DRAWS);
-        let changes = draws.robots.par_iter().map(|robot| Change::of(model, robot)).collect();
+        let changes = Changes::of(model, &draws.robots);
         Some(Robots { spread, draws, changes })
     }
 
-    /// What differs in each of the robots.
-    pub fn drawn(&self) -> &[Change] {
+    /// What differs in the robots.
+    pub fn drawn(&self) -> &Changes {
         &self.changes
     }
 
     /// What each of the robots takes more than the model, J.
     pub fn changes(&self, model: &Model, moments: &Moments) -> Vec<EnergyParts> {
-        self.changes.par_iter().map(|change| moments.change(model, change)).collect()
+        moments.changes(model, &self.changes)
     }
 
     /// What the variance of a result comes from, the largest first.
@@ -169,18 +169,19 @@ pub struct Plausibility {
 
 /// The sums of a whole simulation.
 pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
-    let none = || Moments::none(model);
-    let with = |mut all: Moments, event: &Event| {
-        all.event(model, event);
+    let of = |events: &[Event]| {
+        let mut sums = Moments::none(model);
+        events.iter().for_each(|event| sums.event(model, event));
+        sums
+    };
+    let length = simulation.events.len().div_ceil(PARTS).max(1);
+    let parts: Vec<Moments> = simulation.events.par_chunks(length).map(of).collect();
+    // In their order, so that the same input has the same digits.
+    let sum = |mut all: Moments, part: Moments| {
+        all.add(&part, 1.0);
         all
     };
-    let sum = |mut a: Moments, b: Moments| {
-        a.add(&b, 1.0);
-        a
-    };
-    // Each part has sums of its own: few parts.
-    let parts = simulation.events.par_chunks(PART);
-    parts.map(|events| events.iter().fold(none(), with)).reduce(none, sum)
+    parts.into_iter().reduce(sum).unwrap_or_else(|| Moments::none(model))
 }
 
 /// How far the energies of a simulation are known.

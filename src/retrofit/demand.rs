@@ -4,8 +4,6 @@
 //! original cycle anyway (`optimize::allowed::Loads`); where limits of torque are
 //! estimated, so does the largest torque of each joint in 95 % of the plausible robots.
 
-use rayon::prelude::*;
-
 use super::settings::Settings;
 use super::work::Way;
 use crate::energy::along::{Along, Instant};
@@ -60,15 +58,10 @@ impl Demand {
             }));
         }
         let along = Along::of(model, &instants, Vec::new());
-        let torque = robots
-            .drawn()
-            .par_iter()
-            .map(|change| {
-                let torques = along.torques(change);
-                std::array::from_fn(|j| torques[j].amax())
-            })
-            .collect();
-        Demand(torque)
+        let torques = along.torques(robots.drawn());
+        let count = torques.first().map_or(0, nalgebra::Matrix::ncols);
+        let largest = |robot| std::array::from_fn(|j| torques[j].column(robot).amax());
+        Demand((0..count).map(largest).collect())
     }
 
     /// The joint, from 1, of which more is asked than `original` does in too many robots, and the

@@ -43,19 +43,18 @@ pub(super) fn uncertain_ways(
     sites: &[Site],
     ways: &[Way],
 ) -> Vec<(usize, Reason)> {
-    let sums = |side: Side<'_>, event: usize| {
-        let event = side.simulation.events.get(event)?;
-        Some(robots.changes(model, &Moments::of(model, event)))
-    };
+    let sums =
+        |side: Side<'_>, event: usize| Some(Moments::of(model, side.simulation.events.get(event)?));
     let own = |side: Side<'_>, event: usize| -> Option<f64> {
         Some(side.account.events.get(event)?.iter().map(EnergyParts::motion_energy_j).sum())
     };
     let weak = |way: &Way| {
         let event = *sites[way.site].variants[way.variant].events.first()?;
         let saved = own(before, event)? - own(after, event)?;
-        let changes = sums(before, event)?.into_iter().zip(sums(after, event)?);
-        let all: Vec<f64> =
-            changes.map(|(a, b)| saved + a.motion_energy_j() - b.motion_energy_j()).collect();
+        let mut less = sums(before, event)?;
+        less.add(&sums(after, event)?, -1.0);
+        let changes = robots.changes(model, &less);
+        let all: Vec<f64> = changes.iter().map(|less| saved + less.motion_energy_j()).collect();
         let share = all.iter().filter(|saved| **saved > 0.0).count() as f64 / all.len() as f64;
         (share < ENOUGH).then_some(Reason::UncertainSaving(share))
     };

@@ -1,6 +1,7 @@
 //! How well the numbers of a model are known, and robots that are as plausible.
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use super::hypercube::standard_normals;
 use super::known::Known;
@@ -239,7 +240,10 @@ impl Spread {
             None => standard_normals(self.latents.len(), count, SEED),
         };
         let count = latents.first().map_or(0, Vec::len);
-        let robots = (0..count).map(|draw| self.robot(model, |k| latents[k][draw])).collect();
+        let robots = (0..count)
+            .into_par_iter()
+            .map(|draw| self.robot(model, |k| latents[k][draw]))
+            .collect();
         Draws { latents, robots }
     }
 
