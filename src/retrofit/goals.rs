@@ -5,13 +5,15 @@ use rayon::prelude::*;
 use super::lower_limits::{Lowered, lateness};
 use super::notes::end;
 use super::settings::{Budget, Objective, Settings};
-use super::work::{RetrofitError, Way, rounded_up};
+use super::work::{RetrofitError, Way, rounded_up, run_of};
 use crate::dynamics::Load;
 use crate::energy::power::holding_w;
+use crate::energy::{Account, EnergyParts};
 use crate::motion::Simulation;
 use crate::motion::timeline::{Event, WaitBasis, What};
 use crate::optimize::cycle::{Cycle, Part, TradeOff};
 use crate::optimize::energy_curve::Curve;
+use crate::optimize::freedom::Freedom;
 use crate::optimize::retime::{Goal, SLOWEST, Task, fastest};
 use crate::optimize::site::Site;
 use crate::path::joint_path::Joints;
@@ -23,6 +25,37 @@ const LOOKS: usize = 4;
 const QUANTUM: f64 = 1e-4;
 /// Rounding of a sum of times, s.
 const TIME_TOLERANCE: f64 = 1e-6;
+
+/// What streams are planned for.
+pub(super) struct Planning<'a> {
+    /// The robot whose energy is minimised.
+    pub(super) model: &'a Model,
+    pub(super) settings: &'a Settings,
+    /// The original, and what it takes with that robot.
+    pub(super) simulation: &'a Simulation,
+    pub(super) before: &'a Account,
+    pub(super) sites: &'a [Site],
+}
+
+impl<'a> Planning<'a> {
+    /// The task of timing a way anew.
+    pub(super) fn task<'f>(&self, way: &Way, freedom: &'f Freedom) -> Option<Task<'f>>
+    where
+        'a: 'f,
+    {
+        let event = *self.sites[way.site].variants[way.variant].events.first()?;
+        let parts = self.before.events[event].iter();
+        Some(Task {
+            model: self.model,
+            run: run_of(self.simulation, self.sites, way)?,
+            energy_before: parts.fold(EnergyParts::default(), |a, b| a + *b),
+            spacing_s: self.settings.spacing_s,
+            closest_s: self.settings.closest_s,
+            freedom,
+            cost: self.settings.cost,
+        })
+    }
+}
 
 /// The times of a cycle's runs.
 pub(super) struct Plan {

@@ -8,13 +8,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::demand::mean_robot;
 use super::figures::{OutputFile, OutputKind, Retrofit, SegmentKind, Verification};
 use super::goals::cycle;
 use super::lower_limits::{self, Lowered};
 use super::outputs::{read_again, unchanged};
 use super::settings::{Budget, Objective, Settings};
 use super::speed_arguments::{Argument, speed_arguments};
-use super::uncertainty::{self, Side};
+use super::uncertainty::{self, ENOUGH, Side};
 use super::verify::same_order;
 use super::work::{
     RetrofitError, Source, TIME_TOLERANCE, Way, figures, nothing_to_verify, read_program,
@@ -102,22 +103,23 @@ pub(super) fn retrofit(
     let mut ways = ways(sites);
     let slots = slots(&before, settings, &mut ways);
     let rounds = FACTORS.len() + HALVINGS + 1;
-    let found = search(&before, model, settings, &slots, &ways, &|done| progress(done, rounds));
+    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    let mean = mean_robot(model, robots.as_ref(), &before.simulation);
+    let aim = mean.as_ref().unwrap_or(model);
+    let found = search(&before, aim, settings, &slots, &ways, &|done| progress(done, rounds));
     let original = figures(&before.simulation, &before.account);
     let mut kept = None;
     if let Some((factors, tried)) = found {
-        let mut verification = verify(&before, model, settings, &slots, &factors, &tried);
-        let least = WORTHWHILE * original.energy_j;
-        let saves = settings.objective == Objective::Time
-            || !matches!(settings.budget, Budget::AsBefore)
-            || tried.account.total.energy_j() + least < original.energy_j;
-        if verification.passed && saves {
-            kept = Some((factors, tried, verification));
-        } else if !verification.passed {
-            let broken = verification.checks.drain(..).find(|(_, held)| !held);
-            let why = broken.map_or_else(String::new, |(what, _)| what);
-            for way in ways.iter_mut().filter(|way| slots.iter().any(|s| s.site == way.site)) {
-                way.outcome = Err(Reason::Verification(format!("did not hold: {why}")));
+        let tried = Tried { account: account(model, &tried.simulation), ..tried };
+        let verification = verify(&before, model, settings, &slots, &factors, &tried);
+        match reason_to_stay(&before, model, settings, robots.as_ref(), (&tried, &verification)) {
+            None => kept = Some((factors, tried, verification)),
+            // It is their reason so far.
+            Some(Reason::NoSaving) => {}
+            Some(reason) => {
+                for way in ways.iter_mut().filter(|way| slots.iter().any(|s| s.site == way.site)) {
+                    way.outcome = Err(reason.clone());
+                }
             }
         }
     }
@@ -161,7 +163,6 @@ pub(super) fn retrofit(
         (&[], &[]),
         false,
     );
-    let robots = if settings.point_estimate { None } else { Robots::of(model) };
     let uncertainty = robots.map(|robots| {
         let own = Side { simulation: &before.simulation, account: &before.account };
         let after = Side { simulation: &tried.simulation, account: &tried.account };
@@ -183,6 +184,32 @@ pub(super) fn retrofit(
         before: (before.simulation, before.account),
         after: (tried.simulation, tried.account),
     })
+}
+
+/// Why other speeds are not kept, all together.
+fn reason_to_stay(
+    before: &Before<'_>,
+    model: &Model,
+    settings: &Settings,
+    robots: Option<&Robots>,
+    (tried, verification): (&Tried, &Verification),
+) -> Option<Reason> {
+    if !verification.passed {
+        let broken = verification.checks.iter().find(|(_, held)| !held);
+        let why = broken.map_or("", |(what, _)| what);
+        return Some(Reason::Verification(format!("did not hold: {why}")));
+    }
+    if settings.objective == Objective::Time || settings.budget != Budget::AsBefore {
+        return None;
+    }
+    let original_j = before.account.total.energy_j();
+    if tried.account.total.energy_j() + WORTHWHILE * original_j >= original_j {
+        return Some(Reason::NoSaving);
+    }
+    let own = Side { simulation: &before.simulation, account: &before.account };
+    let after = Side { simulation: &tried.simulation, account: &tried.account };
+    let share = uncertainty::share_that_saves(model, robots?, own, after);
+    (share < ENOUGH).then_some(Reason::UncertainSaving(share))
 }
 
 /// Every way with its reason to stay; without one no speed that saves is found yet.

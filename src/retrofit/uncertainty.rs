@@ -12,7 +12,7 @@ use crate::optimize::site::Site;
 use crate::robot::Model;
 
 /// Share of the plausible robots in which a stream has to save.
-const ENOUGH: f64 = 0.95;
+pub(super) const ENOUGH: f64 = 0.95;
 
 /// Energies and savings over plausible robots.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,15 +51,31 @@ pub(super) fn uncertain_ways(
     let weak = |way: &Way| {
         let event = *sites[way.site].variants[way.variant].events.first()?;
         let saved = own(before, event)? - own(after, event)?;
-        let mut less = sums(before, event)?;
-        less.add(&sums(after, event)?, -1.0);
-        let changes = robots.changes(model, &less);
-        let all: Vec<f64> = changes.iter().map(|less| saved + less.motion_energy_j()).collect();
-        let share = all.iter().filter(|saved| **saved > 0.0).count() as f64 / all.len() as f64;
+        let share = share(model, robots, saved, [sums(before, event)?, sums(after, event)?]);
         (share < ENOUGH).then_some(Reason::UncertainSaving(share))
     };
     let kept = ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok());
     kept.filter_map(|(index, way)| Some((index, weak(way)?))).collect()
+}
+
+/// The share of the robots that take less motion energy in the whole cycle after than before.
+pub(super) fn share_that_saves(
+    model: &Model,
+    robots: &Robots,
+    before: Side<'_>,
+    after: Side<'_>,
+) -> f64 {
+    let own = |side: Side<'_>| side.account.total.motion_energy_j();
+    let sums = [before, after].map(|side| moments(model, side.simulation));
+    share(model, robots, own(before) - own(after), sums)
+}
+
+/// The share of the robots whose motion energy falls, where that of the model falls by `saved` J.
+fn share(model: &Model, robots: &Robots, saved: f64, [mut less, after]: [Moments; 2]) -> f64 {
+    less.add(&after, -1.0);
+    let changes = robots.changes(model, &less);
+    let falls = changes.iter().filter(|less| saved + less.motion_energy_j() > 0.0);
+    falls.count() as f64 / changes.len() as f64
 }
 
 /// Energies and savings of the whole cycle.

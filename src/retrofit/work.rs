@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::demand::{Demand, demanding_ways, is_estimated, tighter};
+use super::demand::{Frugal, mean_robot};
 use super::figures::{Figures, LowerLimits, Retrofit, Verification};
-use super::goals::goals;
+use super::goals::{Planning, goals};
 use super::guards::Guards;
 use super::lower_limits::Lowered;
 use super::settings::{Budget, Form, Objective, Settings};
@@ -17,8 +17,8 @@ use super::{
     signals, speeds, verify,
 };
 use crate::emit::{self, Names};
-use crate::energy::plausible::{Robots, moments};
-use crate::energy::{Account, EnergyParts, account};
+use crate::energy::plausible::Robots;
+use crate::energy::{Account, account};
 use crate::ir::lower;
 use crate::ir::program::{Program, RoutineId};
 use crate::motion::timeline::{Run, What};
@@ -284,20 +284,26 @@ pub fn retrofit(
         };
         return speeds::retrofit(before, model, settings, progress);
     }
-    let original = (&simulation, lowered.as_slice());
     let robots = if settings.point_estimate { None } else { Robots::of(model) };
-    // Of a robot of whose limits nothing is known the dynamics are estimated, too: the mean over the
-    // plausible robots is minimised, and no more asked of them than what they do already.
-    let uncertain = robots.as_ref().filter(|_| is_estimated(model));
-    let mean = uncertain.and_then(|all| all.mean(model, &moments(model, &simulation)));
+    let mean = mean_robot(model, robots.as_ref(), &simulation);
     let (aim, of_aim) = match &mean {
         Some(mean) => (mean, account(mean, &simulation)),
         None => (model, before.clone()),
     };
-    let demand = uncertain.map(|all| Demand::of(model, all, simulation.events.iter()));
-    let goal = showing(aim, &simulation, given);
-    let goal = if demand.is_some() { tighter(goal) } else { goal };
-    let mut ways = retime_all(aim, &goal, original, &of_aim, &sites, progress)?;
+    // No more is asked of robots of whose limits nothing is known than what they do already.
+    let mut frugal = Frugal::of(model, robots.as_ref(), &simulation);
+    let mut checks = settings.clone();
+    if let (Some(_), Some(loads)) = (&frugal, &mut checks.freedom.loads) {
+        loads.torque = Loads::limits(model).torque;
+    }
+    let planning = Planning {
+        model: aim,
+        settings: &showing(aim, &simulation, given),
+        simulation: &simulation,
+        before: &of_aim,
+        sites: &sites,
+    };
+    let mut ways = retime_all(&planning, &lowered, progress)?;
     let originals: Vec<SourceFile> = files.iter().map(|source| source.file.clone()).collect();
     let names = Names::free(&originals);
     let writing = outputs::Writing {
@@ -319,7 +325,7 @@ pub fn retrofit(
     let (mut checked, lower_limits) = loop {
         let emitted = outputs::emit(&writing, &simulation, &sites, &ways, &restings)?;
         let what = (sites.as_slice(), ways.as_slice(), restings.as_slice());
-        let attempt = verify::verify(files, &emitted.files, model, settings, &simulation, what);
+        let attempt = verify::verify(files, &emitted.files, model, &checks, &simulation, what);
         let nothing_left = restings.is_empty() && ways.iter().all(|way| way.outcome.is_err());
         if attempt.verification.passed || nothing_left {
             let kept = (sites.as_slice(), ways.as_slice());
@@ -345,12 +351,12 @@ pub fn retrofit(
                 }
                 _ => weak,
             };
-            let weak = match (&robots, &demand) {
-                (Some(robots), Some(demand)) if weak.is_empty() => {
-                    demanding_ways(model, robots, demand, &attempt.simulation, kept)
+            if let (true, Some(frugal)) = (weak.is_empty(), &mut frugal) {
+                if !frugal.hold(&attempt.simulation, &mut ways, &planning) {
+                    continue;
                 }
-                _ => weak,
-            };
+            }
+            let kept = (sites.as_slice(), ways.as_slice());
             let weak = if weak.is_empty() {
                 guard_cost::costly(model, settings, &simulation, kept, &emitted.guards)
             } else {
@@ -482,13 +488,11 @@ fn leave_what_changes(simulation: &Simulation, sites: &mut [Site]) {
 }
 
 fn retime_all(
-    model: &Model,
-    settings: &Settings,
-    (simulation, lowered): (&Simulation, &[Lowered]),
-    before: &Account,
-    sites: &[Site],
+    planning: &Planning<'_>,
+    lowered: &[Lowered],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Way>, RetrofitError> {
+    let Planning { model, settings, simulation, sites, .. } = *planning;
     let mut ways = Vec::new();
     for (s, site) in sites.iter().enumerate() {
         for (v, variant) in site.variants.iter().enumerate() {
@@ -500,22 +504,7 @@ fn retime_all(
         (0..ways.len()).filter(|i| matches!(ways[*i].outcome, Err(Reason::NoSaving))).collect();
     let tasks: Vec<(usize, Task<'_>)> = open
         .iter()
-        .filter_map(|i| {
-            let way = &ways[*i];
-            let event = *sites[way.site].variants[way.variant].events.first()?;
-            let run = run_of(simulation, sites, way)?;
-            let energy = before.events[event].iter().fold(EnergyParts::default(), |a, b| a + *b);
-            let task = Task {
-                model,
-                run,
-                energy_before: energy,
-                spacing_s: settings.spacing_s,
-                closest_s: settings.closest_s,
-                freedom: &settings.freedom,
-                cost: settings.cost,
-            };
-            Some((*i, task))
-        })
+        .filter_map(|i| Some((*i, planning.task(&ways[*i], &settings.freedom)?)))
         .collect();
     let mut plan = goals(model, settings, (simulation, lowered), sites, &ways, &tasks)?;
     let done = Arc::new(std::sync::atomic::AtomicUsize::new(0));
