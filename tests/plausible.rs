@@ -171,6 +171,36 @@ fn a_balancer_helps_to_hold() {
 }
 
 #[test]
+fn a_robot_of_another_name_has_the_spread_of_its_type() {
+    let known = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
+    let text = "extends = \"IRB2600-20/1.65\"\nname = \"line 4\"\n";
+    let renamed = with_estimates(from_toml("cell.toml", text).unwrap()).unwrap();
+    assert_eq!(renamed.name, "line 4");
+    let copied = with_estimates(from_toml("copy.toml", &to_toml(&renamed)).unwrap()).unwrap();
+    let (simulation, own) = simulated(&known);
+    let energies = |model: &Model| plausibility(model, &simulation, &own).unwrap();
+    assert_eq!(energies(&known), energies(&renamed));
+    assert_eq!(energies(&known), energies(&copied));
+}
+
+#[test]
+fn deviations_that_a_file_states_are_used_and_absurd_ones_refused() {
+    let with = |lines: &str| {
+        let text = format!("extends = \"IRB2600-20/1.65\"\n[drive]\nbase_w = 250\n{lines}");
+        with_estimates(from_toml("cell.toml", &text).unwrap())
+    };
+    let width = |model: &Model| {
+        let (simulation, own) = simulated(model);
+        let all = plausibility(model, &simulation, &own).unwrap().energy_j;
+        all.high - all.low
+    };
+    let [exact, stated] = ["base_w_sd = 2\n", ""].map(|lines| width(&with(lines).unwrap()));
+    assert!(exact < 0.9 * stated, "{exact} J, {stated} J");
+    let said = with("base_w_sd = 2500\n").unwrap_err().to_string();
+    assert!(said.contains("base power"), "{said}");
+}
+
+#[test]
 fn masses_that_no_arm_has_are_refused_by_name() {
     let bare = find("IRB2600-20/1.65").unwrap();
     let text = to_toml(&Model { name: "an arm".into(), ..bare });
@@ -182,6 +212,16 @@ fn masses_that_no_arm_has_are_refused_by_name() {
     for mass in ["-250.0", "0.0", "2.5", "19000.0", "1e6"] {
         let said = with_mass(mass).unwrap_err();
         assert!(said.contains("mass") && said.contains("kg"), "{mass}: {said}");
+    }
+    for factor in [0.0, 1000.0] {
+        let mut model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
+        model.links.iter_mut().for_each(|link| {
+            link.mass *= factor;
+            link.inertia *= factor;
+        });
+        let read = from_toml("arm.toml", &to_toml(&model));
+        let said = read.and_then(with_estimates).unwrap_err().to_string();
+        assert!(said.contains("[[link]] mass"), "{said}");
     }
     let stated = with_mass("280.0").unwrap();
     let unknown = with_estimates(from_toml("arm.toml", &text).unwrap()).unwrap();

@@ -11,6 +11,8 @@ const LEAST: f64 = 0.6;
 /// How much longer or shorter a cycle may be than simulated, as a share, and steps of the search.
 const PACE: f64 = 0.05;
 const PACES: usize = 10;
+/// Mean power of one cycle over that of another from which on they are not of one log.
+const UNLIKE: f64 = 3.0;
 /// Cycles of a log that are searched for, at most.
 const CYCLES: f64 = 200.0;
 /// Points of a cycle in the search, and in the refinement.
@@ -82,7 +84,29 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
         let fitting = passes.into_iter().filter(|(_, fit)| *fit >= LEAST);
         fitting.map(|(segment, _)| Pass { segments: vec![segment] }).collect()
     };
+    check_alike(&curve, &passes)?;
     Ok(Aligned { passes, kilowatts })
+}
+
+/// Cycles of one program and one unit take about the same power.
+fn check_alike(curve: &Curve<'_>, passes: &[Pass]) -> Result<(), Refusal> {
+    let mean = |segment: &Segment| {
+        let place = |t: f64| curve.t.partition_point(|x| *x < t);
+        let rows = &curve.power[place(segment.log.start)..place(segment.log.end)];
+        (!rows.is_empty()).then(|| rows.iter().sum::<f64>() / rows.len() as f64)
+    };
+    let begins = |pass: &Pass| pass.segments.first().map_or(0.0, |segment| segment.log.start);
+    // Segments of a pass have different powers: those of one place in the cycle are compared.
+    let firsts =
+        passes.iter().filter_map(|pass| Some((begins(pass), mean(pass.segments.first()?)?)));
+    let mut means: Vec<(f64, f64)> = firsts.filter(|(_, mean)| *mean > 0.0).collect();
+    means.sort_by(|a, b| a.1.total_cmp(&b.1));
+    match (means.first(), means.last()) {
+        (Some((_, least)), Some((begin, most))) if *most > UNLIKE * least => {
+            Err(Refusal::Unlike { begin_s: *begin, factor: most / least })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Passes by the number of the movement that runs: movements and waits by themselves.

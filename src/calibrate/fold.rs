@@ -51,8 +51,7 @@ pub(super) fn fold(
         log.column(Channel::Power).unwrap_or_default().iter().map(|w| w * unit).collect();
     let torques = torques.unwrap_or_default();
     let noise = Noise::of(&power);
-    let torque_noise: Vec<f64> =
-        torques.iter().map(|tau| differences(tau, |_| true).sqrt()).collect();
+    let torque_noise: Vec<Noise> = torques.iter().map(|tau| Noise::of(tau)).collect();
     let width = (cycle.duration / INSTANTS).max(median_step(t));
     let count = (cycle.duration / width).ceil() as usize + 1;
     let empty =
@@ -100,7 +99,7 @@ pub(super) fn fold(
     };
     let found: (Vec<f64>, Vec<f64>) = means(&|bin| bin.power, &|bin| noise.variance(bin.power));
     let torque: Vec<(Vec<f64>, Vec<f64>)> = (0..torques.len())
-        .map(|j| means(&|bin| bin.torque[j], &|_| torque_noise[j].powi(2)))
+        .map(|j| means(&|bin| bin.torque[j], &|bin| torque_noise[j].variance(bin.torque[j])))
         .collect();
     (windows.power, windows.power_sd) = found;
     windows.torque = torque;
@@ -133,9 +132,9 @@ struct Noise {
 }
 
 impl Noise {
-    /// Of a series, from its second differences in its lower and its upper half.
+    /// Of a series, from its second differences where it is small and where it is large.
     fn of(values: &[f64]) -> Noise {
-        let mut sorted: Vec<f64> = values.to_vec();
+        let mut sorted: Vec<f64> = values.iter().map(|x| x.abs()).collect();
         sorted.sort_by(f64::total_cmp);
         let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
         let square = |part: &dyn Fn(f64) -> bool| {
@@ -143,8 +142,8 @@ impl Noise {
             of.iter().map(|x| x * x).sum::<f64>() / of.len().max(1) as f64
         };
         let [low, high] =
-            [differences(values, |x| x < middle), differences(values, |x| x >= middle)];
-        let [below, above] = [square(&|x| x < middle), square(&|x| x >= middle)];
+            [differences(values, |x| x.abs() < middle), differences(values, |x| x.abs() >= middle)];
+        let [below, above] = [square(&|x| x.abs() < middle), square(&|x| x.abs() >= middle)];
         let relative = if above > below { ((high - low) / (above - below)).max(0.0) } else { 0.0 };
         let constant = (low - relative * below).max(0.0);
         Noise { constant, relative }

@@ -12,6 +12,7 @@ mod fold;
 mod posterior;
 mod refusal;
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::effects::{drawn, with_estimates};
@@ -21,7 +22,7 @@ use crate::energy::plausible::{Plausibility, plausibility};
 use crate::energy::{account, plausible::DRAWS};
 use crate::log::Log;
 use crate::motion::Simulation;
-use crate::robot::prior::{Plausible, Spread};
+use crate::robot::prior::{Plausible, Spread, type_name};
 use crate::robot::{Calibration, Model, from_toml, to_toml};
 
 use aligned::{Aligned, align};
@@ -39,6 +40,9 @@ const LEAST_WINDOWS: usize = 10;
 const EXPLAINS: f64 = 0.75;
 /// Correlation of the power in windows with the model's from which on it is the program's.
 const ALIKE: f64 = 0.8;
+/// Correlation without means of a torque with the model's below which its sign is wrong: friction and
+/// gravity decide the sign, and no plausible robot turns both.
+const AGAINST: f64 = -0.3;
 /// Deviations from the plausible robots' mean beyond which a log belongs to none of them.
 const FAR: f64 = 4.0;
 
@@ -128,6 +132,7 @@ pub fn calibrate(
         return Err(Refusal::Program { explained, least: EXPLAINS });
     }
     check_size(model, &spread, &rough)?;
+    check_torques(&rough, &own)?;
     if explained < EXPLAINS {
         return Err(Refusal::Program { explained, least: EXPLAINS });
     }
@@ -147,7 +152,7 @@ pub fn calibrate(
     if draws.len() * 2 < ROBOTS {
         return Err(Refusal::Fit { fitted: draws.len(), robots: ROBOTS });
     }
-    let calibrated = centred(model, &spread, &draws)?;
+    let calibrated = centred(model, &spread, &likely.z, &draws)?;
     let simulated = account(&calibrated, simulation);
     let after = plausibility(&calibrated, simulation, &simulated);
     let after = after.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
@@ -166,6 +171,20 @@ pub fn calibrate(
             torques: torques.is_some(),
         },
     })
+}
+
+/// Torques of the model and of the log go the same way, however large they are.
+fn check_torques(rough: &Folded<'_>, own: &Changes) -> Result<(), Refusal> {
+    let expected = rough.along.means(own).torque;
+    for (j, ((measured, _), expected)) in rough.windows.torque.iter().zip(&expected).enumerate() {
+        let measured = DVector::from_column_slice(measured);
+        let norms = measured.norm() * expected.norm();
+        let correlation = measured.dot(expected) / norms.max(f64::MIN_POSITIVE);
+        if correlation < AGAINST {
+            return Err(Refusal::Torque { joint: j + 1, correlation });
+        }
+    }
+    Ok(())
 }
 
 /// A log whose power is far from that of all plausible robots belongs to another one.
@@ -206,15 +225,18 @@ fn check_size(
     Ok(())
 }
 
-/// The model at the middle of the draws, and the draws from there.
-fn centred(model: &Model, spread: &Spread, draws: &[Vec<f64>]) -> Result<Model, Refusal> {
-    let count = draws.len() as f64;
-    let middle: Vec<f64> = (0..spread.latents.len())
-        .map(|k| draws.iter().map(|z| z[k]).sum::<f64>() / count)
-        .collect();
-    let mut new = spread.robot(model, |k| middle[k]).applied(model);
+/// The most likely robot, and the draws from there. Means of the latent numbers are no robot that fits
+/// the log: where two powers are known by their sum alone, the sum at their means is a smaller one.
+fn centred(
+    model: &Model,
+    spread: &Spread,
+    likely: &[f64],
+    draws: &[Vec<f64>],
+) -> Result<Model, Refusal> {
+    let mut new = spread.robot(model, |k| likely[k]).applied(model);
+    new.type_name = Some(type_name(model).to_owned());
     let rounded = |x: f64| (x * ROUND).round() / ROUND;
-    let of = |k: usize| draws.iter().map(|z| rounded(z[k] - middle[k])).collect::<Vec<f64>>();
+    let of = |k: usize| draws.iter().map(|z| rounded(z[k] - likely[k])).collect::<Vec<f64>>();
     let names = spread.latents.iter().enumerate();
     new.calibration = Some(Calibration {
         robots: draws.len(),

@@ -48,7 +48,7 @@ pub enum Refusal {
     },
     /// Cycles of another length.
     #[error(
-        "the log is of another program: its cycles take {measured_s:.1} s, the simulated one {cycle_s:.1} s; say when inputs come (--input) if waits are longer"
+        "the log is of another program: its cycles take {measured_s:.1} s, the simulated one {cycle_s:.1} s (5 % may differ); say when inputs come (--input) if waits are longer, and --speed-override if the cell ran with one"
     )]
     Length {
         /// s.
@@ -66,9 +66,29 @@ pub enum Refusal {
         /// Movements of the program.
         simulated: usize,
     },
+    /// Cycles that differ.
+    #[error(
+        "the power of the cycle at {begin_s:.1} s is {factor:.0} times that of another one: does its unit change within the log?"
+    )]
+    Unlike {
+        /// s.
+        begin_s: f64,
+        /// Largest mean power over the smallest.
+        factor: f64,
+    },
+    /// A torque goes another way.
+    #[error(
+        "the torque of joint {joint} goes against what plausible robots need (correlation {correlation:.2}): is its sign turned, or are columns exchanged? Leave the torques out with --map, or turn it"
+    )]
+    Torque {
+        /// From 1.
+        joint: usize,
+        /// With that of the model.
+        correlation: f64,
+    },
     /// The power goes another way.
     #[error(
-        "the log is of another program: nowhere does its power go like the simulated cycle's (correlation {correlation:.2}, at least {least:.2}); say when inputs come (--input) if waits differ, or log `cmd`"
+        "the log does not fit this program: nowhere does its power go like the simulated cycle's (correlation {correlation:.2}, at least {least:.2}); check the program, the columns and the unit of `t` (s), say when inputs come (--input) if waits differ, or log `cmd`"
     )]
     Shape {
         /// The best one.
@@ -105,7 +125,7 @@ pub enum Refusal {
     },
     /// Too few draws fit.
     #[error(
-        "only {fitted} of {robots} plausible robots can be moved to the log: is it of this program and robot?"
+        "no plausible robot of this type draws this power in this program ({fitted} of {robots} can be moved to it): check program, robot, unit and waits (--input)"
     )]
     Fit {
         /// Those that fit.

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
@@ -46,7 +46,19 @@ pub struct CalibrateArgs {
 /// # Errors
 /// Unusable input, a log that is not of the program or the robot, output that can't be written.
 pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
+    if args.program.point_estimate {
+        bail!("--point-estimate has no use here: the plausible robots are what a log narrows");
+    }
     let job = common::prepare(&args.program)?;
+    let real = |path: &Path| path.canonicalize().ok();
+    let modules = job.input.files.iter().map(|file| Path::new(&file.source.path));
+    let mut inputs =
+        modules.chain([args.log.as_path()]).chain(job.model.file.as_deref().map(Path::new));
+    if let Some(out) = real(&args.out)
+        && inputs.any(|input| real(input).is_some_and(|input| input == out))
+    {
+        bail!("'{}' is read by this command, too: name another file for --out", args.out.display());
+    }
     let (program, entry) = read_program(&job.files, &job.entry)?;
     signals::check(&args.program.cell, &job.options.levels, &program)?;
     let quiet = args.program.cell.quiet;
@@ -105,7 +117,14 @@ fn torques(model: &Model, log: &Log) -> (Option<Vec<Vec<f64>>>, Option<String>) 
     if let Some(tau) = of(Channel::Torque) {
         return (Some(tau.into_iter().map(<[f64]>::to_vec).collect()), None);
     }
-    let Some(currents) = of(Channel::Current) else { return (None, None) };
+    let Some(currents) = of(Channel::Current) else {
+        let some = |channel: fn(usize) -> Channel| {
+            (0..model.dof).any(|joint| log.column(channel(joint)).is_some())
+        };
+        let said = "torques or currents of some joints only are not used: all of them are needed";
+        let is_part = some(Channel::Torque) || some(Channel::Current);
+        return (None, is_part.then(|| said.to_owned()));
+    };
     match per_ampere(model) {
         Ok(factors) => {
             let tau = currents.iter().zip(&factors);

@@ -17,7 +17,7 @@ use crate::dynamics::{Data, Load, apparent_torques};
 use crate::effects;
 use crate::energy::power::{power_at, supply_w};
 use crate::log::{self, ColumnMap, MIN_ROWS, Motion};
-use crate::robot::{Model, Use, ready};
+use crate::robot::{Model, Provenance, Use, ready};
 use crate::text::{FileId, SourceFile};
 
 /// Marks of texts as spreadsheets export them.
@@ -64,6 +64,7 @@ pub struct PredictArgs {
 /// A model without dynamics, a log that can't be used, or output that can't be written.
 pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
+    let model = if model.has_dynamics() { model } else { effects::load_estimated(&args.robot)? };
     ready(&model, Use::Predict)?;
     let load = load::of_option(args.load.as_deref())?;
     let map = ColumnMap::parse(&args.map)?;
@@ -99,6 +100,15 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     if !motion.differentiated.is_empty() {
         let what = motion.differentiated.join(" and ");
         common::note(args.quiet, &format!("{shown}: {what} are not logged, but differentiated"));
+    }
+    let estimated = model.count(Provenance::Estimated);
+    if estimated > 0 {
+        let text = format!(
+            "estimated: {estimated} figures of {} follow from its size (joulepath robots show says how well \
+             they are known)",
+            model.name
+        );
+        common::note(args.quiet, &text);
     }
     for text in model.assumed() {
         common::note(args.quiet, &text);

@@ -30,6 +30,7 @@ pub fn load_estimated(name_or_path: &str) -> Result<Model, RobotError> {
 pub fn with_estimates(model: Model) -> Result<Model, RobotError> {
     robot::prior::check_mass(&model)?;
     let model = applied(robot::prior::estimated(model))?;
+    robot::prior::check_deviations(&model)?;
     robot::prior::check_calibration(&model)?;
     Ok(model)
 }

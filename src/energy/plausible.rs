@@ -24,7 +24,7 @@ const LISTED: usize = 5;
 /// Parts of a simulation whose sums are worked out beside each other; each takes memory.
 const PARTS: usize = 4;
 /// Share of the variance below which a group is not listed.
-const LEAST: f64 = 0.02;
+pub const LEAST: f64 = 0.02;
 
 /// A number over plausible robots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,43 +97,46 @@ impl Robots {
         moments.changes(model, &self.changes)
     }
 
-    /// What the variance of a result comes from, the largest first.
+    /// What the variance of a result comes from, the largest first. Each group has the part that those
+    /// before it leave: of a calibrated robot groups are correlated, and several may tell the same.
     pub fn contributions(&self, values: &[f64]) -> Vec<Contribution> {
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
         let mut groups: BTreeMap<&str, Vec<&Vec<f64>>> = BTreeMap::new();
         for (latent, z) in self.spread.latents.iter().zip(&self.draws.latents) {
             groups.entry(&latent.group).or_default().push(z);
         }
-        let centred: Vec<f64> = values.iter().map(|x| x - mean).collect();
-        let mut parts: Vec<Contribution> = groups
-            .into_iter()
-            .map(|(group, latents)| Contribution {
-                group: group.to_owned(),
+        let count = values.len() as f64;
+        let mut rest = DVector::from_column_slice(values);
+        rest.add_scalar_mut(-rest.mean());
+        let variance = rest.norm_squared();
+        let mut parts = Vec::new();
+        while parts.len() < LISTED {
+            let explained = groups.iter().map(|(group, latents)| {
+                let part = explained(latents, &rest);
                 // By chance, too, a group explains something.
-                share: (explained(&latents, &centred) / variance - latents.len() as f64 / count)
-                    .max(0.0),
-                narrowed_by: narrowed_by(group),
-            })
-            .filter(|part| part.share >= LEAST)
-            .collect();
-        parts.sort_by(|a, b| b.share.total_cmp(&a.share));
-        parts.truncate(LISTED);
+                let chance = latents.len() as f64 / count * rest.norm_squared();
+                let share = (part.norm_squared() - chance) / variance;
+                (*group, share, part)
+            });
+            let most = explained.max_by(|(_, a, _), (_, b, _)| a.total_cmp(b));
+            let Some((group, share, part)) = most.filter(|(_, share, _)| *share >= LEAST) else {
+                break;
+            };
+            groups.remove(group);
+            rest -= part;
+            let narrowed_by = narrowed_by(group);
+            parts.push(Contribution { group: group.to_owned(), share, narrowed_by });
+        }
         parts
     }
 }
 
-/// Variance that would go if the latent numbers of a group were known: what a linear function of them
-/// explains. Draws of a calibrated robot are correlated.
-fn explained(latents: &[&Vec<f64>], centred: &[f64]) -> f64 {
-    let count = centred.len() as f64;
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / count;
-    let n = latents.len();
-    let gram = DMatrix::from_fn(n, n, |i, k| product(latents[i], latents[k]));
-    let with = DVector::from_iterator(n, latents.iter().map(|z| product(z, centred)));
-    let solved = gram.svd(true, true).solve(&with, SINGULAR);
-    solved.map_or(0.0, |slopes| slopes.dot(&with))
+/// The linear function of a group's latent numbers that is nearest to some values, draw by draw.
+fn explained(latents: &[&Vec<f64>], values: &DVector<f64>) -> DVector<f64> {
+    let columns: Vec<DVector<f64>> =
+        latents.iter().map(|z| DVector::from_column_slice(z)).collect();
+    let z = DMatrix::from_columns(&columns);
+    let slopes = z.tr_mul(&z).svd(true, true).solve(&z.tr_mul(values), SINGULAR);
+    slopes.map_or_else(|_| DVector::zeros(values.len()), |slopes| z * slopes)
 }
 
 /// Singular values of latent numbers below this are none.

@@ -172,7 +172,7 @@ impl std::fmt::Display for Reason {
             Reason::UncertainSaving(share) => write!(
                 f,
                 "it saves in {:.0} % of the robots that are plausible, which is not enough: \
-                 joulepath robots show says what is not known of the robot",
+                 joulepath robots show says how well its figures are known, joulepath calibrate narrows them",
                 100.0 * share
             ),
             Reason::AsksMore(joint, share) => write!(

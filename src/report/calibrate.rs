@@ -10,6 +10,8 @@ use crate::energy::plausible::{Interval, Plausibility};
 /// Groups that the text names, and those of which less than this share of the deviation is left.
 const NAMED: usize = 5;
 const NARROWER: f64 = 0.9;
+/// Misfit over the noise from which on the log is probably of something else.
+const FAR_OFF: f64 = 10.0;
 
 /// As JSON; `path` is the robot's file.
 pub fn json(calibrated: &Calibrated, path: &str) -> Value {
@@ -18,6 +20,8 @@ pub fn json(calibrated: &Calibrated, path: &str) -> Value {
         json!({
             "energy_j": interval(&of.energy_j),
             "motion_energy_j": interval(&of.motion_energy_j),
+            "energy_median_j": of.energy_j.median,
+            "motion_energy_median_j": of.motion_energy_j.median,
         })
     };
     let Found { kilowatts, cycles, pace, explained, misfit, torques } = calibrated.found;
@@ -45,8 +49,9 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
     let accepted = calibrated.model.calibration.as_ref().map_or(0, |c| c.robots);
     let _ = writeln!(
         out,
-        "{cycles} cycles{}{}, {:.2} % {} than simulated; the fitted robot explains {:.1} % of how the \
+        "{cycles} cycle{}{}{}, {:.2} % {} than simulated; the fitted robot explains {:.1} % of how the \
          power changes",
+        if cycles == 1 { "" } else { "s" },
         if kilowatts { ", power in kW" } else { "" },
         if torques { ", with torques of the joints" } else { "" },
         100.0 * (pace - 1.0).abs(),
@@ -56,8 +61,13 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
     if misfit > 2.0 {
         let _ = writeln!(
             out,
-            "what it leaves is {:.1} times the noise of the log: intervals are as much wider",
-            misfit.sqrt()
+            "what it leaves is {:.1} times the noise of the log: intervals are as much wider{}",
+            misfit.sqrt(),
+            if misfit.sqrt() > FAR_OFF {
+                ". So much is rare: check waits, inputs and columns"
+            } else {
+                ""
+            }
         );
     }
     let _ = writeln!(out, "{accepted} of {} plausible robots fit the log", calibrated.robots);
@@ -81,7 +91,7 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
         .map(|(group, left)| format!("{group} {:.0} %", 100.0 * left))
         .collect();
     if !groups.is_empty() {
-        let _ = writeln!(out, "of their deviation are left: {}", groups.join(", "));
+        let _ = writeln!(out, "how uncertain figures still are, of before: {}", groups.join(", "));
     }
     let _ = writeln!(out, "{path} is the robot: use it with --robot {path}");
     out

@@ -192,6 +192,8 @@ pub fn retrofit(
     let side = |mut value: Value, of: Option<[Interval; 2]>| {
         value["energy_interval_j"] = json!(of.map(|of| interval(of[0])));
         value["motion_energy_interval_j"] = json!(of.map(|of| interval(of[1])));
+        value["energy_median_j"] = json!(of.map(|of| of[0].median));
+        value["motion_energy_median_j"] = json!(of.map(|of| of[1].median));
         value
     };
     json!({
@@ -201,8 +203,10 @@ pub fn retrofit(
         "optimized": side(figures(&retrofit.optimized), uncertainty.map(|u| u.optimized)),
         "saving_percent": retrofit.saving_percent(),
         "saving_interval_percent": uncertainty.map(|u| interval(u.saving_percent[0])),
+        "saving_median_percent": uncertainty.map(|u| u.saving_percent[0].median),
         "motion_saving_percent": retrofit.motion_saving_percent(),
         "motion_saving_interval_percent": uncertainty.map(|u| interval(u.saving_percent[1])),
+        "motion_saving_median_percent": uncertainty.map(|u| u.saving_percent[1].median),
         "estimated": uncertainty.map_or_else(Vec::new, |u| estimated(&u.contributions)),
         "potential_j": retrofit.potential_j,
         "segments": segments,

@@ -1,15 +1,16 @@
 //! What plausible robots say of a result, in sentences.
 
-use crate::energy::plausible::{Contribution, Interval, Plausibility};
+use crate::energy::plausible::{Contribution, Interval, LEAST, Plausibility};
 use crate::retrofit::Retrofit;
 
 /// Energies of a cycle, and what their intervals come from.
 pub(super) fn energies(plausible: &Plausibility) -> Vec<String> {
-    let Interval { low, high, .. } = plausible.energy_j;
-    let motion = plausible.motion_energy_j;
+    let range =
+        |of: &Interval| format!("{:.0} to {:.0} J (median {:.0} J)", of.low, of.high, of.median);
     let energies = format!(
-        "in 90 % of the plausible robots {low:.0} to {high:.0} J, of which motions take {:.0} to {:.0} J",
-        motion.low, motion.high,
+        "in 90 % of the plausible robots {}, of which motions take {}",
+        range(&plausible.energy_j),
+        range(&plausible.motion_energy_j),
     );
     std::iter::once(energies).chain(contributions(&plausible.contributions)).collect()
 }
@@ -21,10 +22,13 @@ pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
     let Some(uncertainty) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten) else {
         return Vec::new();
     };
-    let [all, motion] = uncertainty.saving_percent;
+    let range =
+        |of: &Interval| format!("{:.1} to {:.1} % (median {:.1} %)", of.low, of.high, of.median);
+    let [all, motion] = &uncertainty.saving_percent;
     let saving = format!(
-        "in 90 % of the plausible robots it saves {:.1} to {:.1} % of the motion energy, {:.1} to {:.1} % of all",
-        motion.low, motion.high, all.low, all.high,
+        "in 90 % of the plausible robots it saves {} of the motion energy, {} of all",
+        range(motion),
+        range(all),
     );
     std::iter::once(saving).chain(contributions(&uncertainty.contributions)).collect()
 }
@@ -32,7 +36,10 @@ pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
 /// What an interval comes from, and what would narrow it.
 fn contributions(parts: &[Contribution]) -> Option<String> {
     let first = parts.first()?;
+    let rest = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
+    let rest = (rest >= LEAST).then_some(("the others together", rest));
+    let named = parts.iter().map(|part| (part.group.as_str(), part.share));
     let groups: Vec<String> =
-        parts.iter().map(|it| format!("{} {:.0} %", it.group, 100.0 * it.share)).collect();
+        named.chain(rest).map(|(group, share)| format!("{group} {:.0} %", 100.0 * share)).collect();
     Some(format!("of the variance: {}; most would tell {}", groups.join(", "), first.narrowed_by))
 }

@@ -34,6 +34,9 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
             if let Some(range) = &standing.plausible {
                 let pair = |x: &Interval| [x.low, x.high];
                 value["holding_interval_w"] = json!(pair(&range.holding_w));
+                value["holding_median_w"] = json!(range.holding_w.median);
+                value["break_even_median_s"] =
+                    json!(range.break_even_s.as_ref().map(|range| range.median));
                 value["break_even_interval_s"] = json!(range.break_even_s.as_ref().map(pair));
             }
             if let Some((place, duration)) = &pose.dwell {

@@ -113,7 +113,12 @@ pub fn notes(model: &Model, places: Places<'_>, simulation: &Simulation) -> Vec<
         notes.push(format!("assumed: {text}"));
     }
     let estimated = model.count(Provenance::Estimated);
-    if estimated > 0 {
+    if let Some(calibration) = &model.calibration {
+        notes.push(format!(
+            "calibrated: {} was moved to a log of power; intervals are over {} robots that fit it",
+            model.name, calibration.robots
+        ));
+    } else if estimated > 0 {
         let mass = if is_mass_known(model) {
             ""
         } else {

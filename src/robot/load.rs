@@ -74,7 +74,8 @@ pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result
         }
         other => other,
     })?;
-    Ok(tree::overlay(resolve(base, folder, depth + 1)?, node))
+    let base = resolve(base, folder, depth + 1)?;
+    Ok(tree::overlay(tree::with_type(base), node))
 }
 
 /// Kinds of robot files.

@@ -31,6 +31,8 @@ pub struct Model {
     pub name: String,
     /// The file that it was loaded from; `None` for robots of the catalogue.
     pub file: Option<String>,
+    /// The robot whose type it is, where that is not its name: that which its file extends or states.
+    pub type_name: Option<String>,
     /// The whole robot \[kg\], where its file states it.
     pub mass: Option<f64>,
     /// The load that it is made for \[kg\], where its file states it.
@@ -135,6 +137,7 @@ impl Model {
         let name = robot.text("name")?;
         let name = robot.required("name", name)?;
         robot.text("extends")?;
+        let type_name = robot.text("type")?;
         let mass = robot.number("mass", ROBOT_MASS)?;
         let payload = robot.number("payload", PAYLOAD)?;
 
@@ -211,6 +214,7 @@ impl Model {
         Ok(Model {
             name,
             file: None,
+            type_name,
             mass,
             payload,
             dof,

@@ -106,6 +106,16 @@ pub(super) fn overlay(base: Node, over: Node) -> Node {
     }
 }
 
+/// A robot that others extend: its type is theirs.
+pub(super) fn with_type(mut base: Node) -> Node {
+    if let Value::Table(entries) = &mut base.value
+        && let Some(name) = entries.get("name").cloned()
+    {
+        entries.entry("type".to_owned()).or_insert(name);
+    }
+    base
+}
+
 struct Builder<'a> {
     file: Arc<str>,
     text: &'a str,

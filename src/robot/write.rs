@@ -16,6 +16,9 @@ use super::toml_text::{list, pose, quoted};
 pub fn to_toml(model: &Model) -> String {
     let mut out = Writer { origins: &model.origins, text: String::new() };
     let _ = writeln!(out.text, "name = {}", quoted(&model.name));
+    if let Some(name) = &model.type_name {
+        let _ = writeln!(out.text, "type = {}", quoted(name));
+    }
     for (key, value) in [("mass", model.mass), ("payload", model.payload)] {
         if let Some(value) = value {
             let _ = writeln!(out.text, "{key} = {}", number(value));

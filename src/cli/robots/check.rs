@@ -34,7 +34,7 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
     };
     let mut findings = Vec::with_capacity(names.len());
     for name in &names {
-        findings.push(checked(&effects::load(name)?));
+        findings.push(checked(&effects::load(name)?, &effects::load_estimated(name)?));
     }
     let passed = findings.iter().filter(|finding| finding.problems.is_empty()).count();
     let mut out = std::io::stdout().lock();
@@ -53,13 +53,14 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
     Ok(if passed == findings.len() { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-fn checked(model: &Model) -> Finding {
+/// What is found of a robot as its file has it, and with estimates.
+fn checked(model: &Model, estimated: &Model) -> Finding {
     let mut problems = implausible(model);
     let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
     if missed > 0 {
         problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));
     }
-    let lacks = Use::ALL.map(|of| (of, lacking(model, of))).to_vec();
+    let lacks = Use::ALL.map(|of| (of, lacking(estimated, of))).to_vec();
     Finding { name: model.name.clone(), joints: model.dof, problems, lacks }
 }
 

@@ -1,7 +1,7 @@
 //! A model with estimates in place of what it lacks.
 
 use super::bodies::{links, rated_inertia};
-use super::known::Known;
+use super::known::{Known, type_name};
 use super::rules::{self, Maker, Rough, Size};
 use crate::robot::drive::{Brakes, Drive, Sharing};
 use crate::robot::effect::{EffectParameters, Given};
@@ -146,7 +146,7 @@ impl Filling {
     fn friction(&mut self, size: Size) {
         let dof = self.model.dof;
         let speeds = self.model.limits.velocity.clone().unwrap_or_default();
-        let maker = Maker::of(&self.model.name);
+        let maker = Maker::of(type_name(&self.model));
         let source = match maker {
             Maker::Abb => {
                 "friction over the largest torque, as of eleven ABB configurations and two identifications"

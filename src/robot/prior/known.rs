@@ -9,6 +9,7 @@ use super::rules::{self, Size};
 use crate::robot::error::RobotError;
 use crate::robot::link::symmetric;
 use crate::robot::model::Model;
+use crate::robot::provenance::Provenance;
 
 /// The tables, with sources.
 const ROBOTS: &str = include_str!("robots.toml");
@@ -53,7 +54,8 @@ pub(super) struct Shape {
 impl Known {
     /// Of a robot.
     pub(super) fn of(model: &Model) -> Known {
-        let mut known = table(&model.name).map_or_else(Known::nothing, |text| Known::read(&text));
+        let text = table(type_name(model));
+        let mut known = text.map_or_else(Known::nothing, |text| Known::read(&text));
         if let Some(mass) = model.mass {
             let origin = model.origin_of("", "mass");
             let sd = origin.and_then(|origin| origin.sd.as_ref()).map_or(0.01, |sd| sd[0] / mass);
@@ -118,29 +120,50 @@ const ABSURD: f64 = 15.0;
 /// # Errors
 /// It is one.
 pub fn check_mass(model: &Model) -> Result<(), RobotError> {
-    let Some(mass) = model.mass.filter(|_| ARM.contains(&model.dof)) else { return Ok(()) };
-    let known = Known { mass: None, ..Known::of(model) };
-    let Size { mass: usual, reach, .. } = known.size(model);
-    if (mass / usual).ln().abs() <= ABSURD.ln() {
+    if !ARM.contains(&model.dof) {
         return Ok(());
     }
-    Err(RobotError::Value {
+    let known = Known { mass: None, ..Known::of(model) };
+    let Size { mass: usual, reach, .. } = known.size(model);
+    let refused = |key: &str, value: f64, what: &str, [low, high]: [f64; 2]| RobotError::Value {
         place: model.file.clone().unwrap_or_else(|| model.name.clone()),
-        key: "mass".into(),
-        value: mass.to_string(),
+        key: key.into(),
+        value: value.to_string(),
         must: format!(
-            "the mass of the whole robot in kg, {:.0} to {:.0} for an arm of {reach:.2} m reach; leave it \
-             out if it is not known",
-            usual / ABSURD,
-            usual * ABSURD
+            "{what} in kg, {low:.1} to {high:.0} for an arm of {reach:.2} m reach; leave it out if it is \
+             not known"
         ),
-    })
+    };
+    let usual = [usual / ABSURD, usual * ABSURD];
+    let [low, high] = usual;
+    if let Some(mass) = model.mass.filter(|mass| !(low..=high).contains(mass)) {
+        return Err(refused("mass", mass, "the mass of the whole robot", usual));
+    }
+    // What moves is a part of it.
+    let moving: f64 = model.links.iter().map(|link| link.mass).sum();
+    let usual = [LEAST_MOVING * low, high];
+    if !model.links.is_empty() && !(usual[0]..=usual[1]).contains(&moving) {
+        return Err(refused("[[link]] mass", moving, "the mass of all links together", usual));
+    }
+    Ok(())
+}
+
+/// Share of the whole mass that moves, at least.
+const LEAST_MOVING: f64 = 0.3;
+
+/// The type of a robot: its name, if ABB's robots have it, else what its file extends or states.
+#[must_use]
+pub fn type_name(model: &Model) -> &str {
+    let stated = model.type_name.as_ref().filter(|_| table(&model.name).is_none());
+    stated.unwrap_or(&model.name)
 }
 
 /// Whether the mass of the whole robot is known.
 #[must_use]
 pub fn is_mass_known(model: &Model) -> bool {
-    Known::of(model).mass.is_some()
+    let provenance = |i| model.provenance_of(&format!("link {i}"), "mass");
+    let is_stated = |i| provenance(i) != Some(Provenance::Estimated);
+    Known::of(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
 }
 
 /// From axis 1 to the wrist's centre of the stretched arm \[m\].

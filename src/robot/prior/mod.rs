@@ -18,5 +18,5 @@ mod spread;
 
 pub use fill::estimated;
 pub use hypercube::standard_normals;
-pub use known::{check_mass, is_mass_known};
-pub use spread::{Draws, Latent, Plausible, Spread, check_calibration};
+pub use known::{check_mass, is_mass_known, type_name};
+pub use spread::{Draws, Latent, Plausible, Spread, check_calibration, check_deviations};

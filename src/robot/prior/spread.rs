@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::hypercube::standard_normals;
-use super::known::Known;
+use super::known::{Known, type_name};
 use super::rules;
 use super::skeleton;
 use crate::robot::calibration::Calibration;
@@ -182,7 +182,7 @@ impl Spread {
             let inertia = LINK_INERTIA * looseness(model, &table, "inertia");
             add(&group, vec![(Target::Inertia(i), inertia)]);
         }
-        let maker = rules::Maker::of(&model.name);
+        let maker = rules::Maker::of(type_name(model));
         let size = rules::Size { mass: 1.0, reach: 1.0, payload: 1.0 };
         // What somebody measured of a joint has nothing in common with the others.
         let coulomb = |j: usize| stated(model, "friction", "coulomb", j, model.friction.coulomb[j]);
@@ -219,11 +219,18 @@ impl Spread {
             add(&format!("rotor of joint {}", j + 1), vec![(Target::Rotor(j), own * rotor)]);
             add(&format!("copper loss of joint {}", j + 1), vec![(Target::Loss(j), own * loss)]);
         }
-        let standby = size.standby().sd * looseness(model, "drive", "base_w");
+        let given = |table: &str, key: &str, value: f64, rough: f64| {
+            let own = stated(model, table, key, 0, value);
+            own.unwrap_or_else(|| rough * looseness(model, table, key))
+        };
+        let standby = given("drive", "base_w", model.drive.base_w, size.standby().sd);
         add("base power", vec![(Target::Standby, standby)]);
-        let coils = size.coils().sd * looseness(model, "brakes", "power_released_w");
+        let brakes = model.brakes.as_ref();
+        let coils_w = brakes.map_or(0.0, |brakes| brakes.power_released_w);
+        let coils = given("brakes", "power_released_w", coils_w, size.coils().sd);
         add("brake coils", vec![(Target::Coils, coils)]);
-        let release = size.release().sd * looseness(model, "brakes", "energy_per_release_j");
+        let release_j = brakes.map_or(0.0, |brakes| brakes.energy_per_release_j);
+        let release = given("brakes", "energy_per_release_j", release_j, size.release().sd);
         add("release of the brakes", vec![(Target::Release, release)]);
         if model.effects.iter().any(|effect| effect.id == SPRING_EFFECT) {
             let sd = SPRING * looseness(model, "effects.gravity_spring", "stiffness");
@@ -337,6 +344,32 @@ fn stated(model: &Model, table: &str, key: &str, index: usize, scale: f64) -> Op
     let sd = origin.sd.as_ref().filter(|_| origin.provenance != Some(Provenance::Estimated))?;
     let sd = sd.get(index).or(sd.first())?;
     (scale > 0.0).then(|| sd / scale)
+}
+
+/// Standard deviation of a logarithm beyond which nothing is known.
+const UNKNOWN: f64 = 3.0;
+
+/// A deviation of many times its figure says nothing of it, and sums over robots have no end.
+///
+/// # Errors
+/// There is one.
+pub fn check_deviations(model: &Model) -> Result<(), RobotError> {
+    let is_scaled = |target: &Target| !matches!(target, Target::Centre(..));
+    let spread = Spread::of(model);
+    let mut terms = spread.latents.iter().flat_map(|latent| {
+        latent.terms.iter().map(|(target, sd)| (latent.group.as_str(), target, *sd))
+    });
+    match terms.find(|(_, target, sd)| is_scaled(target) && *sd > UNKNOWN) {
+        Some((group, _, sd)) => Err(RobotError::Value {
+            place: model.file.clone().unwrap_or_else(|| model.name.clone()),
+            key: format!("standard deviation of the {group}"),
+            value: format!("{sd:.3} times the figure"),
+            must: format!(
+                "at most {UNKNOWN} times the figure; leave figure and deviation out if nothing is known"
+            ),
+        }),
+        None => Ok(()),
+    }
 }
 
 /// How much of the deviation of an estimate a number has.
