@@ -359,7 +359,10 @@ fn logs_without_use_are_refused() {
     let refusal = |log: &Log| calibrate(&model, &program, log, None).unwrap_err();
     assert!(matches!(refusal(&short), Refusal::Short { .. }), "{}", refusal(&short));
     assert!(matches!(refusal(&seldom), Refusal::Sparse { .. }), "{}", refusal(&seldom));
-    assert!(matches!(refusal(&negative), Refusal::Robot { .. }), "{}", refusal(&negative));
+    assert!(matches!(refusal(&negative), Refusal::Negative { .. }), "{}", refusal(&negative));
+    let mut constant = own.clone();
+    constant.values[1].fill(400.0);
+    assert!(matches!(refusal(&constant), Refusal::Constant { .. }), "{}", refusal(&constant));
     assert!(matches!(refusal(&mixed), Refusal::Unlike { .. }), "{}", refusal(&mixed));
 }
 

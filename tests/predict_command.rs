@@ -303,6 +303,19 @@ fn unusable_logs_are_refused_with_the_way_out() {
     }
     let missing = predict(SEVEN, &folder.path().join("none.csv"), &[]);
     assert_eq!(missing.status.code(), Some(2));
-    let no_dynamics = predict("IRB6640-180/2.55", &written(&folder, "l.csv", &good), &[]);
-    assert!(String::from_utf8_lossy(&no_dynamics.stderr).contains("[[link]]"));
+}
+
+#[test]
+fn an_estimated_robot_predicts_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = (0..200).map(|i| {
+        let t = 0.01 * f64::from(i);
+        let q = 0.4 * (2.0 * t).sin();
+        format!("{t},{q},{q},{q},{q},{q},{q}\n")
+    });
+    let text = "t,q1,q2,q3,q4,q5,q6\n".to_owned() + &rows.collect::<String>();
+    let output = predict("IRB6640-180/2.55", &written(&folder, "l.csv", &text), &[]);
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{notes}");
+    assert!(notes.contains("estimated: ") && notes.contains("robots show"), "{notes}");
 }

@@ -458,11 +458,10 @@ fn every_known_robot_passes_the_check() {
     assert!(all.iter().all(|robot| robot["sound"] == true));
     let of = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
     assert_eq!(of("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
-    let lacks = &of("IRB52-7/1.2")["lacks"]["simulate"];
-    assert!(
-        lacks.as_array().unwrap().contains(&"joint speeds (limits.velocity)".into()),
-        "{lacks}"
-    );
+    // What a file does not have is estimated; RAPID has six axes.
+    assert_eq!(of("IRB52-7/1.2")["lacks"]["optimize"], serde_json::json!([]));
+    let lacks = &of("IRB14000 left")["lacks"]["simulate"];
+    assert!(!lacks.as_array().unwrap().is_empty(), "{lacks}");
 }
 
 #[test]

@@ -65,7 +65,13 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
     let expected: Vec<f64> =
         (0..COARSE as usize).map(|i| cycle.power(cycle.duration * i as f64 / COARSE)).collect();
-    let ratio = (mean(power).abs().max(f64::MIN_POSITIVE) / mean(&expected).abs()).ln();
+    if mean(power) <= 0.0 {
+        return Err(Refusal::Negative { mean_w: mean(power) });
+    }
+    if power.iter().all(|w| *w == power[0]) {
+        return Err(Refusal::Constant { power_w: power[0] });
+    }
+    let ratio = (mean(power) / mean(&expected).abs()).ln();
     let kilowatts = (ratio + 1000.0_f64.ln()).abs() < ratio.abs();
     let curve = Curve { cycle, t: log.time(), power };
     let passes = if let Some(commands) = log.column(Channel::Command) {

@@ -66,6 +66,20 @@ pub enum Refusal {
         /// Movements of the program.
         simulated: usize,
     },
+    /// Nothing is drawn.
+    #[error("the power is {mean_w:.0} W in the mean: is its sign turned, or is it another column?")]
+    Negative {
+        /// W.
+        mean_w: f64,
+    },
+    /// Nothing changes.
+    #[error(
+        "the power is {power_w:.0} W all the time: it has no cycle; log it while the program runs"
+    )]
+    Constant {
+        /// W.
+        power_w: f64,
+    },
     /// Cycles that differ.
     #[error(
         "the power of the cycle at {begin_s:.1} s is {factor:.0} times that of another one: does its unit change within the log?"
