@@ -183,7 +183,7 @@ fn table_3(model: &Model) -> Result<(), Box<dyn std::error::Error>> {
         let figures: Vec<f64> = figures.split(',').map(str::parse).collect::<Result<_, _>>()?;
         let (q, paper) = figures.split_at(6);
         let q: [f64; 6] = std::array::from_fn(|joint| q[joint].to_radians());
-        let ours = standing(model, &[], &Load::none(), &q, 0.0);
+        let ours = standing(model, None, &Load::none(), &q, 0.0);
         let shown = q.map(|angle| format!("{:.0}", angle.to_degrees())).join(" ");
         let sum = |watts: &[f64], digits: usize| {
             let each: Vec<String> = watts.iter().map(|w| format!("{w:.digits$}")).collect();

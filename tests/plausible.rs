@@ -13,7 +13,7 @@ use joulepath::energy::{Account, EnergyParts, account};
 use joulepath::motion::{Options, Simulation, simulate};
 use joulepath::retrofit::read_program;
 use joulepath::robot::prior::{Spread, estimated};
-use joulepath::robot::{Coupling, Model, find, from_toml, to_toml};
+use joulepath::robot::{Brakes, Coupling, Model, Motors, find, from_toml, to_toml};
 
 /// Robots that are compared.
 const ROBOTS: usize = 12;
@@ -181,6 +181,22 @@ fn a_robot_of_another_name_has_the_spread_of_its_type() {
     let energies = |model: &Model| plausibility(model, &simulation, &own).unwrap();
     assert_eq!(energies(&known), energies(&renamed));
     assert_eq!(energies(&known), energies(&copied));
+}
+
+#[test]
+fn what_a_table_leaves_out_is_estimated() {
+    let whole = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
+    let with = |lines: &str| {
+        let text = format!("extends = \"IRB2600-20/1.65\"\n{lines}");
+        with_estimates(from_toml("cell.toml", &text).unwrap()).unwrap()
+    };
+    let estimated = whole.brakes.as_ref().unwrap();
+    let brakes = with("[brakes]\npower_released_w = 20\n").brakes.unwrap();
+    assert_eq!(brakes, Brakes { power_released_w: 20.0, ..estimated.clone() });
+    let own = vec![2e-4, 2e-4, 5e-4, 0.01, 0.01, 0.03];
+    let motors = with(&format!("[motors]\nloss_constant = {own:?}\n")).motors.unwrap();
+    let estimated = whole.motors.unwrap();
+    assert_eq!(motors, Motors { loss_constant: own, ..estimated });
 }
 
 #[test]

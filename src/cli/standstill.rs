@@ -11,7 +11,7 @@ use super::load;
 use crate::kinematics::limits_ok;
 use crate::motion;
 use crate::optimize::idle::dwells;
-use crate::optimize::standstill::{plausible_models, standing};
+use crate::optimize::standstill::{Plausible, standing};
 use crate::report::json::assumed;
 use crate::report::place::Places;
 use crate::report::standstill::{self, Pose};
@@ -85,14 +85,14 @@ fn of_poses(
     let model = common::robot(&args.program.cell)?;
     ready(&model, Use::Standstill)?;
     let load = load::of_option(args.load.as_deref())?;
-    let robots = robots(args, &model);
+    let plausible = plausible(args, &model);
     let mut poses = Vec::new();
     for text in &args.pose {
         let q = common::six_degrees("--pose", text)?;
         if let Err(violation) = limits_ok(&model, &q) {
             bail!("--pose {text}: {violation}");
         }
-        let standing = standing(&model, &robots, &load, &q, distance);
+        let standing = standing(&model, plausible.as_ref(), &load, &q, distance);
         poses.push(Pose { standing, dwell: None });
     }
     let assumed = model.assumed();
@@ -112,11 +112,11 @@ fn of_program(
     for text in text::notes(&job.model, places, &simulation) {
         common::note(args.program.cell.quiet, &text);
     }
-    let robots = robots(args, &job.model);
+    let plausible = plausible(args, &job.model);
     let poses = dwells(&job.model, &simulation)
         .iter()
         .map(|dwell| Pose {
-            standing: standing(&job.model, &robots, &dwell.load, &dwell.q, distance),
+            standing: standing(&job.model, plausible.as_ref(), &dwell.load, &dwell.q, distance),
             dwell: Some((places.of(dwell.span), dwell.duration)),
         })
         .collect();
@@ -124,6 +124,6 @@ fn of_program(
     Ok((job.model, poses, assumed))
 }
 
-fn robots(args: &StandstillArgs, model: &Model) -> Vec<Model> {
-    if args.program.point_estimate { Vec::new() } else { plausible_models(model) }
+fn plausible(args: &StandstillArgs, model: &Model) -> Option<Plausible> {
+    if args.program.point_estimate { None } else { Plausible::of(model) }
 }

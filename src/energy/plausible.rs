@@ -13,7 +13,7 @@ use super::peaks::peaks;
 use crate::motion::Simulation;
 use crate::motion::timeline::Event;
 use crate::robot::Model;
-use crate::robot::prior::{Draws, Spread};
+use crate::robot::prior::{Draws, Plausible, Spread};
 
 /// Robots that are drawn.
 pub const DRAWS: usize = 256;
@@ -85,6 +85,11 @@ impl Robots {
         let draws = spread.draws(model, DRAWS);
         let changes = Changes::of(model, &draws.robots);
         Some(Robots { spread, draws, changes })
+    }
+
+    /// The robots.
+    pub fn drawn_robots(&self) -> &[Plausible] {
+        &self.draws.robots
     }
 
     /// What differs in the robots.
@@ -174,7 +179,9 @@ pub struct Plausibility {
 pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     let of = |events: &[Event]| {
         let mut sums = Moments::none(model);
-        events.iter().for_each(|event| sums.event(model, event));
+        for event in events {
+            sums.event(model, event);
+        }
         sums
     };
     let length = simulation.events.len().div_ceil(PARTS).max(1);

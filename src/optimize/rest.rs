@@ -70,7 +70,7 @@ const LEAST_WAY: f64 = 0.02;
 /// good.
 pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<Rest> {
     let Standstill { model, load, q, duration, .. } = standstill;
-    let standing = standing(model, &[], load, q, distance);
+    let standing = standing(model, None, load, q, distance);
     let worth = (1.0 - WORTHWHILE) * standing.holding_w() * duration;
     let farthest = (0..DOF).map(|j| (standing.best[j] - q[j]).abs()).fold(0.0, f64::max);
     if farthest < LEAST_WAY || standing.best_w * duration >= worth {

@@ -8,12 +8,11 @@
 use crate::dynamics::Load;
 use crate::effects::drawn;
 use crate::energy::brakes::break_even_s;
-use crate::energy::plausible::{DRAWS, Interval};
+use crate::energy::plausible::{Contribution, Interval, Robots};
 use crate::energy::power::holding_w;
 use crate::kinematics::{limits_ok, radical_inverse};
 use crate::path::joint_path::{DOF, Joints};
 use crate::robot::Model;
-use crate::robot::prior::Spread;
 
 /// Positions of each joint at which the search starts, as shares of the distance;
 /// staying comes first, so that it wins among equals.
@@ -54,16 +53,35 @@ pub struct Range {
     pub holding_w: Interval,
     /// Break-even time \[s\]; `None` where in some robot nothing is spared.
     pub break_even_s: Option<Interval>,
+    /// What the variance of that time comes from, or else that of the holding power.
+    pub contributions: Vec<Contribution>,
 }
 
-/// Robots as plausible as a model, as models.
-pub fn plausible_models(model: &Model) -> Vec<Model> {
-    let spread = Spread::of(model);
-    if spread.latents.is_empty() || !model.has_dynamics() {
-        return Vec::new();
+/// Robots as plausible as a model, with the model of each.
+pub struct Plausible {
+    robots: Robots,
+    models: Vec<Model>,
+}
+
+impl Plausible {
+    /// Of a model; `None` where it is known, or its effects lead to what no robot has.
+    pub fn of(model: &Model) -> Option<Plausible> {
+        let robots = Robots::of(model)?;
+        let models: Result<Vec<Model>, _> =
+            robots.drawn_robots().iter().map(|robot| drawn(model, robot)).collect();
+        Some(Plausible { robots, models: models.ok()? })
     }
-    let robots = spread.draws(model, DRAWS).robots;
-    robots.iter().filter_map(|robot| drawn(model, robot).ok()).collect()
+
+    fn range(&self, load: &Load, q: &Joints) -> Range {
+        let holding: Vec<f64> = self.models.iter().map(|robot| total(robot, load, q)).collect();
+        let times = self.models.iter().zip(&holding).map(|(robot, w)| break_even_s(robot, *w));
+        let times: Option<Vec<f64>> = times.collect();
+        Range {
+            holding_w: Interval::of(&holding),
+            contributions: self.robots.contributions(times.as_ref().unwrap_or(&holding)),
+            break_even_s: times.map(|times| Interval::of(&times)),
+        }
+    }
 }
 
 impl Standing {
@@ -74,10 +92,10 @@ impl Standing {
 }
 
 /// A loaded robot at rest at `q`, and the best pose inside the position limits that
-/// no joint is more than `distance` \[rad\] away from; over `robots` as plausible as the model.
+/// no joint is more than `distance` \[rad\] away from; over plausible robots where they are given.
 pub fn standing(
     model: &Model,
-    robots: &[Model],
+    plausible: Option<&Plausible>,
     load: &Load,
     q: &Joints,
     distance: f64,
@@ -90,17 +108,7 @@ pub fn standing(
         break_even_s: break_even_s(model, per_joint_w.iter().sum()),
         best,
         best_w: total(model, load, &best),
-        plausible: (!robots.is_empty()).then(|| range(robots, load, q)),
-    }
-}
-
-fn range(robots: &[Model], load: &Load, q: &Joints) -> Range {
-    let holding: Vec<f64> = robots.iter().map(|robot| total(robot, load, q)).collect();
-    let times = robots.iter().zip(&holding).map(|(robot, w)| break_even_s(robot, *w));
-    let times: Option<Vec<f64>> = times.collect();
-    Range {
-        holding_w: Interval::of(&holding),
-        break_even_s: times.map(|times| Interval::of(&times)),
+        plausible: plausible.map(|plausible| plausible.range(load, q)),
     }
 }
 
@@ -249,7 +257,7 @@ mod tests {
         for n in 1..=12 {
             let q = spread(n, &range(0), &range(1));
             let distance = 60.0_f64.to_radians();
-            let best = standing(&model, &[], &load, &q, distance).best_w;
+            let best = standing(&model, None, &load, &q, distance).best_w;
             let search = Search { model: &model, load: &load, from: &q, distance };
             let [low, high] = [-distance, distance].map(|by| q.map(|angle| angle + by));
             for other in SPREAD + 1..=SPREAD + 200 {

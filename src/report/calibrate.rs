@@ -74,7 +74,7 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
     let change = |what: &str, before: &Interval, after: &Interval| {
         let width = |i: &Interval| i.high - i.low;
         format!(
-            "{what}: {:.0} to {:.0} J before, {:.0} to {:.0} J now: {:.0} % of the width",
+            "{what}: {:.0} to {:.0} J before, {:.0} to {:.0} J now: {:.1} % of the width",
             before.low,
             before.high,
             after.low,
@@ -93,6 +93,7 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
     if !groups.is_empty() {
         let _ = writeln!(out, "how uncertain figures still are, of before: {}", groups.join(", "));
     }
+    let _ = writeln!(out, "what the meter itself is wrong by is in no interval");
     let _ = writeln!(out, "{path} is the robot: use it with --robot {path}");
     out
 }

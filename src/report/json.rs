@@ -116,7 +116,7 @@ fn interval(interval: Interval) -> [f64; 2] {
     [interval.low, interval.high]
 }
 
-fn estimated(parts: &[Contribution]) -> Vec<Value> {
+pub(super) fn estimated(parts: &[Contribution]) -> Vec<Value> {
     let value = |part: &Contribution| {
         json!({
             "group": part.group,

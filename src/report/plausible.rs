@@ -34,7 +34,7 @@ pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
 }
 
 /// What an interval comes from, and what would narrow it.
-fn contributions(parts: &[Contribution]) -> Option<String> {
+pub(super) fn contributions(parts: &[Contribution]) -> Option<String> {
     let first = parts.first()?;
     let rest = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
     let rest = (rest >= LEAST).then_some(("the others together", rest));

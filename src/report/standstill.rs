@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
+use super::json::estimated;
 use super::place::Place;
+use super::plausible::contributions;
 use super::table::{Align, table};
 use crate::energy::plausible::Interval;
 use crate::optimize::standstill::Standing;
@@ -37,6 +39,7 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
                 value["holding_median_w"] = json!(range.holding_w.median);
                 value["break_even_median_s"] =
                     json!(range.break_even_s.as_ref().map(|range| range.median));
+                value["estimated"] = json!(estimated(&range.contributions));
                 value["break_even_interval_s"] = json!(range.break_even_s.as_ref().map(pair));
             }
             if let Some((place, duration)) = &pose.dwell {
@@ -92,7 +95,9 @@ pub fn text(poses: &[Pose]) -> String {
             ]
         })
         .collect();
-    table(&header, &rows)
+    let mut ranges = poses.iter().filter_map(|pose| pose.standing.plausible.as_ref());
+    let said = ranges.find_map(|range| contributions(&range.contributions));
+    table(&header, &rows) + &said.map_or_else(String::new, |said| format!("at the first, {said}\n"))
 }
 
 /// An interval behind its number.

@@ -351,10 +351,10 @@ pub fn retrofit(
                 }
                 _ => weak,
             };
-            if let (true, Some(frugal)) = (weak.is_empty(), &mut frugal) {
-                if !frugal.hold(&attempt.simulation, &mut ways, &planning) {
-                    continue;
-                }
+            if let (true, Some(frugal)) = (weak.is_empty(), &mut frugal)
+                && !frugal.hold(&attempt.simulation, &mut ways, &planning)
+            {
+                continue;
             }
             let kept = (sites.as_slice(), ways.as_slice());
             let weak = if weak.is_empty() {

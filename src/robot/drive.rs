@@ -68,10 +68,11 @@ impl Brakes {
         let release = fields.number("release_s", BRAKE_TIME)?;
         let engage = fields.number("engage_s", BRAKE_TIME)?;
         let power = fields.number("power_released_w", Accepts::NonNegative)?;
+        // What is not there has no origin, and is estimated (`prior`).
         let brakes = Brakes {
-            energy_per_release_j: fields.required("energy_per_release_j", energy)?,
-            release_s: fields.required("release_s", release)?,
-            engage_s: fields.required("engage_s", engage)?,
+            energy_per_release_j: energy.unwrap_or(0.0),
+            release_s: release.unwrap_or(0.0),
+            engage_s: engage.unwrap_or(0.0),
             power_released_w: power.unwrap_or(0.0),
         };
         origins.extend(fields.finish()?);

@@ -66,8 +66,7 @@ fn text(model: &Model) -> String {
     }
     let figures = figures(model);
     if !figures.is_empty() {
-        let _ =
-            writeln!(text, "\n{:<29} {:<11} {:>9}  {}", "figure", "known", "value", "90 % within");
+        let _ = writeln!(text, "\n{:<29} {:<11} {:>9}  90 % within", "figure", "known", "value");
     }
     for Figure { what, provenance, value, range: Interval { low, high, .. } } in &figures {
         let known = provenance.map_or_else(String::new, |it| it.to_string());
@@ -109,6 +108,11 @@ struct Figure {
     range: Interval,
 }
 
+/// What, table and key, value of a joint.
+type OfJoint = (&'static str, [&'static str; 2], fn(&Plausible, usize) -> f64);
+/// The same of the whole robot.
+type OfRobot = (&'static str, [&'static str; 2], fn(&Plausible) -> f64);
+
 /// All that plausible robots differ in; of a robot without dynamics nothing.
 fn figures(model: &Model) -> Vec<Figure> {
     if !model.has_dynamics() {
@@ -132,7 +136,6 @@ fn figures(model: &Model) -> Vec<Figure> {
         let link = format!("link {}", j + 1);
         all.push(figure(format!("{link}: mass, kg"), &link, "mass", &|robot| robot.links[j].mass));
     }
-    type OfJoint = (&'static str, [&'static str; 2], fn(&Plausible, usize) -> f64);
     let of_joints: [OfJoint; 4] = [
         ("Coulomb friction, Nm", ["friction", "coulomb"], |robot, j| robot.coulomb[j]),
         ("viscous friction, Nm s/rad", ["friction", "viscous"], |robot, j| robot.viscous[j]),
@@ -144,8 +147,7 @@ fn figures(model: &Model) -> Vec<Figure> {
             all.push(figure(format!("{}: {what}", j + 1), table, key, &|robot| of(robot, j)));
         }
     }
-    type Whole = (&'static str, [&'static str; 2], fn(&Plausible) -> f64);
-    let of_robot: [Whole; 3] = [
+    let of_robot: [OfRobot; 3] = [
         ("base power, W", ["drive", "base_w"], |robot| robot.base_w),
         ("coils of open brakes, W", ["brakes", "power_released_w"], |robot| robot.coils_w),
         ("release of the brakes, J", ["brakes", "energy_per_release_j"], |robot| robot.release_j),

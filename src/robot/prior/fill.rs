@@ -192,13 +192,14 @@ impl Filling {
             })
         };
         let mut new = motors.unwrap_or_else(|| Motors {
-            ratio: ratio.clone(),
+            ratio: Vec::new(),
             torque_constant: None,
             rotor_inertia: vec![0.0; dof],
             loss_constant: vec![0.0; dof],
             peak_current: None,
             rated_current: None,
         });
+        new.ratio = ratio;
         new.rotor_inertia = rotor.unwrap_or(new.rotor_inertia);
         new.loss_constant = loss.unwrap_or(new.loss_constant);
         self.model.motors = Some(new);
@@ -217,19 +218,32 @@ impl Filling {
             self.model.drive = Drive { sharing: Sharing::Bus, ..self.model.drive.clone() };
             self.note("drive", "sharing", "IRC5 and OmniCore: one bus for all axes", None);
         }
-        if self.model.brakes.is_none() {
-            let source = "the power of open brakes of two robots of ABB, a release of an IRB1600";
-            let coils = self.one(("brakes", "power_released_w"), source, size.coils());
-            let release = self.one(("brakes", "energy_per_release_j"), source, size.release());
-            self.note("brakes", "release_s", "comparable holding brakes", None);
-            self.note("brakes", "engage_s", "comparable holding brakes", None);
-            self.model.brakes = Some(Brakes {
-                energy_per_release_j: release.unwrap_or_default(),
-                release_s: RELEASE_S,
-                engage_s: ENGAGE_S,
-                power_released_w: coils.unwrap_or_default(),
-            });
-        }
+        self.brakes(size);
+    }
+
+    fn brakes(&mut self, size: Size) {
+        let source = "the power of open brakes of two robots of ABB, a release of an IRB1600";
+        let coils = self.one(("brakes", "power_released_w"), source, size.coils());
+        let release = self.one(("brakes", "energy_per_release_j"), source, size.release());
+        let mut time = |key: &str, value: f64| {
+            let is_missing = !self.has("brakes", key);
+            if is_missing {
+                self.note("brakes", key, "comparable holding brakes", None);
+            }
+            is_missing.then_some(value)
+        };
+        let [opens, closes] =
+            [("release_s", RELEASE_S), ("engage_s", ENGAGE_S)].map(|(key, value)| time(key, value));
+        let stated = self.model.brakes.take();
+        let or = |estimate: Option<f64>, key: fn(&Brakes) -> f64| {
+            estimate.or(stated.as_ref().map(key)).unwrap_or_default()
+        };
+        self.model.brakes = Some(Brakes {
+            energy_per_release_j: or(release, |brakes| brakes.energy_per_release_j),
+            release_s: or(opens, |brakes| brakes.release_s),
+            engage_s: or(closes, |brakes| brakes.engage_s),
+            power_released_w: or(coils, |brakes| brakes.power_released_w),
+        });
     }
 
     fn limits(&mut self, size: Size) {
