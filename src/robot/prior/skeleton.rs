@@ -128,11 +128,15 @@ fn ways(points: &[Point]) -> Vec<f64> {
     left.iter().map(|way| way / whole).collect()
 }
 
+/// Way that is left at the middle of a link over the whole line, at least: a flange has a length, also
+/// where a file has it in the last joint.
+const LEAST_WAY: f64 = 0.01;
+
 /// Way that is left at the middle of each link over the whole line: what lies far out may be
 /// lighter or heavier as a whole.
 pub(super) fn middles(geometry: &Geometry) -> Vec<f64> {
     let left = ways(&Line::of(geometry).points);
-    left.windows(2).skip(1).map(|pair| 0.5 * (pair[0] + pair[1])).collect()
+    left.windows(2).skip(1).map(|pair| (0.5 * (pair[0] + pair[1])).max(LEAST_WAY)).collect()
 }
 
 /// The links of an arm by their share of the mass that moves, and the mass of its foot \[kg\].
