@@ -130,7 +130,7 @@ fn ways(points: &[Point]) -> Vec<f64> {
 
 /// Way that is left at the middle of a link over the whole line, at least: a flange has a length, also
 /// where a file has it in the last joint.
-const LEAST_WAY: f64 = 0.01;
+const LEAST_WAY: f64 = 0.003;
 
 /// Way that is left at the middle of each link over the whole line: what lies far out may be
 /// lighter or heavier as a whole.
