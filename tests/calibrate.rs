@@ -316,6 +316,48 @@ fn kilowatts_and_numbers_of_movements_and_cycles_are_understood() {
     }
 }
 
+/// Where a log begins decides which movement its first pass begins with.
+#[test]
+fn logs_with_numbers_of_movements_may_begin_anywhere() {
+    // Of a large robot movements take many times the power of waits.
+    let model = robot("IRB7600-400/2.55");
+    let program = simulated(&model, &source(OTHER));
+    for seed in 1..=BEGINS {
+        let recording = Recording { seed, marks: Marks::Commands, ..METER };
+        let log = log(&model, &program, &recording);
+        let refusal = calibrate(&model, &program, &log, None).err();
+        assert!(refusal.is_none(), "{seed}: {}", refusal.unwrap());
+    }
+}
+
+/// Places in the cycle at which logs begin.
+const BEGINS: u64 = 8;
+
+#[test]
+fn nothing_that_is_read_is_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("m.mod");
+    std::fs::write(&program, OTHER).unwrap();
+    let log = folder.path().join("power.csv");
+    std::fs::write(&log, "t,power\n0,400\n").unwrap();
+    for target in [&program, &log] {
+        let before = std::fs::read(target).unwrap();
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_joulepath"))
+            .arg("calibrate")
+            .arg(&program)
+            .args(["--robot", "IRB2600-20/1.65", "--log"])
+            .arg(&log)
+            .arg("--out")
+            .arg(target)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("is read by this command"), "{said}");
+        assert_eq!(std::fs::read(target).unwrap(), before);
+    }
+}
+
 #[test]
 fn torques_tell_more_than_power_alone() {
     let model = robot("IRB2600-20/1.65");
@@ -374,6 +416,9 @@ fn a_calibrated_robot_is_read_back_as_it_was() {
     let read = with_estimates(from_toml("cell.toml", &to_toml(&found.model)).unwrap()).unwrap();
     let energy = |model: &Model| plausibility(model, &program, &account(model, &program)).unwrap();
     assert_eq!(energy(&found.model), energy(&read));
+    // Groups that only go together do not count twice.
+    let shares = energy(&read).contributions.iter().map(|part| part.share).sum::<f64>();
+    assert!((0.0..=1.0).contains(&shares), "{shares}");
     assert!(matches!(
         calibrate(&read, &program, &log(&model, &program, &METER), None),
         Err(Refusal::Again { .. })

@@ -465,6 +465,21 @@ fn every_known_robot_passes_the_check() {
 }
 
 #[test]
+fn each_figure_is_shown_with_how_well_it_is_known() {
+    let output = robots(&["show", "IRB2600-20/1.65", "--format", "json"]);
+    let found: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let figures = found["figures"].as_array().unwrap();
+    for figure in figures {
+        let bound = |i: usize| figure["interval"][i].as_f64().unwrap();
+        let value = figure["value"].as_f64().unwrap();
+        assert!(bound(0) < value && value < bound(1), "{figure}");
+    }
+    assert!(figures.iter().any(|figure| figure["figure"] == "link 2: mass, kg"));
+    let text = stdout(&robots(&["show", "IRB2600-20/1.65"]));
+    assert!(text.contains("link 2: mass, kg") && text.contains("base power, W"), "{text}");
+}
+
+#[test]
 fn imported_robots_can_be_used_and_extended() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();

@@ -136,3 +136,16 @@ fn an_unknown_arm_has_estimates() {
     let result = json(&["--robot", bare.to_str().unwrap(), "--pose", "0,0,0,0,0,0"]);
     assert!(result["poses"][0]["holding_w"].as_f64().unwrap() > 0.0, "{result}");
 }
+
+#[test]
+fn what_an_interval_comes_from_is_named() {
+    let value = json(&["--robot", "IRB2600-20/1.65", "--pose", "0,30,0,0,30,0"]);
+    let pose = &value["poses"][0];
+    let parts = pose["estimated"].as_array().unwrap();
+    let share = |part: &Value| part["share_of_variance"].as_f64().unwrap();
+    let shares: f64 = parts.iter().map(share).sum();
+    assert!(!parts.is_empty() && shares <= 1.0, "{parts:#?}");
+    let [low, high] = [0, 1].map(|i| pose["break_even_interval_s"][i].as_f64().unwrap());
+    let median = pose["break_even_median_s"].as_f64().unwrap();
+    assert!(low < median && median < high, "{low} {median} {high}");
+}

@@ -11,7 +11,7 @@ const LEAST: f64 = 0.6;
 /// How much longer or shorter a cycle may be than simulated, as a share, and steps of the search.
 const PACE: f64 = 0.05;
 const PACES: usize = 10;
-/// Mean power of one cycle over that of another from which on they are not of one log.
+/// Power of one cycle over that of another from which on they are not of one unit.
 const UNLIKE: f64 = 3.0;
 /// Cycles of a log that are searched for, at most.
 const CYCLES: f64 = 200.0;
@@ -90,26 +90,37 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
         let fitting = passes.into_iter().filter(|(_, fit)| *fit >= LEAST);
         fitting.map(|(segment, _)| Pass { segments: vec![segment] }).collect()
     };
-    check_alike(&curve, &passes)?;
     Ok(Aligned { passes, kilowatts })
 }
 
-/// Cycles of one program and one unit take about the same power.
-fn check_alike(curve: &Curve<'_>, passes: &[Pass]) -> Result<(), Refusal> {
-    let mean = |segment: &Segment| {
-        let place = |t: f64| curve.t.partition_point(|x| *x < t);
-        let rows = &curve.power[place(segment.log.start)..place(segment.log.end)];
-        (!rows.is_empty()).then(|| rows.iter().sum::<f64>() / rows.len() as f64)
-    };
-    let begins = |pass: &Pass| pass.segments.first().map_or(0.0, |segment| segment.log.start);
-    // Segments of a pass have different powers: those of one place in the cycle are compared.
-    let firsts =
-        passes.iter().filter_map(|pass| Some((begins(pass), mean(pass.segments.first()?)?)));
-    let mut means: Vec<(f64, f64)> = firsts.filter(|(_, mean)| *mean > 0.0).collect();
-    means.sort_by(|a, b| a.1.total_cmp(&b.1));
-    match (means.first(), means.last()) {
-        (Some((_, least)), Some((begin, most))) if *most > UNLIKE * least => {
-            Err(Refusal::Unlike { begin_s: *begin, factor: most / least })
+/// Cycles of one program and one unit take about the same power, over that of the simulated cycle at the
+/// same places: a log may begin and end anywhere.
+///
+/// # Errors
+/// They do not.
+pub(super) fn check_alike(cycle: &Cycle<'_>, log: &Log, passes: &[Pass]) -> Result<(), Refusal> {
+    let (t, power) = (log.time(), log.column(Channel::Power).unwrap_or_default());
+    let place = |at: f64| t.partition_point(|t| *t < at);
+    let mut levels: Vec<(f64, f64)> = Vec::new();
+    for pass in passes {
+        let Some(begin_s) = pass.segments.first().map(|segment| segment.log.start) else {
+            continue;
+        };
+        let (mut measured, mut expected) = (0.0, 0.0);
+        for segment in &pass.segments {
+            for i in place(segment.log.start)..place(segment.log.end) {
+                measured += power[i];
+                expected += cycle.power(segment.begin + (t[i] - segment.log.start) / segment.pace);
+            }
+        }
+        if measured > 0.0 && expected > 0.0 {
+            levels.push((measured / expected, begin_s));
+        }
+    }
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    match (levels.first(), levels.last()) {
+        (Some((least, _)), Some((most, begin_s))) if *most > UNLIKE * least => {
+            Err(Refusal::Unlike { begin_s: *begin_s, factor: most / least })
         }
         _ => Ok(()),
     }

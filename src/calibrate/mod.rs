@@ -25,7 +25,7 @@ use crate::motion::Simulation;
 use crate::robot::prior::{Plausible, Spread, type_name};
 use crate::robot::{Calibration, Model, from_toml, to_toml};
 
-use aligned::{Aligned, align};
+use aligned::{Aligned, align, check_alike};
 use cycle::Cycle;
 use fold::{Windows, fold};
 use posterior::{Data, Fit};
@@ -99,6 +99,7 @@ impl<'a> Folded<'a> {
         if windows.power.len() < LEAST_WINDOWS {
             return Err(Refusal::Sparse { windows: windows.power.len(), least: LEAST_WINDOWS });
         }
+        check_alike(cycle, log, &aligned.passes)?;
         let instants: Vec<Instant> = windows.times.iter().map(|t| cycle.at(*t)).collect();
         let along = Along::of(model, &instants, windows.ranges.clone());
         Ok(Folded { aligned, windows, along })

@@ -49,12 +49,7 @@ impl Motors {
         origins: &mut Vec<Origin>,
     ) -> Result<Motors, RobotError> {
         let ratio = fields.per_joint("ratio", dof, Accepts::Positive)?;
-        // Copper losses alone, of the joints, tell nothing of gears: these are estimated (`prior`).
-        let has_loss_alone = fields.has("loss_constant") && !fields.has("rotor_inertia");
-        let ratio = match ratio {
-            None if has_loss_alone => vec![1.0; dof],
-            ratio => fields.required("ratio", ratio)?,
-        };
+        let ratio = fields.required("ratio", ratio)?;
         let torque_constant = fields.per_joint("torque_constant", dof, TORQUE_CONSTANT)?;
         let rotor_place = fields.place_of("rotor_inertia");
         let rotor_inertia = fields.per_joint("rotor_inertia", dof, Accepts::NonNegative)?;

@@ -256,16 +256,17 @@ fn power(model: &Model, out: &mut Writer<'_>) {
         ],
     );
     if let Some(brakes) = &model.brakes {
-        out.table(
-            "[brakes]",
-            "brakes",
-            &[
-                ("energy_per_release_j", number(brakes.energy_per_release_j)),
-                ("release_s", number(brakes.release_s)),
-                ("engage_s", number(brakes.engage_s)),
-                ("power_released_w", number(brakes.power_released_w)),
-            ],
-        );
+        let has = |key: &str| model.origin_of("brakes", key).is_some();
+        let entries = [
+            ("energy_per_release_j", brakes.energy_per_release_j),
+            ("release_s", brakes.release_s),
+            ("engage_s", brakes.engage_s),
+            ("power_released_w", brakes.power_released_w),
+        ];
+        // A 0 that nobody stated is one that is to be estimated.
+        let stated = entries.iter().filter(|(key, value)| *value != 0.0 || has(key));
+        let entries: Vec<_> = stated.map(|(key, value)| (*key, number(*value))).collect();
+        out.table("[brakes]", "brakes", &entries);
     }
     out.table("[standstill]", "standstill", &[("holding_w", list(&model.standstill.holding_w))]);
     let controller = &model.controller;

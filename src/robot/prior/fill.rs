@@ -192,14 +192,13 @@ impl Filling {
             })
         };
         let mut new = motors.unwrap_or_else(|| Motors {
-            ratio: Vec::new(),
+            ratio,
             torque_constant: None,
             rotor_inertia: vec![0.0; dof],
             loss_constant: vec![0.0; dof],
             peak_current: None,
             rated_current: None,
         });
-        new.ratio = ratio;
         new.rotor_inertia = rotor.unwrap_or(new.rotor_inertia);
         new.loss_constant = loss.unwrap_or(new.loss_constant);
         self.model.motors = Some(new);
