@@ -4,11 +4,11 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use joulepath::dynamics::{
+use joulepath::arm::dynamics::{
     Data, Load, Regressor, crba, forward_dynamics, regressor, rnea, rnea_derivatives,
 };
-use joulepath::kinematics::{fk, ik_all, jacobian, jacobian_dot};
-use joulepath::robot::find;
+use joulepath::arm::kinematics::{fk, ik_all, jacobian, jacobian_dot};
+use joulepath::arm::robot::find;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 const Q: [f64; 6] = [0.3, 0.5, -0.4, 0.8, 0.9, -0.2];

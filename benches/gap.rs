@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use examined::{examined, records};
-use joulepath::blind::{self, Case, Kind, Settings};
-use joulepath::effects::ALL;
+use joulepath::arm::effects::ALL;
+use joulepath::examine::blind::{self, Case, Kind, Settings};
 use joulepath::gap;
 
 /// Of the examination's cases those of development.

@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use joulepath::dynamics::{Data, Load, torque};
-use joulepath::identify::{Free, Hints, Settings, Weighting, identify, prepare, torques};
-use joulepath::log::{ColumnMap, read_csv};
-use joulepath::robot::{Model, find};
+use joulepath::arm::dynamics::{Data, Load, torque};
+use joulepath::arm::robot::{Model, find};
+use joulepath::learn::identify::{Free, Hints, Settings, Weighting, identify, prepare, torques};
+use joulepath::learn::log::{ColumnMap, read_csv};
 
 const ROWS: usize = 60_000;
 

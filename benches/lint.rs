@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use joulepath::effects;
-use joulepath::lint::{Group, Job, Settings, lint};
-use joulepath::motion::Options;
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::effects;
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::Options;
+use joulepath::tool::lint::{Group, Job, Settings, lint};
 
 /// Tool, part and targets that an IRB 1600-10/1.45 reaches.
 const DATA: &str = "\

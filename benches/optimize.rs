@@ -4,16 +4,16 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use joulepath::motion::stream::DOF;
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::time_optimal;
-use joulepath::optimize::energy_program::minimize_energy;
-use joulepath::optimize::path_energy::{EnergyModel, Sharing};
-use joulepath::optimize::stream_fit::{StreamFit, fit_stream};
-use joulepath::optimize::stream_limits::StreamLimits;
-use joulepath::optimize::stream_polish::{Corridor, polish_stream};
-use joulepath::optimize::stream_reference::Reference;
-use joulepath::optimize::stream_spacing::{Spacing, adaptive_intervals};
+use joulepath::retime::motion::stream::DOF;
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::time_optimal;
+use joulepath::retime::optimize::energy_program::minimize_energy;
+use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing};
+use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
+use joulepath::retime::optimize::stream_limits::StreamLimits;
+use joulepath::retime::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::retime::optimize::stream_reference::Reference;
+use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
 #[expect(dead_code, reason = "the tests use more of it")]
 #[path = "../tests/optimize/arm.rs"]

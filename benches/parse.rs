@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use joulepath::syntax;
+use joulepath::rapid::syntax;
 
 /// Size of the input: more than the caches hold, little enough for many rounds.
 const BYTES: usize = 10_000_000;

@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use joulepath::retrofit::{Settings, Source, retrofit};
-use joulepath::robot;
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::robot;
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::tool::retrofit::{Settings, Source, retrofit};
 
 fn pick_place(c: &mut Criterion) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/pick_place");

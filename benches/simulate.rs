@@ -5,11 +5,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use joulepath::energy::account;
-use joulepath::motion::{Options, simulate};
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot;
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::robot;
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::energy::account;
+use joulepath::retime::motion::{Options, simulate};
+use joulepath::tool::retrofit::{Source, read_program};
 
 fn sources(folder: &str) -> Vec<Source> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);

@@ -9,12 +9,12 @@
 mod examined;
 
 use examined::{examined, noiseless, records};
-use joulepath::blind::{self, Kind, Settings, Unlogged};
-use joulepath::dynamics::{Data, Load};
-use joulepath::effects::ALL;
-use joulepath::energy::power::{power_at, supply_w};
+use joulepath::arm::dynamics::{Data, Load};
+use joulepath::arm::effects::ALL;
+use joulepath::arm::robot::Model;
+use joulepath::examine::blind::{self, Kind, Settings, Unlogged};
 use joulepath::gap::{self, diagnose, predicted};
-use joulepath::robot::Model;
+use joulepath::retime::energy::power::{power_at, supply_w};
 
 /// A seed of development, and cases of it.
 const SEED: u64 = 101;

@@ -15,9 +15,9 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use joulepath::ir;
-use joulepath::syntax;
-use joulepath::text::FileId;
+use joulepath::rapid::ir;
+use joulepath::rapid::syntax;
+use joulepath::rapid::text::FileId;
 use support::{Random, check_tree, check_work, fixtures, mutate, token_ranges};
 
 const SECONDS: u64 = 60;

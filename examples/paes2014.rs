@@ -5,17 +5,17 @@
 
 #![expect(clippy::print_stdout, reason = "an example shows something")]
 
-use joulepath::dynamics::Load;
-use joulepath::energy::{EnergyParts, account};
-use joulepath::motion::timeline::{Run, What};
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::optimize::cost::Cost;
-use joulepath::optimize::freedom::Freedom;
-use joulepath::optimize::retime::{Goal, Task, retime};
-use joulepath::optimize::standstill::standing;
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot::{Model, find};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::dynamics::Load;
+use joulepath::arm::robot::{Model, find};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::energy::{EnergyParts, account};
+use joulepath::retime::motion::timeline::{Run, What};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::optimize::cost::Cost;
+use joulepath::retime::optimize::freedom::Freedom;
+use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::optimize::standstill::standing;
+use joulepath::tool::retrofit::{Source, read_program};
 
 const PROGRAM: &str = include_str!("../fixtures/paper/Paper.mod");
 const POSES: &str = include_str!("../fixtures/paper/standstill.csv");

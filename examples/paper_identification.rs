@@ -12,8 +12,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, ensure};
-use joulepath::dynamics::{Data, Load, Parameters, base_parameters, parameters, torque};
-use joulepath::robot::find;
+use joulepath::arm::dynamics::{Data, Load, Parameters, base_parameters, parameters, torque};
+use joulepath::arm::robot::find;
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";

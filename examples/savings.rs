@@ -10,20 +10,20 @@ mod cases;
 mod support;
 
 use cases::{Case, EASY, Kind};
-use joulepath::energy::EnergyParts;
-use joulepath::energy::power::motion_energy;
-use joulepath::motion::controller::motion_limits;
-use joulepath::motion::sampling::{Loaded, SpeedCap};
-use joulepath::motion::timed::TimedMotion;
-use joulepath::motion::timing::limits::PathLimits;
-use joulepath::motion::timing::refined::{Refined, time_optimal_between};
-use joulepath::optimize::cost::Cost;
-use joulepath::optimize::energy_program::minimize_energy;
-use joulepath::optimize::freedom::{Bound, Freedom};
-use joulepath::optimize::path_energy::evaluate;
-use joulepath::optimize::path_grid;
-use joulepath::optimize::retime::{Goal, Task, retime};
-use joulepath::path::joint_path::DOF;
+use joulepath::retime::energy::EnergyParts;
+use joulepath::retime::energy::power::motion_energy;
+use joulepath::retime::motion::controller::motion_limits;
+use joulepath::retime::motion::sampling::{Loaded, SpeedCap};
+use joulepath::retime::motion::timed::TimedMotion;
+use joulepath::retime::motion::timing::limits::PathLimits;
+use joulepath::retime::motion::timing::refined::{Refined, time_optimal_between};
+use joulepath::retime::optimize::cost::Cost;
+use joulepath::retime::optimize::energy_program::minimize_energy;
+use joulepath::retime::optimize::freedom::{Bound, Freedom};
+use joulepath::retime::optimize::path_energy::evaluate;
+use joulepath::retime::optimize::path_grid;
+use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::path::joint_path::DOF;
 use rayon::prelude::*;
 
 /// Paths, on both robots in turn.

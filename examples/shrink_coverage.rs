@@ -12,10 +12,10 @@
 mod examined;
 
 use examined::{examined, noiseless, records};
-use joulepath::blind::{self, Kind, Settings};
-use joulepath::effects::find;
+use joulepath::arm::effects::find;
+use joulepath::arm::robot::Model;
+use joulepath::examine::blind::{self, Kind, Settings};
 use joulepath::gap::{self, Interval, Record, beside_no_jump, diagnose, predicted};
-use joulepath::robot::Model;
 use rayon::prelude::*;
 
 /// A seed of development, and cases of it.

@@ -1,31 +1,46 @@
 //! joulepath: a compiler for ABB RAPID programs that saves energy.
 //!
-//! The layers, lowest first; `docs/architecture.md` is the map of the code.
+//! The wings, lowest first; `docs/architecture.md` is the map of the code.
+#![cfg_attr(
+    not(feature = "internals"),
+    expect(unreachable_pub, unused_imports, reason = "tests reach all modules: judged with them")
+)]
 
-pub mod blind;
-pub mod calibrate;
-pub mod cli;
-pub mod config;
-pub mod diagnostics;
-pub mod dynamics;
-pub mod effects;
-pub mod emit;
-pub mod energy;
-pub mod excite;
+#[cfg(not(feature = "internals"))]
+mod arm;
+#[cfg(not(feature = "internals"))]
+mod examine;
+#[cfg(not(feature = "internals"))]
+mod gap;
+#[cfg(not(feature = "internals"))]
+mod learn;
+#[cfg(not(feature = "internals"))]
+mod rapid;
+#[cfg(not(feature = "internals"))]
+mod retime;
+#[cfg(not(feature = "internals"))]
+mod tool;
+
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod arm;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod examine;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod gap;
-pub mod generate;
-pub mod identify;
-pub mod ir;
-pub mod kinematics;
-pub mod lint;
-pub mod log;
-#[cfg(feature = "lsp")]
-pub mod lsp;
-pub mod motion;
-pub mod optimize;
-pub mod path;
-pub mod report;
-pub mod retrofit;
-pub mod robot;
-pub mod syntax;
-pub mod text;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod learn;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod rapid;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod retime;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub mod tool;
+
+pub use tool::cli::main as command_line;

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    joulepath::cli::main()
+    joulepath::command_line()
 }

@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use joulepath::kinematics::{fk, limits_ok};
-use joulepath::robot::{Model, find, load, names};
+use joulepath::arm::kinematics::{fk, limits_ok};
+use joulepath::arm::robot::{Model, find, load, names};
 use rayon::prelude::*;
 use tempfile::TempDir;
 

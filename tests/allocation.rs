@@ -6,7 +6,7 @@ use std::hint::black_box;
 
 use allocation_counter::measure;
 use arms::{load, robots};
-use joulepath::dynamics::{
+use joulepath::arm::dynamics::{
     Data, Regressor, crba, forward_dynamics, regressor, rnea, rnea_derivatives, torque,
 };
 

@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use joulepath::blind::{self, Case, Grades, Kind, Label, Settings, TrueParameter, Truth};
-use joulepath::dynamics::{self, Data, Load};
-use joulepath::log::{ColumnMap, read_csv};
-use joulepath::robot::{self, MAX_DOF, Model};
+use joulepath::arm::dynamics::{self, Data, Load};
+use joulepath::arm::robot::{self, MAX_DOF, Model};
+use joulepath::examine::blind::{self, Case, Grades, Kind, Label, Settings, TrueParameter, Truth};
+use joulepath::learn::log::{ColumnMap, read_csv};
 use serde_json::{Value, json};
 
 /// What two formulations of the same dynamics may differ by, over the largest torque.
@@ -118,8 +118,8 @@ fn programs_run_as_they_say() {
         let program = file(&case, "program/MainModule.mod");
         let log = read_csv(file(&case, "log-1.csv").as_bytes(), &ColumnMap::default()).unwrap();
         let column = |channel| log.column(channel).unwrap();
-        let moving = column(joulepath::log::Channel::Command);
-        let cycle = column(joulepath::log::Channel::Cycle);
+        let moving = column(joulepath::learn::log::Channel::Command);
+        let cycle = column(joulepath::learn::log::Channel::Cycle);
         let mut missed = Vec::new();
         let moves = program.lines().filter(|line| line.contains("MoveAbsJ"));
         for (number, text) in moves.enumerate().skip(1) {
@@ -167,7 +167,9 @@ fn healthy_residuals_are_as_stated() {
     let motion = log.motion();
     let count = (settings.period_s * 100.0).round() as usize;
     let tau: Vec<Vec<f64>> = (0..model.dof)
-        .map(|joint| averaged(log.column(joulepath::log::Channel::Torque(joint)).unwrap(), count))
+        .map(|joint| {
+            averaged(log.column(joulepath::learn::log::Channel::Torque(joint)).unwrap(), count)
+        })
         .collect();
     let mut data = Data::new();
     let mut sums = vec![(0.0, 0.0); model.dof];

@@ -4,20 +4,20 @@
 
 mod support;
 
-use joulepath::calibrate::{Refusal, calibrate};
-use joulepath::dynamics::{Data, torque};
-use joulepath::effects::{drawn, with_estimates};
-use joulepath::energy::account;
-use joulepath::energy::plausible::{DRAWS, Interval, plausibility};
-use joulepath::energy::trajectory::{Sample, trajectory};
-use joulepath::log::{Channel, Log};
-use joulepath::motion::timeline::{Event, What};
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::report::html::optimize_report;
-use joulepath::retrofit::{Settings, Source, read_program, retrofit};
-use joulepath::robot::prior::{Spread, standard_normals};
-use joulepath::robot::{Model, find, from_toml, to_toml};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::dynamics::{Data, torque};
+use joulepath::arm::effects::{drawn, with_estimates};
+use joulepath::arm::robot::prior::{Spread, standard_normals};
+use joulepath::arm::robot::{Model, find, from_toml, to_toml};
+use joulepath::learn::calibrate::{Refusal, calibrate};
+use joulepath::learn::log::{Channel, Log};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::energy::account;
+use joulepath::retime::energy::plausible::{DRAWS, Interval, plausibility};
+use joulepath::retime::energy::trajectory::{Sample, trajectory};
+use joulepath::retime::motion::timeline::{Event, What};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::tool::report::html::optimize_report;
+use joulepath::tool::retrofit::{Settings, Source, read_program, retrofit};
 use rayon::prelude::*;
 
 /// A program of another cycle.

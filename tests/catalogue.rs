@@ -5,9 +5,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use joulepath::dynamics::Load;
-use joulepath::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
-use joulepath::robot::{Coupling, Link, Model, Provenance, find, names};
+use joulepath::arm::dynamics::Load;
+use joulepath::arm::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
+use joulepath::arm::robot::{Coupling, Link, Model, Provenance, find, names};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn robot(name: &str) -> Model {
@@ -289,9 +289,9 @@ fn names_of_controllers_and_of_catalogues() {
 #[test]
 fn robots_without_dynamics_have_no_torques() {
     let model = robot("IRB2600-12/1.65");
-    let tau = joulepath::dynamics::gravity(
+    let tau = joulepath::arm::dynamics::gravity(
         &model,
-        &mut joulepath::dynamics::Data::new(),
+        &mut joulepath::arm::dynamics::Data::new(),
         &Load::none(),
         &[0.5; 6],
     );

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use joulepath::blind::{self, Case, Settings};
-use joulepath::log::{Channel, ColumnMap, Log, read_csv};
+use joulepath::examine::blind::{self, Case, Settings};
+use joulepath::learn::log::{Channel, ColumnMap, Log, read_csv};
 use serde_json::Value;
 
 /// Repetitions of each log.

@@ -7,7 +7,7 @@ mod torques;
 
 use std::path::Path;
 
-use joulepath::robot::{Model, find, load};
+use joulepath::arm::robot::{Model, find, load};
 use torques::{Kind, held, unknown};
 
 /// Share of cases that 90 % intervals have to hold over arms of many makers.

@@ -3,10 +3,10 @@
 mod arms;
 
 use arms::{ROBOTS, largest, load, robots, states};
-use joulepath::dynamics::{
+use joulepath::arm::dynamics::{
     Data, JointMatrix, crba, forward_dynamics, gravity, rnea, rnea_derivatives,
 };
-use joulepath::robot::MAX_DOF;
+use joulepath::arm::robot::MAX_DOF;
 use proptest::prelude::*;
 
 /// Relative error of the differences used here.
@@ -113,10 +113,10 @@ proptest! {
 
 #[test]
 fn robot_without_dynamics_does_not_accelerate() {
-    let model = joulepath::robot::find("IRB6640-180/2.55").expect("in the catalogue");
+    let model = joulepath::arm::robot::find("IRB6640-180/2.55").expect("in the catalogue");
     let mut data = Data::new();
     let state = [0.1; 6];
-    let none = joulepath::dynamics::Load::none();
+    let none = joulepath::arm::dynamics::Load::none();
     assert!(forward_dynamics(&model, &mut data, &none, &state, &state, &state).is_none());
     let found = rnea_derivatives(&model, &mut data, &none, &state, &state, &state);
     assert_eq!((found.dq.amax(), found.mass.amax()), (0.0, 0.0));

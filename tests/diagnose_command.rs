@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use joulepath::blind::{self, Settings};
+use joulepath::examine::blind::{self, Settings};
 use serde_json::Value;
 
 fn joulepath(args: &[&str]) -> Output {

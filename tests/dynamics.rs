@@ -6,8 +6,10 @@
 mod arms;
 
 use arms::{ROBOTS, load, robots, states};
-use joulepath::dynamics::{Data, Load, friction, gravity, kinetic_energy, potential_energy, rnea};
-use joulepath::robot::{MAX_DOF, find};
+use joulepath::arm::dynamics::{
+    Data, Load, friction, gravity, kinetic_energy, potential_energy, rnea,
+};
+use joulepath::arm::robot::{MAX_DOF, find};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
@@ -112,11 +114,11 @@ fn load_acts_as_a_heavier_last_link() {
     let held = |load: &Load| gravity(&model, &mut Data::new(), load, &q);
     let point = Load { mass: 10.0, com: Vector3::new(0.0, 0.0, 0.1), inertia: Matrix3::zeros() };
     // 10 kg, 0.1 m out of the flange: its lever arm about axis 2 by hand.
-    let tcp =
-        joulepath::kinematics::fk(&model, &q) * nalgebra::Isometry3::translation(0.0, 0.0, 0.1);
+    let tcp = joulepath::arm::kinematics::fk(&model, &q)
+        * nalgebra::Isometry3::translation(0.0, 0.0, 0.1);
     let radius = tcp.translation.x * 0.2_f64.cos() + tcp.translation.y * 0.2_f64.sin();
     let added = held(&point)[1] - held(&Load::none())[1];
-    let expected = -10.0 * joulepath::dynamics::GRAVITY * (radius - 0.15);
+    let expected = -10.0 * joulepath::arm::dynamics::GRAVITY * (radius - 0.15);
     assert!((added - expected).abs() < 1e-9, "{added} {expected}");
 
     let halves = Load { mass: 5.0, ..point.clone() };

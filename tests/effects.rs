@@ -3,9 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use insta::assert_snapshot;
-use joulepath::dynamics::{Data, Load, torque};
-use joulepath::effects::from_toml;
-use joulepath::robot::{MAX_DOF, Model};
+use joulepath::arm::dynamics::{Data, Load, torque};
+use joulepath::arm::effects::from_toml;
+use joulepath::arm::robot::{MAX_DOF, Model};
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest relative difference of torques.

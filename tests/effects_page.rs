@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::Path;
 
-use joulepath::effects::page;
+use joulepath::arm::effects::page;
 
 #[test]
 fn the_page_is_fresh() {

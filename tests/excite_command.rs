@@ -4,11 +4,11 @@
 use std::fs;
 use std::process::{Command, Output};
 
-use joulepath::dynamics::Load;
-use joulepath::excite::{Design, Focus, random_feasible};
-use joulepath::kinematics::{Body, KeepOut, Obstacle, Plane, fk};
-use joulepath::robot::find;
-use joulepath::syntax;
+use joulepath::arm::dynamics::Load;
+use joulepath::arm::kinematics::{Body, KeepOut, Obstacle, Plane, fk};
+use joulepath::arm::robot::find;
+use joulepath::learn::excite::{Design, Focus, random_feasible};
+use joulepath::rapid::syntax;
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 

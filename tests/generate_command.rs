@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use joulepath::motion::stream::Stream;
+use joulepath::retime::motion::stream::Stream;
 
 const ROBOT: &str = "IRB1600-10/1.45";
 /// Distance of the realised joints from the trajectory, rad: 1 mm at the reach of the arm.

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use joulepath::dynamics::{Data, Load, torque};
-use joulepath::robot::{Provenance, find, load, to_toml};
+use joulepath::arm::dynamics::{Data, Load, torque};
+use joulepath::arm::robot::{Provenance, find, load, to_toml};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";

@@ -7,12 +7,12 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use joulepath::effects::from_toml;
-use joulepath::identify::{
+use joulepath::arm::effects::from_toml;
+use joulepath::arm::robot::{import_urdf, to_toml};
+use joulepath::learn::identify::{
     Free, Hints, Identified, Settings, Source, Weighting, identify, prepare, torques,
 };
-use joulepath::log::{ColumnMap, Log, read_csv};
-use joulepath::robot::{import_urdf, to_toml};
+use joulepath::learn::log::{ColumnMap, Log, read_csv};
 
 /// Shares of the time that are fitted; the rest is predicted. The first one is compared.
 const TRAINED: [[f64; 2]; 3] = [[0.0, 0.7], [0.3, 1.0], [0.0, 0.5]];

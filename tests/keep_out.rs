@@ -7,8 +7,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use joulepath::kinematics::{Body, Capsule};
-use joulepath::robot::find;
+use joulepath::arm::kinematics::{Body, Capsule};
+use joulepath::arm::robot::find;
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 

@@ -4,11 +4,11 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use insta::assert_snapshot;
-use joulepath::kinematics::{
+use joulepath::arm::kinematics::{
     Conf, IkError, conf_of, fk, ik_all, ik_conf, ik_near, jacobian, jacobian_dot, limits_ok,
     radical_inverse, singularity,
 };
-use joulepath::robot::{Coupling, Model, find, from_toml};
+use joulepath::arm::robot::{Coupling, Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -192,7 +192,7 @@ fn singular_poses_have_finite_solutions() {
 /// edge of their reach.
 #[test]
 fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
-    for name in joulepath::robot::names() {
+    for name in joulepath::arm::robot::names() {
         let model = find(name).unwrap();
         if model.dof != 6 {
             continue;

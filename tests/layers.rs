@@ -60,32 +60,41 @@ struct Reserved {
     why: &'static str,
 }
 
-const FILES_AND_TERMINALS: &[&str] = &["src/cli/", "src/lsp/", "src/main.rs"];
-const LOADERS: &[&str] = &["src/cli/", "src/lsp/", "src/main.rs", "src/robot/load.rs"];
+const FILES_AND_TERMINALS: &[&str] = &["src/tool/cli/", "src/tool/lsp/", "src/main.rs"];
+const LOADERS: &[&str] =
+    &["src/tool/cli/", "src/tool/lsp/", "src/main.rs", "src/arm/robot/load.rs"];
 const PURE: &str = "the core is made of pure functions: files, clocks and terminals stay outside";
 
 const RESERVED: [Reserved; 14] = [
-    Reserved { path: &["lsp_server"], places: &["src/lsp/"], why: "only the server knows it" },
-    Reserved { path: &["nom"], places: &["src/syntax/"], why: "only the lexer and parser know it" },
+    Reserved { path: &["lsp_server"], places: &["src/tool/lsp/"], why: "only the server knows it" },
+    Reserved {
+        path: &["nom"],
+        places: &["src/rapid/syntax/"],
+        why: "only the lexer and parser know it",
+    },
     Reserved {
         path: &["clarabel"],
-        places: &["src/optimize/cone.rs"],
+        places: &["src/retime/optimize/cone.rs"],
         why: "one file stands between the programs and their solver",
     },
     Reserved {
         path: &["tera"],
-        places: &["src/emit/", "src/report/"],
+        places: &["src/tool/emit/", "src/tool/report/"],
         why: "only text for others is made by templates",
     },
     Reserved {
         path: &["csv"],
-        places: &["src/log/", "src/generate/table.rs"],
+        places: &["src/learn/log/", "src/tool/generate/table.rs"],
         why: "only readers of tables know it",
     },
-    Reserved { path: &["clap"], places: &["src/cli/"], why: "options become plain settings there" },
+    Reserved {
+        path: &["clap"],
+        places: &["src/tool/cli/"],
+        why: "options become plain settings there",
+    },
     Reserved {
         path: &["anyhow"],
-        places: &["src/cli/"],
+        places: &["src/tool/cli/"],
         why: "below the command line errors are enums",
     },
     Reserved { path: &["indicatif"], places: FILES_AND_TERMINALS, why: PURE },
@@ -217,19 +226,19 @@ fn documentation_shows_the_layers() {
 #[test]
 fn forbidden_imports_are_found() {
     let cases = [
-        ("src/syntax/a.rs", "use crate::emit::Names;", "may import only text"),
-        ("src/robot/a.rs", "use crate::text::Span;", "imports no other layer"),
-        ("src/ir/a.rs", "use crate::{\n  text::Span,\n  robot::{self, Model},\n};", "robot"),
-        ("src/motion/a/b.rs", "fn f() -> crate::optimize::Site {}", "optimize"),
-        ("src/path/a.rs", "use super::super::energy::Account;", "energy"),
-        ("src/path/mod.rs", "mod tests { use super::super::cli; }", "cli"),
-        ("src/energy/a.rs", "use crate::nowhere::X;", "is no layer"),
-        ("src/energy/a.rs", "use crate::*;", "is no layer"),
-        ("src/ir/a.rs", "use nom::IResult;", "lexer"),
-        ("src/optimize/a.rs", "let x = clarabel::solver::Settings::default();", "solver"),
-        ("src/motion/a.rs", "use tera::Tera;", "templates"),
-        ("src/robot/a.rs", "use std::{io, fs};", "pure"),
-        ("src/energy/a.rs", "let now = std::time::Instant::now();", "pure"),
+        ("src/rapid/syntax/a.rs", "use crate::tool::emit::Names;", "may import only text"),
+        ("src/arm/robot/a.rs", "use crate::rapid::text::Span;", "imports no other layer"),
+        ("src/rapid/ir/a.rs", "use crate::{\n  text::Span,\n  robot::{self, Model},\n};", "robot"),
+        ("src/retime/motion/a/b.rs", "fn f() -> crate::retime::optimize::Site {}", "optimize"),
+        ("src/retime/path/a.rs", "use super::super::energy::Account;", "energy"),
+        ("src/retime/path/mod.rs", "mod tests { use super::super::cli; }", "cli"),
+        ("src/retime/energy/a.rs", "use crate::nowhere::X;", "is no layer"),
+        ("src/retime/energy/a.rs", "use crate::*;", "is no layer"),
+        ("src/rapid/ir/a.rs", "use nom::IResult;", "lexer"),
+        ("src/retime/optimize/a.rs", "let x = clarabel::solver::Settings::default();", "solver"),
+        ("src/retime/motion/a.rs", "use tera::Tera;", "templates"),
+        ("src/arm/robot/a.rs", "use std::{io, fs};", "pure"),
+        ("src/retime/energy/a.rs", "let now = std::time::Instant::now();", "pure"),
     ];
     for (path, text, message) in cases {
         let found = violations(path, text);
@@ -242,19 +251,31 @@ fn forbidden_imports_are_found() {
 #[test]
 fn allowed_imports_are_left_alone() {
     let cases = [
-        ("src/energy/a.rs", "use crate::robot::Model; use crate::path::joint_path::Joints;"),
-        ("src/retrofit/a.rs", "use crate::{emit, text::Span, optimize::site::Site};"),
-        ("src/cli/a.rs", "use crate::report; use clap::Parser; use std::fs;"),
-        ("src/robot/load.rs", "use std::fs;"),
-        ("src/syntax/a.rs", "use nom::{IResult, Parser}; pub(in crate::syntax) fn f() {}"),
         (
-            "src/text/a.rs",
-            "// use crate::cli;\n/* crate::cli::x */ const X: &str = \"crate::cli::x\";",
+            "src/retime/energy/a.rs",
+            "use crate::arm::robot::Model; use crate::retime::path::joint_path::Joints;",
         ),
-        ("src/text/a.rs", "const Q: char = '\"'; const R: &str = r#\"crate::cli::\"x\"#;"),
-        ("src/text/a.rs", "fn f<'a>(x: &'a str) { let nom = x; nom.len(); }"),
-        ("src/path/mod.rs", "mod tests { use super::*; use super::curve::Curve; }"),
-        ("src/syntax/parser/a.rs", "use super::super::token::Token;"),
+        (
+            "src/tool/retrofit/a.rs",
+            "use crate::{tool::emit, rapid::text::Span, retime::optimize::site::Site};",
+        ),
+        ("src/tool/cli/a.rs", "use crate::tool::report; use clap::Parser; use std::fs;"),
+        ("src/arm/robot/load.rs", "use std::fs;"),
+        (
+            "src/rapid/syntax/a.rs",
+            "use nom::{IResult, Parser}; pub(in crate::rapid::syntax) fn f() {}",
+        ),
+        (
+            "src/rapid/text/a.rs",
+            "// use crate::tool::cli;\n/* crate::tool::cli::x */ const X: &str = \"crate::tool::cli::x\";",
+        ),
+        (
+            "src/rapid/text/a.rs",
+            "const Q: char = '\"'; const R: &str = r#\"crate::tool::cli::\"x\"#;",
+        ),
+        ("src/rapid/text/a.rs", "fn f<'a>(x: &'a str) { let nom = x; nom.len(); }"),
+        ("src/retime/path/mod.rs", "mod tests { use super::*; use super::curve::Curve; }"),
+        ("src/rapid/syntax/parser/a.rs", "use super::super::token::Token;"),
         ("src/lib.rs", "pub mod cli;"),
     ];
     for (path, text) in cases {

@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use insta::assert_snapshot;
-use joulepath::log::{Channel, ColumnMap, LogError, derivatives, read};
+use joulepath::learn::log::{Channel, ColumnMap, LogError, derivatives, read};
 
 /// A joint that swings through 0.6 rad at 0.4 Hz and less at 1.1 Hz: position, rate,
 /// acceleration.

@@ -2,18 +2,18 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use joulepath::emit::{
+use joulepath::arm::kinematics::fk;
+use joulepath::arm::robot::find;
+use joulepath::rapid::syntax;
+use joulepath::rapid::text::{self, FileId, SourceFile, Span};
+use joulepath::retime::motion::stream::Stream;
+use joulepath::retime::motion::timed::TimedMotion;
+use joulepath::retime::motion::timeline::What;
+use joulepath::retime::motion::{Options, simulate};
+use joulepath::tool::emit::{
     Emission, EmittedStream, Layout, MotionSettings, Names, Recorded, Robot, Site, emit,
 };
-use joulepath::kinematics::fk;
-use joulepath::motion::stream::Stream;
-use joulepath::motion::timed::TimedMotion;
-use joulepath::motion::timeline::What;
-use joulepath::motion::{Options, simulate};
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot::find;
-use joulepath::syntax;
-use joulepath::text::{self, FileId, SourceFile, Span};
+use joulepath::tool::retrofit::{Source, read_program};
 
 /// Points of each stream: two of them do not fit into one module.
 const POINTS: usize = 900;

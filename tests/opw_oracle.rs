@@ -2,8 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use joulepath::kinematics::{fk, ik_all};
-use joulepath::robot::{Model, find, from_toml};
+use joulepath::arm::kinematics::{fk, ik_all};
+use joulepath::arm::robot::{Model, find, from_toml};
 use proptest::prelude::*;
 use rs_opw_kinematics::kinematic_traits::Kinematics;
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;

@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use joulepath::syntax::{self, TokenKind};
+use joulepath::rapid::syntax::{self, TokenKind};
 use serde_json::Value;
 
 fn parse(arguments: &[&str]) -> Output {

@@ -2,8 +2,8 @@
 //! states each; `benches/peers/pinocchio/vectors.py` writes the fixtures.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use joulepath::dynamics::{Data, JointMatrix, Load, crba, rnea, rnea_derivatives};
-use joulepath::robot::{MAX_DOF, Model, find, load};
+use joulepath::arm::dynamics::{Data, JointMatrix, Load, crba, rnea, rnea_derivatives};
+use joulepath::arm::robot::{MAX_DOF, Model, find, load};
 
 /// Relative to the largest torque of a row; the fixtures have 13 digits.
 const EXACT: f64 = 1e-9;

@@ -4,16 +4,16 @@
 
 mod support;
 
-use joulepath::dynamics::{Data, Load, gravity, torque};
-use joulepath::effects::{applied, drawn, with_estimates};
-use joulepath::energy::change::Changes;
-use joulepath::energy::plausible::{DRAWS, Robots, moments, plausibility};
-use joulepath::energy::power::holding_w;
-use joulepath::energy::{Account, EnergyParts, account};
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::retrofit::read_program;
-use joulepath::robot::prior::{Spread, estimated};
-use joulepath::robot::{Brakes, Coupling, Model, find, from_toml, to_toml};
+use joulepath::arm::dynamics::{Data, Load, gravity, torque};
+use joulepath::arm::effects::{applied, drawn, with_estimates};
+use joulepath::arm::robot::prior::{Spread, estimated};
+use joulepath::arm::robot::{Brakes, Coupling, Model, find, from_toml, to_toml};
+use joulepath::retime::energy::change::Changes;
+use joulepath::retime::energy::plausible::{DRAWS, Robots, moments, plausibility};
+use joulepath::retime::energy::power::holding_w;
+use joulepath::retime::energy::{Account, EnergyParts, account};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::tool::retrofit::read_program;
 
 /// Robots that are compared.
 const ROBOTS: usize = 12;
@@ -83,10 +83,10 @@ fn moments_of(model: &Model) -> [f64; 3] {
 #[test]
 fn an_arm_of_axes_alone_is_near_its_meshes() {
     let tables: toml::Table =
-        toml::from_str(include_str!("../src/robot/prior/robots.toml")).unwrap();
+        toml::from_str(include_str!("../src/arm/robot/prior/robots.toml")).unwrap();
     let mut far = Vec::new();
     let mut all: Vec<[f64; 3]> = Vec::new();
-    for name in joulepath::robot::names().filter(|name| !name.starts_with("IRB14000")) {
+    for name in joulepath::arm::robot::names().filter(|name| !name.starts_with("IRB14000")) {
         let bare = find(name).unwrap();
         if bare.has_dynamics() || bare.kinematics.coupling != Coupling::None {
             continue;
@@ -119,7 +119,7 @@ fn an_arm_of_axes_alone_is_near_its_meshes() {
 
 #[test]
 fn an_arm_without_dynamics_gets_them() {
-    for name in joulepath::robot::names().filter(|name| !name.starts_with("IRB14000")) {
+    for name in joulepath::arm::robot::names().filter(|name| !name.starts_with("IRB14000")) {
         let bare = find(name).unwrap();
         let model = applied(estimated(bare.clone())).unwrap();
         assert!(model.has_dynamics(), "{name}");

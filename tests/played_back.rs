@@ -12,8 +12,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use joulepath::dynamics::{Data, Load, torque};
-use joulepath::robot::{Model, Sharing, find};
+use joulepath::arm::dynamics::{Data, Load, torque};
+use joulepath::arm::robot::{Model, Sharing, find};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";

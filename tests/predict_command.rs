@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use joulepath::dynamics::{Data, Load, torque};
-use joulepath::log::{Channel, ColumnMap, read_csv};
-use joulepath::robot::from_toml;
+use joulepath::arm::dynamics::{Data, Load, torque};
+use joulepath::arm::robot::from_toml;
+use joulepath::learn::log::{Channel, ColumnMap, read_csv};
 use nalgebra::Vector3;
 
 /// What the gram that the program's tool0 weighs may change.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-const SOURCE: &str = include_str!("../src/optimize/reason.rs");
+const SOURCE: &str = include_str!("../src/retime/optimize/reason.rs");
 const PAGE: &str = include_str!("../docs/reasons.md");
 
 /// What each section has, in this order.
@@ -31,7 +31,7 @@ fn page_and_codes_agree() {
     assert_eq!(
         unique,
         explained.iter().copied().collect(),
-        "docs/reasons.md has a section for each code of src/optimize/reason.rs and for no other"
+        "docs/reasons.md has a section for each code of src/retime/optimize/reason.rs and for no other"
     );
     assert_eq!(explained.len(), codes.len(), "a section twice");
 }

@@ -7,7 +7,7 @@ mod support;
 
 use std::path::Path;
 
-use joulepath::syntax::{self, Parse};
+use joulepath::rapid::syntax::{self, Parse};
 use support::token_ranges;
 
 /// The shipped programs, without those of the parser's own tests.

@@ -3,10 +3,10 @@
 mod arms;
 
 use arms::{ROBOTS, largest, load, robots, states};
-use joulepath::dynamics::{
+use joulepath::arm::dynamics::{
     Data, Load, Parameters, Regressor, base_parameters, parameters, rnea, torque, write_rows,
 };
-use joulepath::robot::{MAX_DOF, Model, find};
+use joulepath::arm::robot::{MAX_DOF, Model, find};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 

@@ -5,18 +5,18 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-use joulepath::energy::{Account, EnergyParts, account};
-use joulepath::motion::timeline::What;
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::optimize::check::Check;
-use joulepath::optimize::reason::Reason;
-use joulepath::report::html::optimize_report;
-use joulepath::retrofit::{
+use joulepath::arm::robot::{self, Model};
+use joulepath::rapid::text::{FileId, SourceFile, Span};
+use joulepath::retime::energy::{Account, EnergyParts, account};
+use joulepath::retime::motion::timeline::What;
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::optimize::check::Check;
+use joulepath::retime::optimize::reason::Reason;
+use joulepath::tool::report::html::optimize_report;
+use joulepath::tool::retrofit::{
     Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings, SignalKind,
     SignalShift, Source, Verification, read_program, retrofit,
 };
-use joulepath::robot::{self, Model};
-use joulepath::text::{FileId, SourceFile, Span};
 
 fn source(index: u32, path: &str, bytes: Vec<u8>) -> Source {
     let file = SourceFile::new(FileId(index), path.to_owned(), bytes);

@@ -5,9 +5,9 @@
 use std::fs;
 
 use insta::assert_snapshot;
-use joulepath::dynamics::{Data, Load, gravity};
-use joulepath::kinematics::limits_ok;
-use joulepath::robot::{self, Model, Provenance, RobotError, Sharing, find, from_toml, load};
+use joulepath::arm::dynamics::{Data, Load, gravity};
+use joulepath::arm::kinematics::limits_ok;
+use joulepath::arm::robot::{self, Model, Provenance, RobotError, Sharing, find, from_toml, load};
 
 const TWO_JOINTS: &str = r#"name = "two"
 [kinematics]
@@ -290,7 +290,7 @@ proptest::proptest! {
         }
         if let Ok(model) = from_toml("damaged.toml", &text) {
             let q = vec![0.1; model.dof];
-            std::hint::black_box(joulepath::kinematics::fk(&model, &q));
+            std::hint::black_box(joulepath::arm::kinematics::fk(&model, &q));
         }
     }
 }

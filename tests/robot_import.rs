@@ -7,9 +7,9 @@ use std::fs;
 use std::process::{Command, Output};
 
 use insta::assert_snapshot;
-use joulepath::dynamics::{Data, Load, gravity};
-use joulepath::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
-use joulepath::robot::{Model, Use, find, from_toml, import_moc, import_urdf, load, ready};
+use joulepath::arm::dynamics::{Data, Load, gravity};
+use joulepath::arm::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
+use joulepath::arm::robot::{Model, Use, find, from_toml, import_moc, import_urdf, load, ready};
 use nalgebra::Vector3;
 
 const INERTIAL: &str = "<inertial><origin xyz=\"0 0 0.1\"/><mass value=\"2\"/>\

@@ -5,9 +5,9 @@
 
 mod support;
 
-use joulepath::ir;
-use joulepath::syntax::{self, MAX_DEPTH, Parse};
-use joulepath::text::FileId;
+use joulepath::rapid::ir;
+use joulepath::rapid::syntax::{self, MAX_DEPTH, Parse};
+use joulepath::rapid::text::FileId;
 use support::{Random, check_tree, check_work, fixtures, mutate, token_ranges};
 
 /// Mutations of each fixture.

@@ -5,8 +5,8 @@
 
 use std::f64::consts::TAU;
 
-use joulepath::kinematics::{fk, ik_all, radical_inverse};
-use joulepath::robot::{Model, find, from_toml};
+use joulepath::arm::kinematics::{fk, ik_all, radical_inverse};
+use joulepath::arm::robot::{Model, find, from_toml};
 use nalgebra::Isometry3;
 
 /// Largest difference of angles that count as one \[rad\].

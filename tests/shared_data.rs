@@ -14,8 +14,8 @@ mod real_logs;
 use std::fs;
 use std::path::Path;
 
-use joulepath::kinematics::{Conf, conf_of, fk, ik_all, ik_conf};
-use joulepath::robot::{find, from_toml, import_urdf};
+use joulepath::arm::kinematics::{Conf, conf_of, fk, ik_all, ik_conf};
+use joulepath::arm::robot::{find, from_toml, import_urdf};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 /// Median distance of the forward kinematics from the target \[m\]: the nominal

@@ -4,15 +4,15 @@
 
 use std::collections::BTreeMap;
 
-use joulepath::dynamics::{Data, kinetic_energy, potential_energy, torque};
-use joulepath::energy::account;
-use joulepath::motion::timed::TimedMotion;
-use joulepath::motion::timeline::{Run, What};
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::path::PieceKind;
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot::{Model, find};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::dynamics::{Data, kinetic_energy, potential_energy, torque};
+use joulepath::arm::robot::{Model, find};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::energy::account;
+use joulepath::retime::motion::timed::TimedMotion;
+use joulepath::retime::motion::timeline::{Run, What};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::path::PieceKind;
+use joulepath::tool::retrofit::{Source, read_program};
 
 /// A home and targets in front of an IRB1600, the tool pointing down.
 const DATA: &str = "CONST jointtarget home:=[[0,0,0,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
@@ -295,7 +295,7 @@ fn joules_and_seconds_of_the_moves_and_waits_are_those_of_the_cycle() {
     );
     let account = account(&model, &simulation);
     let energy: f64 =
-        account.events.iter().flatten().map(joulepath::energy::EnergyParts::energy_j).sum();
+        account.events.iter().flatten().map(joulepath::retime::energy::EnergyParts::energy_j).sum();
     assert!((energy - account.total.energy_j()).abs() < 1e-9 * energy);
     let time: f64 = simulation.events.iter().map(|event| event.duration).sum();
     assert!((time - simulation.cycle_s).abs() < 1e-12);

@@ -5,8 +5,8 @@
 use std::fs;
 use std::process::Command;
 
-use joulepath::kinematics::{Tcp, fk, jacobian};
-use joulepath::robot::{Model, find, from_toml};
+use joulepath::arm::kinematics::{Tcp, fk, jacobian};
+use joulepath::arm::robot::{Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

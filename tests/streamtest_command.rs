@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::fs;
 use std::process::{Command, Output};
 
-use joulepath::syntax;
+use joulepath::rapid::syntax;
 use serde_json::Value;
 use tempfile::TempDir;
 

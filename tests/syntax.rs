@@ -4,9 +4,9 @@
 
 mod support;
 
-use joulepath::diagnostics::{Diagnostic, Label, Paint, full};
-use joulepath::syntax::{self, Node, NodeKind, Parse, ast};
-use joulepath::text::{FileId, SourceFile, Span};
+use joulepath::rapid::diagnostics::{Diagnostic, Label, Paint, full};
+use joulepath::rapid::syntax::{self, Node, NodeKind, Parse, ast};
+use joulepath::rapid::text::{FileId, SourceFile, Span};
 use support::{check_tree, fixture_folder, fixtures};
 
 const ID: FileId = FileId(0);

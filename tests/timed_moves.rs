@@ -3,13 +3,13 @@
 
 use std::fmt::Write;
 
-use joulepath::dynamics::{Data, torque};
-use joulepath::kinematics::fk;
-use joulepath::motion::timeline::{Run, What};
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot::{Model, find};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::dynamics::{Data, torque};
+use joulepath::arm::kinematics::fk;
+use joulepath::arm::robot::{Model, find};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::timeline::{Run, What};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::tool::retrofit::{Source, read_program};
 
 const NONE: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
 
@@ -262,7 +262,7 @@ fn a_very_slow_move_is_no_more_work_than_others() {
     let body = line([850., 100., 700.], "v1000", "fine")
         + &line([850., 300., 700.], "v1000\\T:=10000000", "fine");
     let simulation = run(&body);
-    let joules = joulepath::energy::account(&irb1600(), &simulation).total.energy_j();
+    let joules = joulepath::retime::energy::account(&irb1600(), &simulation).total.energy_j();
     assert!(joules > 1e8, "{joules} J");
     assert!((simulation.cycle_s / 1e7 - 1.0).abs() < 1e-3);
 }

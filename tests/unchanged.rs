@@ -9,9 +9,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use joulepath::retrofit::{OutputFile, OutputKind, Retrofit, Settings, Source, retrofit};
-use joulepath::robot::find;
-use joulepath::text::{FileId, SourceFile, Span};
+use joulepath::arm::robot::find;
+use joulepath::rapid::text::{FileId, SourceFile, Span};
+use joulepath::tool::retrofit::{OutputFile, OutputKind, Retrofit, Settings, Source, retrofit};
 
 /// Extensions of RAPID modules in the fixtures.
 const EXTENSIONS: [&str; 2] = ["mod", "sys"];

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use joulepath::energy::account;
-use joulepath::energy::plausible::{Interval, plausibility};
-use joulepath::retrofit::{Settings, retrofit};
-use joulepath::robot::Model;
+use joulepath::arm::robot::Model;
+use joulepath::retime::energy::account;
+use joulepath::retime::energy::plausible::{Interval, plausibility};
+use joulepath::tool::retrofit::{Settings, retrofit};
 use rayon::prelude::*;
 
 use super::source;

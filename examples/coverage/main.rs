@@ -12,9 +12,9 @@ mod torques;
 
 use std::path::{Path, PathBuf};
 
-use joulepath::retrofit::Source;
-use joulepath::robot::{Model, find, load};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::robot::{Model, find, load};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::tool::retrofit::Source;
 use torques::{CASES, Kind, SMALL, held, unknown};
 
 fn main() {

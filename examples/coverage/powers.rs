@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use joulepath::effects::with_estimates;
-use joulepath::energy::account;
-use joulepath::energy::plausible::{DRAWS, Interval, Robots, moments};
-use joulepath::motion::{Options, simulate};
-use joulepath::retrofit::read_program;
-use joulepath::robot::prior::Spread;
-use joulepath::robot::{Model, find};
+use joulepath::arm::effects::with_estimates;
+use joulepath::arm::robot::prior::Spread;
+use joulepath::arm::robot::{Model, find};
+use joulepath::retime::energy::account;
+use joulepath::retime::energy::plausible::{DRAWS, Interval, Robots, moments};
+use joulepath::retime::motion::{Options, simulate};
+use joulepath::tool::retrofit::read_program;
 
 use super::{rate, source};
 
@@ -154,7 +154,7 @@ fn left_out(name: &str) -> f64 {
 
 fn table(name: &str, key: &str) -> f64 {
     let tables: toml::Table =
-        toml::from_str(include_str!("../../src/robot/prior/robots.toml")).unwrap();
+        toml::from_str(include_str!("../../src/arm/robot/prior/robots.toml")).unwrap();
     tables[name][key].as_float().unwrap()
 }
 

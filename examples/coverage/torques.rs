@@ -1,11 +1,11 @@
 //! Torques of random poses and motions: estimated against published dynamics.
 
-use joulepath::dynamics::{Data, Load, friction, gravity, rigid_bodies};
-use joulepath::effects::{drawn, with_estimates};
-use joulepath::energy::plausible::{DRAWS, Interval};
-use joulepath::kinematics::limits_ok;
-use joulepath::robot::prior::Spread;
-use joulepath::robot::{Model, from_toml, to_toml};
+use joulepath::arm::dynamics::{Data, Load, friction, gravity, rigid_bodies};
+use joulepath::arm::effects::{drawn, with_estimates};
+use joulepath::arm::kinematics::limits_ok;
+use joulepath::arm::robot::prior::Spread;
+use joulepath::arm::robot::{Model, from_toml, to_toml};
+use joulepath::retime::energy::plausible::{DRAWS, Interval};
 use rayon::prelude::*;
 
 /// Poses and motions of a robot.

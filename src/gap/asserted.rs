@@ -1,7 +1,7 @@
 //! The model with what is asserted, and whether that takes off what is missed.
 
-use crate::effects::find;
-use crate::robot::Model;
+use crate::arm::effects::find;
+use crate::arm::robot::Model;
 
 use super::diagnosis::{Said, Verdict};
 use super::gated::GATED;

@@ -1,6 +1,6 @@
 //! Whose the gap is: what each effect takes away of it, joint by joint and regime by regime.
 
-use crate::robot::Model;
+use crate::arm::robot::Model;
 
 use super::bins::{QUANTITIES, Quantity};
 use super::heldout::predicted;

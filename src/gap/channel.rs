@@ -1,6 +1,6 @@
 //! What torques go through on their way into a log.
 
-use crate::effects::Response;
+use crate::arm::effects::Response;
 
 use super::late::{Kind, Late};
 use super::search::{Found, Search};

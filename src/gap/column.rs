@@ -1,6 +1,6 @@
 //! What may explain a difference: columns of torques, in pieces that belong together.
 
-use crate::effects::{Effect, Role};
+use crate::arm::effects::{Effect, Role};
 
 use super::record::{Record, RecordKind};
 
@@ -117,8 +117,8 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
             .collect();
     }
     let of = match effect.of {
-        crate::effects::Of::Joint => Some(joint),
-        crate::effects::Of::Robot => None,
+        crate::arm::effects::Of::Joint => Some(joint),
+        crate::arm::effects::Of::Robot => None,
     };
     let piece = |shape: Vec<f64>| Piece {
         owner: Owner::Effect(effect),

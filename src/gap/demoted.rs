@@ -118,7 +118,7 @@ impl Judged {
 
 #[cfg(test)]
 mod tests {
-    use crate::effects::find;
+    use crate::arm::effects::find;
 
     use super::*;
 

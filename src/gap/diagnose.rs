@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use crate::effects::Effect;
-use crate::robot::Model;
+use crate::arm::effects::Effect;
+use crate::arm::robot::Model;
 
 use super::calibration::calibrate;
 use super::column::{Owner, pieces};
@@ -444,7 +444,7 @@ fn joints_of_time(search: &Search<'_, '_>, found: &Found) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use crate::effects::find;
+    use crate::arm::effects::find;
 
     use super::*;
 

@@ -1,6 +1,6 @@
 //! What a diagnosis says.
 
-use crate::effects::Effect;
+use crate::arm::effects::Effect;
 
 use super::calibration::asserted;
 use super::heldout::Shrink;

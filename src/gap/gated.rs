@@ -1,6 +1,6 @@
 //! Effects that act for a part of each repetition.
 
-use crate::effects::{Effect, find};
+use crate::arm::effects::{Effect, find};
 
 use super::column::{Owner, Piece, columns_at};
 use super::record::Record;

@@ -1,6 +1,6 @@
 //! Any smooth function of one thing: what wins against all laws is none of them.
 
-use crate::effects::Motion;
+use crate::arm::effects::Motion;
 
 use super::column::{Column, Owner, Piece};
 use super::record::{Record, RecordKind};

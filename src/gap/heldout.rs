@@ -1,8 +1,8 @@
 //! How large the gap is in data that took no part, before and after.
 
-use crate::dynamics::Load;
-use crate::effects::{Motion, of_the_whole_motion};
-use crate::robot::Model;
+use crate::arm::dynamics::Load;
+use crate::arm::effects::{Motion, of_the_whole_motion};
+use crate::arm::robot::Model;
 
 use super::interval::{Interval, growth, interval};
 use super::record::{REST, Record, RecordKind};

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::dynamics::{JOINT, RIGID, link_of, link_parameters};
-use crate::effects::{Effect, Of, applied};
-use crate::robot::{EffectParameters, Friction, Given, Model};
+use crate::arm::dynamics::{JOINT, RIGID, link_of, link_parameters};
+use crate::arm::effects::{Effect, Of, applied};
+use crate::arm::robot::{EffectParameters, Friction, Given, Model};
 
 use super::polish::Fitted;
 use super::possible::{possible, possible_load};
@@ -114,7 +114,8 @@ fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
 fn add(model: &mut Model, now: &Friction, fitted: &Fitted) {
     let effect = fitted.effect;
     if OF_LOG.contains(&effect.id)
-        && let (crate::effects::Form::Model(change), Some(joint)) = (&effect.form, fitted.joint)
+        && let (crate::arm::effects::Form::Model(change), Some(joint)) =
+            (&effect.form, fitted.joint)
     {
         change(model, joint, &fitted.coordinates);
         return;

@@ -1,6 +1,6 @@
 //! What may be said of the effects that were found.
 
-use crate::effects::find;
+use crate::arm::effects::find;
 
 use super::column::Owner;
 use super::coupled::{COUPLING, OF_WRIST};

@@ -1,6 +1,6 @@
 //! A delay or a lag of what is logged.
 
-use crate::effects::{Response, find};
+use crate::arm::effects::{Response, find};
 
 use super::demoted::LESSER;
 use super::diagnosis::{Said, Verdict};

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
 
-use crate::dynamics::{RIGID, link_of, link_parameters, pseudo_inertia};
-use crate::identify::{Piece, Target, consistent};
-use crate::robot::{Link, Model};
+use crate::arm::dynamics::{RIGID, link_of, link_parameters, pseudo_inertia};
+use crate::arm::robot::{Link, Model};
+use crate::learn::identify::{Piece, Target, consistent};
 
 use super::improved::{Improved, LOAD};
 use super::polish::Polished;

@@ -1,7 +1,7 @@
 //! From logs, and those of a baseline, to a verdict.
 
-use crate::identify::Samples;
-use crate::robot::Model;
+use crate::arm::robot::Model;
+use crate::learn::identify::Samples;
 
 use super::diagnose::{Settings, diagnose, diagnose_telling};
 use super::diagnosis::Diagnosis;

@@ -3,9 +3,9 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use crate::dynamics::{JOINT, Parameters, RIGID, Regressor, link_parameters, write_rows};
-use crate::effects::Motion;
-use crate::robot::Link;
+use crate::arm::dynamics::{JOINT, Parameters, RIGID, Regressor, link_parameters, write_rows};
+use crate::arm::effects::Motion;
+use crate::arm::robot::Link;
 
 use super::record::{Record, RecordKind};
 

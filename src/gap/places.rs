@@ -1,6 +1,6 @@
 //! Where the gap is: shares of joints and regimes in what the effects change.
 
-use crate::robot::Model;
+use crate::arm::robot::Model;
 
 use super::attribution::{MOST, PARAMETERS, Subsets, brought, regime};
 use super::bins::Quantity;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::effects::{Effect, Role};
+use crate::arm::effects::{Effect, Role};
 
 use super::column::{Owner, Piece, columns_at};
 use super::evidence::Estimate;

@@ -6,12 +6,12 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, SymmetricEigen};
 
-use crate::dynamics::{
+use crate::arm::dynamics::{
     BaseParameters, JOINT, Parameters, RIGID, base_parameters, body_parameters, link_of,
     pseudo_inertia,
 };
-use crate::effects::{Effect, with_body};
-use crate::robot::Model;
+use crate::arm::effects::{Effect, with_body};
+use crate::arm::robot::Model;
 
 /// Rounds at most.
 const ROUNDS: usize = 400;
@@ -126,7 +126,7 @@ mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
     use super::*;
-    use crate::effects::find;
+    use crate::arm::effects::find;
 
     /// Mass, centre, moments about it: one with a negative moment, one that a body has.
     const LOADS: [[f64; RIGID]; 2] = [
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_load_that_no_body_has_keeps_its_mass_and_centre() {
-        let model = crate::robot::load("IRB1600-10/1.45").unwrap();
+        let model = crate::arm::robot::load("IRB1600-10/1.45").unwrap();
         let payload = find("payload").unwrap();
         let last = model.links.last().unwrap();
         let both =

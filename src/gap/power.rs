@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::effects::{Effect, find};
-use crate::robot::Model;
+use crate::arm::effects::{Effect, find};
+use crate::arm::robot::Model;
 
 use super::diagnosis::Estimated;
 use super::evidence::Evidence;

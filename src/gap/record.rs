@@ -1,9 +1,9 @@
 //! A log ready to be compared with the model.
 
-use crate::effects::{Motion, of_the_whole_motion};
-use crate::identify::{Block, Samples, Source};
-use crate::log::LowPass;
-use crate::robot::Model;
+use crate::arm::effects::{Motion, of_the_whole_motion};
+use crate::arm::robot::Model;
+use crate::learn::identify::{Block, Samples, Source};
+use crate::learn::log::LowPass;
 
 use super::spectrum::Spectrum;
 

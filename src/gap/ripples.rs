@@ -1,6 +1,6 @@
 //! Orders of ripple that a joint's torques may have.
 
-use crate::effects::{Effect, Role};
+use crate::arm::effects::{Effect, Role};
 
 use super::column::{Owner, Piece, columns_at};
 use super::record::{Record, RecordKind};

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::effects::Response;
+use crate::arm::effects::Response;
 
 use super::column::Column;
 use super::nuisance::Nuisance;

@@ -1,9 +1,9 @@
 //! Runs of a program: how long movements and waits take, how late the joints are, against runs
 //! of the baseline.
 
-use crate::effects::{Effect, find};
-use crate::log::median_step;
-use crate::robot::Model;
+use crate::arm::effects::{Effect, find};
+use crate::arm::robot::Model;
+use crate::learn::log::median_step;
 
 use super::diagnosis::Estimated;
 

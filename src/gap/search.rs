@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use crate::effects::{Parameter, Response};
+use crate::arm::effects::{Parameter, Response};
 
 use super::column::Owner;
 use super::evidence::{Evidence, Given};

@@ -1,7 +1,7 @@
 //! How large an effect is in the logs.
 
-use crate::effects::Effect;
-use crate::robot::MAX_DOF;
+use crate::arm::effects::Effect;
+use crate::arm::robot::MAX_DOF;
 
 use super::polish::Fitted;
 use super::record::{Record, RecordKind};

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::effects::{self, Effect, Form, Of, Response};
+use crate::arm::effects::{self, Effect, Form, Of, Response};
 
 use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::Evidence;

@@ -1,6 +1,6 @@
 //! What a page shows of a diagnosis: measured torques, what models miss, shapes of effects.
 
-use crate::robot::{Given, Model};
+use crate::arm::robot::{Given, Model};
 
 use super::bins::{QUANTITIES, Quantity, ends, piece};
 use super::diagnosis::{Estimated, Said};

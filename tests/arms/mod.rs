@@ -6,8 +6,8 @@
     reason = "each test uses its part of this module; an expectation would fail in the others"
 )]
 
-use joulepath::dynamics::Load;
-use joulepath::robot::{MAX_DOF, Model, find, from_toml};
+use joulepath::arm::dynamics::Load;
+use joulepath::arm::robot::{MAX_DOF, Model, find, from_toml};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 

@@ -3,12 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use joulepath::ir::hir::{Block, Data, DataKind, Expr, ExprKind, RoutineKind, StmtKind, UnaryOp};
-use joulepath::ir::lower;
-use joulepath::motion::Options;
-use joulepath::robot::{Model, find};
-use joulepath::syntax;
-use joulepath::text::{FileId, SourceFile, Span};
+use joulepath::arm::robot::{Model, find};
+use joulepath::rapid::ir::hir::{
+    Block, Data, DataKind, Expr, ExprKind, RoutineKind, StmtKind, UnaryOp,
+};
+use joulepath::rapid::ir::lower;
+use joulepath::rapid::syntax;
+use joulepath::rapid::text::{FileId, SourceFile, Span};
+use joulepath::retime::motion::Options;
 
 use crate::support::Random;
 

@@ -1,10 +1,10 @@
 //! What has to be the same in the original and in the retrofit.
 
-use joulepath::kinematics::fk;
-use joulepath::motion::Simulation;
-use joulepath::motion::timed::TimedMotion;
-use joulepath::motion::timeline::{Run, What};
-use joulepath::robot::Model;
+use joulepath::arm::kinematics::fk;
+use joulepath::arm::robot::Model;
+use joulepath::retime::motion::Simulation;
+use joulepath::retime::motion::timed::TimedMotion;
+use joulepath::retime::motion::timeline::{Run, What};
 
 /// Distance of resting places, mm.
 const PLACE_MM: f64 = 0.2;

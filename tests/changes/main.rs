@@ -15,12 +15,12 @@ mod support;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::retrofit::{
+use joulepath::arm::robot::{Model, find};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::tool::retrofit::{
     Budget, OutputKind, Retrofit, Settings, Source, prefix, read_program, retrofit, without_streams,
 };
-use joulepath::robot::{Model, find};
-use joulepath::text::{FileId, SourceFile};
 use rayon::prelude::*;
 
 use cell::{Cell, Change, Changed, Counts, apply, is_within, kind, marked};

@@ -7,14 +7,14 @@ mod excited;
 mod power;
 mod simulated;
 
-use joulepath::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
-use joulepath::effects::{ALL, Effect, find as effect, with_body};
+use joulepath::arm::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
+use joulepath::arm::effects::{ALL, Effect, find as effect, with_body};
+use joulepath::arm::robot::{Given, Model};
 use joulepath::gap::{
     Diagnosis, Fitted, Improved, Logs, PARAMETERS, Place, Quantity, Record, Settings, Trust,
     Verdict, attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
 };
-use joulepath::identify::Samples;
-use joulepath::robot::{Given, Model};
+use joulepath::learn::identify::Samples;
 
 use nalgebra::{DMatrix, DVector};
 

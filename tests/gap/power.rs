@@ -1,7 +1,7 @@
 //! Power of simulated robots.
 
+use joulepath::arm::robot::Model;
 use joulepath::gap::{PowerFound, Powers, diagnose_power};
-use joulepath::robot::Model;
 
 use crate::excited::{irb1600, normal};
 

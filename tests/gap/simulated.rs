@@ -1,9 +1,9 @@
 //! Logs of a robot with an effect.
 
-use joulepath::effects::{Effect, Motion};
-use joulepath::identify::{Hints, Samples, prepare};
-use joulepath::log::{Channel, Log};
-use joulepath::robot::Model;
+use joulepath::arm::effects::{Effect, Motion};
+use joulepath::arm::robot::Model;
+use joulepath::learn::identify::{Hints, Samples, prepare};
+use joulepath::learn::log::{Channel, Log};
 
 use crate::excited::{normal, series};
 

@@ -18,7 +18,7 @@ use std::path::Path;
 use earley::Grammar;
 use ebnf::Ebnf;
 use generate::{Generator, spaced};
-use joulepath::syntax::{self, KEYWORDS, NodeKind, Parse, TokenKind, Tolerance};
+use joulepath::rapid::syntax::{self, KEYWORDS, NodeKind, Parse, TokenKind, Tolerance};
 use proptest::prelude::*;
 use support::{Random, check_tree, fixtures};
 

@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use joulepath::dynamics::{Data, torque};
-use joulepath::ir::movement::Movement;
-use joulepath::kinematics::{fk, ik_near};
-use joulepath::motion::timeline::{Run, What};
-use joulepath::motion::{Options, Simulation, simulate};
-use joulepath::path::joint_path::{DOF, JointPath, Joints};
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot::{Model, find, from_toml};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::dynamics::{Data, torque};
+use joulepath::arm::kinematics::{fk, ik_near};
+use joulepath::arm::robot::{Model, find, from_toml};
+use joulepath::rapid::ir::movement::Movement;
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::timeline::{Run, What};
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::path::joint_path::{DOF, JointPath, Joints};
+use joulepath::tool::retrofit::{Source, read_program};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use crate::support::Random;
@@ -71,7 +71,7 @@ impl Case {
     /// Its path, where the robot does not stop on the way.
     pub(crate) fn path(&self) -> Option<&JointPath> {
         match self.run().motions.as_slice() {
-            [(_, joulepath::motion::timed::TimedMotion::Path(path, _))] => Some(path),
+            [(_, joulepath::retime::motion::timed::TimedMotion::Path(path, _))] => Some(path),
             _ => None,
         }
     }

@@ -12,21 +12,21 @@ mod played;
 mod support;
 
 use cases::{Case, EASY, HARD, Kind, cases};
-use joulepath::dynamics::{Data, torque};
-use joulepath::energy::EnergyParts;
-use joulepath::motion::controller::motion_limits;
-use joulepath::motion::sampling::{Loaded, SpeedCap};
-use joulepath::motion::timing::grid::PathGrid;
-use joulepath::motion::timing::limits::PathLimits;
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::time_optimal;
-use joulepath::motion::timing::refined::{Refinement, time_optimal_between};
-use joulepath::optimize::cost::Cost;
-use joulepath::optimize::freedom::{Bound, Freedom};
-use joulepath::optimize::path_grid;
-use joulepath::optimize::reason::Reason;
-use joulepath::optimize::retime::{Goal, Task, retime};
-use joulepath::path::joint_path::{DOF, JointPath};
+use joulepath::arm::dynamics::{Data, torque};
+use joulepath::retime::energy::EnergyParts;
+use joulepath::retime::motion::controller::motion_limits;
+use joulepath::retime::motion::sampling::{Loaded, SpeedCap};
+use joulepath::retime::motion::timing::grid::PathGrid;
+use joulepath::retime::motion::timing::limits::PathLimits;
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::time_optimal;
+use joulepath::retime::motion::timing::refined::{Refinement, time_optimal_between};
+use joulepath::retime::optimize::cost::Cost;
+use joulepath::retime::optimize::freedom::{Bound, Freedom};
+use joulepath::retime::optimize::path_grid;
+use joulepath::retime::optimize::reason::Reason;
+use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::path::joint_path::{DOF, JointPath};
 use rayon::prelude::*;
 
 /// Paths of each sort.
@@ -92,7 +92,7 @@ fn worst_between(case: &Case, path: &JointPath, profile: &Profile) -> (f64, &'st
             }
             let tool = &run.legs[piece.leg].tool;
             let twist = tool.jacobian(model, &point.q) * nalgebra::Vector6::from(qd);
-            if !matches!(piece.kind, joulepath::path::PieceKind::JointZone) {
+            if !matches!(piece.kind, joulepath::retime::path::PieceKind::JointZone) {
                 see(twist.fixed_rows::<3>(0).norm() / caps[piece.leg].tcp, "TCP speed");
             }
         }

@@ -1,8 +1,8 @@
 //! A stream played back from its points and times alone.
 
-use joulepath::dynamics::{Data, torque};
-use joulepath::motion::stream::Stream;
-use joulepath::path::joint_path::{DOF, Joints};
+use joulepath::arm::dynamics::{Data, torque};
+use joulepath::retime::motion::stream::Stream;
+use joulepath::retime::path::joint_path::{DOF, Joints};
 
 use crate::cases::Case;
 

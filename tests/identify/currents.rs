@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use joulepath::dynamics::{Load, Parameters, parameters};
-use joulepath::identify::{
+use joulepath::arm::dynamics::{Load, Parameters, parameters};
+use joulepath::arm::robot::Model;
+use joulepath::learn::identify::{
     Free, Hints, Settings, Source, Weighting, identify, prepare, synchronised, torques,
 };
-use joulepath::log::{Aligned, Channel, Log};
-use joulepath::robot::Model;
+use joulepath::learn::log::{Aligned, Channel, Log};
 
 use crate::excited::{irb1600, normal, series};
 use crate::simulated::{With, log};

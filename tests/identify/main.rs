@@ -8,16 +8,16 @@ mod currents;
 mod excited;
 mod simulated;
 
-use joulepath::dynamics::{
+use joulepath::arm::dynamics::{
     BaseParameters, Load, Parameters, Regressor, base_parameters, parameters, write_rows,
 };
-use joulepath::effects::from_toml;
-use joulepath::identify::{
+use joulepath::arm::effects::from_toml;
+use joulepath::arm::robot::{Model, to_toml};
+use joulepath::learn::identify::{
     Equations, Fit, Free, Hints, Known, Samples, Settings, Source, Weighting, fit, identify,
     prepare, torques,
 };
-use joulepath::log::{Channel, Log};
-use joulepath::robot::{Model, to_toml};
+use joulepath::learn::log::{Channel, Log};
 use nalgebra::{DMatrix, DVector};
 
 use excited::{irb1600, series};

@@ -1,9 +1,9 @@
 //! Logs of a robot that is known.
 
-use joulepath::dynamics::{Data, Load, torque};
-use joulepath::excite::Series;
-use joulepath::log::{Channel, Log};
-use joulepath::robot::Model;
+use joulepath::arm::dynamics::{Data, Load, torque};
+use joulepath::arm::robot::Model;
+use joulepath::learn::excite::Series;
+use joulepath::learn::log::{Channel, Log};
 
 use crate::excited::normal;
 

@@ -1,9 +1,9 @@
 //! Fixes: applied once and for all, and nothing else of a file is touched.
 
-use joulepath::lint::engine::cycles;
-use joulepath::lint::{Applicability, Fixed, fix};
-use joulepath::motion::timeline::What;
-use joulepath::text::SourceFile;
+use joulepath::rapid::text::SourceFile;
+use joulepath::retime::motion::timeline::What;
+use joulepath::tool::lint::engine::cycles;
+use joulepath::tool::lint::{Applicability, Fixed, fix};
 
 use crate::plants::plants;
 use crate::{Fixture, fixtures};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use joulepath::report::lint::{github, gitlab, json, junit, sarif};
+use joulepath::tool::report::lint::{github, gitlab, json, junit, sarif};
 use serde_json::{Value, json};
 
 use crate::fixtures;

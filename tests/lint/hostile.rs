@@ -34,7 +34,8 @@ fn broken_programs_are_survived() {
                 _ => bytes.rotate_left(below(whole.len() - start)),
             }
             let file = &fixture.files[0];
-            fixture.files[0] = joulepath::text::SourceFile::new(file.id, file.path.clone(), bytes);
+            fixture.files[0] =
+                joulepath::rapid::text::SourceFile::new(file.id, file.path.clone(), bytes);
             fixture.report();
         }
     }

@@ -14,11 +14,11 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 
-use joulepath::effects;
-use joulepath::lint::{ALL, Finding, Group, Job, Needs, Report, Settings, lint};
-use joulepath::motion::Options;
-use joulepath::robot::Model;
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::effects;
+use joulepath::arm::robot::Model;
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::Options;
+use joulepath::tool::lint::{ALL, Finding, Group, Job, Needs, Report, Settings, lint};
 
 /// A program with what its first comments say of it.
 pub(crate) struct Fixture {
@@ -132,7 +132,7 @@ fn marks_name_rules() {
     for fixture in fixtures() {
         let stem = fixture.path.file_stem().unwrap().to_str().unwrap();
         let code = stem.split('_').next().unwrap();
-        assert!(joulepath::lint::find(code).is_some(), "{stem}: no rule {code}");
+        assert!(joulepath::tool::lint::find(code).is_some(), "{stem}: no rule {code}");
     }
 }
 

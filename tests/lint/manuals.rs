@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use joulepath::lint::{ALL, HEADINGS, page};
+use joulepath::tool::lint::{ALL, HEADINGS, page};
 
 #[test]
 fn manuals_have_all_headings_in_order() {
@@ -26,10 +26,10 @@ fn codes_are_in_order_and_of_their_families() {
         assert!(pair[0].family <= pair[1].family, "{} before {}", pair[0].code, pair[1].code);
     }
     for rule in ALL {
-        let file = format!("src/lint/rules/{}.rs", rule.name.replace('-', "_"));
+        let file = format!("src/tool/lint/rules/{}.rs", rule.name.replace('-', "_"));
         assert!(Path::new(&file).is_file(), "{} is not in {file}", rule.code);
     }
-    let files = fs::read_dir("src/lint/rules").unwrap().count();
+    let files = fs::read_dir("src/tool/lint/rules").unwrap().count();
     assert_eq!(files, ALL.len() + 1, "each rule is one file, and registered");
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use joulepath::lint::{ALL, Needs, find};
+use joulepath::tool::lint::{ALL, Needs, find};
 
 use crate::Fixture;
 

@@ -1,8 +1,8 @@
 //! What a finding says it saves is what two simulations of the whole program say.
 
-use joulepath::lint::engine::cycles;
-use joulepath::lint::{Applicability, Finding};
-use joulepath::text::{Edit, Span, apply};
+use joulepath::rapid::text::{Edit, Span, apply};
+use joulepath::tool::lint::engine::cycles;
+use joulepath::tool::lint::{Applicability, Finding};
 
 use crate::plants::plants;
 use crate::{Fixture, fixtures};

@@ -1,7 +1,7 @@
 //! Paths whose best profiles are known in closed form: one joint moves along q = s.
 
-use joulepath::motion::stream::DOF;
-use joulepath::motion::timing::grid::{PathGrid, PathPoint};
+use joulepath::retime::motion::stream::DOF;
+use joulepath::retime::motion::timing::grid::{PathGrid, PathPoint};
 
 /// A joint of inertia `inertia` with viscous friction `viscous` over `length` rad; `n` intervals.
 pub(crate) fn single_joint(

@@ -3,10 +3,10 @@
 //! Point masses mᵢ ride on a chain of six revolute joints, rotors turn with the joints:
 //! τ = Σ mᵢ Jᵢᵀ (p̈ᵢ − γ) + I q̈, which needs positions and their derivatives along the path only.
 
-use joulepath::motion::stream::{DOF, Joints};
-use joulepath::motion::timing::grid::{PathGrid, PathPoint, rest_to_rest_nodes};
-use joulepath::motion::timing::limits::PathLimits;
-use joulepath::optimize::plant::Plant;
+use joulepath::retime::motion::stream::{DOF, Joints};
+use joulepath::retime::motion::timing::grid::{PathGrid, PathPoint, rest_to_rest_nodes};
+use joulepath::retime::motion::timing::limits::PathLimits;
+use joulepath::retime::optimize::plant::Plant;
 
 type Vec3 = [f64; 3];
 

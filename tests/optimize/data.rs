@@ -1,13 +1,13 @@
 //! Grids, limits, profiles and references as plain data; scales and degenerate paths.
 
-use joulepath::motion::stream::DOF;
-use joulepath::motion::timing::grid::{GridError, PathGrid, PathPoint, rest_to_rest_nodes};
-use joulepath::motion::timing::limits::{PathLimits, worst_ratio};
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::{Reachability, time_optimal};
-use joulepath::optimize::energy_program::minimize_energy;
-use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
-use joulepath::optimize::stream_reference::{Reference, ReferenceError};
+use joulepath::retime::motion::stream::DOF;
+use joulepath::retime::motion::timing::grid::{GridError, PathGrid, PathPoint, rest_to_rest_nodes};
+use joulepath::retime::motion::timing::limits::{PathLimits, worst_ratio};
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::{Reachability, time_optimal};
+use joulepath::retime::optimize::energy_program::minimize_energy;
+use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
+use joulepath::retime::optimize::stream_reference::{Reference, ReferenceError};
 
 use crate::analytic::single_joint;
 use crate::arm;

@@ -1,12 +1,12 @@
 //! The profile of least energy.
 
-use joulepath::motion::stream::{DOF, Joints};
-use joulepath::motion::timing::grid::PathGrid;
-use joulepath::motion::timing::limits::{PathLimits, worst_ratio};
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::{speed_range, time_optimal};
-use joulepath::optimize::energy_program::{EnergyOptimum, EnergyOutcome, minimize_energy};
-use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
+use joulepath::retime::motion::stream::{DOF, Joints};
+use joulepath::retime::motion::timing::grid::PathGrid;
+use joulepath::retime::motion::timing::limits::{PathLimits, worst_ratio};
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::{speed_range, time_optimal};
+use joulepath::retime::optimize::energy_program::{EnergyOptimum, EnergyOutcome, minimize_energy};
+use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 
 use crate::analytic::single_joint;
 use crate::arm;

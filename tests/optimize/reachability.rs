@@ -1,10 +1,10 @@
 //! The fastest profile.
 
-use joulepath::motion::stream::DOF;
-use joulepath::motion::timing::grid::PathGrid;
-use joulepath::motion::timing::limits::{PathLimits, worst_ratio};
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::{Reachability, time_optimal};
+use joulepath::retime::motion::stream::DOF;
+use joulepath::retime::motion::timing::grid::PathGrid;
+use joulepath::retime::motion::timing::limits::{PathLimits, worst_ratio};
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::{Reachability, time_optimal};
 
 use crate::analytic::single_joint;
 use crate::arm;

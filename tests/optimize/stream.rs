@@ -2,17 +2,17 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use joulepath::motion::stream::{DOF, Joints, Piece, Stream};
-use joulepath::motion::timing::profile::Profile;
-use joulepath::motion::timing::reachability::time_optimal;
-use joulepath::optimize::energy_program::minimize_energy;
-use joulepath::optimize::path_energy::{EnergyModel, Sharing, evaluate};
-use joulepath::optimize::plant::{PathShares, Plant, realise};
-use joulepath::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
-use joulepath::optimize::stream_limits::StreamLimits;
-use joulepath::optimize::stream_polish::{Corridor, polish_stream};
-use joulepath::optimize::stream_reference::Reference;
-use joulepath::optimize::stream_spacing::{Spacing, adaptive_intervals};
+use joulepath::retime::motion::stream::{DOF, Joints, Piece, Stream};
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::time_optimal;
+use joulepath::retime::optimize::energy_program::minimize_energy;
+use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
+use joulepath::retime::optimize::plant::{PathShares, Plant, realise};
+use joulepath::retime::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
+use joulepath::retime::optimize::stream_limits::StreamLimits;
+use joulepath::retime::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::retime::optimize::stream_reference::Reference;
+use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
 use crate::arm;
 

@@ -7,12 +7,12 @@ use std::io::Read;
 use std::path::Path;
 
 use flate2::read::GzDecoder;
-use joulepath::kinematics::fk;
-use joulepath::motion::timeline::{Run, What};
-use joulepath::motion::{Options, simulate};
-use joulepath::retrofit::{Source, read_program};
-use joulepath::robot::{Model, find};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::arm::kinematics::fk;
+use joulepath::arm::robot::{Model, find};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::timeline::{Run, What};
+use joulepath::retime::motion::{Options, simulate};
+use joulepath::tool::retrofit::{Source, read_program};
 use nalgebra::Vector3;
 use serde_json::Value;
 

@@ -6,12 +6,12 @@
     reason = "each user takes its part of this module; an expectation would fail in the others"
 )]
 
-use joulepath::blind::{Case, Settings, Unlogged};
-use joulepath::effects::from_toml;
+use joulepath::arm::effects::from_toml;
+use joulepath::arm::robot::Model;
+use joulepath::examine::blind::{Case, Settings, Unlogged};
 use joulepath::gap::{Record, Trust};
-use joulepath::identify::{Block, Hints, Samples, Source, prepare};
-use joulepath::log::{Channel, ColumnMap, read_csv};
-use joulepath::robot::Model;
+use joulepath::learn::identify::{Block, Hints, Samples, Source, prepare};
+use joulepath::learn::log::{Channel, ColumnMap, read_csv};
 
 /// A case that was read.
 pub(crate) struct Examined {

@@ -1,7 +1,7 @@
 //! A robot, a motion that excites it, and noise.
 
-use joulepath::excite::Series;
-use joulepath::robot::{Model, find};
+use joulepath::arm::robot::{Model, find};
+use joulepath::learn::excite::Series;
 
 /// The robot of the paper.
 pub(crate) fn irb1600() -> Model {

@@ -9,9 +9,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use joulepath::retrofit::Source;
-use joulepath::syntax::{self, Element, Parse};
-use joulepath::text::{FileId, SourceFile};
+use joulepath::rapid::syntax::{self, Element, Parse};
+use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::tool::retrofit::Source;
 
 /// Most looks at a token per token: constant, whatever the input.
 const STEPS_PER_TOKEN: u64 = 8;

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use joulepath::effects::{ALL, from_toml};
+use joulepath::arm::effects::{ALL, from_toml};
+use joulepath::arm::robot::{Model, import_urdf};
 use joulepath::gap::{Diagnosis, Record, Settings, Trust, diagnose};
-use joulepath::identify::{
+use joulepath::learn::identify::{
     Free, Hints, Samples, Settings as Identify, Source, Weighting, identify, prepare, torques,
 };
-use joulepath::log::{ColumnMap, Log, read_csv};
-use joulepath::robot::{Model, import_urdf};
+use joulepath::learn::log::{ColumnMap, Log, read_csv};
 
 /// Part of the log that is fitted; the rest grades.
 const TRAINED: f64 = 0.7;

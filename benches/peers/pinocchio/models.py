@@ -9,7 +9,7 @@ import pinocchio as pin
 
 ROOT = Path(__file__).resolve().parents[3]
 ROBOTS = {
-    "six": ROOT / "src/robot/catalogue/irb1600_10_145.toml",
+    "six": ROOT / "src/arm/robot/catalogue/irb1600_10_145.toml",
     "skew": ROOT / "fixtures/dynamics/skew.toml",
     "seven": ROOT / "fixtures/dynamics/seven.toml",
 }

@@ -1,0 +1,217 @@
+//! Base parameters: the combinations of the parameters that torques can tell.
+//!
+//! M. Gautier, "Numerical calculation of the base inertial parameters of robots",
+//! Journal of Robotic Systems 8, 1991: a QR decomposition of the regressor at many
+//! states, W = Q R. A column without a pivot is a combination of columns before
+//! it, W₂ = W₁ K, and its parameter is grouped into theirs: π₁ + K π₂.
+
+use std::fmt::Write;
+
+use nalgebra::DMatrix;
+
+use crate::arm::robot::{MAX_DOF, Model};
+
+use super::motor_side::motor_rates;
+use super::parameters::{JOINT, Parameters, RIGID, joint_row};
+use super::regressor::{Regressor, regressor};
+
+/// States at which the regressor is evaluated.
+const STATES: usize = 80;
+/// Pivots below this, relative to the column's length, count as 0.
+const TOLERANCE: f64 = 1e-9;
+/// Largest angle \[rad\], velocity \[rad/s\] and acceleration \[rad/s²\] of a state.
+const REACH: [f64; 3] = [3.0, 3.0, 3.0];
+/// A velocity that has a sense but no inertia \[rad/s\].
+const CREEP: f64 = 1e-6;
+
+/// Which parameters stand for themselves, and how the others are grouped.
+#[derive(Clone, Debug)]
+pub struct BaseParameters {
+    /// Which parameters were asked for.
+    pub of: Parameters,
+    /// Number of joints.
+    pub dof: usize,
+    /// Indices of the parameters that head a base parameter, ascending.
+    pub independent: Vec<usize>,
+    /// Indices of the others, ascending.
+    pub dependent: Vec<usize>,
+    /// K, a row for each of `independent` and a column for each of `dependent`.
+    pub grouping: DMatrix<f64>,
+}
+
+impl BaseParameters {
+    /// Number of base parameters.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.independent.len()
+    }
+
+    /// The base parameters of all parameters.
+    #[must_use]
+    pub fn of_parameters(&self, all: &[f64]) -> Vec<f64> {
+        let value = |row: usize, index: &usize| {
+            let grouped = self.dependent.iter().enumerate();
+            all[*index] + grouped.map(|(k, from)| self.grouping[(row, k)] * all[*from]).sum::<f64>()
+        };
+        self.independent.iter().enumerate().map(|(row, index)| value(row, index)).collect()
+    }
+
+    /// A base parameter in words, such as `zz1 + yy2 + 0.49 m3`.
+    #[must_use]
+    pub fn name(&self, row: usize) -> String {
+        let mut text = self.of.name(self.dof, self.independent[row]);
+        for (k, from) in self.dependent.iter().enumerate() {
+            let factor = self.grouping[(row, k)];
+            if factor == 0.0 {
+                continue;
+            }
+            let sense = if factor < 0.0 { '-' } else { '+' };
+            let name = self.of.name(self.dof, *from);
+            let size = (factor.abs() * 1e6).round() / 1e6;
+            let factor = if size == 1.0 { String::new() } else { format!("{size} ") };
+            let _ = write!(text, " {sense} {factor}{name}");
+        }
+        text
+    }
+}
+
+/// Writes the rows of the regressor at one state into `rows` from row `first` on:
+/// one for each joint, with a column for each parameter in the order of
+/// [`Parameters::name`].
+pub fn write_rows(
+    model: &Model,
+    scratch: &mut Regressor,
+    state: [&[f64]; 3],
+    which: Parameters,
+    rows: &mut DMatrix<f64>,
+    first: usize,
+) {
+    let [q, qd, qdd] = state;
+    regressor(model, scratch, q, qd, qdd);
+    let n = model.dof;
+    for joint in 0..n {
+        for link in 0..n {
+            for (k, value) in scratch.rows[joint][link].iter().enumerate() {
+                rows[(first + joint, RIGID * link + k)] = *value;
+            }
+        }
+    }
+    if which == Parameters::WithJoints {
+        let (rates, accelerations) = (motor_rates(model, qd), motor_rates(model, qdd));
+        for motor in 0..n {
+            let values = joint_row(rates[motor], accelerations[motor]);
+            for joint in 0..n {
+                // C of the motor's angle: 1 of its own joint, the coupling of axis 5.
+                let mut unit = [0.0; MAX_DOF];
+                unit[joint] = 1.0;
+                let share = motor_rates(model, &unit)[motor];
+                for (k, value) in values.iter().enumerate() {
+                    rows[(first + joint, RIGID * n + JOINT * motor + k)] = share * value;
+                }
+            }
+        }
+    }
+}
+
+/// The base parameters of a robot.
+#[must_use]
+pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
+    let all: Vec<usize> = (0..which.count(model.dof)).collect();
+    base_parameters_among(model, which, &all)
+}
+
+/// The base parameters of those at the indices `among` (ascending), the others being known.
+#[must_use]
+pub fn base_parameters_among(model: &Model, which: Parameters, among: &[usize]) -> BaseParameters {
+    grouped(model, which, among, REACH)
+}
+
+/// The base parameters of motions so slow that only weight and the sense of friction count.
+#[must_use]
+pub fn base_parameters_at_rest(
+    model: &Model,
+    which: Parameters,
+    among: &[usize],
+) -> BaseParameters {
+    grouped(model, which, among, [REACH[0], CREEP, 0.0])
+}
+
+fn grouped(model: &Model, which: Parameters, among: &[usize], reach: [f64; 3]) -> BaseParameters {
+    let n = model.dof;
+    let count = which.count(n);
+    let mut stacked = DMatrix::zeros(STATES * n, count);
+    let mut scratch = Regressor::new();
+    for state in 0..STATES {
+        let [q, qd, qdd]: [Vec<f64>; 3] = std::array::from_fn(|kind| {
+            (0..n).map(|joint| reach[kind] * spread(state, kind * MAX_DOF + joint)).collect()
+        });
+        write_rows(model, &mut scratch, [&q, &qd, &qdd], which, &mut stacked, state * n);
+    }
+    let mut stacked = stacked.select_columns(among);
+    // Columns of one length each, so that units do not matter; a column of rounding
+    // errors stays one.
+    let mut lengths: Vec<f64> = stacked.column_iter().map(|column| column.norm()).collect();
+    let longest = lengths.iter().fold(f64::MIN_POSITIVE, |m, length| m.max(*length));
+    for (mut column, length) in stacked.column_iter_mut().zip(&mut lengths) {
+        if *length < TOLERANCE * longest {
+            *length = longest;
+        }
+        column /= *length;
+    }
+    let mut base = group(stacked, &lengths, which, n);
+    for index in base.independent.iter_mut().chain(&mut base.dependent) {
+        *index = among[*index];
+    }
+    base
+}
+
+/// Householder reflections from left to right; a column with nothing left below
+/// the pivots found so far gets none.
+fn group(mut w: DMatrix<f64>, lengths: &[f64], of: Parameters, dof: usize) -> BaseParameters {
+    let (mut independent, mut dependent) = (Vec::new(), Vec::new());
+    for column in 0..w.ncols() {
+        let rank = independent.len();
+        let below = w.view_range(rank.., column).norm();
+        if below < TOLERANCE {
+            dependent.push(column);
+            continue;
+        }
+        independent.push(column);
+        let mut mirror = w.view_range(rank.., column).clone_owned();
+        mirror[0] += below.copysign(mirror[0]);
+        let scale = 2.0 / mirror.norm_squared();
+        for later in column..w.ncols() {
+            let share = scale * mirror.dot(&w.view_range(rank.., later));
+            w.view_range_mut(rank.., later).axpy(-share, &mirror, 1.0);
+        }
+    }
+    let rank = independent.len();
+    // R₁ K = R₂ from the last row on, then without the scaling.
+    let mut grouping = DMatrix::zeros(rank, dependent.len());
+    for (k, from) in dependent.iter().enumerate() {
+        for row in (0..rank).rev() {
+            let mut sum = w[(row, *from)];
+            for other in row + 1..rank {
+                sum -= w[(row, independent[other])] * grouping[(other, k)];
+            }
+            grouping[(row, k)] = sum / w[(row, independent[row])];
+        }
+        for row in 0..rank {
+            grouping[(row, k)] *= lengths[*from] / lengths[independent[row]];
+            if grouping[(row, k)].abs() < TOLERANCE {
+                grouping[(row, k)] = 0.0;
+            }
+        }
+    }
+    BaseParameters { of, dof, independent, dependent, grouping }
+}
+
+/// A number in (−1, 1) that fills the interval evenly over `index`, another way
+/// for each `channel`: multiples of roots of primes, without their whole parts.
+fn spread(index: usize, channel: usize) -> f64 {
+    const PRIMES: [f64; 3 * MAX_DOF] = [
+        2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0, 41.0, 43.0, 47.0, 53.0,
+        59.0, 61.0, 67.0, 71.0, 73.0,
+    ];
+    2.0 * ((index + 1) as f64 * PRIMES[channel].sqrt()).fract() - 1.0
+}

@@ -1,0 +1,89 @@
+//! Friction of the joints.
+//!
+//! ```text
+//! τ_f = f_C s + f_v q̇ + f_s exp(−(q̇/v_s)²) s + f_a |q̇| + f_d s² + μ |τ_L| s
+//! ```
+//!
+//! with s the sign of the velocity: Coulomb, viscous, Stribeck (B.
+//! Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, "A Survey of Models, Analysis
+//! Tools and Compensation Methods for the Control of Machines with Friction",
+//! Automatica 30, 1994), the difference of the directions, and the part that grows
+//! with the load `τ_L` on the gear. Velocities and torques are those of the motors,
+//! which differ from the joints' only where a wrist is coupled.
+
+use crate::arm::robot::{MAX_DOF, Model};
+
+use super::motor_side::{joint_torques, motor_rates, motor_torques};
+
+/// Torque of each joint against its friction \[Nm\] at the velocities `qd`
+/// \[rad/s\], with `load_torque` \[Nm\] through the gears. Exact: s = sign(q̇), and
+/// sign(0) = 0.
+#[must_use]
+pub fn friction(model: &Model, qd: &[f64], load_torque: &[f64; MAX_DOF]) -> [f64; MAX_DOF] {
+    law(model, qd, load_torque, |_, velocity| sign(velocity))
+}
+
+/// The same, differentiable in the velocities: s = tanh(q̇ / `width`), with `width`
+/// > 0 in \[rad/s\].
+#[must_use]
+pub fn smooth_friction(
+    model: &Model,
+    qd: &[f64],
+    load_torque: &[f64; MAX_DOF],
+    width: f64,
+) -> [f64; MAX_DOF] {
+    law(model, qd, load_torque, |_, velocity| (velocity / width).tanh())
+}
+
+/// The same with given senses of the motors: 0 for one that counts as at rest.
+#[must_use]
+pub fn friction_of_senses(
+    model: &Model,
+    qd: &[f64],
+    load_torque: &[f64; MAX_DOF],
+    senses: &[f64; MAX_DOF],
+) -> [f64; MAX_DOF] {
+    law(model, qd, load_torque, |joint, _| senses[joint])
+}
+
+/// The sense of a velocity: 1, −1, or 0 at 0.
+#[must_use]
+pub fn sense(velocity: f64) -> f64 {
+    sign(velocity)
+}
+
+/// 1, −1, or 0 at 0.
+pub(super) fn sign(velocity: f64) -> f64 {
+    if velocity == 0.0 { 0.0 } else { velocity.signum() }
+}
+
+fn law(
+    model: &Model,
+    qd: &[f64],
+    load_torque: &[f64; MAX_DOF],
+    sign: impl Fn(usize, f64) -> f64,
+) -> [f64; MAX_DOF] {
+    let friction = &model.friction;
+    let rates = motor_rates(model, qd);
+    let loads = motor_torques(model, *load_torque);
+    let mut tau = [0.0; MAX_DOF];
+    for joint in 0..model.dof {
+        let velocity = rates[joint];
+        let s = sign(joint, velocity);
+        let mut dry = friction.coulomb[joint];
+        if let Some(law) = &friction.stribeck {
+            dry += law.stiction[joint] * (-(velocity / law.velocity[joint]).powi(2)).exp();
+        }
+        if let Some(mu) = &friction.load_friction {
+            dry += mu[joint] * loads[joint].abs();
+        }
+        tau[joint] = dry * s + friction.viscous[joint] * velocity;
+        if let Some(asymmetry) = &friction.viscous_asymmetry {
+            tau[joint] += asymmetry[joint] * velocity * s;
+        }
+        if let Some(asymmetry) = &friction.coulomb_asymmetry {
+            tau[joint] += asymmetry[joint] * s * s;
+        }
+    }
+    joint_torques(model, tau)
+}

@@ -1,0 +1,61 @@
+//! What the motors have to do: rigid bodies, rotors and friction.
+
+use crate::arm::robot::{MAX_DOF, Model};
+
+use super::data::Data;
+use super::friction::{friction, sign};
+use super::laws::laws;
+use super::load::Load;
+use super::motor_side::{motor_rates, rotor_torques};
+use super::rnea::{rigid_bodies, rigid_bodies_each};
+
+/// Torques at the joints \[Nm\].
+#[derive(Clone, Copy, Debug)]
+pub struct Torque {
+    /// Of the rigid bodies and the rotors, as [`rnea`](super::rnea) gives it, and of what else
+    /// is between the links.
+    pub rigid: [f64; MAX_DOF],
+    /// Of friction, with exact signs.
+    pub friction: [f64; MAX_DOF],
+}
+
+/// The torques of the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] with `load`
+/// at the flange. All zero but friction where the robot has no dynamics.
+pub fn torque(
+    model: &Model,
+    data: &mut Data,
+    load: &Load,
+    q: &[f64],
+    qd: &[f64],
+    qdd: &[f64],
+) -> Torque {
+    through_gears(model, [q, qd, qdd], rigid_bodies(model, data, load, q, qd, qdd))
+}
+
+/// [`torque`] in several states \[q, q̇, q̈\]: takes less than one after the other.
+#[inline]
+pub fn torque_each<const N: usize>(
+    model: &Model,
+    load: &Load,
+    states: [[&[f64]; 3]; N],
+) -> [Torque; N] {
+    let rigid = rigid_bodies_each(model, load, states);
+    std::array::from_fn(|k| through_gears(model, states[k], rigid[k]))
+}
+
+/// With the torques `rigid` of the rigid bodies.
+fn through_gears(model: &Model, [q, qd, qdd]: [&[f64]; 3], mut rigid: [f64; MAX_DOF]) -> Torque {
+    let mut friction = friction(model, qd, &rigid);
+    if !model.laws.is_empty() {
+        let senses = motor_rates(model, qd).map(sign);
+        let [between, rubbing] = laws(model, f64::INFINITY, [q, qd], &rigid, &senses);
+        for joint in 0..model.dof {
+            rigid[joint] += between[joint];
+            friction[joint] += rubbing[joint];
+        }
+    }
+    for (sum, rotor) in rigid.iter_mut().zip(rotor_torques(model, qdd)) {
+        *sum += rotor;
+    }
+    Torque { rigid, friction }
+}

@@ -1,0 +1,31 @@
+//! What only a log shows in proportion to acceleration and rate: below zero, which no rotor and no friction has.
+
+use crate::arm::robot::Model;
+
+use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+
+/// Apparent torque.
+pub(super) const APPARENT_TORQUE: Effect = Effect {
+    id: "apparent_torque",
+    channel: Channel::Torque,
+    of: Of::Joint,
+    title: "Apparent torque",
+    law: "τ = inertia·q̈ + viscous·q̇",
+    source: "docs/identification.md",
+    parameters: &[
+        free("inertia", "kg m2", "apparent inertia"),
+        free("viscous", "Nm s/rad", "apparent viscous friction"),
+    ],
+    coordinates: &[linear(|of| 0.1 * of.rotor), linear(|of| 0.1 * of.viscous)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["time_delay", "filter_lag", "elasticity"],
+    experiment: ["--harmonics 1,4,7,11", "faster motion tells a delay from an inertia"],
+    form: Form::Model(change),
+};
+
+fn change(model: &mut Model, joint: usize, values: &[f64]) {
+    model.sensors.apparent_inertia[joint] += values[0];
+    model.sensors.apparent_viscous[joint] += values[1];
+}

@@ -1,0 +1,29 @@
+//! Loss in the windings.
+
+use crate::arm::robot::Model;
+
+use super::effect::{Channel, Effect, Form, Of, every, free};
+
+/// Loss in the windings.
+pub(super) const COPPER_LOSS: Effect = Effect {
+    id: "copper_loss",
+    channel: Channel::Power,
+    of: Of::Joint,
+    title: "Loss in the windings",
+    law: "P = loss·τ²",
+    source: "docs/energy.md",
+    parameters: &[free("loss", "W/(Nm)2", "change of the loss per squared torque")],
+    coordinates: &[],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["inverter_loss"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Model(change),
+};
+
+fn change(model: &mut Model, joint: usize, values: &[f64]) {
+    if let Some(motors) = &mut model.motors {
+        motors.loss_constant[joint] += values[0];
+    }
+}

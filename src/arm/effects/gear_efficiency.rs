@@ -1,0 +1,31 @@
+//! A gear that loses another share where it drives than where it is driven.
+
+use crate::arm::robot::LawState;
+
+use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, linear};
+
+/// Efficiency of the gear.
+pub(super) const GEAR_EFFICIENCY: Effect = Effect {
+    id: "gear_efficiency",
+    channel: Channel::Torque,
+    of: Of::Joint,
+    title: "Efficiency of the gear",
+    law: "τ = motoring·|τ_L|·s where τ_L·q̇ > 0, generating·|τ_L|·s elsewhere",
+    source: "A. Abedinnasab et al.; harmonic drives lose more when driven back: T. Tuttle, W. Seering, IEEE T-RA 12, 1996",
+    parameters: &[
+        bounded("motoring", "1", "loss per torque where the motor drives", [0.0, 0.9]),
+        bounded("generating", "1", "loss per torque where the load drives", [0.0, 0.9]),
+    ],
+    coordinates: &[linear(|_| 0.12), linear(|_| 0.12)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["load_friction", "position_friction"],
+    experiment: ["--variant gravity", "lifting and lowering"],
+    form: Form::Law { dissipates: true, torque },
+};
+
+fn torque(state: &LawState, [motoring, generating, ..]: &Values) -> f64 {
+    let loss = if state.gear * state.rate > 0.0 { motoring } else { generating };
+    loss * state.gear.abs() * state.sense
+}

@@ -1,0 +1,22 @@
+//! Springs of single joints.
+
+use crate::arm::robot::LawState;
+
+use super::effect::{Published, Values};
+
+/// Coordinates are the stiffness and the torque at 0; parameters stiffness and centre.
+pub(super) const STIFFNESS_AND_CENTRE: Published = Published {
+    parameters: |x| match x {
+        [stiffness, at_zero, ..] if *stiffness != 0.0 => vec![*stiffness, -at_zero / stiffness],
+        _ => vec![0.0, 0.0],
+    },
+    coordinates: |x| match x {
+        [stiffness, centre, ..] => vec![*stiffness, -stiffness * centre],
+        _ => vec![0.0, 0.0],
+    },
+};
+
+/// Torque \[Nm\] that holds against a spring.
+pub(super) fn spring(state: &LawState, [stiffness, at_zero, ..]: &Values) -> f64 {
+    stiffness * state.q + at_zero
+}

@@ -1,0 +1,122 @@
+//! The tool centre point (TCP), on the robot or beside it.
+
+use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, Vector6};
+
+use crate::arm::robot::{Model, Rotations};
+
+use super::fk::fk;
+use super::jacobian::{Tip, jacobian, rate_of, twist};
+
+/// Where the TCP is fixed. Its pose is seen from the other side: from the base frame where
+/// the robot holds the tool, from tool0 where the tool stands still and the robot holds the
+/// work. So is its velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tcp {
+    /// The robot holds the tool: the TCP in tool0.
+    Held(Isometry3<f64>),
+    /// The tool is stationary: the TCP in the base frame.
+    Stationary(Isometry3<f64>),
+}
+
+impl Tcp {
+    /// The pose of the TCP where tool0 has the pose `flange` in the base frame.
+    #[must_use]
+    pub fn pose(&self, flange: &Isometry3<f64>) -> Isometry3<f64> {
+        match self {
+            Tcp::Held(tool) => flange * tool,
+            Tcp::Stationary(tool) => flange.inverse() * tool,
+        }
+    }
+
+    /// The pose of tool0 in the base frame where the TCP has the pose `tcp`.
+    #[must_use]
+    pub fn flange(&self, tcp: &Isometry3<f64>) -> Isometry3<f64> {
+        match self {
+            Tcp::Held(tool) => tcp * tool.inverse(),
+            Tcp::Stationary(tool) => tool * tcp.inverse(),
+        }
+    }
+
+    /// Velocity of the TCP per joint velocity at `q` \[rad\]: 6 × N, linear \[m/rad\] over
+    /// angular \[1\].
+    #[must_use]
+    pub fn jacobian<const N: usize>(&self, model: &Model, q: &[f64; N]) -> SMatrix<f64, 6, N> {
+        match self {
+            Tcp::Held(tool) => jacobian(model, q, tool),
+            Tcp::Stationary(tool) => {
+                let flange = fk(model, q);
+                let into = flange.rotation.inverse().to_rotation_matrix().into_inner();
+                -turned(&into, &jacobian(model, q, &(flange.inverse() * tool)))
+            }
+        }
+    }
+
+    /// Velocity of the TCP where the joints at `q` \[rad\] have the rates `qd`, per second or per
+    /// unit of a path: linear \[m\] over angular \[rad\].
+    #[must_use]
+    pub fn twist<const N: usize>(
+        &self,
+        model: &Model,
+        q: &[f64; N],
+        qd: &[f64; N],
+    ) -> Vector6<f64> {
+        self.twist_of(model, q, &model.kinematics.rotations(q), qd)
+    }
+
+    /// The same with the rotations of the joints at `q`, where they are known.
+    #[must_use]
+    pub fn twist_of<const N: usize>(
+        &self,
+        model: &Model,
+        q: &[f64; N],
+        rotations: &Rotations,
+        qd: &[f64; N],
+    ) -> Vector6<f64> {
+        match self {
+            Tcp::Held(tool) => twist(model, rotations, qd, tool),
+            Tcp::Stationary(_) => {
+                self.jacobian(model, q) * SVector::<f64, N>::from_column_slice(qd)
+            }
+        }
+    }
+
+    /// Change of [`jacobian`](Self::jacobian) along the motion with joint velocities `qd`.
+    #[must_use]
+    pub fn jacobian_dot<const N: usize>(
+        &self,
+        model: &Model,
+        q: &[f64; N],
+        qd: &[f64; N],
+    ) -> SMatrix<f64, 6, N> {
+        match self {
+            Tcp::Held(tool) => rate_of(model, q, qd, Tip::Held(tool)),
+            Tcp::Stationary(tool) => {
+                // J = −Rᵀ J_b, where J_b is that of the point of the work at the tool, and
+                // R' = ω × R.
+                let flange = fk(model, q);
+                let into = flange.rotation.inverse().to_rotation_matrix().into_inner();
+                let own = jacobian(model, q, &(flange.inverse() * tool));
+                let turning = own.fixed_rows::<3>(3) * SVector::<f64, N>::from_column_slice(qd);
+                let rate = rate_of(model, q, qd, Tip::Fixed(tool.translation.vector));
+                turned(&(into * turning.cross_matrix()), &own) - turned(&into, &rate)
+            }
+        }
+    }
+}
+
+/// Both halves of each column turned.
+fn turned<const N: usize>(by: &Matrix3<f64>, matrix: &SMatrix<f64, 6, N>) -> SMatrix<f64, 6, N> {
+    let mut turned = SMatrix::<f64, 6, N>::zeros();
+    for half in [0, 3] {
+        let rows = by * matrix.fixed_rows::<3>(half);
+        turned.fixed_rows_mut::<3>(half).copy_from(&rows);
+    }
+    turned
+}
+
+impl Default for Tcp {
+    /// tool0.
+    fn default() -> Tcp {
+        Tcp::Held(Isometry3::identity())
+    }
+}

@@ -1,0 +1,218 @@
+//! What is known of a robot's body: the table of ABB's robots, and what its file states.
+
+use nalgebra::{Matrix3, Vector3};
+
+use serde::Deserialize;
+
+use super::fill::ARM;
+use super::rules::{self, Size};
+use crate::arm::robot::error::RobotError;
+use crate::arm::robot::link::symmetric;
+use crate::arm::robot::model::Model;
+use crate::arm::robot::provenance::Provenance;
+
+/// The tables, with sources.
+const ROBOTS: &str = include_str!("robots.toml");
+
+/// Share of the total mass by which it may be wrong (standard deviation of the logarithm), by how it
+/// is known. A data sheet states whole kilograms.
+const MASS_SD: [(&str, f64); 4] =
+    [("maker", 0.01), ("second hand", 0.02), ("memory", 0.05), ("guess", 0.08)];
+
+/// What is known of a robot's body.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    /// The whole robot \[kg\], with the standard deviation of its logarithm and who says so.
+    pub(super) mass: Option<(f64, f64, String)>,
+    /// kg.
+    pub(super) payload: Option<f64>,
+    /// m.
+    pub(super) reach: Option<f64>,
+    /// The part that does not move \[kg\].
+    pub(super) foot: Option<f64>,
+    /// Links by their share of the mass that moves; empty where there are no meshes.
+    pub(super) links: Vec<Shape>,
+    /// Whether the meshes are those of another variant.
+    pub(super) sister: bool,
+    /// Whether a spring or a gas cylinder carries a part of the gravity torque of axis 2.
+    pub(super) balanced: bool,
+    /// rad/s.
+    pub(super) velocity: Option<(Vec<f64>, String)>,
+}
+
+/// A link without its mass, in its joint's frame.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    /// Share of the mass that moves.
+    pub(super) share: f64,
+    /// m.
+    pub(super) com: Vector3<f64>,
+    /// Moments about the centre of mass over the mass \[m²\].
+    pub(super) gyration: Matrix3<f64>,
+}
+
+impl Known {
+    /// Of a robot.
+    pub(super) fn of(model: &Model) -> Known {
+        let text = table(type_name(model));
+        let mut known = text.map_or_else(Known::nothing, |text| Known::read(&text));
+        if let Some(mass) = model.mass {
+            let origin = model.origin_of("", "mass");
+            let sd = origin.and_then(|origin| origin.sd.as_ref()).map_or(0.01, |sd| sd[0] / mass);
+            let source = origin.and_then(|origin| origin.source.clone());
+            known.mass = Some((mass, sd, source.unwrap_or_else(|| "the robot's file".into())));
+        }
+        known.payload = model.payload.or(known.payload);
+        known
+    }
+
+    fn nothing() -> Known {
+        Known {
+            mass: None,
+            payload: None,
+            reach: None,
+            foot: None,
+            links: Vec::new(),
+            sister: false,
+            balanced: false,
+            velocity: None,
+        }
+    }
+
+    fn read(text: &str) -> Known {
+        let Ok(table) = toml::from_str::<Table>(text) else { return Known::nothing() };
+        let sd = MASS_SD.iter().find(|(word, _)| *word == table.mass_trust);
+        let shape = |[share, x, y, z, moments @ ..]: [f64; 10]| Shape {
+            share,
+            com: Vector3::new(x, y, z),
+            gyration: symmetric(moments),
+        };
+        Known {
+            mass: sd.map(|(_, sd)| (table.mass, *sd, table.mass_source)),
+            payload: Some(table.payload),
+            reach: Some(table.reach),
+            foot: Some(table.foot),
+            links: table.links.into_iter().map(shape).collect(),
+            sister: table.sister,
+            balanced: table.balanced,
+            velocity: table.velocity.map(|velocity| (velocity, table.velocity_source)),
+        }
+    }
+}
+
+impl Known {
+    /// The size of the robot: what is not known follows from the rest.
+    pub(super) fn size(&self, model: &Model) -> Size {
+        let reach = self.reach.unwrap_or_else(|| reach(model));
+        let payload = self.payload;
+        let mass = self.mass.as_ref().map(|(mass, ..)| *mass);
+        let payload = payload.unwrap_or_else(|| rules::payload(mass, reach));
+        Size { mass: mass.unwrap_or_else(|| rules::mass(reach, payload)), reach, payload }
+    }
+}
+
+/// Factor by which a stated mass may differ from that of ABB's robots of the same reach and payload: the
+/// lightest arms that are sold are a fifth of it.
+const ABSURD: f64 = 15.0;
+
+/// A mass that no arm of the robot's reach has is a mistake, of its unit for instance.
+///
+/// # Errors
+/// It is one.
+pub fn check_mass(model: &Model) -> Result<(), RobotError> {
+    if !ARM.contains(&model.dof) {
+        return Ok(());
+    }
+    let known = Known { mass: None, ..Known::of(model) };
+    let Size { mass: usual, reach, .. } = known.size(model);
+    let refused = |key: &str, value: f64, what: &str, [low, high]: [f64; 2]| RobotError::Value {
+        place: model.file.clone().unwrap_or_else(|| model.name.clone()),
+        key: key.into(),
+        value: value.to_string(),
+        must: format!(
+            "{what} in kg, {low:.1} to {high:.0} for an arm of {reach:.2} m reach; leave it out if it is \
+             not known"
+        ),
+    };
+    let usual = [usual / ABSURD, usual * ABSURD];
+    let [low, high] = usual;
+    if let Some(mass) = model.mass.filter(|mass| !(low..=high).contains(mass)) {
+        return Err(refused("mass", mass, "the mass of the whole robot", usual));
+    }
+    // What moves is a part of it.
+    let moving: f64 = model.links.iter().map(|link| link.mass).sum();
+    let usual = [LEAST_MOVING * low, high];
+    if !model.links.is_empty() && !(usual[0]..=usual[1]).contains(&moving) {
+        return Err(refused("[[link]] mass", moving, "the mass of all links together", usual));
+    }
+    Ok(())
+}
+
+/// Share of the whole mass that moves, at least.
+const LEAST_MOVING: f64 = 0.3;
+
+/// The type of a robot: its name, if ABB's robots have it, else what its file extends or states.
+#[must_use]
+pub fn type_name(model: &Model) -> &str {
+    let stated = model.type_name.as_ref().filter(|_| table(&model.name).is_none());
+    stated.unwrap_or(&model.name)
+}
+
+/// Whether the mass of the whole robot is known.
+#[must_use]
+pub fn is_mass_known(model: &Model) -> bool {
+    let provenance = |i| model.provenance_of(&format!("link {i}"), "mass");
+    let is_stated = |i| provenance(i) != Some(Provenance::Estimated);
+    Known::of(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
+}
+
+/// From axis 1 to the wrist's centre of the stretched arm \[m\].
+fn reach(model: &Model) -> f64 {
+    let joints = &model.kinematics.joints;
+    let foot = joints.get(1).map_or(0.0, |joint| joint.translation.xy().norm());
+    let wrist = joints.len() - 1;
+    let arm: f64 = joints[2..wrist].iter().map(|joint| joint.translation.norm()).sum();
+    foot + arm
+}
+
+/// A table as it is written.
+#[derive(Deserialize)]
+struct Table {
+    mass: f64,
+    mass_trust: String,
+    mass_source: String,
+    payload: f64,
+    reach: f64,
+    foot: f64,
+    #[serde(default)]
+    sister: bool,
+    #[serde(default)]
+    balanced: bool,
+    velocity: Option<Vec<f64>>,
+    #[serde(default)]
+    velocity_source: String,
+    links: Vec<[f64; 10]>,
+}
+
+/// The text of a robot's table, without its head.
+fn table(name: &str) -> Option<String> {
+    let (_, rest) = ROBOTS.split_once(&format!("\n[\"{name}\"]\n"))?;
+    let end = rest.find("\n[\"").unwrap_or(rest.len());
+    Some(rest[..end].to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::robot::{find, names};
+
+    #[test]
+    fn arms_of_the_catalogue_have_their_table() {
+        for name in names().filter(|name| !name.starts_with("IRB14000")) {
+            let known = Known::of(&find(name).expect("in the catalogue"));
+            assert!(known.mass.is_some() && known.payload.is_some(), "{name}");
+            let shares: f64 = known.links.iter().map(|link| link.share).sum();
+            assert!((shares - 1.0).abs() < 1e-3, "{name}: {shares}");
+        }
+    }
+}

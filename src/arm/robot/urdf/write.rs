@@ -1,0 +1,145 @@
+//! The chain as Robot TOML.
+
+use std::cmp::Ordering;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+use nalgebra::Vector3;
+use urdf_rs::JointType;
+
+use super::chain::Chain;
+use super::document::Document;
+use crate::arm::robot::error::RobotError;
+use crate::arm::robot::link::Link;
+use crate::arm::robot::toml_text::{list, pose, quoted};
+
+/// Range of a joint without limits \[rad\]: a hundred turns to either side.
+const CONTINUOUS: f64 = 100.0 * TAU;
+
+pub(super) fn toml(
+    document: &Document,
+    chain: &Chain<'_>,
+    links: &[Link],
+) -> Result<String, RobotError> {
+    let source = quoted(&document.file);
+    let mut text =
+        format!("name = {}\n\n[kinematics]\nsource = {source}\n", quoted(&document.robot.name));
+    let _ = write!(text, "\n[kinematics.flange]\n{}", pose(&chain.flange));
+    for (joint, placement) in chain.joints.iter().zip(&chain.placements) {
+        let axis = joint.axis.xyz.0;
+        if Vector3::from(axis).norm() == 0.0 {
+            let message = format!("the axis of joint \"{}\" is 0; give a direction", joint.name);
+            return Err(document.error("joint", &joint.name, message));
+        }
+        let _ =
+            write!(text, "\n[[joint]] # {}\nsource = {source}\n", joint.name.replace('\n', " "));
+        let _ = writeln!(text, "{}axis = {}", pose(placement), list(&axis));
+    }
+    limits(document, chain, &mut text)?;
+    for link in links {
+        let i = &link.inertia;
+        let moments = [i.m11, i.m22, i.m33, i.m12, i.m13, i.m23];
+        let _ = write!(
+            text,
+            "\n[[link]]\nsource = {source}\nmass = {:?}\ncom = {}\ninertia = {}\n",
+            link.mass,
+            list(link.com.as_slice()),
+            list(&moments)
+        );
+    }
+    friction(document, chain, &mut text)?;
+    motors(document, chain, &mut text)?;
+    Ok(text)
+}
+
+fn limits(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(), RobotError> {
+    let _ = write!(text, "\n[limits]\nsource = {}\nposition = [\n", quoted(&document.file));
+    for joint in &chain.joints {
+        let [low, high] = match joint.joint_type {
+            JointType::Continuous => [-CONTINUOUS, CONTINUOUS],
+            _ => [joint.limit.lower, joint.limit.upper],
+        };
+        let (low, high) = (low.max(-CONTINUOUS), high.min(CONTINUOUS));
+        // Not a number is not smaller either.
+        if low.partial_cmp(&high) != Some(Ordering::Less) {
+            let message = format!(
+                "joint \"{}\" has the range {low} to {high} rad; give <limit lower=\"…\" \
+                 upper=\"…\"> with lower < upper",
+                joint.name
+            );
+            return Err(document.error("joint", &joint.name, message));
+        }
+        let _ = writeln!(text, "  {},", list(&[low, high]));
+    }
+    text.push_str("]\n");
+    let figures = |of: fn(&urdf_rs::JointLimit) -> f64| -> Vec<f64> {
+        chain.joints.iter().map(|joint| of(&joint.limit)).collect()
+    };
+    // 0 and no limit stand for what is not known.
+    for (key, values) in [
+        ("velocity", figures(|limit| limit.velocity)),
+        ("acceleration", figures(|limit| limit.acceleration)),
+        ("jerk", figures(|limit| limit.jerk)),
+        ("torque", figures(|limit| limit.effort)),
+    ] {
+        if values.iter().all(|value| value.is_finite() && *value > 0.0) {
+            let _ = writeln!(text, "{key} = {}", list(&values));
+        }
+    }
+    Ok(())
+}
+
+fn friction(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(), RobotError> {
+    if chain.joints.iter().all(|joint| joint.dynamics.is_none()) {
+        return Ok(());
+    }
+    let mut coulomb = Vec::new();
+    let mut viscous = Vec::new();
+    for joint in &chain.joints {
+        let [friction, damping] = joint
+            .dynamics
+            .as_ref()
+            .map_or([0.0; 2], |dynamics| [dynamics.friction, dynamics.damping]);
+        if !(friction >= 0.0 && damping >= 0.0) {
+            let message = format!(
+                "joint \"{}\" has the friction {friction} and the damping {damping}; give 0 or more",
+                joint.name
+            );
+            return Err(document.error("joint", &joint.name, message));
+        }
+        coulomb.push(friction);
+        viscous.push(damping);
+    }
+    let _ = write!(
+        text,
+        "\n[friction]\nsource = {}\ncoulomb = {}\nviscous = {}\n",
+        quoted(&document.file),
+        list(&coulomb),
+        list(&viscous)
+    );
+    Ok(())
+}
+
+fn motors(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(), RobotError> {
+    let ratio = |joint: &&urdf_rs::Joint| document.reductions.get(&joint.name).copied();
+    if chain.joints.iter().all(|joint| ratio(joint).is_none()) {
+        return Ok(());
+    }
+    let mut ratios = Vec::new();
+    for joint in &chain.joints {
+        ratios.push(ratio(joint).ok_or_else(|| {
+            let message = format!(
+                "joint \"{}\" has no <mechanicalReduction> while others have; add its transmission",
+                joint.name
+            );
+            document.error("joint", &joint.name, message)
+        })?);
+    }
+    let _ = write!(
+        text,
+        "\n[motors]\nsource = {}\nratio = {}\n",
+        quoted(&document.file),
+        list(&ratios)
+    );
+    Ok(())
+}

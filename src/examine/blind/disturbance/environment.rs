@@ -1,0 +1,269 @@
+//! Bodies, springs and forces: what the arm is, carries and touches.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+
+use super::super::mechanics::Joints;
+use super::super::plant::Plant;
+use super::super::random::Random;
+use super::{Action, Begin, Disturbance, NONE, Scale, memoryless};
+use crate::arm::robot::MAX_DOF;
+
+/// The wrist's joints, from 0.
+const WRIST: [usize; 3] = [3, 4, 5];
+
+fn plant(change: impl Fn(&mut Plant) + Send + Sync + 'static) -> Action {
+    Action::Plant(Box::new(change))
+}
+
+pub(super) fn payload(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let arm: f64 = scale.plant.bodies.iter().map(|body| body.mass).sum();
+    let mass = arm * random.log_between(0.003, 0.05);
+    let size = (mass / 2000.0).cbrt();
+    let com = Vector3::new(
+        size * random.normal_within(2.0),
+        size * random.normal_within(2.0),
+        size * random.between(0.5, 2.5),
+    );
+    let forms = ["box", "point", "dumbbell", "long_tool"];
+    let form = random.below(forms.len());
+    let sides = match form {
+        1 => Vector3::zeros(),
+        2 => Vector3::new(6.0 * size, 0.5 * size, 0.5 * size),
+        3 => Vector3::new(0.4 * size, 0.4 * size, 5.0 * size),
+        _ => Vector3::from_fn(|_, _| size * random.between(0.6, 1.6)),
+    };
+    let square = |axis: usize| mass * sides[axis] * sides[axis] / 12.0;
+    let inertia = Matrix3::from_diagonal(&Vector3::new(
+        square(1) + square(2),
+        square(0) + square(2),
+        square(0) + square(1),
+    ));
+    Disturbance::new("payload", forms[form], Vec::new())
+        .graded("mass", mass)
+        .with("com_x", com.x)
+        .with("com_y", com.y)
+        .with("com_z", com.z)
+        .acting(plant(move |plant| {
+            let body = plant.on_flange(mass, com, inertia);
+            plant.bodies.push(body);
+        }))
+}
+
+pub(super) fn link_parameters(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    // The first link's weight acts on no joint.
+    let link = 1 + random.below(scale.plant.dof.saturating_sub(2).max(1));
+    let forms = ["mass", "centre_of_mass", "inertia"];
+    let form = random.below(forms.len());
+    let factor = 1.0 + random.sign() * random.between(0.15, 0.6);
+    let shift = Vector3::from_fn(|_, _| random.sign() * random.between(0.01, 0.04));
+    let mut disturbance = Disturbance::of("link_parameters", forms[form], link);
+    if form == 0 {
+        let mass = scale.plant.bodies.get(link).map_or(0.0, |body| body.mass);
+        disturbance = disturbance.with("mass", (factor - 1.0) * mass);
+    }
+    disturbance.acting(plant(move |plant| {
+        let Some(body) = plant.bodies.get_mut(link) else { return };
+        match form {
+            0 => {
+                body.mass *= factor;
+                body.inertia *= factor;
+            }
+            1 => body.com += shift,
+            _ => body.inertia *= factor * factor,
+        }
+    }))
+}
+
+pub(super) fn rotor_inertia(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let joint = scale.any_joint(random);
+    let least = 3.3 * scale.trust.inertia();
+    let sign = if least < 0.3 && random.chance(0.4) { -1.0 } else { 1.0 };
+    let share = (sign * random.log_between(least, 5.0 * least)).max(-0.7);
+    let inertia = share * scale.plant.rotor[joint];
+    let forms = ["constant", "with_churning_oil", "with_eccentric_disc"];
+    let form = random.below(forms.len());
+    let fastest = scale.fastest[joint].max(1e-3);
+    let equal: &[&str] = if joint < 2 { &["link_parameters"] } else { &[] };
+    Disturbance::of("rotor_inertia", forms[form], joint)
+        .with("inertia", inertia)
+        .like(equal)
+        .acting(Action::Gears(memoryless(joint, move |m| {
+            let moved = match form {
+                1 => 1.0 + 0.03 * (m.rate[joint] / fastest).powi(2),
+                2 => 1.0 + 0.03 * m.q[joint].cos(),
+                _ => 1.0,
+            };
+            inertia * moved * m.acceleration[joint]
+        })))
+}
+
+pub(super) fn gravity_spring(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let joint = scale.one_of(&[1, 1, 2], random);
+    let size = random.log_between(0.05, 0.6) * scale.rms[joint];
+    let [low, high] = scale.workspace.range[joint];
+    let centre = random.between(low, high);
+    let stiffness = size / 0.7;
+    let forms = ["linear", "rod_and_spring", "gas_cylinder"];
+    let form = random.below(forms.len());
+    Disturbance::of("gravity_spring", forms[form], joint)
+        .with("stiffness", stiffness)
+        .with("centre", centre)
+        .acting(Action::Joints(memoryless(joint, move |m| {
+            let x = m.q[joint] - centre;
+            match form {
+                // A spring between two circles of radius 1 and 0.4, longer by a third at rest.
+                1 => {
+                    let length = (1.16 - 0.8 * x.cos()).sqrt();
+                    stiffness * 1.6 * (1.0 - 0.4 / length) * x.sin()
+                }
+                2 => stiffness * x.sin() * (1.0 + 0.15 * x.cos()),
+                _ => stiffness * x,
+            }
+        })))
+}
+
+pub(super) fn base_tilt(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let angle = random.log_between(0.2, 3.0).to_radians();
+    let direction = random.between(0.0, TAU);
+    let forms = ["fixed", "yielding", "settling"];
+    let form = random.below(forms.len());
+    let period = scale.period_s;
+    let up = scale.plant.up;
+    let axis = Unit::new_normalize(Vector3::new(-direction.sin(), direction.cos(), 0.0));
+    let tilted = Rotation3::from_axis_angle(&axis, angle) * up;
+    let difference = tilted - up;
+    let disturbance = Disturbance::new("base_tilt", forms[form], Vec::new())
+        .graded("angle", angle)
+        .with("direction", direction)
+        .acting(plant(move |plant| plant.up += difference));
+    if form == 0 {
+        return disturbance;
+    }
+    // A floor that gives way a little more where the arm leans out or as time goes by.
+    let clone = scale.plant.clone();
+    disturbance.acting(Action::Joints(Box::new(move || {
+        let mut weight = clone.clone();
+        weight.up = difference;
+        Box::new(move |m, tau| {
+            let share = match form {
+                1 => 0.02 * (m.q[0] - direction).cos(),
+                _ => -0.02 * (-m.t / (8.0 * period)).exp(),
+            };
+            let more = weight.rigid(&m.q, &NONE, &NONE);
+            for (sum, part) in tau.iter_mut().zip(more) {
+                *sum += share * part;
+            }
+        })
+    })))
+}
+
+pub(super) fn cable(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let joint = scale.one_of(&[0, 3, 4, 5], random);
+    let [low, high] = scale.workspace.range[joint];
+    let half = (0.5 * (high - low)).max(0.1);
+    let size = random.log_between(0.04, 0.4) * scale.rms[joint];
+    let stiffness = size / (0.6 * half);
+    let centre = random.between(low, high);
+    let forms = ["linear", "stiffening", "taut_on_one_side", "slipping"];
+    let form = random.below(forms.len());
+    Disturbance::of("cable", forms[form], joint)
+        .with("stiffness", stiffness)
+        .with("centre", centre)
+        .acting(Action::Joints(memoryless(joint, move |m| {
+            let x = m.q[joint] - centre;
+            stiffness
+                * match form {
+                    1 => x * (0.4 + 0.6 * (x / half).powi(2)),
+                    2 => 2.0 * x.max(0.0),
+                    3 => half * (x / half * 1.5).tanh(),
+                    _ => x,
+                }
+        })))
+}
+
+pub(super) fn wrist_coupling(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    // What the nominal model takes it for, and what it is.
+    let before = scale.plant.coupling;
+    let away = random.sign() * random.log_between(0.15, 1.0);
+    let coupling = if (before + away).abs() > 1.2 { before - away } else { before + away };
+    let forms = ["geared", "friction_only", "rounded_friction"];
+    let form = random.below(forms.len());
+    let disturbance = Disturbance::new("wrist_coupling", forms[form], vec![4, 5])
+        .with("coupling", coupling - before);
+    if form == 0 {
+        return disturbance.acting(plant(move |plant| plant.coupling = coupling));
+    }
+    let narrow = 0.02 * scale.fastest[5].max(1e-3);
+    disturbance.acting(Action::Joints(Box::new(move || {
+        Box::new(move |m, tau| {
+            let law = |v: f64| {
+                let dry = if form == 1 { v.signum() } else { (v / narrow).tanh() };
+                m.coulomb[5] * if v == 0.0 { 0.0 } else { dry } + m.viscous[5] * v
+            };
+            let (was, is) = (m.qd[5] + before * m.qd[4], m.qd[5] + coupling * m.qd[4]);
+            tau[5] += law(is) - law(was);
+            tau[4] += coupling * law(is) - before * law(was);
+        })
+    })))
+}
+
+pub(super) fn contact(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let weight: f64 = scale.plant.bodies.iter().map(|body| body.mass).sum::<f64>() * 9.81;
+    let force = weight * random.log_between(0.005, 0.06);
+    let start = random.between(0.05, 0.7) * scale.period_s;
+    let end = start + random.between(0.06, 0.2) * scale.period_s;
+    let forms = ["constant", "half_sine", "spring", "chattering"];
+    let form = random.below(forms.len());
+    let (azimuth, height) = (random.between(0.0, TAU), random.between(-1.0, 1.0));
+    let flat = (1.0 - height * height).sqrt();
+    let direction = Vector3::new(flat * azimuth.cos(), flat * azimuth.sin(), height);
+    let arm = scale.plant.clone();
+    let begin: Begin = Box::new(move || {
+        let arm = arm.clone();
+        Box::new(move |m, tau| {
+            if !(start..end).contains(&m.in_period) {
+                return;
+            }
+            let x = (m.in_period - start) / (end - start);
+            let size = match form {
+                1 => (PI * x).sin(),
+                2 => (3.0 * x.min(1.0 - x)).min(1.0),
+                3 => 0.8 + 0.2 * (40.0 * m.in_period).sin(),
+                _ => 1.0,
+            };
+            let axes = arm.axes(&m.q, &NONE, &NONE);
+            let tip = arm.geometry.flange.translation.vector;
+            let last = arm.dof - 1;
+            let mut more: Joints = [0.0; MAX_DOF];
+            axes.add_force(last, &axes.point(last, &tip), &(direction * force * size), &mut more);
+            for (sum, part) in tau.iter_mut().zip(arm.geometry.from_serial_torque(more)) {
+                *sum += part;
+            }
+        })
+    });
+    Disturbance::new("contact", forms[form], Vec::new())
+        .with("force", force)
+        .with("t_start_s", start)
+        .with("t_end_s", end)
+        .within([start, end])
+        .acting(Action::Joints(begin))
+}
+
+/// A cable of the wrist whose torque lags behind its angle (R. Bouc 1967, Y.-K. Wen 1976).
+pub(super) fn hysteretic_cable(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    let joint = scale.one_of(&WRIST, random);
+    let size = random.log_between(0.05, 0.3) * scale.rms[joint];
+    let yields_at = random.between(0.15, 0.5);
+    Disturbance::of("outside", "hysteretic_cable", joint).acting(Action::Joints(super::with_state(
+        joint,
+        0.0,
+        move |z: &mut f64, m| {
+            let step = m.qd[joint] * m.dt / yields_at;
+            *z += step - 0.5 * (step.abs() * *z * z.abs() + step * z.powi(2));
+            *z = z.clamp(-1.5, 1.5);
+            size * (*z + 0.3 * m.q[joint].sin())
+        },
+    )))
+}

@@ -1,0 +1,410 @@
+//! What can be wrong with a robot or its log, in several functional forms each.
+
+mod compliance;
+mod electrical;
+mod environment;
+mod friction;
+mod hysteresis;
+mod outside;
+mod power;
+mod sensing;
+
+use super::mechanics::Joints;
+use super::plant::Plant;
+use super::random::Random;
+use super::trust::Trust;
+use super::workspace::Workspace;
+use crate::arm::robot::MAX_DOF;
+
+pub(super) use compliance::Compliance;
+
+/// A moment of the simulated robot.
+pub(super) struct Moment {
+    /// Since the first log began \[s\].
+    pub(super) t: f64,
+    /// Since the period began \[s\].
+    pub(super) in_period: f64,
+    /// Time since the last moment \[s\].
+    pub(super) dt: f64,
+    /// Joints \[rad\], with rates and accelerations.
+    pub(super) q: Joints,
+    pub(super) qd: Joints,
+    /// Rates and accelerations of the motors, divided by the gear ratios.
+    pub(super) rate: Joints,
+    pub(super) acceleration: Joints,
+    /// Direction of dry friction: the sign of `rate`, and a part of the last one at rest.
+    pub(super) sign: Joints,
+    /// Torque through the gears \[Nm\].
+    pub(super) load: Joints,
+    /// The robot's own friction \[Nm, Nm s/rad\].
+    pub(super) coulomb: Joints,
+    pub(super) viscous: Joints,
+}
+
+/// Changes a value for each joint as time goes by.
+pub(super) type Change = Box<dyn FnMut(&Moment, &mut Joints)>;
+/// Begins a change at the start of a log.
+pub(super) type Begin = Box<dyn Fn() -> Change + Send + Sync>;
+/// Changes the power \[W\] of a moment, knowing the torques.
+pub(super) type PowerChange = Box<dyn FnMut(&Moment, &Joints, f64) -> f64>;
+pub(super) type BeginPower = Box<dyn Fn() -> PowerChange + Send + Sync>;
+
+/// Where a disturbance acts.
+pub(super) enum Action {
+    /// On what the robot is.
+    Plant(Box<dyn Fn(&mut Plant) + Send + Sync>),
+    /// Adds torques at the motors.
+    Gears(Begin),
+    /// Adds torques at the joints.
+    Joints(Begin),
+    /// Changes the logged torques.
+    Torques(Begin),
+    /// Changes the logged positions.
+    Positions(Begin),
+    /// Between motor and link.
+    Compliance(Compliance),
+    /// On the electrical power.
+    Power(BeginPower),
+}
+
+/// A parameter of the truth.
+#[derive(Clone, Debug)]
+pub(super) struct Parameter {
+    pub(super) name: &'static str,
+    pub(super) joint: Option<usize>,
+    pub(super) value: f64,
+    /// Whether it means the same in every form of the law.
+    pub(super) graded: bool,
+}
+
+/// One thing that is wrong.
+pub(super) struct Disturbance {
+    /// Effect id; `outside` for what no library has.
+    pub(super) id: &'static str,
+    pub(super) form: &'static str,
+    /// Joints, from 0; empty where it is of the whole arm.
+    pub(super) joints: Vec<usize>,
+    pub(super) parameters: Vec<Parameter>,
+    /// Within the period \[s\].
+    pub(super) window: Option<[f64; 2]>,
+    /// Effects whose torques are exactly the same here.
+    pub(super) equivalents: &'static [&'static str],
+    pub(super) actions: Vec<Action>,
+}
+
+impl Disturbance {
+    fn new(id: &'static str, form: &'static str, joints: Vec<usize>) -> Disturbance {
+        Disturbance {
+            id,
+            form,
+            joints,
+            parameters: Vec::new(),
+            window: None,
+            equivalents: &[],
+            actions: Vec::new(),
+        }
+    }
+
+    fn of(id: &'static str, form: &'static str, joint: usize) -> Disturbance {
+        Disturbance::new(id, form, vec![joint])
+    }
+
+    /// With a parameter whose value does not depend on the law's form.
+    fn graded(self, name: &'static str, value: f64) -> Disturbance {
+        self.parameter(name, value, true)
+    }
+
+    /// With a parameter of this form.
+    fn with(self, name: &'static str, value: f64) -> Disturbance {
+        self.parameter(name, value, false)
+    }
+
+    fn parameter(mut self, name: &'static str, value: f64, graded: bool) -> Disturbance {
+        let joint = self.joints.first().copied();
+        self.parameters.push(Parameter { name, joint, value, graded });
+        self
+    }
+
+    fn within(mut self, window: [f64; 2]) -> Disturbance {
+        self.window = Some(window);
+        self
+    }
+
+    fn like(mut self, equivalents: &'static [&'static str]) -> Disturbance {
+        self.equivalents = equivalents;
+        self
+    }
+
+    fn acting(mut self, action: Action) -> Disturbance {
+        self.actions.push(action);
+        self
+    }
+}
+
+/// What the sizes of disturbances are drawn from.
+pub(super) struct Scale<'a> {
+    /// What the robot is said to be, and what it is when nothing is wrong.
+    pub(super) nominal: &'a Plant,
+    pub(super) plant: &'a Plant,
+    pub(super) workspace: &'a Workspace,
+    pub(super) trust: Trust,
+    pub(super) period_s: f64,
+    /// Gear ratios.
+    pub(super) ratio: Joints,
+    /// Of the motion, for each joint: rms and largest torque, largest rate, rms torque through
+    /// the gear.
+    pub(super) rms: Joints,
+    pub(super) peak: Joints,
+    pub(super) fastest: Joints,
+    pub(super) load: Joints,
+    /// Rms power \[W\], without the base.
+    pub(super) power: f64,
+}
+
+impl Scale<'_> {
+    fn any_joint(&self, random: &mut Random) -> usize {
+        random.below(self.plant.dof)
+    }
+
+    /// A joint among some.
+    fn one_of(&self, joints: &[usize], random: &mut Random) -> usize {
+        joints.get(random.below(joints.len())).copied().unwrap_or(0).min(self.plant.dof - 1)
+    }
+}
+
+type Draw = fn(&Scale<'_>, &mut Random) -> Disturbance;
+
+/// Effects of the torques: id and how one is drawn.
+const TORQUE: [(&str, Draw); 29] = [
+    ("payload", environment::payload),
+    ("rotor_inertia", environment::rotor_inertia),
+    ("gravity_spring", environment::gravity_spring),
+    ("base_tilt", environment::base_tilt),
+    ("encoder_offset", sensing::encoder_offset),
+    ("cable", environment::cable),
+    ("friction_level", friction::friction_level),
+    ("torque_offset", sensing::torque_offset),
+    ("stribeck", friction::stribeck),
+    ("nonlinear_viscous", friction::nonlinear_viscous),
+    ("viscous_asymmetry", friction::viscous_asymmetry),
+    ("load_friction", friction::load_friction),
+    ("gear_efficiency", friction::gear_efficiency),
+    ("warm_up", friction::warm_up),
+    ("position_friction", friction::position_friction),
+    ("presliding", hysteresis::presliding),
+    ("backlash", compliance::backlash),
+    ("elasticity", compliance::elasticity),
+    ("ripple", electrical::ripple),
+    ("wrist_coupling", environment::wrist_coupling),
+    ("brake_drag", friction::brake_drag),
+    ("torque_constant", electrical::torque_constant),
+    ("current_saturation", electrical::current_saturation),
+    ("flux_weakening", electrical::flux_weakening),
+    ("time_delay", sensing::time_delay),
+    ("filter_lag", sensing::filter_lag),
+    ("current_sign", electrical::current_sign),
+    ("contact", environment::contact),
+    // Twice as often as the others: what users change most often.
+    ("payload", environment::payload),
+];
+
+/// Effects of the power.
+const POWER: [(&str, Draw); 6] = [
+    ("copper_loss", power::copper_loss),
+    ("inverter_loss", power::inverter_loss),
+    ("iron_loss", power::iron_loss),
+    ("no_regeneration", power::no_regeneration),
+    ("base_load", power::base_load),
+    ("brake_power", power::brake_power),
+];
+
+/// An effect of the torques.
+pub(super) fn torque_effect(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    TORQUE[random.below(TORQUE.len())].1(scale, random)
+}
+
+/// An effect of the power.
+pub(super) fn power_effect(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    POWER[random.below(POWER.len())].1(scale, random)
+}
+
+/// Bodies that differ far more than is believed.
+pub(super) fn link_parameters(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    environment::link_parameters(scale, random)
+}
+
+/// What no library has.
+pub(super) fn outside(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
+    outside::outside(scale, random)
+}
+
+/// A change without a memory: what is added to one joint.
+fn memoryless(joint: usize, law: impl Fn(&Moment) -> f64 + Clone + Send + Sync + 'static) -> Begin {
+    Box::new(move || {
+        let law = law.clone();
+        Box::new(move |moment, tau| tau[joint] += law(moment))
+    })
+}
+
+/// A change with a memory: what is added to one joint; the law begins anew with each log.
+fn with_state<S: Clone + Send + Sync + 'static>(
+    joint: usize,
+    state: S,
+    law: impl Fn(&mut S, &Moment) -> f64 + Clone + Send + Sync + 'static,
+) -> Begin {
+    Box::new(move || {
+        let (law, mut state) = (law.clone(), state.clone());
+        Box::new(move |moment, tau| tau[joint] += law(&mut state, moment))
+    })
+}
+
+/// A change of one joint's logged value, without a memory.
+fn mapped(
+    joint: usize,
+    law: impl Fn(&Moment, f64) -> f64 + Clone + Send + Sync + 'static,
+) -> Begin {
+    Box::new(move || {
+        let law = law.clone();
+        Box::new(move |moment, values| values[joint] = law(moment, values[joint]))
+    })
+}
+
+/// Nothing for each joint.
+const NONE: Joints = [0.0; MAX_DOF];
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use super::super::fourier::fourier;
+    use super::super::model_error::ModelError;
+    use super::super::motion::Motion;
+    use super::super::robots;
+    use super::super::simulate::{Robot, Row, Supply, simulate};
+    use super::*;
+
+    /// Draws of each effect.
+    const DRAWS: usize = 24;
+    /// Functional forms that each effect has at least.
+    const FORMS: usize = 3;
+    /// Torques are never so many times as large as the robot's own.
+    const ABSURD: f64 = 20.0;
+
+    struct Bench {
+        plant: Plant,
+        workspace: Workspace,
+        motion: Motion,
+        error: ModelError,
+        supply: Supply,
+    }
+
+    fn bench() -> Bench {
+        let mut random = Random::new(1, 1, "test");
+        let model = robots::robot(&mut random).unwrap();
+        let workspace = Workspace::of(&model);
+        let motion = fourier(&workspace, 4.0, &mut random);
+        let nothing = [0.0; MAX_DOF];
+        Bench {
+            plant: Plant::of(&model),
+            workspace,
+            motion,
+            error: ModelError::drawn(0, &nothing, &nothing, &nothing, &nothing, &mut random),
+            supply: Supply { base: 100.0, loss: [1e-3; MAX_DOF], regeneration: 0.7 },
+        }
+    }
+
+    impl Bench {
+        fn run(&self, disturbances: Vec<&Disturbance>) -> Vec<Row> {
+            let Bench { plant, error, supply, .. } = self;
+            let robot = Robot { plant, error, supply, disturbances };
+            simulate(&robot, &self.motion, 0.0, &[[1.0; MAX_DOF]; 2])
+        }
+
+        fn scale(&self) -> Scale<'_> {
+            let (mut peak, mut fastest) = (NONE, NONE);
+            for sample in &self.motion.samples {
+                let tau = self.plant.torque(&sample.q, &sample.qd, &sample.qdd);
+                for joint in 0..self.plant.dof {
+                    peak[joint] = f64::max(peak[joint], tau[joint].abs());
+                    fastest[joint] = f64::max(fastest[joint], sample.qd[joint].abs());
+                }
+            }
+            Scale {
+                nominal: &self.plant,
+                plant: &self.plant,
+                workspace: &self.workspace,
+                trust: Trust::Commissioned,
+                period_s: 4.0,
+                ratio: [100.0; MAX_DOF],
+                rms: peak.map(|x| 0.5 * x),
+                peak,
+                fastest,
+                load: peak.map(|x| 0.4 * x),
+                power: 500.0,
+            }
+        }
+    }
+
+    /// Each effect has its forms, changes the log, and stays a robot's.
+    #[test]
+    fn every_effect_shows_in_several_forms() {
+        let bench = bench();
+        let (scale, plain) = (bench.scale(), bench.run(Vec::new()));
+        let mut forms: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        for (id, draw) in TORQUE.iter().chain(&POWER) {
+            for k in 0..DRAWS {
+                let disturbance = draw(&scale, &mut Random::new(2, k as u64, id));
+                assert_eq!(disturbance.id, *id);
+                if !forms.entry(id).or_default().insert(disturbance.form) {
+                    continue;
+                }
+                let rows = bench.run(vec![&disturbance]);
+                let name = format!("{id} {}", disturbance.form);
+                let mut changed = 0.0;
+                for (row, plain) in rows.iter().zip(&plain) {
+                    assert!(row.power.is_finite(), "{name}");
+                    changed += (row.power - plain.power).abs() / scale.power;
+                    for joint in 0..bench.plant.dof {
+                        let tau = row.tau[joint];
+                        assert!(tau.abs() < ABSURD * scale.peak[joint], "{name}: {tau}");
+                        changed += (tau - plain.tau[joint]).abs() / scale.peak[joint]
+                            + (row.q[joint] - plain.q[joint]).abs();
+                    }
+                }
+                assert!(changed > 0.0, "{name}");
+            }
+        }
+        assert_eq!(forms.len(), TORQUE.len() - 1 + POWER.len());
+        for (id, forms) in forms {
+            assert!(forms.len() >= FORMS, "{id}: {forms:?}");
+        }
+    }
+
+    /// A delay moves the torques and changes nothing else; a lag does so at low frequencies.
+    #[test]
+    fn delays_are_exact() {
+        let bench = bench();
+        let (scale, plain) = (bench.scale(), bench.run(Vec::new()));
+        let mut checked = 0;
+        for k in 0..60 {
+            let disturbance = sensing::time_delay(&scale, &mut Random::new(3, k, "delay"));
+            if disturbance.form != "constant" || !disturbance.joints.is_empty() {
+                continue;
+            }
+            checked += 1;
+            let late = bench.run(vec![&disturbance]);
+            let steps = disturbance.parameters[0].value / 0.01;
+            let (whole, part) = (steps.floor() as usize, steps.fract());
+            // In the second period nothing is left of the start. The gravity torque of axis 2 has
+            // no jumps but friction's, which a line between rows of 10 ms blurs.
+            let misses = (plain.len() / 2..plain.len()).filter(|&i| {
+                let (newer, older) = (plain[i - whole].tau[1], plain[i - whole - 1].tau[1]);
+                (late[i].tau[1] - (newer + part * (older - newer))).abs() > 0.01 * scale.peak[1]
+            });
+            assert!(misses.count() < 20);
+        }
+        assert!(checked > 3);
+    }
+}

@@ -1,0 +1,137 @@
+//! Inverse dynamics by virtual work, all in the base frame.
+//!
+//! With `J = z_i × (c − o_i)` the Jacobian of a body's centre of mass c about the axes
+//! `z_i` through `o_i`, and `L = I ω` its spin, the bodies' inertial and gravity forces do
+//! the same virtual work as the joints:
+//!
+//! ```text
+//! τ_i = Σ_bodies J_i · m (J q̈ + J̇ q̇ + g) + z_i · d(I ω)/dt
+//! ```
+//!
+//! There is no recursion over links and no link frame (T. R. Kane, D. A. Levinson,
+//! "Dynamics: Theory and Applications", 1985).
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::arm::robot::{Geometry, MAX_DOF};
+
+/// A number for each joint; those beyond the robot's are 0.
+pub(super) type Joints = [f64; MAX_DOF];
+
+/// Free fall \[m/s²\].
+pub(super) const GRAVITY: f64 = 9.81;
+
+/// A rigid body that moves with a joint, in that joint's frame.
+#[derive(Clone, Debug)]
+pub(super) struct Body {
+    /// The joint, from 0.
+    pub(super) joint: usize,
+    /// Mass \[kg\].
+    pub(super) mass: f64,
+    /// Centre of mass \[m\].
+    pub(super) com: Vector3<f64>,
+    /// Inertia about the centre of mass \[kg m²\].
+    pub(super) inertia: Matrix3<f64>,
+}
+
+/// Axes of a moving arm in the base frame.
+pub(super) struct Axes {
+    dof: usize,
+    origins: [Vector3<f64>; MAX_DOF],
+    directions: [Vector3<f64>; MAX_DOF],
+    rotations: [Matrix3<f64>; MAX_DOF],
+    qd: Joints,
+    qdd: Joints,
+    /// Rates of change of `origins` and `directions`.
+    origin_rates: [Vector3<f64>; MAX_DOF],
+    direction_rates: [Vector3<f64>; MAX_DOF],
+    /// Angular velocity and acceleration of what each joint carries.
+    spin: [Vector3<f64>; MAX_DOF],
+    spin_rate: [Vector3<f64>; MAX_DOF],
+}
+
+impl Axes {
+    /// The axes at the angles `q` \[rad\] with rates and accelerations, of the serial chain.
+    pub(super) fn at(geometry: &Geometry, q: &Joints, qd: &Joints, qdd: &Joints) -> Axes {
+        let zero = [Vector3::zeros(); MAX_DOF];
+        let mut axes = Axes {
+            dof: geometry.joints.len().min(MAX_DOF),
+            origins: zero,
+            directions: zero,
+            rotations: [Matrix3::identity(); MAX_DOF],
+            qd: *qd,
+            qdd: *qdd,
+            origin_rates: zero,
+            direction_rates: zero,
+            spin: zero,
+            spin_rate: zero,
+        };
+        let mut rotation = Matrix3::identity();
+        let mut origin = Vector3::zeros();
+        for (i, joint) in geometry.joints.iter().take(MAX_DOF).enumerate() {
+            origin += rotation * joint.translation;
+            rotation *= joint.rotation_at(q[i]);
+            axes.origins[i] = origin;
+            axes.rotations[i] = rotation;
+            axes.directions[i] = rotation * joint.axis.into_inner();
+        }
+        for i in 0..axes.dof {
+            let carried: Vector3<f64> = (0..i).map(|k| axes.directions[k] * qd[k]).sum();
+            axes.origin_rates[i] = axes.velocity(i, &axes.origins[i]);
+            axes.direction_rates[i] = carried.cross(&axes.directions[i]);
+            axes.spin[i] = carried + axes.directions[i] * qd[i];
+            axes.spin_rate[i] = (0..=i)
+                .map(|k| axes.directions[k] * qdd[k] + axes.direction_rates[k] * qd[k])
+                .sum();
+        }
+        axes
+    }
+
+    /// Velocity of a point that the joints before `count` carry.
+    fn velocity(&self, count: usize, point: &Vector3<f64>) -> Vector3<f64> {
+        (0..count).map(|k| self.directions[k].cross(&(point - self.origins[k])) * self.qd[k]).sum()
+    }
+
+    /// The point of a joint's frame, in the base frame.
+    pub(super) fn point(&self, joint: usize, local: &Vector3<f64>) -> Vector3<f64> {
+        self.origins[joint] + self.rotations[joint] * local
+    }
+
+    /// Adds the torques that a body asks for; `up` is gravity's opposite \[m/s²\].
+    pub(super) fn add_body(&self, body: &Body, up: &Vector3<f64>, tau: &mut Joints) {
+        let k = body.joint;
+        let centre = self.point(k, &body.com);
+        let velocity = self.velocity(k + 1, &centre);
+        let mut acceleration = *up;
+        let mut jacobian = [Vector3::zeros(); MAX_DOF];
+        for i in 0..=k {
+            let arm = centre - self.origins[i];
+            jacobian[i] = self.directions[i].cross(&arm);
+            let rate = self.direction_rates[i].cross(&arm)
+                + self.directions[i].cross(&(velocity - self.origin_rates[i]));
+            acceleration += jacobian[i] * self.qdd[i] + rate * self.qd[i];
+        }
+        let force = acceleration * body.mass;
+        let turned = &self.rotations[k];
+        let inertia = turned * body.inertia * turned.transpose();
+        let spin = &self.spin[k];
+        let moment = inertia * self.spin_rate[k] + spin.cross(&(inertia * spin));
+        for i in 0..=k {
+            tau[i] += jacobian[i].dot(&force) + self.directions[i].dot(&moment);
+        }
+    }
+
+    /// Adds the torques that hold against a force on a point of a joint's frame, both in the
+    /// base frame \[N, m\].
+    pub(super) fn add_force(
+        &self,
+        joint: usize,
+        point: &Vector3<f64>,
+        force: &Vector3<f64>,
+        tau: &mut Joints,
+    ) {
+        for i in 0..=joint {
+            tau[i] -= self.directions[i].cross(&(point - self.origins[i])).dot(force);
+        }
+    }
+}

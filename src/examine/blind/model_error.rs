@@ -1,0 +1,114 @@
+//! What no model has, of healthy robots too: small smooth torques of position and speed,
+//! ripple below the noise, a little more friction at low speed.
+
+use std::f64::consts::TAU;
+
+use super::disturbance::Moment;
+use super::mechanics::Joints;
+use super::random::Random;
+use crate::arm::robot::MAX_DOF;
+
+/// Waves over position and over speed, for each joint.
+const WAVES: usize = 3;
+/// Share of the torque's rms: the model error of a joint.
+const SHARE: [f64; 2] = [0.001, 0.006];
+/// Ripple over the standard deviation of the noise.
+const RIPPLE: f64 = 0.15;
+/// Friction at low speed over Coulomb friction, and where it is gone \[rad/s\].
+const STICTION: f64 = 0.02;
+const SLOW: f64 = 0.08;
+
+/// Unmodelled torques of a healthy robot.
+#[derive(Clone, Debug)]
+pub(super) struct ModelError {
+    joints: Vec<JointError>,
+}
+
+#[derive(Clone, Debug)]
+struct JointError {
+    /// Rms of the smooth part, about \[Nm\].
+    size: f64,
+    fastest: f64,
+    waves: [[f64; 6]; WAVES],
+    ripple: f64,
+    order: f64,
+    stiction: f64,
+}
+
+impl ModelError {
+    /// For torques of the sizes `rms` \[Nm\], rates up to `fastest` \[rad/s\] and noise of the
+    /// standard deviations `noise` \[Nm\].
+    pub(super) fn drawn(
+        dof: usize,
+        rms: &Joints,
+        fastest: &Joints,
+        noise: &Joints,
+        ratio: &Joints,
+        random: &mut Random,
+    ) -> ModelError {
+        let joints = (0..dof)
+            .map(|joint| JointError {
+                size: random.log_between(SHARE[0], SHARE[1]) * rms[joint],
+                fastest: fastest[joint].max(1e-3),
+                waves: std::array::from_fn(|_| {
+                    [
+                        random.between(0.5, 2.5),
+                        random.between(0.0, TAU),
+                        random.normal(),
+                        random.between(0.5, 2.5),
+                        random.between(0.0, TAU),
+                        random.normal(),
+                    ]
+                }),
+                ripple: RIPPLE * noise[joint] * random.unit(),
+                order: ratio[joint],
+                stiction: STICTION * random.unit(),
+            })
+            .collect();
+        ModelError { joints }
+    }
+
+    /// Typical size of a joint's smooth part \[Nm\].
+    pub(super) fn size(&self, joint: usize) -> f64 {
+        self.joints.get(joint).map_or(0.0, |error| error.size)
+    }
+
+    pub(super) fn add(&self, m: &Moment, tau: &mut Joints) {
+        for (joint, error) in self.joints.iter().enumerate() {
+            let (q, v) = (m.q[joint], m.qd[joint]);
+            let wave = |[a, phase, c, b, shift, d]: &[f64; 6]| {
+                c * (a * q + phase).sin() + d * (b * v / error.fastest * 2.0 + shift).sin()
+            };
+            let smooth: f64 = error.waves.iter().map(wave).sum();
+            tau[joint] += error.size * smooth / (WAVES as f64).sqrt()
+                + error.ripple * (error.order * q).cos()
+                + error.stiction * m.coulomb[joint] * (-v.abs() / SLOW).exp() * m.sign[joint];
+        }
+    }
+
+    /// Smooth functions of a joint's position and speed, of rms 1 about: what a diagnosis has to
+    /// allow for.
+    pub(super) fn basis(&self, joint: usize, q: &Joints, qd: &Joints) -> [f64; 8] {
+        let Some(error) = self.joints.get(joint) else { return [0.0; 8] };
+        let x = qd[joint] / error.fastest;
+        let root = std::f64::consts::SQRT_2;
+        let (s1, c1) = q[joint].sin_cos();
+        let (s2, c2) = (2.0 * q[joint]).sin_cos();
+        let (s3, c3) = (2.0 * x).sin_cos();
+        let (s4, c4) = (5.0 * x).sin_cos();
+        [s1, c1, s2, c2, s3, c3, s4, c4].map(|value| root * value)
+    }
+}
+
+/// Friction that changes a little from period to period: factors for each.
+pub(super) fn variation(cycles: usize, size: f64, random: &mut Random) -> Vec<Joints> {
+    let mut drift = [0.0; MAX_DOF];
+    (0..cycles)
+        .map(|_| {
+            std::array::from_fn(|joint| {
+                drift[joint] += 0.2 * size * random.normal();
+                1.0 + drift[joint] + size * random.normal_within(3.0)
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,152 @@
+//! The robot that the simulator moves: bodies, rotors, friction.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+use super::mechanics::{Axes, Body, GRAVITY, Joints};
+use crate::arm::robot::{Geometry, Link, MAX_DOF, Model};
+
+/// Axes 5 and 6, from 0.
+const WRIST: [usize; 2] = [4, 5];
+
+/// What decides about the torques of a robot without disturbances.
+#[derive(Clone, Debug)]
+pub(super) struct Plant {
+    pub(super) dof: usize,
+    pub(super) geometry: Geometry,
+    /// One for each link, then loads.
+    pub(super) bodies: Vec<Body>,
+    /// Against gravity, in the base frame \[m/s²\].
+    pub(super) up: Vector3<f64>,
+    /// Inertia of the rotors at the joints \[kg m²\].
+    pub(super) rotor: Joints,
+    /// \[Nm\].
+    pub(super) coulomb: Joints,
+    /// \[Nm s/rad\].
+    pub(super) viscous: Joints,
+    /// Turns of motor 6 for one of axis 5.
+    pub(super) coupling: f64,
+}
+
+impl Plant {
+    /// The robot of a model.
+    pub(super) fn of(model: &Model) -> Plant {
+        let per_joint = |values: &[f64]| {
+            let mut joints = [0.0; MAX_DOF];
+            for (to, from) in joints.iter_mut().zip(values) {
+                *to = *from;
+            }
+            joints
+        };
+        let mut rotor = [0.0; MAX_DOF];
+        if let Some(motors) = &model.motors {
+            for (joint, inertia) in rotor.iter_mut().enumerate().take(model.dof) {
+                *inertia = motors.ratio[joint].powi(2) * motors.rotor_inertia[joint];
+            }
+        }
+        let body = |(joint, link): (usize, &Link)| Body {
+            joint,
+            mass: link.mass,
+            com: link.com,
+            inertia: link.inertia,
+        };
+        Plant {
+            dof: model.dof,
+            geometry: model.kinematics.clone(),
+            bodies: model.links.iter().enumerate().map(body).collect(),
+            up: model.kinematics.up() * GRAVITY,
+            rotor,
+            coulomb: per_joint(&model.friction.coulomb),
+            viscous: per_joint(&model.friction.viscous),
+            coupling: model.wrist.coupling,
+        }
+    }
+
+    /// Rates of the motors, divided by the gear ratios, of those of the joints.
+    pub(super) fn motor(&self, joint: &Joints) -> Joints {
+        let mut rates = *joint;
+        rates[WRIST[1]] += self.coupling * rates[WRIST[0]];
+        rates
+    }
+
+    /// Torques at the joints of those at the motors (times the gear ratios).
+    pub(super) fn at_joints(&self, mut tau: Joints) -> Joints {
+        tau[WRIST[0]] += self.coupling * tau[WRIST[1]];
+        tau
+    }
+
+    /// Torques through the gears of those at the joints.
+    pub(super) fn through_gears(&self, mut tau: Joints) -> Joints {
+        tau[WRIST[0]] -= self.coupling * tau[WRIST[1]];
+        tau
+    }
+
+    /// The moving axes.
+    pub(super) fn axes(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Axes {
+        let serial = |x: &Joints| self.geometry.to_serial(x);
+        Axes::at(&self.geometry, &serial(q), &serial(qd), &serial(qdd))
+    }
+
+    /// Torques of the rigid bodies alone \[Nm\].
+    pub(super) fn rigid(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        self.bodies_alone(q, qd, qdd, &self.up)
+    }
+
+    /// The column of the mass matrix that belongs to a joint's acceleration, without rotors.
+    pub(super) fn inertia_column(&self, q: &Joints, joint: usize) -> Joints {
+        let still = [0.0; MAX_DOF];
+        let mut unit = still;
+        unit[joint] = 1.0;
+        self.bodies_alone(q, &still, &unit, &Vector3::zeros())
+    }
+
+    fn bodies_alone(&self, q: &Joints, qd: &Joints, qdd: &Joints, up: &Vector3<f64>) -> Joints {
+        let axes = self.axes(q, qd, qdd);
+        let mut tau = [0.0; MAX_DOF];
+        for body in &self.bodies {
+            axes.add_body(body, up, &mut tau);
+        }
+        self.geometry.from_serial_torque(tau)
+    }
+
+    /// Torques of bodies, rotors, Coulomb and viscous friction \[Nm\].
+    pub(super) fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        let mut tau = self.rigid(q, qd, qdd);
+        let (rate, acceleration) = (self.motor(qd), self.motor(qdd));
+        let mut gears = [0.0; MAX_DOF];
+        for i in 0..self.dof {
+            let sign = if rate[i] == 0.0 { 0.0 } else { rate[i].signum() };
+            gears[i] = self.rotor[i] * acceleration[i]
+                + self.coulomb[i] * sign
+                + self.viscous[i] * rate[i];
+        }
+        for (sum, part) in tau.iter_mut().zip(self.at_joints(gears)) {
+            *sum += part;
+        }
+        tau
+    }
+
+    /// A body of the flange's frame, as one of the last joint's.
+    pub(super) fn on_flange(&self, mass: f64, com: Vector3<f64>, inertia: Matrix3<f64>) -> Body {
+        let flange: &Isometry3<f64> = &self.geometry.flange;
+        let turned = flange.rotation.to_rotation_matrix();
+        Body {
+            joint: self.dof.saturating_sub(1),
+            mass,
+            com: flange.transform_point(&com.into()).coords,
+            inertia: turned.matrix() * inertia * turned.matrix().transpose(),
+        }
+    }
+}
+
+/// The torques of a model's bodies, rotors, Coulomb and viscous friction \[Nm\] at the motion
+/// `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] (entries beyond the robot's joints are not used).
+/// Sign of friction as of the velocity, 0 at rest.
+#[must_use]
+pub fn torque(
+    model: &Model,
+    q: &[f64; MAX_DOF],
+    qd: &[f64; MAX_DOF],
+    qdd: &[f64; MAX_DOF],
+) -> [f64; MAX_DOF] {
+    Plant::of(model).torque(q, qd, qdd)
+}

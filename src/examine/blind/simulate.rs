@@ -1,0 +1,168 @@
+//! A robot with its disturbances moves, and is logged without noise.
+
+use super::disturbance::{Action, Change, Disturbance, Moment, PowerChange};
+use super::mechanics::Joints;
+use super::model_error::ModelError;
+use super::motion::{Motion, PER_ROW, STEP_S, Sample};
+use super::plant::Plant;
+use crate::arm::robot::MAX_DOF;
+
+/// A motor slower than this rests \[rad/s\].
+const RESTS: f64 = 1e-6;
+/// Share of dry friction that stays in a gear at rest.
+const LEFT_AT_REST: f64 = 0.3;
+
+/// The electrical side.
+#[derive(Clone, Debug)]
+pub(super) struct Supply {
+    /// \[W\].
+    pub(super) base: f64,
+    /// \[W/(Nm)²\].
+    pub(super) loss: Joints,
+    /// Share of braking power that is given back.
+    pub(super) regeneration: f64,
+}
+
+/// A robot in operation.
+pub(super) struct Robot<'a> {
+    pub(super) plant: &'a Plant,
+    pub(super) error: &'a ModelError,
+    pub(super) supply: &'a Supply,
+    pub(super) disturbances: Vec<&'a Disturbance>,
+}
+
+/// A row of a log: positions \[rad\], torques \[Nm\], power \[W\].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) q: Joints,
+    pub(super) tau: Joints,
+    pub(super) power: f64,
+}
+
+/// Runs periods of a motion from the time `clock` \[s\]; `variation` has factors of the friction
+/// for each of them. Rows come at a fifth of the simulation's rate.
+pub(super) fn simulate(
+    robot: &Robot<'_>,
+    motion: &Motion,
+    clock: f64,
+    variation: &[Joints],
+) -> Vec<Row> {
+    let mut plant = robot.plant.clone();
+    let mut gears: Vec<Change> = Vec::new();
+    let mut joints: Vec<Change> = Vec::new();
+    let mut torques: Vec<Change> = Vec::new();
+    let mut positions: Vec<Change> = Vec::new();
+    let mut powers: Vec<PowerChange> = Vec::new();
+    let mut compliances = Vec::new();
+    for action in robot.disturbances.iter().flat_map(|disturbance| &disturbance.actions) {
+        match action {
+            Action::Plant(change) => change(&mut plant),
+            Action::Gears(begin) => gears.push(begin()),
+            Action::Joints(begin) => joints.push(begin()),
+            Action::Torques(begin) => torques.push(begin()),
+            Action::Positions(begin) => positions.push(begin()),
+            Action::Power(begin) => powers.push(begin()),
+            Action::Compliance(compliance) => compliances.push(*compliance),
+        }
+    }
+    let mut links = motion.samples.clone();
+    for compliance in compliances {
+        links = deflected(&plant, &links, &compliance);
+    }
+    let rigid: Vec<Joints> =
+        links.iter().map(|sample| plant.rigid(&sample.q, &sample.qd, &sample.qdd)).collect();
+    let loads: Vec<Joints> = rigid.iter().map(|tau| plant.through_gears(*tau)).collect();
+
+    let mut held = [0.0; MAX_DOF];
+    let mut rows = Vec::with_capacity(variation.len() * motion.samples.len() / PER_ROW);
+    for (cycle, factors) in variation.iter().enumerate() {
+        let began = clock + cycle as f64 * motion.period_s();
+        for (i, sample) in motion.samples.iter().enumerate() {
+            let rate = plant.motor(&sample.qd);
+            let mut sign = [0.0; MAX_DOF];
+            for joint in 0..plant.dof {
+                if rate[joint].abs() > RESTS {
+                    held[joint] = rate[joint].signum();
+                    sign[joint] = held[joint];
+                } else {
+                    sign[joint] = LEFT_AT_REST * held[joint];
+                }
+            }
+            let in_period = i as f64 * STEP_S;
+            let moment = Moment {
+                t: began + in_period,
+                in_period,
+                dt: STEP_S,
+                q: sample.q,
+                qd: sample.qd,
+                rate,
+                acceleration: plant.motor(&sample.qdd),
+                sign,
+                load: loads[i],
+                coulomb: plant.coulomb,
+                viscous: plant.viscous,
+            };
+            let mut at_motors = [0.0; MAX_DOF];
+            for joint in 0..plant.dof {
+                let friction =
+                    plant.coulomb[joint] * sign[joint] + plant.viscous[joint] * rate[joint];
+                at_motors[joint] =
+                    plant.rotor[joint] * moment.acceleration[joint] + friction * factors[joint];
+            }
+            for change in &mut gears {
+                change(&moment, &mut at_motors);
+            }
+            let mut tau = rigid[i];
+            for (sum, part) in tau.iter_mut().zip(plant.at_joints(at_motors)) {
+                *sum += part;
+            }
+            for change in &mut joints {
+                change(&moment, &mut tau);
+            }
+            robot.error.add(&moment, &mut tau);
+            let mut watts: f64 = (0..plant.dof)
+                .map(|j| tau[j] * sample.qd[j] + robot.supply.loss[j] * tau[j] * tau[j])
+                .sum();
+            for change in &mut powers {
+                watts = change(&moment, &tau, watts);
+            }
+            let given_back = if watts < 0.0 { robot.supply.regeneration } else { 1.0 };
+            for change in &mut torques {
+                change(&moment, &mut tau);
+            }
+            if i % PER_ROW == 0 {
+                let mut q = sample.q;
+                for change in &mut positions {
+                    change(&moment, &mut q);
+                }
+                rows.push(Row { q, tau, power: robot.supply.base + given_back * watts });
+            }
+        }
+    }
+    rows
+}
+
+/// How the links move when a gear gives way.
+fn deflected(
+    plant: &Plant,
+    motion: &[Sample],
+    compliance: &super::disturbance::Compliance,
+) -> Vec<Sample> {
+    let joint = compliance.joint;
+    let load = |sample: &Sample| {
+        plant.through_gears(plant.rigid(&sample.q, &sample.qd, &sample.qdd))[joint]
+    };
+    let loads: Vec<f64> = motion.iter().map(load).collect();
+    let inertia: Vec<f64> =
+        motion.iter().map(|sample| plant.inertia_column(&sample.q, joint)[joint]).collect();
+    let delta = compliance.deflections(&loads, &inertia, STEP_S);
+    let count = delta.len();
+    let mut links = motion.to_vec();
+    for (i, sample) in links.iter_mut().enumerate() {
+        let (before, after) = (delta[(i + count - 1) % count], delta[(i + 1) % count]);
+        sample.q[joint] -= delta[i];
+        sample.qd[joint] -= (after - before) / (2.0 * STEP_S);
+        sample.qdd[joint] -= (after - 2.0 * delta[i] + before) / (STEP_S * STEP_S);
+    }
+    links
+}

@@ -1,0 +1,75 @@
+//! More motions of a case's robot than its files have, without noise: what a claim is held
+//! against.
+
+use super::case::{Bench, Settings};
+use super::fourier::fourier;
+use super::motion::{Motion, PER_ROW, Sample};
+use super::noise::ROW_S;
+use super::pick_place::pick_place;
+use super::simulate::{Row, simulate};
+use crate::arm::robot::MAX_DOF;
+
+/// Rounds until what a robot remembers of its motion has settled.
+const ROUNDS: usize = 2;
+
+/// One period of a motion, by joint and row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unlogged {
+    /// Times by the clock of the case's logs \[s\].
+    pub t: Vec<f64>,
+    /// Positions as a log has them \[rad\].
+    pub q: Vec<Vec<f64>>,
+    /// Rates \[rad/s\].
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations \[rad/s²\].
+    pub qdd: Vec<Vec<f64>>,
+    /// Torques \[Nm\].
+    pub tau: Vec<Vec<f64>>,
+    /// Electrical power \[W\].
+    pub power: Vec<f64>,
+}
+
+/// So many other motions of the robot of a case, of the kind of its held-out log and at the same
+/// time. `None` for runs of a program, or where there is no such robot.
+#[must_use]
+pub fn unlogged(settings: &Settings, number: usize, count: usize) -> Option<Vec<Unlogged>> {
+    let bench = Bench::drawn(settings, number).filter(|bench| !bench.with_program)?;
+    let (_, disturbances) = bench.wrong();
+    let robot = bench.robot(disturbances.iter().collect());
+    let clock = bench.clocks()[2];
+    let mut draws = bench.stream("unlogged");
+    let motions = (0..count).map(|_| {
+        if bench.heldout_works {
+            pick_place(&bench.workspace, settings.period_s, &mut draws)
+        } else {
+            fourier(&bench.workspace, settings.period_s, &mut draws)
+        }
+    });
+    let steady = [[1.0; MAX_DOF]; ROUNDS];
+    let dof = robot.plant.dof;
+    Some(
+        motions
+            .map(|of| last_round(&of, &simulate(&robot, &of, clock, &steady), clock, dof))
+            .collect(),
+    )
+}
+
+fn last_round(motion: &Motion, rows: &[Row], clock: f64, dof: usize) -> Unlogged {
+    let samples: Vec<&Sample> = motion.samples.iter().step_by(PER_ROW).collect();
+    let rows = &rows[rows.len() - samples.len()..];
+    let of_rows = |of: &dyn Fn(&Row, usize) -> f64| -> Vec<Vec<f64>> {
+        (0..dof).map(|joint| rows.iter().map(|row| of(row, joint)).collect()).collect()
+    };
+    let of_samples = |of: &dyn Fn(&Sample, usize) -> f64| -> Vec<Vec<f64>> {
+        (0..dof).map(|joint| samples.iter().map(|sample| of(sample, joint)).collect()).collect()
+    };
+    let began = clock + (ROUNDS - 1) as f64 * motion.period_s();
+    Unlogged {
+        t: (0..rows.len()).map(|row| began + ROW_S * row as f64).collect(),
+        q: of_rows(&|row, joint| row.q[joint]),
+        qd: of_samples(&|sample, joint| sample.qd[joint]),
+        qdd: of_samples(&|sample, joint| sample.qdd[joint]),
+        tau: of_rows(&|row, joint| row.tau[joint]),
+        power: rows.iter().map(|row| row.power).collect(),
+    }
+}

@@ -1,0 +1,168 @@
+//! Rows of a log on the simulated cycle, in windows.
+
+use std::ops::Range;
+
+use super::aligned::Aligned;
+use super::cycle::Cycle;
+use crate::learn::log::{Channel, Log, median_step};
+
+/// Instants of a cycle, and windows, at most about.
+const INSTANTS: f64 = 2000.0;
+const WINDOWS: f64 = 100.0;
+/// Robust standard deviation over the median of absolute values.
+const OF_MEDIAN: f64 = 1.4826;
+/// Second differences of independent noise have so many times its variance.
+const OF_DIFFERENCES: f64 = 6.0;
+
+/// Means of a log over windows of the cycle.
+pub(super) struct Windows {
+    /// Instants, s from the start of the cycle.
+    pub(super) times: Vec<f64>,
+    /// Instants of each window.
+    pub(super) ranges: Vec<Range<usize>>,
+    /// Mean of each window, and the standard deviation that noise gives it \[W\].
+    pub(super) power: Vec<f64>,
+    pub(super) power_sd: Vec<f64>,
+    /// The same of torques by joint \[Nm\]; empty where there are none.
+    pub(super) torque: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+/// Rows at one instant.
+#[derive(Clone)]
+struct Bin {
+    rows: f64,
+    t: f64,
+    power: f64,
+    /// Power of the cycle's robot at the same instants.
+    expected: f64,
+    torque: Vec<f64>,
+}
+
+/// Folds the passes of a log.
+pub(super) fn fold(
+    cycle: &Cycle<'_>,
+    log: &Log,
+    aligned: &Aligned,
+    torques: Option<&[Vec<f64>]>,
+) -> Windows {
+    let unit = if aligned.kilowatts { 1000.0 } else { 1.0 };
+    let t = log.time();
+    let power: Vec<f64> =
+        log.column(Channel::Power).unwrap_or_default().iter().map(|w| w * unit).collect();
+    let torques = torques.unwrap_or_default();
+    let noise = Noise::of(&power);
+    let torque_noise: Vec<Noise> = torques.iter().map(|tau| Noise::of(tau)).collect();
+    let width = (cycle.duration / INSTANTS).max(median_step(t));
+    let count = (cycle.duration / width).ceil() as usize + 1;
+    let empty =
+        Bin { rows: 0.0, t: 0.0, power: 0.0, expected: 0.0, torque: vec![0.0; torques.len()] };
+    let mut bins = vec![empty; count];
+    for segment in aligned.passes.iter().flat_map(|pass| &pass.segments) {
+        let from = t.partition_point(|t| *t < segment.log.start);
+        let to = t.partition_point(|t| *t < segment.log.end);
+        for i in from..to.max(from) {
+            let at = segment.begin + (t[i] - segment.log.start) / segment.pace;
+            let Some(bin) = bins.get_mut((at / width) as usize) else { continue };
+            bin.rows += 1.0;
+            bin.t += at;
+            bin.power += power[i];
+            bin.expected += cycle.power(at);
+            for (sum, tau) in bin.torque.iter_mut().zip(torques) {
+                *sum += tau[i];
+            }
+        }
+    }
+    bins.retain(|bin| bin.rows > 0.0);
+    for bin in &mut bins {
+        bin.t = (bin.t / bin.rows).min(cycle.duration);
+        // The mean over the rows of a bin is not the power at their mean time: where the power bends,
+        // both differ by as much for the cycle's robot.
+        let bent = bin.expected / bin.rows - cycle.power(bin.t);
+        bin.power = bin.power / bin.rows - bent;
+        bin.torque.iter_mut().for_each(|sum| *sum /= bin.rows);
+    }
+    let mut windows = Windows {
+        times: bins.iter().map(|bin| bin.t).collect(),
+        ranges: ranges(cycle, &bins),
+        power: Vec::new(),
+        power_sd: Vec::new(),
+        torque: Vec::new(),
+    };
+    let means = |value: &dyn Fn(&Bin) -> f64, variance: &dyn Fn(&Bin) -> f64| {
+        let of = |range: &Range<usize>| {
+            let (bins, n) = (&bins[range.clone()], range.len() as f64);
+            let mean = bins.iter().map(value).sum::<f64>() / n;
+            let variance = bins.iter().map(|bin| variance(bin) / bin.rows).sum::<f64>() / (n * n);
+            (mean, variance.sqrt())
+        };
+        windows.ranges.iter().map(of).unzip()
+    };
+    let found: (Vec<f64>, Vec<f64>) = means(&|bin| bin.power, &|bin| noise.variance(bin.power));
+    let torque: Vec<(Vec<f64>, Vec<f64>)> = (0..torques.len())
+        .map(|j| means(&|bin| bin.torque[j], &|bin| torque_noise[j].variance(bin.torque[j])))
+        .collect();
+    (windows.power, windows.power_sd) = found;
+    windows.torque = torque;
+    windows
+}
+
+/// Windows of the instants: none reaches over the end of a movement or a wait.
+fn ranges(cycle: &Cycle<'_>, bins: &[Bin]) -> Vec<Range<usize>> {
+    let longest = cycle.duration / WINDOWS;
+    let mut ranges = Vec::new();
+    for piece in cycle.pieces() {
+        let parts = ((piece.end - piece.start) / longest).ceil().max(1.0);
+        let step = (piece.end - piece.start) / parts;
+        for part in 0..parts as usize {
+            let from = piece.start + step * part as f64;
+            let place = |t: f64| bins.partition_point(|bin| bin.t < t);
+            let range = place(from)..place(from + step);
+            if !range.is_empty() {
+                ranges.push(range);
+            }
+        }
+    }
+    ranges
+}
+
+/// Variance of the noise of a row: a constant part, and one that goes with the value.
+struct Noise {
+    constant: f64,
+    relative: f64,
+}
+
+impl Noise {
+    /// Of a series, from its second differences where it is small and where it is large.
+    fn of(values: &[f64]) -> Noise {
+        let mut sorted: Vec<f64> = values.iter().map(|x| x.abs()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        let square = |part: &dyn Fn(f64) -> bool| {
+            let of: Vec<f64> = values.iter().copied().filter(|x| part(*x)).collect();
+            of.iter().map(|x| x * x).sum::<f64>() / of.len().max(1) as f64
+        };
+        let [low, high] =
+            [differences(values, |x| x.abs() < middle), differences(values, |x| x.abs() >= middle)];
+        let [below, above] = [square(&|x| x.abs() < middle), square(&|x| x.abs() >= middle)];
+        let relative = if above > below { ((high - low) / (above - below)).max(0.0) } else { 0.0 };
+        let constant = (low - relative * below).max(0.0);
+        Noise { constant, relative }
+    }
+
+    fn variance(&self, value: f64) -> f64 {
+        (self.constant + self.relative * value * value).max(QUIET * value * value)
+    }
+}
+
+/// No measurement is better than this share of its value, squared.
+const QUIET: f64 = 1e-6;
+
+/// Variance of the noise by second differences of the values that are meant.
+fn differences(values: &[f64], meant: impl Fn(f64) -> bool) -> f64 {
+    let triples = values.windows(3).filter(|triple| triple.iter().all(|x| meant(*x)));
+    let mut all: Vec<f64> =
+        triples.map(|triple| (triple[0] - 2.0 * triple[1] + triple[2]).abs()).collect();
+    all.sort_by(f64::total_cmp);
+    let median = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    (OF_MEDIAN * median).powi(2) / OF_DIFFERENCES
+}

@@ -1,0 +1,225 @@
+//! Plausible robots that fit a log.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::aligned::correlation;
+use super::fold::Windows;
+use crate::arm::robot::Model;
+use crate::arm::robot::prior::{Spread, standard_normals};
+use crate::retime::energy::along::{Along, Means, Slopes};
+use crate::retime::energy::change::Changes;
+
+/// Draws start here.
+const SEED: u64 = 113;
+/// Steps of the search for a fit, and the gain below which it ends.
+const STEPS: usize = 30;
+const GAIN: f64 = 1e-4;
+/// Damping at first, its factor after a step that helps or does not, and where it ends.
+const DAMPING: f64 = 1e-2;
+const LESS: f64 = 0.2;
+const MORE: f64 = 5.0;
+const MOST: f64 = 1e8;
+/// A draw fits if its misfit is within so many deviations of what is expected.
+const WITHIN: f64 = 4.0;
+
+/// What was measured: means of the windows, with the standard deviations of their noise.
+pub(super) struct Data {
+    power: DVector<f64>,
+    power_sd: DVector<f64>,
+    /// By joint; windows in which it rests count nothing.
+    torque: Vec<(DVector<f64>, DVector<f64>)>,
+}
+
+impl Data {
+    /// Of the windows of a log.
+    pub(super) fn of(along: &Along<'_>, windows: &Windows) -> Data {
+        let vector = |values: &Vec<f64>| DVector::from_column_slice(values);
+        // Friction holds a joint at rest: its torque tells nothing.
+        let moving = |(w, sd): (usize, &f64)| if along.moves(w) { *sd } else { f64::INFINITY };
+        let torque = windows.torque.iter().map(|(tau, sd)| {
+            let sd = sd.iter().enumerate().map(moving).collect::<Vec<f64>>();
+            (vector(tau), vector(&sd))
+        });
+        Data {
+            power: vector(&windows.power),
+            power_sd: vector(&windows.power_sd),
+            torque: torque.collect(),
+        }
+    }
+
+    /// With noise whose variance is `factor` times as large.
+    pub(super) fn with_noise(&self, factor: f64) -> Data {
+        let scale = factor.sqrt();
+        let torque = self.torque.iter().map(|(tau, sd)| (tau.clone(), sd * scale));
+        Data {
+            power: self.power.clone(),
+            power_sd: &self.power_sd * scale,
+            torque: torque.collect(),
+        }
+    }
+
+    /// Share of the variance of the power that a robot explains.
+    pub(super) fn explained(&self, means: &Means) -> f64 {
+        let mean = self.power.mean();
+        let all: f64 = self.power.iter().map(|w| (w - mean).powi(2)).sum();
+        1.0 - (&self.power - &means.power).norm_squared() / all.max(f64::MIN_POSITIVE)
+    }
+
+    /// Correlation of the power with that of a robot.
+    pub(super) fn likeness(&self, means: &Means) -> f64 {
+        correlation(self.power.as_slice(), means.power.as_slice())
+    }
+
+    /// Which of the residuals count.
+    fn counted(&self) -> Vec<bool> {
+        let all = std::iter::once(&self.power_sd).chain(self.torque.iter().map(|(_, sd)| sd));
+        all.flat_map(|sd| sd.iter().map(|sd| sd.is_finite())).collect()
+    }
+
+    fn count(&self) -> usize {
+        self.counted().iter().filter(|counts| **counts).count()
+    }
+
+    /// Differences over their noise, one list after the other.
+    fn residuals(&self, means: &Means) -> DVector<f64> {
+        let power = (&self.power - &means.power).component_div(&self.power_sd);
+        let torque = self.torque.iter().zip(&means.torque);
+        let torque = torque.flat_map(|((tau, sd), of)| {
+            (tau - of).component_div(sd).iter().copied().collect::<Vec<f64>>()
+        });
+        let all: Vec<f64> = power.iter().copied().chain(torque).collect();
+        DVector::from_vec(all)
+    }
+}
+
+/// A robot near the log.
+pub(super) struct Fitted {
+    pub(super) z: Vec<f64>,
+    pub(super) means: Means,
+    misfit: f64,
+    /// Latent numbers that the log decides.
+    decided: f64,
+}
+
+/// What is fitted.
+pub(super) struct Fit<'a> {
+    pub(super) model: &'a Model,
+    pub(super) spread: &'a Spread,
+    pub(super) along: &'a Along<'a>,
+    pub(super) data: &'a Data,
+}
+
+impl Fit<'_> {
+    /// The most likely robot.
+    pub(super) fn most_likely(&self) -> Fitted {
+        let zero = vec![0.0; self.spread.latents.len()];
+        let none = DVector::zeros(self.data.counted().len());
+        self.nearest(&zero, &zero, &none)
+    }
+
+    /// What the most likely robot leaves over what noise leaves, as a factor of variance.
+    pub(super) fn misfit_over_noise(&self, likely: &Fitted) -> f64 {
+        likely.misfit / (self.data.count() as f64 - likely.decided).max(1.0)
+    }
+
+    /// Plausible robots, each moved to the log with noise of its own.
+    pub(super) fn draws(&self, likely: &[f64], robots: usize) -> Vec<Vec<f64>> {
+        let count = self.spread.latents.len();
+        let counted = self.data.counted();
+        let noise_count = counted.len();
+        let normals = standard_normals(count + noise_count, robots, SEED);
+        // Its own noise and that of the log: twice the variance.
+        let m = self.data.count() as f64;
+        let bound = 2.0 * (m + WITHIN * (2.0 * m).sqrt());
+        let draw = |i: usize| {
+            let prior: Vec<f64> = normals[..count].iter().map(|x| x[i]).collect();
+            let noise = normals[count..].iter().zip(&counted);
+            let noise = noise.map(|(x, counts)| if *counts { x[i] } else { 0.0 });
+            let noise = DVector::from_iterator(noise_count, noise);
+            let fitted = self.nearest(likely, &prior, &noise);
+            (fitted.misfit <= bound).then_some(fitted.z)
+        };
+        (0..robots).into_par_iter().filter_map(draw).collect()
+    }
+
+    fn means(&self, z: &[f64]) -> Means {
+        self.along.means(&self.change(z))
+    }
+
+    fn change(&self, z: &[f64]) -> Changes {
+        Changes::of_one(self.model, &self.spread.robot(self.model, |k| z[k]))
+    }
+
+    /// The robot that is nearest to `prior` and to the log with more `noise`, from `start` on
+    /// (Levenberg and Marquardt).
+    fn nearest(&self, start: &[f64], prior: &[f64], noise: &DVector<f64>) -> Fitted {
+        let prior = DVector::from_column_slice(prior);
+        let mut z = DVector::from_column_slice(start);
+        let cost = |z: &DVector<f64>, residuals: &DVector<f64>| {
+            residuals.norm_squared() + (z - &prior).norm_squared()
+        };
+        let mut means = self.means(z.as_slice());
+        let mut residuals = self.data.residuals(&means) + noise;
+        let mut best = cost(&z, &residuals);
+        let mut damping = DAMPING;
+        let mut decided = 0.0;
+        for _ in 0..STEPS {
+            let (normal, gradient) = self.normal_equations(&z, &residuals);
+            let gradient = gradient - (&z - &prior);
+            let unit = DMatrix::identity(z.len(), z.len());
+            if let Some(inverse) = (&normal + &unit).cholesky() {
+                decided = z.len() as f64 - inverse.inverse().trace();
+            }
+            let mut gained = 0.0;
+            while damping < MOST {
+                let system = &normal + &unit * (1.0 + damping);
+                let Some(factor) = system.cholesky() else {
+                    damping *= MORE;
+                    continue;
+                };
+                let next = &z + factor.solve(&gradient);
+                let new = self.means(next.as_slice());
+                let left = self.data.residuals(&new) + noise;
+                let value = cost(&next, &left);
+                if value < best {
+                    gained = best - value;
+                    (z, means, residuals, best) = (next, new, left, value);
+                    damping *= LESS;
+                    break;
+                }
+                damping *= MORE;
+            }
+            if gained <= GAIN * best.max(1.0) {
+                break;
+            }
+        }
+        Fitted { z: z.as_slice().to_vec(), means, misfit: residuals.norm_squared(), decided }
+    }
+
+    /// `JᵀJ` and `Jᵀr` for residuals over their noise.
+    fn normal_equations(
+        &self,
+        z: &DVector<f64>,
+        residuals: &DVector<f64>,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let z = z.as_slice();
+        let slopes = Slopes::at(self.model, self.spread, z);
+        let by_power = self.along.power_slopes(&self.change(z), &slopes);
+        let count = z.len();
+        let mut normal = DMatrix::zeros(count, count);
+        let mut gradient = DVector::zeros(count);
+        let windows = self.data.power.len();
+        let torque = self.data.torque.iter().map(|(_, sd)| sd);
+        let torque = torque.zip(self.along.torque_slopes(&slopes));
+        let all = std::iter::once((&self.data.power_sd, by_power)).chain(torque);
+        for (part, (sd, mut slope)) in all.enumerate() {
+            for (mut row, sd) in slope.row_iter_mut().zip(sd.iter()) {
+                row /= *sd;
+            }
+            normal.gemm_tr(1.0, &slope, &slope, 1.0);
+            gradient.gemv_tr(1.0, &slope, &residuals.rows(part * windows, windows), 1.0);
+        }
+        (normal, gradient)
+    }
+}

@@ -1,0 +1,99 @@
+//! Whether a motion stays within all limits, and by how much.
+
+use crate::arm::dynamics::{Data, Load, torque};
+use crate::arm::kinematics::Body;
+use crate::arm::robot::{MAX_DOF, Model};
+
+use super::series::State;
+
+/// The share of each limit that a motion may use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shares {
+    /// Of the range of a joint.
+    pub position: f64,
+    /// Of its speed.
+    pub velocity: f64,
+    /// Of its acceleration.
+    pub acceleration: f64,
+    /// Of its torque.
+    pub torque: f64,
+}
+
+/// Largest ratios of a motion to the limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ratios {
+    /// Distance from the middle over half the range of a joint.
+    pub position: f64,
+    /// Of the speeds.
+    pub velocity: f64,
+    /// Of the accelerations.
+    pub acceleration: f64,
+    /// Of the torques; 0 where they are not known.
+    pub torque: f64,
+}
+
+/// A motion against its limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checked {
+    /// Largest ratios.
+    pub ratios: Ratios,
+    /// Least room to the obstacles \[m\], infinite without any.
+    pub to_obstacles: f64,
+    /// Least room of the arm to itself \[m\].
+    pub to_itself: f64,
+}
+
+impl Checked {
+    /// By how much limits are broken, in shares of them and in lengths of an arm; 0 where none
+    /// is.
+    #[must_use]
+    pub fn excess(&self, shares: &Shares) -> f64 {
+        let over = |ratio: f64, share: f64| (ratio / share - 1.0).max(0.0);
+        let r = &self.ratios;
+        over(r.position, shares.position)
+            + over(r.velocity, shares.velocity)
+            + over(r.acceleration, shares.acceleration)
+            + over(r.torque, shares.torque)
+            + (-self.to_obstacles).max(0.0)
+            + (-self.to_itself).max(0.0)
+    }
+}
+
+/// The extremes of some states with `load` at the flange.
+#[must_use]
+pub fn check(model: &Model, body: &Body<'_>, load: &Load, states: &[State]) -> Checked {
+    let n = model.dof;
+    let limits = &model.limits;
+    let mut data = Data::new();
+    let mut found = Checked {
+        ratios: Ratios::default(),
+        to_obstacles: f64::INFINITY,
+        to_itself: f64::INFINITY,
+    };
+    let torques = limits.torque.as_ref().filter(|_| model.has_dynamics());
+    for [q, qd, qdd] in states {
+        let ratios = &mut found.ratios;
+        for joint in 0..n {
+            let [low, high] = limits.position_at(&q[..n], joint);
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+            ratios.position = ratios.position.max((q[joint] - middle).abs() / half);
+            let of = |limits: &Option<Vec<f64>>, value: f64| {
+                limits.as_ref().map_or(0.0, |limits| value.abs() / limits[joint])
+            };
+            ratios.velocity = ratios.velocity.max(of(&limits.velocity, qd[joint]));
+            ratios.acceleration = ratios.acceleration.max(of(&limits.acceleration, qdd[joint]));
+        }
+        if let Some(largest) = torques {
+            let parts = torque(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
+            let mut tau = [0.0; MAX_DOF];
+            for joint in 0..n {
+                tau[joint] = parts.rigid[joint] + parts.friction[joint];
+                ratios.torque = ratios.torque.max(tau[joint].abs() / largest[joint]);
+            }
+        }
+        let [to_obstacles, to_itself] = body.margins(&q[..n]);
+        found.to_obstacles = found.to_obstacles.min(to_obstacles);
+        found.to_itself = found.to_itself.min(to_itself);
+    }
+    found
+}

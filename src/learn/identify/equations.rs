@@ -1,0 +1,310 @@
+//! The equations of motion at the instants of a log, row by row.
+//!
+//! τ = Y(q, q̇, q̈) π for each joint, in the base parameters that are free; the torque of
+//! the known ones goes to the left side. Where the motion was filtered, torque and
+//! regressor pass the same filter (M. Gautier, "Dynamic identification of robots with
+//! power model", ICRA 1997: parallel filtering) and are thinned out to what is left of
+//! their band.
+
+use crate::arm::dynamics::{
+    BaseParameters, Data, JOINT, Load, Parameters, RIGID, Regressor, motor_rates, regressor, rnea,
+    torque,
+};
+use crate::arm::robot::{MAX_DOF, Model};
+use crate::learn::log::LowPass;
+
+use super::clipped::is_clipped;
+use super::samples::{Block, Samples, Source};
+
+/// Instants that are kept for each period of the filter's cut-off frequency.
+const KEPT_PER_PERIOD: f64 = 2.5;
+
+/// Which columns the equation of each joint has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// Of each joint, the base parameters whose coefficient is not always 0, ascending.
+    pub columns: Vec<Vec<usize>>,
+}
+
+impl Layout {
+    /// Number of coefficients in the equations of all joints.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.columns.iter().map(Vec::len).sum()
+    }
+}
+
+/// The equations of all joints at one instant.
+pub struct Instant<'a> {
+    /// Piece of the log, from 0.
+    pub block: usize,
+    /// Number of the instant in its piece, from 0.
+    pub index: usize,
+    /// Time \[s\].
+    pub t: f64,
+    /// Rates of the joints \[rad/s\].
+    pub qd: [f64; MAX_DOF],
+    /// Coefficients, joint after joint in the order of the layout.
+    pub x: &'a [f64],
+    /// Torques less those of the known parameters \[Nm\].
+    pub y: &'a [f64],
+    /// Torques \[Nm\].
+    pub tau: &'a [f64],
+    /// Whether the equation of each joint can be used: its friction has a sense, and its
+    /// torque was recorded whole.
+    pub usable: [bool; MAX_DOF],
+}
+
+/// What the equations are made of.
+pub struct Equations<'a> {
+    /// The robot; of its numbers only the geometry and the wrist's coupling are used.
+    pub model: &'a Model,
+    /// The free parameters.
+    pub base: &'a BaseParameters,
+    /// What is not free.
+    pub known: Known,
+}
+
+/// The part of the torque that is taken as the model has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// Nothing.
+    Nothing,
+    /// Rigid bodies and rotors.
+    Rigid,
+    /// Friction too.
+    All,
+}
+
+impl Equations<'_> {
+    /// The columns of each joint.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        let n = self.model.dof;
+        let rates = |kind: usize| -> Vec<f64> {
+            (0..n).map(|j| 0.3 + ((kind * MAX_DOF + j + 2) as f64).sqrt().fract()).collect()
+        };
+        let mut rows = Rows::new(self);
+        rows.write(&rates(0), &rates(1), &rates(2));
+        let columns = (0..n)
+            .map(|joint| {
+                let reached = |index: &usize| rows.coefficient(joint, *index) != 0.0;
+                let all = self.base.independent.iter().enumerate();
+                all.filter(|(_, index)| reached(index)).map(|(k, _)| k).collect()
+            })
+            .collect();
+        Layout { columns }
+    }
+
+    /// Calls `visit` for each instant of `samples`, in the order of time.
+    pub fn each(&self, samples: &Samples, layout: &Layout, visit: &mut dyn FnMut(&Instant<'_>)) {
+        let n = self.model.dof;
+        let mut rows = Rows::new(self);
+        let mut x = vec![0.0; layout.width()];
+        let mut y = vec![0.0; 2 * n];
+        for (block, of) in samples.blocks.iter().enumerate() {
+            if let Source::Filtered { cutoff } = samples.source {
+                self.filtered(samples, layout, block, cutoff, visit);
+                continue;
+            }
+            for index in 0..of.len() {
+                self.instant(&mut rows, of, layout, index, &mut x, &mut y);
+                let qd = Block::at(&of.qd, index);
+                visit(&Instant {
+                    block,
+                    index,
+                    t: of.t[index],
+                    qd,
+                    x: &x,
+                    y: &y[..n],
+                    tau: &y[n..],
+                    usable: self.usable(samples, &qd, of, of.t[index], 0.5 * samples.step),
+                });
+            }
+        }
+    }
+
+    fn filtered(
+        &self,
+        samples: &Samples,
+        layout: &Layout,
+        block: usize,
+        cutoff: f64,
+        visit: &mut dyn FnMut(&Instant<'_>),
+    ) {
+        let n = self.model.dof;
+        let of = &samples.blocks[block];
+        let filter = LowPass::new(cutoff, samples.step);
+        let width = filter.width();
+        let every = thinning(samples.step, cutoff);
+        let span = layout.width() + 2 * n;
+        let mut rows = Rows::new(self);
+        // The last `width` instants, in a ring.
+        let mut ring = vec![0.0; width * span];
+        let mut sum = vec![0.0; span];
+        let weights = filter.weights(0);
+        let mut kept = 0;
+        let reach = filter.half as f64 * samples.step;
+        for index in 0..of.len() {
+            let place = index % width;
+            let row = &mut ring[place * span..(place + 1) * span];
+            let (x, y) = row.split_at_mut(layout.width());
+            self.instant(&mut rows, of, layout, index, x, y);
+            if index + 1 < width || !(index + 1 - width).is_multiple_of(every) {
+                continue;
+            }
+            sum.fill(0.0);
+            for (k, weight) in weights.iter().enumerate() {
+                let from = (place + 1 + k) % width;
+                let row = &ring[from * span..(from + 1) * span];
+                for (sum, value) in sum.iter_mut().zip(row) {
+                    *sum += weight * value;
+                }
+            }
+            let centre = index - filter.half;
+            let qd = Block::at(&of.qd, centre);
+            let (x, y) = sum.split_at(layout.width());
+            visit(&Instant {
+                block,
+                index: kept,
+                t: of.t[centre],
+                qd,
+                x,
+                y: &y[..n],
+                tau: &y[n..],
+                usable: self.usable(samples, &qd, of, of.t[centre], reach),
+            });
+            kept += 1;
+        }
+    }
+
+    fn instant(
+        &self,
+        rows: &mut Rows<'_>,
+        block: &Block,
+        layout: &Layout,
+        index: usize,
+        x: &mut [f64],
+        y: &mut [f64],
+    ) {
+        let n = self.model.dof;
+        let [q, qd, qdd] = [&block.q, &block.qd, &block.qdd].map(|series| Block::at(series, index));
+        rows.write(&q[..n], &qd[..n], &qdd[..n]);
+        let known = self.known_torque(&mut rows.data, &q[..n], &qd[..n], &qdd[..n]);
+        let mut to = x.iter_mut();
+        for (joint, columns) in layout.columns.iter().enumerate() {
+            for (column, value) in columns.iter().zip(to.by_ref()) {
+                *value = rows.coefficient(joint, self.base.independent[*column]);
+            }
+            let tau = block.tau[joint][index];
+            y[joint] = tau - known[joint];
+            y[n + joint] = tau;
+        }
+    }
+
+    fn known_torque(&self, data: &mut Data, q: &[f64], qd: &[f64], qdd: &[f64]) -> [f64; MAX_DOF] {
+        let none = Load::none();
+        match self.known {
+            Known::Nothing => [0.0; MAX_DOF],
+            Known::Rigid => rnea(self.model, data, &none, q, qd, qdd),
+            Known::All => {
+                let mut sum = [0.0; MAX_DOF];
+                let torque = torque(self.model, data, &none, q, qd, qdd);
+                for (sum, parts) in sum.iter_mut().zip(torque.rigid.iter().zip(torque.friction)) {
+                    *sum = parts.0 + parts.1;
+                }
+                sum
+            }
+        }
+    }
+
+    /// A joint at rest takes any friction up to the static one, so its equation says
+    /// nothing. With a coupled wrist the motor of axis 6 has to turn too.
+    ///
+    /// Nor does one whose torque stands at a limit within `reach` of the time \[s\].
+    fn usable(
+        &self,
+        samples: &Samples,
+        qd: &[f64; MAX_DOF],
+        block: &Block,
+        t: f64,
+        reach: f64,
+    ) -> [bool; MAX_DOF] {
+        let n = self.model.dof;
+        let turning = |joint: usize, rate: f64| rate.abs() > samples.rest[joint];
+        let mut usable = [false; MAX_DOF];
+        for (joint, usable) in usable.iter_mut().enumerate().take(n) {
+            *usable = turning(joint, qd[joint]);
+        }
+        if self.model.wrist.coupling != 0.0 {
+            let sixth = turning(5, motor_rates(self.model, &qd[..n])[5]);
+            usable[4] &= sixth;
+            usable[5] = sixth;
+        }
+        for (usable, spans) in usable.iter_mut().zip(&block.clipped) {
+            *usable &= !is_clipped(spans, t, reach);
+        }
+        usable
+    }
+}
+
+/// Of so many samples one is kept behind the filter.
+#[must_use]
+pub(super) fn thinning(step: f64, cutoff: f64) -> usize {
+    (1.0 / (KEPT_PER_PERIOD * cutoff * step)).floor().max(1.0) as usize
+}
+
+/// The regressor at one state, by joint and parameter.
+struct Rows<'a> {
+    model: &'a Model,
+    of: Parameters,
+    regressor: Regressor,
+    data: Data,
+    /// Coefficients of the parameters of each motor.
+    motors: [[f64; JOINT]; MAX_DOF],
+    /// Share of each motor's torque in that of a joint: `shares[joint][motor]`.
+    shares: [[f64; MAX_DOF]; MAX_DOF],
+}
+
+impl Rows<'_> {
+    fn new<'a>(equations: &Equations<'a>) -> Rows<'a> {
+        let model = equations.model;
+        let mut shares = [[0.0; MAX_DOF]; MAX_DOF];
+        for (joint, share) in shares.iter_mut().enumerate().take(model.dof) {
+            let mut unit = [0.0; MAX_DOF];
+            unit[joint] = 1.0;
+            *share = motor_rates(model, &unit[..model.dof]);
+        }
+        Rows {
+            model,
+            of: equations.base.of,
+            regressor: Regressor::new(),
+            data: Data::new(),
+            motors: [[0.0; JOINT]; MAX_DOF],
+            shares,
+        }
+    }
+
+    fn write(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) {
+        regressor(self.model, &mut self.regressor, q, qd, qdd);
+        if self.of == Parameters::WithJoints {
+            let (rates, accelerations) =
+                (motor_rates(self.model, qd), motor_rates(self.model, qdd));
+            for (motor, row) in self.motors.iter_mut().enumerate() {
+                let rate = rates[motor];
+                let sign = if rate == 0.0 { 0.0 } else { rate.signum() };
+                *row = [accelerations[motor], rate, sign, 1.0];
+            }
+        }
+    }
+
+    fn coefficient(&self, joint: usize, parameter: usize) -> f64 {
+        let rigid = RIGID * self.model.dof;
+        if parameter < rigid {
+            self.regressor.rows[joint][parameter / RIGID][parameter % RIGID]
+        } else {
+            let motor = (parameter - rigid) / JOINT;
+            self.shares[joint][motor] * self.motors[motor][(parameter - rigid) % JOINT]
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! From a log to the instants at which equations are written down.
+
+use crate::learn::log::{
+    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step,
+    sections,
+};
+
+use super::clipped::{Spans, clipped, folded};
+use super::error::IdentifyError;
+use super::noise::autocovariance;
+use super::samples::{Block, Samples, Source};
+
+/// Share of the power of the motion that its bandwidth holds.
+const SHARE: f64 = 0.95;
+/// Cut-off frequency of the filter over the bandwidth of the motion: friction changes its
+/// sense faster than the motion.
+const CUTOFF: f64 = 8.0;
+/// Largest cut-off frequency, relative to the sampling rate.
+const HIGHEST: f64 = 0.125;
+/// Least range of a joint that moves \[rad\].
+const MOVES: f64 = 1e-3;
+/// Share of a joint's fast rates below which it counts as at rest.
+const SLOW: f64 = 0.01;
+/// The quantile of its rates that counts as fast.
+const FAST: f64 = 0.95;
+
+/// Samples faster than this are thinned out behind a filter \[Hz\] …
+const FASTEST: f64 = 1200.0;
+/// … to about this rate \[Hz\], which passes all that a joint can do.
+const THINNED: f64 = 400.0;
+/// Cut-off frequency before thinning, relative to the rate after it.
+const PASSED: f64 = 0.4;
+/// Periods of that cut-off frequency over which its kernel spreads a step.
+const SMEARED: f64 = 1.0;
+/// A first repetition that misses the others by this much more than they do each other is
+/// still settling.
+const SETTLING: f64 = 4.0;
+
+/// What is known of a log beside its columns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hints {
+    /// Duration of a repetition \[s\].
+    pub period: Option<f64>,
+    /// Cut-off frequency of the filter \[Hz\], where another log has decided it.
+    pub cutoff: Option<f64>,
+}
+
+/// The instants of a log with the torques `tau` of each joint \[Nm\].
+///
+/// # Errors
+/// No joint moves, or the log is too short for a filter.
+pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, IdentifyError> {
+    let joints = log.joints();
+    let q = owned(log, Channel::Position).unwrap_or_default();
+    let (qd, qdd) = (owned(log, Channel::Velocity), owned(log, Channel::Acceleration));
+    let resting: Vec<usize> = (0..joints).filter(|joint| range(&q[*joint]) < MOVES).collect();
+    if resting.len() == joints {
+        return Err(IdentifyError::Still { range: MOVES });
+    }
+    let clipped = clipped(log.time(), &q, tau);
+    let mut samples = match (qd, qdd) {
+        (Some(qd), Some(qdd)) => {
+            let block = Block { t: log.time().to_vec(), q, qd, qdd, tau: tau.to_vec(), clipped };
+            Samples {
+                step: median_step(&block.t),
+                blocks: vec![block],
+                source: Source::Logged,
+                rest: vec![0.0; joints],
+                resting,
+                noise: None,
+                repetitions: None,
+            }
+        }
+        (qd, _) => differentiated(log, &q, qd.as_deref(), (tau, &clipped), resting, hints)?,
+    };
+    still(&mut samples);
+    Ok(samples)
+}
+
+fn owned(log: &Log, channel: fn(usize) -> Channel) -> Option<Vec<Vec<f64>>> {
+    Some(log.of_joints(channel)?.into_iter().map(<[f64]>::to_vec).collect())
+}
+
+fn range(x: &[f64]) -> f64 {
+    let (low, high) = x
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    high - low
+}
+
+/// Rates between samples \[rad/s\].
+fn changes(x: &[f64], step: f64) -> Vec<f64> {
+    x.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect()
+}
+
+/// A joint that rests does so exactly, so that nothing is read into its noise.
+fn still(samples: &mut Samples) {
+    for block in &mut samples.blocks {
+        for joint in &samples.resting {
+            let mean = block.q[*joint].iter().sum::<f64>() / block.len().max(1) as f64;
+            block.q[*joint].fill(mean);
+            block.qd[*joint].fill(0.0);
+            block.qdd[*joint].fill(0.0);
+        }
+    }
+}
+
+fn differentiated(
+    log: &Log,
+    q: &[Vec<f64>],
+    qd: Option<&[Vec<f64>]>,
+    (tau, clipped): (&[Vec<f64>], &Spans),
+    resting: Vec<usize>,
+    hints: Hints,
+) -> Result<Samples, IdentifyError> {
+    let joints = q.len();
+    let all: Vec<&[f64]> =
+        q.iter().chain(tau).chain(qd.unwrap_or_default()).map(Vec::as_slice).collect();
+    let sections = sections(log.time(), &all);
+    // How long a thinned torque remembers that a joint turned back \[s\].
+    let smeared = sections.first().map_or(0.0, |section| {
+        thinning(section).map_or(0.0, |every| SMEARED * every as f64 * section.step / PASSED)
+    });
+    let sections: Vec<Section> = sections.iter().map(thinned).collect();
+    let Some(longest) = sections.iter().max_by_key(|section| section.len()) else {
+        return Err(IdentifyError::Short { seconds: 0.0 });
+    };
+    let step = longest.step;
+    let known = hints.period.or_else(|| of_cycles(log));
+    let positions: Vec<&[f64]> = longest.series[..joints].iter().map(Vec::as_slice).collect();
+    // A motion that does not repeat as was said may repeat otherwise.
+    let found = |known| find_periods(&positions, step, known);
+    if hints.cutoff.is_none()
+        && let Some(periods) = found(known).or_else(|| known.and_then(|_| found(None)))
+    {
+        let mut samples = periodic(longest, &periods, joints, resting);
+        let start = samples.blocks[0].t[0];
+        samples.blocks[0].clipped = folded(clipped, start, periods.period);
+        for (joint, rest) in samples.rest.iter_mut().enumerate() {
+            let hard = samples.blocks[0].qdd[joint].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            *rest = rest.max(hard * smeared);
+        }
+        return Ok(samples);
+    }
+    let moving = (0..joints).filter(|joint| !resting.contains(joint));
+    let fastest = moving
+        .map(|joint| {
+            // Logged rates have less noise than the changes of positions.
+            let rates = longest.series.get(2 * joints + joint);
+            rates.map_or_else(
+                || bandwidth(&changes(&longest.series[joint], step), step, SHARE),
+                |rates| bandwidth(rates, step, SHARE),
+            )
+        })
+        .fold(0.0_f64, f64::max);
+    let cutoff = hints.cutoff.unwrap_or(CUTOFF * fastest).min(HIGHEST / step);
+    let filter = LowPass::new(cutoff, step);
+    let blocks: Vec<Block> = sections
+        .iter()
+        // Twice the kernel, and some instants to use.
+        .filter(|section| section.len() > 3 * filter.width())
+        .map(|section| block(section, joints, &filter, clipped))
+        .collect();
+    if blocks.is_empty() {
+        return Err(IdentifyError::Short { seconds: 3.0 * step * filter.width() as f64 });
+    }
+    let rest = (0..joints).map(|joint| slow(&blocks, joint)).collect();
+    Ok(Samples {
+        blocks,
+        source: Source::Filtered { cutoff },
+        step,
+        rest,
+        resting,
+        noise: None,
+        repetitions: None,
+    })
+}
+
+/// Of so many samples one is kept; `None` where all are.
+fn thinning(section: &Section) -> Option<usize> {
+    let fast = section.step * FASTEST <= 1.0;
+    fast.then(|| (1.0 / (section.step * THINNED)).floor().max(2.0) as usize)
+}
+
+/// The section at a rate that is worth computing with.
+fn thinned(section: &Section) -> Section {
+    let Some(every) = thinning(section) else { return section.clone() };
+    let step = section.step * every as f64;
+    let filter = LowPass::new(PASSED / step, section.step);
+    if section.len() < 2 * filter.width() {
+        return section.clone();
+    }
+    let of = |x: &Vec<f64>| -> Vec<f64> {
+        let weights = filter.weights(0);
+        x.windows(filter.width())
+            .step_by(every)
+            .map(|part| part.iter().zip(weights).map(|(x, w)| x * w).sum())
+            .collect()
+    };
+    Section {
+        start: section.time(filter.half),
+        step,
+        series: section.series.iter().map(of).collect(),
+        lost: Vec::new(),
+    }
+}
+
+/// The period that a column of repetitions tells \[s\].
+fn of_cycles(log: &Log) -> Option<f64> {
+    let cycle = log.column(Channel::Cycle)?;
+    let t = log.time();
+    let begins: Vec<f64> =
+        (1..t.len()).filter(|i| cycle[*i] != cycle[i - 1]).map(|i| t[i]).collect();
+    // Whole ones lie between two changes.
+    let count = begins.len().checked_sub(1).filter(|count| *count > 0)?;
+    Some((begins[count] - begins[0]) / count as f64)
+}
+
+/// One period: the mean of all repetitions.
+fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<usize>) -> Samples {
+    let mut periods = *periods;
+    let mut mean = averaged(section, &periods, joints);
+    if periods.count > 3 && is_settling(&mean.spread) {
+        let samples = mean.spread.first().and_then(|of| of.first()).map_or(0, Vec::len);
+        periods.first += samples;
+        periods.count -= 1;
+        mean = averaged(section, &periods, joints);
+    }
+    let count = periods.count as f64;
+    let noise = mean.spread[..joints]
+        .iter()
+        .map(|repetitions| {
+            let residuals: Vec<(usize, usize, f64)> = repetitions
+                .iter()
+                .enumerate()
+                .flat_map(|(r, of)| of.iter().enumerate().map(move |(k, e)| (r, k, *e)))
+                .collect();
+            // A mean was taken off; the noise of the mean is smaller by their number.
+            let lost = residuals.len() as f64 / count;
+            autocovariance(&residuals, lost).iter().map(|c| c / count).collect()
+        })
+        .collect();
+    let [q, qd, qdd] = mean.motion;
+    let samples = q.first().map_or(0, Vec::len);
+    let start = section.time(periods.first);
+    let block = Block {
+        t: (0..samples).map(|k| start + mean.step * k as f64).collect(),
+        q,
+        qd,
+        qdd,
+        tau: mean.mean[..joints].to_vec(),
+        clipped: vec![Vec::new(); joints],
+    };
+    let blocks = vec![block];
+    Samples {
+        rest: (0..joints).map(|joint| slow(&blocks, joint)).collect(),
+        blocks,
+        source: Source::Periodic {
+            period: periods.period,
+            periods: periods.count,
+            harmonics: mean.harmonics,
+        },
+        step: mean.step,
+        resting,
+        noise: Some(noise),
+        repetitions: Some(mean.spread.into_iter().take(joints).collect()),
+    }
+}
+
+/// Whether the first repetition misses the mean by far more than the others.
+fn is_settling(spread: &[Vec<Vec<f64>>]) -> bool {
+    let power = |x: &Vec<f64>| x.iter().map(|e| e * e).sum::<f64>();
+    spread.iter().any(|repetitions| {
+        let all: Vec<f64> = repetitions.iter().map(power).collect();
+        let others = all[1..].iter().fold(0.0, |m: f64, x| m.max(*x));
+        all[0] > SETTLING * others
+    })
+}
+
+fn block(section: &Section, joints: usize, filter: &LowPass, clipped: &Spans) -> Block {
+    let all = |from: usize, order: usize| -> Vec<Vec<f64>> {
+        section.series[from..from + joints].iter().map(|x| filter.filtered(x, order)).collect()
+    };
+    let rates = section.series.len() == 3 * joints;
+    let (qd, qdd) =
+        if rates { (all(2 * joints, 0), all(2 * joints, 1)) } else { (all(0, 1), all(0, 2)) };
+    let q = all(0, 0);
+    let count = q.first().map_or(0, Vec::len);
+    let tau = section.series[joints..2 * joints]
+        .iter()
+        .map(|x| x[filter.half..filter.half + count].to_vec())
+        .collect();
+    let t: Vec<f64> = (0..count).map(|i| section.time(i + filter.half)).collect();
+    let here =
+        |span: &&[f64; 2]| span[1] >= section.start && span[0] <= section.time(section.len());
+    let clipped = clipped.iter().map(|of| of.iter().filter(here).copied().collect()).collect();
+    Block { t, q, qd, qdd, tau, clipped }
+}
+
+/// The rate below which a joint counts as at rest \[rad/s\].
+fn slow(blocks: &[Block], joint: usize) -> f64 {
+    let mut rates: Vec<f64> =
+        blocks.iter().flat_map(|block| block.qd[joint].iter().map(|x| x.abs())).collect();
+    rates.sort_by(f64::total_cmp);
+    let index = (FAST * rates.len() as f64) as usize;
+    SLOW * rates.get(index).copied().unwrap_or(0.0)
+}

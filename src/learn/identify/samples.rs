@@ -1,0 +1,116 @@
+//! The instants of a log at which the equations of motion are written down.
+
+use crate::arm::robot::MAX_DOF;
+
+use super::clipped::is_clipped;
+
+/// Where the rates and accelerations come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// They were logged; every row is an instant of its own.
+    Logged,
+    /// Differentiated behind a low-pass filter; torque and regressor pass the same one.
+    Filtered {
+        /// Cut-off frequency \[Hz\].
+        cutoff: f64,
+    },
+    /// Repetitions were averaged, and the Fourier series of the positions differentiated.
+    Periodic {
+        /// Duration of a repetition \[s\].
+        period: f64,
+        /// Number of repetitions that were averaged.
+        periods: usize,
+        /// Harmonics of the series.
+        harmonics: usize,
+    },
+}
+
+/// Motion and torque without a gap, at equal intervals unless logged with its rates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Times \[s\].
+    pub t: Vec<f64>,
+    /// Positions of each joint \[rad\].
+    pub q: Vec<Vec<f64>>,
+    /// Rates \[rad/s\].
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations \[rad/s²\].
+    pub qdd: Vec<Vec<f64>>,
+    /// Torques at each joint \[Nm\].
+    pub tau: Vec<Vec<f64>>,
+    /// Of each joint, spans of time in which its torque stands at a limit \[s\].
+    pub clipped: Vec<Vec<[f64; 2]>>,
+}
+
+impl Block {
+    /// Number of instants.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.t.is_empty()
+    }
+
+    /// One row of a series by joint; entries beyond the robot's joints are 0.
+    #[must_use]
+    pub fn at(series: &[Vec<f64>], index: usize) -> [f64; MAX_DOF] {
+        let mut row = [0.0; MAX_DOF];
+        for (to, from) in row.iter_mut().zip(series) {
+            *to = from[index];
+        }
+        row
+    }
+}
+
+/// All instants of one or several logs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples {
+    /// Pieces without a gap, in the order of time.
+    pub blocks: Vec<Block>,
+    /// Where the rates come from.
+    pub source: Source,
+    /// Interval of the instants \[s\].
+    pub step: f64,
+    /// Rate of each joint at or below which it counts as at rest \[rad/s\].
+    pub rest: Vec<f64>,
+    /// Joints that never move, from 0.
+    pub resting: Vec<usize>,
+    /// Autocovariances of the torque's noise, of each joint, at lag 0, 1, … of the instants
+    /// \[N²m²\], where repetitions tell them.
+    pub noise: Option<Vec<Vec<f64>>>,
+    /// How the torque of each repetition differs from the mean, by joint, by repetition \[Nm\].
+    pub repetitions: Option<Vec<Vec<Vec<f64>>>>,
+}
+
+impl Samples {
+    /// Number of instants.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.blocks.iter().map(Block::len).sum()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Of each joint, instants at which its torque stands at a limit, as a share of all.
+    #[must_use]
+    pub fn share_at_limits(&self) -> Vec<f64> {
+        let joints = self.blocks.first().map_or(0, |block| block.clipped.len());
+        let mut counts = vec![0_usize; joints];
+        for block in &self.blocks {
+            for (count, spans) in counts.iter_mut().zip(&block.clipped) {
+                if !spans.is_empty() {
+                    *count += block.t.iter().filter(|t| is_clipped(spans, **t, 0.0)).count();
+                }
+            }
+        }
+        counts.iter().map(|count| *count as f64 / self.len().max(1) as f64).collect()
+    }
+}

@@ -1,0 +1,251 @@
+//! Units that cannot be right, and what they seem to be.
+
+use crate::arm::dynamics::{Data, Load, rnea};
+use crate::arm::robot::Model;
+use crate::learn::log::{Channel, Log, derivatives, median_step};
+
+use super::error::IdentifyError;
+use super::torque::motor_side;
+
+/// The share of the rates that counts for the largest.
+const FAST: f64 = 0.99;
+/// Largest rate of a joint whose limit is not known \[rad/s\].
+const LARGEST: f64 = 15.0;
+/// Over the range of a joint by this factor is no overshoot.
+const FAR: f64 = 2.0;
+/// The same of its rate: robot files have round numbers for limits.
+const FAST_BEYOND: f64 = 8.0;
+/// Degrees within which no joint of a motion stays that was made to tell anything.
+const TINY: f64 = 6.3;
+/// Least angle that a joint turns, in the unit of its column, if it is taken to move.
+const TURNS: f64 = 0.3;
+/// Time over which rates and positions are compared \[s\].
+const WINDOW: f64 = 0.1;
+/// Changes smaller than this share of what they should be are none.
+const STILL: f64 = 1e-3;
+/// By how much a factor may miss what it is taken for.
+const NEAR: f64 = 1.3;
+/// The same of a torque on the motor's side, as the model is only roughly known.
+const ROUGHLY: f64 = 3.0;
+/// Torques that carry so many times the weight of the model's masses are not its own.
+const STRANGE: f64 = 10.0;
+/// Share of the squared correlation from which on two columns have to do with each other.
+const RELATED: f64 = 0.25;
+/// Rows further apart than this tell no rates \[s\].
+const SLOWEST: f64 = 0.5;
+/// Beyond a limit by this angle no joint comes to stand \[rad\].
+const OVERSHOT: f64 = 0.1;
+/// Times its limit that no joint's torque reaches.
+const BEYOND: f64 = 10.0;
+/// Rows that are looked at.
+const ROWS: usize = 4000;
+/// Degrees in one radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// Whether angles and rates are in radians.
+///
+/// # Errors
+/// A column that is in degrees as it seems, or whose rates are not those of its positions.
+pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
+    let t = log.time();
+    let window = ROWS.min(t.len());
+    let differentiated = log.of_joints(Channel::Velocity).is_none()
+        || log.of_joints(Channel::Acceleration).is_none();
+    let step = median_step(t);
+    if differentiated && step > SLOWEST {
+        return Err(IdentifyError::Slow { step });
+    }
+    if let Some(reach) = radians_in_degrees(model, log) {
+        return Err(IdentifyError::Radians { reach });
+    }
+    for joint in 0..log.joints() {
+        let Some(q) = log.column(Channel::Position(joint)) else { continue };
+        let mut rates: Vec<f64> = q
+            .windows(2)
+            .zip(t.windows(2))
+            .map(|(q, t)| ((q[1] - q[0]) / (t[1] - t[0])).abs())
+            .collect();
+        rates.sort_by(f64::total_cmp);
+        let fast = rates.get((FAST * rates.len() as f64) as usize).copied().unwrap_or(0.0);
+        let limit = model.limits.velocity.as_ref().map_or(LARGEST, |limits| limits[joint]);
+        let reach = q.iter().fold(0.0, |m: f64, q| m.max(q.abs()));
+        let [low, high] = model.limits.position[joint];
+        let range = low.abs().max(high.abs());
+        let beyond =
+            |scale: f64| reach * scale > FAR * range.max(1.0) || fast * scale > FAST_BEYOND * limit;
+        if beyond(1.0) && !beyond(1.0 / DEGREES) {
+            return Err(IdentifyError::Degrees { joint: joint + 1, reach, fast });
+        }
+        let qd = log.column(Channel::Velocity(joint));
+        let wrong = |of: &[f64], rates: &[f64]| {
+            factor(&t[..window], &of[..window], rates)
+                .filter(|factor| !(1.0 / NEAR..NEAR).contains(factor))
+        };
+        let turned = |q: &[f64]| {
+            q.iter().fold(f64::MIN, |m, q| m.max(*q)) - q.iter().fold(f64::MAX, |m, q| m.min(*q))
+        };
+        if let Some(qd) = qd.filter(|_| turned(q) > TURNS)
+            && let Some(share) = unrelated(t, q, qd)
+        {
+            return Err(IdentifyError::Unrelated { joint: joint + 1, share });
+        }
+        if let Some(factor) = qd.and_then(|qd| wrong(q, qd)) {
+            return Err(IdentifyError::Rates { joint: joint + 1, factor });
+        }
+        let qdd = log.column(Channel::Acceleration(joint));
+        if let Some(factor) = qd.zip(qdd).and_then(|(qd, qdd)| wrong(qd, qdd)) {
+            return Err(IdentifyError::Accelerations { joint: joint + 1, factor });
+        }
+        if qdd.is_some_and(|qdd| turned(q) > TURNS && turned(qdd) == 0.0) {
+            return Err(IdentifyError::Accelerations { joint: joint + 1, factor: 0.0 });
+        }
+    }
+    Ok(())
+}
+
+/// How far the joint that moves most reaches \[rad\], where all angles were given in degrees,
+/// no joint turns as if they were, and all of them could be radians.
+fn radians_in_degrees(model: &Model, log: &Log) -> Option<f64> {
+    let mut most = 0.0_f64;
+    for joint in 0..log.joints() {
+        let channel = Channel::Position(joint);
+        let q = log.column(channel).filter(|_| log.degrees.contains(&channel))?;
+        let of = |pick: fn(f64, f64) -> f64| q.iter().copied().reduce(pick).unwrap_or(0.0);
+        let ends = [of(f64::min), of(f64::max)].map(|q| q * DEGREES);
+        let [low, high] = model.limits.position[joint];
+        if ends[1] - ends[0] > TINY
+            || ends[0] < FAR * low.min(-1.0)
+            || ends[1] > FAR * high.max(1.0)
+        {
+            return None;
+        }
+        most = most.max(ends[1] - ends[0]);
+    }
+    (most > TURNS).then_some(most)
+}
+
+/// The share of a joint's turning that its logged rates have to do with, where it is little:
+/// squared correlation over pieces long enough for the steps of an encoder.
+fn unrelated(t: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
+    let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
+    let mut from = 0;
+    for to in 1..t.len() {
+        if t[to] - t[from] < WINDOW {
+            continue;
+        }
+        let pieces = (from..to).map(|k| 0.5 * (qd[k] + qd[k + 1]) * (t[k + 1] - t[k]));
+        let (turned, said) = (q[to] - q[from], pieces.sum::<f64>());
+        both += turned * said;
+        own += turned * turned;
+        theirs += said * said;
+        from = to;
+    }
+    let share = if theirs > STILL * STILL * own { both * both / (own * theirs) } else { 0.0 };
+    (own > 0.0 && share < RELATED).then_some(share)
+}
+
+/// Joints that go far beyond the robot's range, from 0, with how far \[rad\].
+#[must_use]
+pub fn beyond_range(model: &Model, log: &Log) -> Vec<(usize, f64)> {
+    let furthest = |joint: usize| {
+        let q = log.column(Channel::Position(joint))?;
+        let [low, high] = model.limits.position[joint];
+        let over = q.iter().map(|q| (q - high).max(low - q)).enumerate();
+        let (row, over) = over.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (over > OVERSHOT).then_some((joint, q[row]))
+    };
+    (0..log.joints()).filter_map(furthest).collect()
+}
+
+/// How many times the rates of `x` the logged ones are; `None` where they have little to do
+/// with each other.
+fn factor(t: &[f64], x: &[f64], logged: &[f64]) -> Option<f64> {
+    let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
+    for (found, logged) in derivatives(t, x).iter().zip(logged) {
+        if let Some([rate, _]) = found {
+            both += rate * logged;
+            own += rate * rate;
+            theirs += logged * logged;
+        }
+    }
+    let related = own > 0.0 && both * both > RELATED * own * theirs;
+    related.then(|| both / own)
+}
+
+/// Whether torques are those of the joints, as far as limits and a model with dynamics and
+/// motors can tell.
+///
+/// # Errors
+/// They never change, are beyond all limits, or smaller by the gear ratios.
+pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), IdentifyError> {
+    for (joint, tau) in tau.iter().enumerate() {
+        let q = log.column(Channel::Position(joint)).unwrap_or_default();
+        let is_one = |x: &[f64]| x.windows(2).all(|pair| pair[0] == pair[1]);
+        if is_one(tau) && !is_one(q) {
+            return Err(IdentifyError::Dead { joint: joint + 1 });
+        }
+    }
+    if let Some(limits) = &model.limits.torque {
+        let mut sizes: Vec<f64> = Vec::new();
+        for (joint, (tau, limit)) in tau.iter().zip(limits).enumerate() {
+            sizes.clear();
+            sizes.extend(tau.iter().map(|x| x.abs()));
+            sizes.sort_by(f64::total_cmp);
+            let reach = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+            if reach > BEYOND * limit {
+                return Err(IdentifyError::Large { joint: joint + 1, reach, limit: *limit });
+            }
+        }
+    }
+    let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) else {
+        return Ok(());
+    };
+    let carried = carried(model, log, tau);
+    let on_motor_side = |(joint, factor): &(usize, f64)| {
+        let factor = factor * motors.ratio[*joint];
+        motors.ratio[*joint] > ROUGHLY * ROUGHLY && factor > 1.0 / ROUGHLY && factor < ROUGHLY
+    };
+    if let Some(joint) = motor_side(model, log, tau).first() {
+        let ratio = motors.ratio[*joint];
+        return Err(IdentifyError::OneMotorSide { joint: joint + 1, ratio });
+    }
+    if !carried.is_empty() && carried.iter().all(on_motor_side) {
+        let joint = carried[0].0;
+        return Err(IdentifyError::MotorSide { joint: joint + 1, ratio: motors.ratio[joint] });
+    }
+    Ok(())
+}
+
+/// How many times the weight of the model's masses the torques carry, where that is far from
+/// once at all joints that carry any: the geometric mean, and a joint, from 0.
+#[must_use]
+pub fn weight_factor(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<(f64, usize)> {
+    let carried = if model.has_dynamics() { carried(model, log, tau) } else { Vec::new() };
+    let (first, _) = carried.first()?;
+    let far = |factor: f64| !(1.0 / STRANGE..STRANGE).contains(&factor.abs());
+    if !carried.iter().all(|(_, factor)| *factor != 0.0 && far(*factor)) {
+        return None;
+    }
+    let mean = carried.iter().map(|(_, f)| f.abs().ln()).sum::<f64>() / carried.len() as f64;
+    far(mean.exp()).then_some((mean.exp(), *first))
+}
+
+/// The joints that carry weight, from 0, each with its torque over that of the model's masses.
+fn carried(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<(usize, f64)> {
+    let q: Vec<&[f64]> = log.of_joints(Channel::Position).unwrap_or_default();
+    let every = log.time().len().div_ceil(ROWS).max(1);
+    let mut data = Data::new();
+    let n = model.dof;
+    let (mut both, mut own) = (vec![0.0; n], vec![0.0; n]);
+    for row in (0..log.time().len()).step_by(every) {
+        let at: Vec<f64> = q.iter().map(|q| q[row]).collect();
+        // Gravity alone says the order of magnitude.
+        let expected = rnea(model, &mut data, &Load::none(), &at, &[], &[]);
+        for joint in 0..n {
+            both[joint] += expected[joint] * tau[joint][row];
+            own[joint] += expected[joint] * expected[joint];
+        }
+    }
+    let largest = own.iter().fold(0.0, |m: f64, x| m.max(*x));
+    (0..n).filter(|j| own[*j] > 0.01 * largest).map(|j| (j, both[j] / own[j])).collect()
+}

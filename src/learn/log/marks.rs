@@ -1,0 +1,193 @@
+//! Two recorders of one run, brought together by the marks that both have.
+//!
+//! A digital output changes while the robot moves; one recorder has it beside the positions,
+//! the other as a voltage beside the currents. Its changes tell how one clock goes by the
+//! other.
+
+use super::channel::Family;
+use super::error::LogError;
+use super::uniform::{interpolated, median_step};
+use super::{Channel, Log};
+
+/// Fewer changes than this fit anything.
+const MARKS: usize = 3;
+/// By how much two clocks may differ in pace.
+const PACE: f64 = 0.02;
+/// How far a mark may lie off the line through all, in intervals of the slower recorder.
+const OFF: f64 = 2.5;
+
+/// Whether two logs are halves of one: positions here, what drives the motors there.
+#[must_use]
+pub fn are_halves(positions: &Log, other: &Log) -> bool {
+    let has = |log: &Log, family: Family| log.channels.iter().any(|c| c.family() == family);
+    let driven = [Family::Torque, Family::Current, Family::PhaseCurrent(0)];
+    has(positions, Family::Position)
+        && !has(other, Family::Position)
+        && driven.iter().any(|family| has(other, *family))
+        && !driven.iter().any(|family| has(positions, *family))
+}
+
+/// Two halves as one.
+#[derive(Clone, Debug)]
+pub struct Aligned {
+    /// Both.
+    pub log: Log,
+    /// Marks that both have.
+    pub marks: usize,
+    /// Largest distance between two of them \[s\].
+    pub worst: f64,
+    /// Interval of the slower recorder \[s\]: its marks can be late by that, all together.
+    pub step: f64,
+}
+
+/// `other` with the positions of `positions` at its own times, as their marks tell.
+///
+/// # Errors
+/// Marks that are missing or do not fit together.
+pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
+    let here = changes(positions);
+    let there = changes(other);
+    let step = median_step(positions.time()).max(median_step(other.time()));
+    // Recorders start and stop at times of their own, so that one may miss marks at its ends.
+    let shifts = -there.len().cast_signed()..=here.len().cast_signed();
+    let fits: Vec<Clock> = shifts.filter_map(|shift| Clock::of(&here, &there, shift)).collect();
+    let most = fits
+        .iter()
+        .filter(|clock| clock.worst <= OFF * step)
+        .max_by(|a, b| a.pairs.cmp(&b.pairs).then(b.worst.total_cmp(&a.worst)));
+    let Some(&Clock { pace, to, from, pairs, worst }) = most else {
+        let nearest = fits.iter().map(|clock| clock.worst).fold(f64::INFINITY, f64::min);
+        return Err(if nearest.is_finite() {
+            LogError::Unaligned { worst: nearest, step }
+        } else {
+            LogError::Marks { here: here.len(), there: there.len() }
+        });
+    };
+    let clock: Vec<f64> = other.time().iter().map(|t| to + pace * (t - from)).collect();
+    let t = positions.time();
+    let (first, last) = (t[0], t[t.len() - 1]);
+    let kept: Vec<usize> =
+        (0..clock.len()).filter(|i| (first..=last).contains(&clock[*i])).collect();
+    let mut log = Log {
+        channels: other.channels.clone(),
+        values: other.values.iter().map(|x| kept.iter().map(|i| x[*i]).collect()).collect(),
+        rows: kept.iter().map(|i| other.rows[*i]).collect(),
+        rejected: positions.rejected.iter().chain(&other.rejected).cloned().collect(),
+        degrees: positions.degrees.clone(),
+    };
+    for (channel, values) in log.channels.iter().zip(&mut log.values) {
+        if *channel == Channel::Time {
+            *values = kept.iter().map(|i| clock[*i]).collect();
+        }
+    }
+    for (channel, values) in positions.channels.iter().zip(&positions.values) {
+        if matches!(channel.family(), Family::Position | Family::Velocity | Family::Acceleration) {
+            log.channels.push(*channel);
+            let at = |i: &usize| interpolated_at(t, values, clock[*i]);
+            log.values.push(kept.iter().map(at).collect());
+        }
+    }
+    Ok(Aligned { log, marks: pairs, worst, step })
+}
+
+fn interpolated_at(t: &[f64], x: &[f64], at: f64) -> f64 {
+    let after = t.partition_point(|t| *t < at);
+    let width = t.len().min(4);
+    let first = after.saturating_sub(2).min(t.len() - width);
+    let part = first..first + width;
+    interpolated(&t[part.clone()], &x[part], at, 1.0, 1)[0]
+}
+
+/// How one clock goes by the other: `here = to + pace (there − from)`.
+struct Clock {
+    pace: f64,
+    to: f64,
+    from: f64,
+    pairs: usize,
+    /// Largest distance of a mark \[s\].
+    worst: f64,
+}
+
+impl Clock {
+    /// Where the first mark there is the one of number `shift` here; `None` where they do not
+    /// change in the same sense, are too few, or the clocks would differ too much.
+    fn of(here: &[Change], there: &[Change], shift: isize) -> Option<Clock> {
+        let (first, skipped) = (shift.max(0).cast_unsigned(), (-shift).max(0).cast_unsigned());
+        let pairs: Vec<(Change, Change)> =
+            here.iter().skip(first).copied().zip(there.iter().skip(skipped).copied()).collect();
+        if pairs.len() < MARKS || pairs.iter().any(|(a, b)| a.1 != b.1) {
+            return None;
+        }
+        let n = pairs.len() as f64;
+        let to = pairs.iter().map(|(here, _)| here.0).sum::<f64>() / n;
+        let from = pairs.iter().map(|(_, there)| there.0).sum::<f64>() / n;
+        let apart = || pairs.iter().map(|(here, there)| (here.0 - to, there.0 - from));
+        let squares: f64 = apart().map(|(_, t)| t * t).sum();
+        let pace = apart().map(|(h, t)| h * t).sum::<f64>() / squares;
+        let worst = apart().map(|(h, t)| (h - pace * t).abs()).fold(0.0, f64::max);
+        let same = (pace - 1.0).abs() < PACE;
+        same.then_some(Clock { pace, to, from, pairs: pairs.len(), worst })
+    }
+}
+
+/// When a mark changes \[s\], and whether it rises.
+type Change = (f64, bool);
+
+/// The changes of the mark, between samples where it is a voltage.
+fn changes(log: &Log) -> Vec<Change> {
+    let Some(mark) = log.column(Channel::Sync) else { return Vec::new() };
+    let (low, high) = mark
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    let middle = 0.5 * (low + high);
+    let t = log.time();
+    let mut times = Vec::new();
+    for i in 1..mark.len() {
+        let (a, b) = (mark[i - 1] - middle, mark[i] - middle);
+        if (a < 0.0) != (b < 0.0) {
+            times.push((t[i - 1] + (t[i] - t[i - 1]) * a / (a - b), b > a));
+        }
+    }
+    times
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+    use super::*;
+    use crate::learn::log::{ColumnMap, read_csv};
+
+    fn log(header: &str, step: f64, count: usize, row: impl Fn(f64) -> String) -> Log {
+        let mut text = format!("{header}\n");
+        for i in 0..count {
+            text += &row(step * i as f64);
+        }
+        read_csv(text.as_bytes(), &ColumnMap::default()).unwrap()
+    }
+
+    #[test]
+    fn clocks_of_different_pace_are_brought_together() {
+        let on = |t: f64| f64::from(u8::from((0.7 * t + 0.02 * t * t) as i64 % 2 == 1));
+        let q = |t: f64| (0.9 * t).sin();
+        let here = log("t,q1,sync", 0.01, 2000, |t| format!("{t},{},{}\n", q(t), on(t)));
+        // The other clock is late by three seconds and a tenth of a percent slow.
+        let there = log("t,ia1,ib1,ic1,sync", 0.001, 15000, |t| {
+            format!("{t},1,2,3,{}\n", 5.0 * on(3.0 + 1.001 * t))
+        });
+        assert!(are_halves(&here, &there) && !are_halves(&there, &here));
+        let both = aligned(&here, &there).unwrap().log;
+        let found = both.column(Channel::Position(0)).unwrap();
+        assert!(found.len() > 14_000);
+        for (t, found) in there.time().iter().zip(found).step_by(100) {
+            assert!((found - q(3.0 + 1.001 * t)).abs() < 0.01, "{t}");
+        }
+    }
+
+    #[test]
+    fn marks_that_do_not_fit_are_refused() {
+        let here = log("t,q1,sync", 0.01, 300, |t| format!("{t},0,{}\n", u8::from(t > 1.0)));
+        let there = log("t,i1,sync", 0.01, 300, |t| format!("{t},0,{}\n", u8::from(t > 2.0)));
+        assert!(matches!(aligned(&here, &there), Err(LogError::Marks { .. })));
+    }
+}

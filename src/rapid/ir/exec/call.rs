@@ -1,0 +1,179 @@
+//! Calls of the program's own routines.
+
+use super::super::hir::{
+    Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, RoutineKind, Stmt,
+};
+use super::super::program::{RoutineId, Symbol};
+use super::super::value::{Datum, Dependence, Origin};
+use super::eval::declared_twice;
+use super::flow::{Flow, Raised};
+use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
+use crate::rapid::text::Span;
+
+impl Executor<'_> {
+    /// A call statement: a routine of the program, or an instruction of RAPID's.
+    pub(super) fn call_statement(&mut self, stmt: &Stmt, call: &Call) -> Flow {
+        let (key, text, span) = match &call.callee {
+            Callee::Name(name) => (name.key.clone(), name.text.clone(), name.span),
+            Callee::Late(expr) => {
+                let Datum::Text(name) = self.eval(expr).datum else {
+                    self.opaque(stmt.span, "the procedure called by %…% is not known");
+                    return Flow::Next;
+                };
+                // "Module:Proc" names a local procedure of a module.
+                let proc = name.rsplit(':').next().unwrap_or(&name);
+                (proc.to_lowercase(), proc.to_owned(), expr.span)
+            }
+        };
+        match self.program.resolve(self.frame().module, &key) {
+            Some(Symbol::Routine(id)) => match self.call_routine(id, &call.args, span) {
+                Flow::Return(_) => Flow::Next,
+                other => other,
+            },
+            Some(Symbol::Ambiguous) => {
+                self.forget(&call.args, &format!("may be changed by {text}"));
+                self.opaque(stmt.span, &declared_twice(&text));
+                Flow::Next
+            }
+            _ => self.instruction(stmt, &key, &text, &call.args),
+        }
+    }
+
+    /// Binds the arguments and runs the routine.
+    pub(super) fn call_routine(&mut self, id: RoutineId, args: &[Arg], at: Span) -> Flow {
+        if self.frames.len() >= MAX_CALL_DEPTH {
+            self.unresolved(
+                at,
+                format!(
+                    "calls are nested more than {MAX_CALL_DEPTH} deep, as if a routine called \
+                     itself without an end: the cycle is shown up to here"
+                ),
+            );
+            return Flow::Exit;
+        }
+        let program = self.program;
+        let params = &program.routine(id).params;
+        let mut required = params.iter().filter(|p| !p.optional);
+        let mut names = Vec::new();
+        let mut present = Vec::new();
+        for arg in args {
+            let (param, expr) = match &arg.kind {
+                ArgKind::Positional(expr) => (required.next(), Some(expr)),
+                ArgKind::Named(name, expr) => {
+                    (params.iter().find(|p| p.name.key == name.key), Some(expr))
+                }
+                ArgKind::Optional(name, expr) => {
+                    (params.iter().find(|p| p.name.key == name.key), expr.as_ref())
+                }
+                ArgKind::Conditional(name, outer) => {
+                    let Some(outer) = self.given(outer) else { continue };
+                    if let Some(param) = params.iter().find(|p| p.name.key == name.key) {
+                        present.push(param.name.key.clone());
+                        if let Some(cell) = self.cell_of(outer) {
+                            names.push((param.name.key.clone(), cell));
+                        }
+                    }
+                    continue;
+                }
+            };
+            let Some(param) = param else {
+                self.unresolved(arg.span, "the argument has no parameter");
+                continue;
+            };
+            present.push(param.name.key.clone());
+            if let Some(expr) = expr {
+                let cell = self.bind(param, expr);
+                names.push((param.name.key.clone(), cell));
+            }
+        }
+        self.enter(id, names, present, Some(at))
+    }
+
+    /// The cell of a parameter: the argument's own for a reference, else a new one.
+    fn bind(&mut self, param: &Param, expr: &Expr) -> CellId {
+        if param.mode != ParamMode::In
+            && let ExprKind::Ref(name) = &expr.kind
+            && let Some(cell) = self.cell_of(name)
+        {
+            return cell;
+        }
+        self.seen_input = None;
+        let mut value = self.eval(expr);
+        if let Datum::Signal(_) = value.datum {
+            self.seen_input = None;
+        }
+        let input = self.seen_input.clone();
+        // A signal is passed on as such.
+        if !matches!(value.datum, Datum::Signal(_)) {
+            value.type_key = param.type_name.key.as_str().into();
+        }
+        let reading = Origin::of(Dependence::Local(param.name.text.as_str().into()));
+        self.cells.push(Cell {
+            value,
+            reading,
+            history: Origin::default(),
+            read_only: false,
+            input,
+        });
+        self.cells.len() - 1
+    }
+
+    /// Runs a routine whose parameters are bound.
+    pub(super) fn enter(
+        &mut self,
+        id: RoutineId,
+        names: Vec<(String, CellId)>,
+        present: Vec<String>,
+        called_at: Option<Span>,
+    ) -> Flow {
+        let program = self.program;
+        let routine = program.routine(id);
+        let cells = self.cells.len();
+        let mut given = Origin::default();
+        for (_, cell) in &names {
+            given.join(&self.cells[*cell].value.origin);
+        }
+        let name = routine.name.text.as_str().into();
+        self.frames.push(Frame {
+            names,
+            called_at,
+            present,
+            base: cells,
+            ..Frame::new(id.module, name, Some(id))
+        });
+        for data in &routine.data {
+            self.declare_local(data);
+        }
+        let flow = self.block(&routine.body);
+        self.frames.pop();
+        // Module data that were first used in the routine keep their cells.
+        self.cells.truncate(cells.max(self.kept_cells));
+        match flow {
+            Flow::Next | Flow::Retry | Flow::TryNext => Flow::Return(None),
+            // The caller's handler is the next that may take it.
+            Flow::Raised(raised) => Flow::Raised(Raised { leaves: false, ..raised }),
+            // A function's value depends on its arguments, which only it knows by name.
+            Flow::Return(Some(mut value)) => {
+                value.origin.join(&given);
+                Flow::Return(Some(value))
+            }
+            other => other,
+        }
+    }
+
+    /// Whether what runs is a function: its callers can't name its data.
+    pub(super) fn is_in_function(&self) -> bool {
+        let routine = self.frame().id.map(|id| self.program.routine(id));
+        routine.is_some_and(|routine| matches!(routine.kind, RoutineKind::Func(_)))
+    }
+
+    /// Something that may move the robot or take time in a way that is not known.
+    pub(super) fn opaque(&mut self, span: Span, reason: &str) {
+        self.unresolved(span, reason);
+        self.machine.moves(Err(super::super::movement::Unresolved {
+            span,
+            reason: reason.to_owned(),
+            moves: true,
+        }));
+    }
+}

@@ -1,0 +1,139 @@
+//! What the controller tells a program of itself: system data and functions.
+
+use nalgebra::Isometry3;
+
+use super::super::convert;
+use super::super::hir::{Arg, ArgKind, Expr};
+use super::super::value::{Datum, Dependence, Origin, Value};
+use super::Executor;
+use crate::rapid::text::Span;
+
+/// Largest TCP speed that `VelSet` allows where the program has not set it, mm/s.
+const USUAL_SPEED: f64 = 5000.0;
+/// RAPID's value of an axis that is not there.
+const NO_AXIS: f64 = 9e9;
+/// In place of a limit that is off.
+const OFF: f64 = -1.0;
+
+impl Executor<'_> {
+    /// The system data of a name in lower case.
+    pub(super) fn system_data(&self, key: &str, span: Span) -> Option<Value> {
+        match key {
+            "c_progdisp" => Some(Value::constant(self.displacement(), "progdisp")),
+            "c_motset" => Some(Value::constant(self.motion_settings(span), "motsetdata")),
+            _ => None,
+        }
+    }
+
+    fn displacement(&self) -> Datum {
+        let shift = self.settings.displacement.unwrap_or_else(Isometry3::identity);
+        Datum::List(vec![convert::pose_datum(&shift), Datum::nums([0.0; 6])])
+    }
+
+    fn motion_settings(&self, span: Span) -> Datum {
+        let settings = &self.settings;
+        let percent = |share: f64| (100.0 * share).round();
+        let speed = if settings.speed_max.is_finite() {
+            (1e3 * settings.speed_max * 1e6).round() / 1e6
+        } else {
+            USUAL_SPEED
+        };
+        let area = settings.sing_area.as_deref().unwrap_or_default().to_lowercase();
+        let sing = ["\\wrist", "\\lockaxis4", "\\arm", "\\base"];
+        let limit = |limit: f64| {
+            [
+                Datum::Bool(limit.is_finite()),
+                Datum::Num(if limit.is_finite() { limit } else { OFF }),
+            ]
+        };
+        let [along, back] = settings.path_acceleration.map(limit);
+        let on = Datum::Bool(true);
+        let conf = [Datum::Bool(settings.conf_joint), Datum::Bool(settings.conf_linear)];
+        let zeros = [0.0; 3].map(Datum::Num);
+        let acc = [settings.acceleration, settings.ramp, settings.fine_point_ramp];
+        let mut all = vec![
+            Datum::nums([percent(settings.speed_override), speed]),
+            Datum::nums(acc.map(percent)),
+            Datum::List(sing.map(|kind| Datum::Bool(area.ends_with(kind))).to_vec()),
+            Datum::List(conf.into_iter().chain(zeros).collect()),
+            settings.path_resolution.map_or_else(
+                || Datum::unknown("PathResol with a value that is not known", span),
+                |share| Datum::Num(percent(share)),
+            ),
+            on.clone(),
+            Datum::Num(100.0),
+        ];
+        all.extend(along.into_iter().chain(back));
+        all.push(Datum::Num(f64::from(settings.circle_mode)));
+        all.extend(limit(settings.world_acceleration));
+        all.push(on);
+        Datum::List(all)
+    }
+
+    /// `CSpeedOverride()`: the operator's override; with `\\CTask` what `SpeedRefresh` makes of it in
+    /// this task.
+    pub(super) fn override_of_speed(&self, args: &[Arg], expr: &Expr) -> Value {
+        let asks = |arg: &Arg| matches!(&arg.kind, ArgKind::Optional(n, _) if n.key == "ctask");
+        let percent = if !args.iter().any(asks) {
+            self.machine.override_percent()
+        } else if self.settings.other.iter().any(|name| name.eq_ignore_ascii_case("speedrefresh")) {
+            return Value::unknown("SpeedRefresh with a value that is not known", expr.span);
+        } else {
+            (100.0 * self.settings.refresh).round()
+        };
+        Value::constant(Datum::Num(percent), "num")
+    }
+
+    /// `GetSysInfo(\\RobotType)`: what the controller calls its robot.
+    pub(super) fn system_info(&self, options: &[(&str, Option<Value>)], expr: &Expr) -> Value {
+        let asked = options.first().map_or("", |(option, _)| *option);
+        match self.machine.robot().filter(|_| asked == "robottype") {
+            Some(name) => Value::constant(Datum::Text(name.into()), "string"),
+            None => Value::unknown("GetSysInfo depends on the controller", expr.span),
+        }
+    }
+
+    /// `CalcRobT(joints, tool [\\WObj])`: the target at which the tool is then. Its configuration is
+    /// not worked out.
+    pub(super) fn robtarget_at(
+        &mut self,
+        values: &[Value],
+        options: &[(&str, Option<Value>)],
+        expr: &Expr,
+    ) -> Value {
+        let found = self.pose_at(values, options);
+        match found {
+            Ok(at) => {
+                let [trans, rot] = convert::pose_parts(&at);
+                let (conf, external) = (Datum::nums([0.0; 4]), Datum::nums([NO_AXIS; 6]));
+                Value {
+                    datum: Datum::List(vec![trans, rot, conf, external]),
+                    type_key: "robtarget".into(),
+                    origin: Origin::of(Dependence::RobotState),
+                }
+            }
+            Err(why) => Value::unknown(why, expr.span),
+        }
+    }
+
+    fn pose_at(
+        &mut self,
+        values: &[Value],
+        options: &[(&str, Option<Value>)],
+    ) -> Result<Isometry3<f64>, String> {
+        let [joints, tool, ..] = values else { return Err("CalcRobT has no tool".into()) };
+        let tool = convert::tool(&tool.datum, "tool")?;
+        let wobj = options.iter().find(|(option, _)| *option == "wobj");
+        let wobj = match wobj.and_then(|(_, value)| value.as_ref()) {
+            Some(value) => Some(convert::work_object(&value.datum)?),
+            None => None,
+        };
+        if !tool.robhold || wobj.as_ref().is_some_and(|wobj| wobj.robhold || !wobj.fixed) {
+            return Err("CalcRobT of a tool or work object that is held otherwise".into());
+        }
+        let flange = self.machine.flange(&convert::jointtarget(&joints.datum)?);
+        let at = flange.ok_or("CalcRobT needs the robot's kinematics")? * tool.frame;
+        let at = wobj.map_or(at, |wobj| wobj.frame.inverse() * at);
+        Ok(self.settings.displacement.map_or(at, |shift| shift.inverse() * at))
+    }
+}

@@ -1,0 +1,212 @@
+//! What a machine is told.
+
+use super::*;
+use crate::rapid::ir::lower;
+use crate::rapid::ir::movement::Target;
+use crate::rapid::syntax;
+use crate::rapid::text::FileId;
+
+/// A line for each thing that it is told.
+#[derive(Default)]
+struct Recorder(Vec<String>);
+
+impl Machine for Recorder {
+    fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+        self.0.push(match movement {
+            Ok(movement) => {
+                let place = match &movement.target {
+                    Target::Joints(q) => q[0].to_degrees(),
+                    Target::Pose(target) => {
+                        let shift = movement.settings.displacement.unwrap_or_default();
+                        (shift * target.pose).translation.x * 1e3
+                    }
+                };
+                let other = movement.settings.other.join(" ");
+                format!("{} {:.1} {other}", movement.instruction, place).trim_end().to_owned()
+            }
+            Err(unresolved) => format!("{} ({})", unresolved.reason, unresolved.moves),
+        });
+    }
+    fn waits(&mut self, wait: Wait) -> Waited {
+        self.0.push(format!("{} {:?}", wait.instruction, wait.duration));
+        // What may time out does.
+        if wait.max_time.is_some() { Waited::TimedOut } else { Waited::Ended }
+    }
+    fn sets(&mut self, output: Output) {
+        self.0.push(format!("{} {}={}", output.instruction, output.signal, output.value));
+    }
+    fn joints(&mut self) -> Option<[f64; 6]> {
+        None
+    }
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
+const DATA: &str = "
+    CONST robtarget p10:=[[100,0,300],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST robtarget p20:=[[150,0,300],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST robtarget pTurned:=[[150,0,300],[0,0,0,1],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    CONST jointtarget j10:=[[30,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+    VAR robtarget pVar;
+    VAR robtarget pFound;
+    VAR jointtarget jVar;
+    VAR bool bFlag;
+    VAR num nKey;";
+
+/// What a machine is told by these statements.
+fn told(statements: &str) -> Vec<String> {
+    told_with_errors(statements, 0)
+}
+
+/// The same for statements that have that many syntax errors.
+fn told_with_errors(statements: &str, errors: usize) -> Vec<String> {
+    executed(statements, errors).0
+}
+
+/// What a machine is told by statements with that many syntax errors, and the reasons of what was
+/// not followed.
+fn executed(statements: &str, errors: usize) -> (Vec<String>, Vec<String>) {
+    let text = format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\nENDMODULE");
+    let parse = syntax::parse(text.as_bytes());
+    assert!(parse.errors.len() == errors, "{statements}: {:?}", parse.errors);
+    let program = Program::new(lower(FileId(0), &parse, text.as_bytes()));
+    let mut recorder = Recorder::default();
+    let execution = execute(&program, program.entry("main").expect("main"), &mut recorder);
+    (recorder.0, execution.unresolved.into_iter().map(|note| note.reason).collect())
+}
+
+#[test]
+fn every_family_of_movements_is_resolved() {
+    let target = "p10, v100, z10, tool0";
+    for statement in [
+        format!("MoveJ {target};"),
+        format!("MoveL \\Conc, {target} \\WObj:=wobj0 \\Corr;"),
+        "MoveC p20, p10, v100, z10, tool0;".to_owned(),
+        "MoveLDO p10, v100, z10, tool0, doGlue, 1;".to_owned(),
+        "TriggL p10, v100, trGlue \\T2:=trGlue, z10, tool0;".to_owned(),
+        "TriggC p20, p10, v100, trGlue, z10, tool0;".to_owned(),
+        "TriggJ p10, v100, trGlue, z10, tool0;".to_owned(),
+        "TriggLIOs p10, v100 \\TriggData1:=trGlue, z10, tool0;".to_owned(),
+        "MoveLSync p10, v100, z10, tool0, \"rGlue\";".to_owned(),
+        "SearchL \\Stop, diTouch, pFound, p10, v100, tool0;".to_owned(),
+        "SearchC diTouch, pFound, p20, p10, v100, tool0;".to_owned(),
+        "ArcLStart p10 \\ID:=3, v100, sm1, wd1 \\Weave:=wv1, fine, tool0 \\WObj:=wobj0;".to_owned(),
+        "ArcC2 p20, p10, v100, sm1, wd1, z10, tool0;".to_owned(),
+        "ArcMoveJ p10, v100, z10, tool0;".to_owned(),
+        "SpotL p10, v100, gun1, sp1, tool0;".to_owned(),
+        "DispC \\On, p20, p10, v100, bd1, z10, tool0;".to_owned(),
+        "CapL p10, v100, cd1, ws1, we1, fine, tool0;".to_owned(),
+        "MoveL Tool:=tool0, ToPoint:=p10, Speed:=v100, Zone:=z10;".to_owned(),
+    ] {
+        let told = told(&statement);
+        assert!(told.len() == 1 && told[0].ends_with(" 100.0"), "{statement}: {told:?}");
+    }
+    assert_eq!(told("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
+}
+
+/// Only a search writes a target, and only the point that it finds.
+#[test]
+fn what_does_more_than_move_leaves_its_target_alone() {
+    let behind = |statement: &str| {
+        told(&format!(
+            "pVar:=p20; pFound:=p20; {statement}; MoveL pVar, v100, fine, tool0; \
+             MoveL pFound, v100, fine, tool0;"
+        ))
+        .split_off(1)
+    };
+    for statement in [
+        "MoveLDO pVar, v100, z10, tool0, doGlue, 1",
+        "MoveLSync pVar, v100, z10, tool0, \"rGlue\"",
+        "TriggL pVar, v100, trGlue, z10, tool0",
+        "ArcL pVar, v100, sm1, wd1, z10, tool0",
+    ] {
+        assert_eq!(behind(statement), ["MoveL 150.0", "MoveL 150.0"], "{statement}");
+    }
+    for statement in [
+        "SearchL \\Stop, diTouch, pFound, pVar, v100, tool0",
+        "SearchC diTouch, pFound, p10, pVar, v100, tool0",
+    ] {
+        let found = behind(statement);
+        assert_eq!(found, ["MoveL 150.0", "'pFound' is found by a search (true)"], "{statement}");
+    }
+}
+
+/// World zones move nothing, and write nothing but the zone or the shape.
+#[test]
+fn world_zones_leave_targets_and_signals_as_they_should() {
+    let statements = "pVar:=p20; jVar:=j10; SetDO doHome, 1;
+        WZHomeJointDef \\Inside, shHome, jVar, jVar; WZLimJointDef \\Outside, shHome, jVar, jVar;
+        WZBoxDef \\Inside, shBox, pVar.trans, pVar.trans; WZCylDef \\Inside, shBox, pVar.trans, 9, 9;
+        WZSphDef \\Inside, shBox, pVar.trans, 9; WZLimSup \\Stat, wzBox, shBox;
+        WZDisable wzTemp; WZEnable wzTemp; WZFree wzTemp;
+        MoveL pVar, v100, fine, tool0; MoveAbsJ jVar, v100, fine, tool0;";
+    assert_eq!(told(statements), ["SetDO doHome=1", "MoveL 150.0", "MoveAbsJ 30.0"]);
+    // The place of the robot sets the output from then on.
+    let inverted = |zone: &str| told(&format!("SetDO doHome, 1; {zone} InvertDO doHome;"));
+    assert_eq!(inverted("")[1], "InvertDO doHome=0");
+    assert_eq!(
+        inverted("WZDOSet \\Stat, wzHome \\Inside, shHome, doHome, 1;")[1],
+        "InvertDO doHome=unknown"
+    );
+}
+
+#[test]
+fn a_statement_with_an_error_may_move_the_robot() {
+    let told = told_with_errors("MoveJ p10, v100 fine, tool0;\nMoveJ p20, v100, fine, tool0;", 1);
+    assert_eq!(told, ["the statement has a syntax error (true)", "MoveJ 150.0"]);
+}
+
+#[test]
+fn external_axes_leave_the_robot_where_it_stands() {
+    // A wait, of unknown length as long as nothing tells where the axes stand.
+    assert_eq!(told("MoveExtJ j10, vrot10, fine;"), ["MoveExtJ None"]);
+    assert_eq!(told("SearchExtJ diTouch, j10, j10, vrot10;"), ["SearchExtJ None"]);
+    assert_eq!(told("MoveExtJ j10, vrot10 \\T:=2, fine;"), ["MoveExtJ Some(2.0)"]);
+}
+
+#[test]
+fn displacements_are_worked_out_from_two_points() {
+    let moved = |on: &str| told(&format!("{on}; MoveJ p10, v100, fine, tool0; PDispOff;"));
+    assert_eq!(moved("PDispOn \\ExeP:=p20, p10, tool0"), ["MoveJ 150.0"]);
+    assert_eq!(moved("PDispOn \\Rot \\ExeP:=pTurned, p20, tool0"), ["MoveJ 200.0"]);
+    assert_eq!(moved("PDispOn p10, tool0"), ["MoveJ 100.0 PDispOn"]);
+    assert_eq!(moved("PDispSet [[7,0,0],[1,0,0,0]]"), ["MoveJ 107.0"]);
+}
+
+#[test]
+fn waits_for_others_are_waits() {
+    for wait in
+        ["WaitSyncTask sync1, taskList", "TPReadFK nKey, \"x\", \"\", \"\", \"\", \"\", \"a\""]
+    {
+        let name = wait.split(' ').next().expect("a name");
+        assert_eq!(told(&format!("{wait};")), [format!("{name} None")]);
+    }
+    assert_eq!(told("WaitTime \\InPos, 0.5;"), ["WaitTime Some(0.5)"]);
+    assert_eq!(
+        told("nKey:=1; TPReadFK nKey, \"\", \"\", \"\", \"\", \"\", \"\"; WaitTime nKey;").len(),
+        2
+    );
+}
+
+/// Data that a branch on an input assigns, or would have assigned, depend on the input.
+#[test]
+fn branches_on_data_that_inputs_chose_are_told() {
+    let later = "IF nKey=1 THEN\nMoveJ p10, v100, fine, tool0;\nENDIF";
+    for first in [
+        "IF diX=1 THEN\nnKey:=1;\nENDIF",
+        "IF diX=1 nKey:=1;",
+        "IF diX=0 THEN\nnKey:=2;\nENDIF",
+        "IF diX=1 THEN\npVar:=p10;\nELSEIF nKey=0 THEN\nnKey:=2;\nENDIF",
+        "TEST giX\nCASE 1:\nnKey:=1;\nENDTEST",
+        "TEST giX\nCASE 0:\nnKey:=2;\nENDTEST",
+    ] {
+        let (told, notes) = executed(&format!("{first}\n{later}"), 0);
+        assert!(told.is_empty(), "{first}: {told:?}");
+        let is_told =
+            notes.iter().any(|note| note.contains("taken as FALSE") && note.contains("X=LEVEL"));
+        assert!(is_told, "{first}: {notes:?}");
+    }
+    let (_, notes) = executed(&format!("IF diX=1 THEN\nnKey:=1;\nENDIF\nnKey:=2;\n{later}"), 0);
+    assert!(notes.is_empty(), "{notes:?}");
+}

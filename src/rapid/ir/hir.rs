@@ -1,0 +1,492 @@
+//! The program as a tree of plain data, lowered from the syntax tree.
+//!
+//! Every node carries the span of its source; nothing is evaluated yet. A part
+//! that the parser could not understand becomes `Broken`, a `<SMT>`-like
+//! placeholder `Placeholder`.
+
+use std::ops::Deref;
+use std::sync::Arc;
+
+use crate::rapid::text::Span;
+
+/// An identifier and where it stands; its text is shared by all its uses in a file.
+#[derive(Clone, Debug)]
+pub struct Ident {
+    name: Arc<Name>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The text of an identifier: RAPID compares them without case.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Name {
+    /// As written.
+    pub text: String,
+    /// Lower case, for comparison.
+    pub key: String,
+}
+
+impl Ident {
+    /// A use of a name.
+    pub fn new(name: Arc<Name>, span: Span) -> Ident {
+        Ident { name, span }
+    }
+}
+
+impl Deref for Ident {
+    type Target = Name;
+
+    fn deref(&self) -> &Name {
+        &self.name
+    }
+}
+
+/// One `MODULE … ENDMODULE`.
+#[derive(Clone, Debug)]
+pub struct Module {
+    /// Its name.
+    pub name: Ident,
+    /// `SYSMODULE`, `NOVIEW`, … in upper case.
+    pub attributes: Vec<String>,
+    /// `RECORD` and `ALIAS` declarations.
+    pub types: Vec<TypeDef>,
+    /// Data at module level.
+    pub data: Vec<Data>,
+    /// Routines.
+    pub routines: Vec<Routine>,
+    /// The whole module.
+    pub span: Span,
+}
+
+/// A user type.
+#[derive(Clone, Debug)]
+pub struct TypeDef {
+    /// `LOCAL` or global.
+    pub scope: Scope,
+    /// Its name.
+    pub name: Ident,
+    /// What it is.
+    pub kind: TypeDefKind,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// Record or alias.
+#[derive(Clone, Debug)]
+pub enum TypeDefKind {
+    /// `RECORD`: (type, component) in order.
+    Record(Vec<(Ident, Ident)>),
+    /// `ALIAS` of this type.
+    Alias(Ident),
+}
+
+/// How far a name reaches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// The whole task (routine data: the routine).
+    Global,
+    /// `LOCAL`: the module.
+    Local,
+    /// `TASK`: global in the task, not shared between tasks.
+    Task,
+}
+
+/// Kind of a data object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DataKind {
+    /// `CONST`.
+    Const,
+    /// `VAR`.
+    Var,
+    /// `PERS`.
+    Pers,
+}
+
+/// A data declaration.
+#[derive(Clone, Debug)]
+pub struct Data {
+    /// `LOCAL`, `TASK` or neither.
+    pub scope: Scope,
+    /// `CONST`, `VAR`, `PERS`.
+    pub kind: DataKind,
+    /// Name of the type.
+    pub type_name: Ident,
+    /// Its name.
+    pub name: Ident,
+    /// Array dimensions, none for a scalar.
+    pub dims: Vec<Expr>,
+    /// `:=` value.
+    pub init: Option<Expr>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `PROC`, `FUNC` or `TRAP`.
+#[derive(Clone, Debug)]
+pub struct Routine {
+    /// Which.
+    pub kind: RoutineKind,
+    /// `LOCAL` or global.
+    pub scope: Scope,
+    /// Its name.
+    pub name: Ident,
+    /// Its parameters.
+    pub params: Vec<Param>,
+    /// Its own data.
+    pub data: Vec<Data>,
+    /// Its statements.
+    pub body: Block,
+    /// `BACKWARD` handler.
+    pub backward: Option<Block>,
+    /// `ERROR` handlers: (error list, statements).
+    pub error: Vec<(Vec<Expr>, Block)>,
+    /// `UNDO` handler.
+    pub undo: Option<Block>,
+    /// The whole routine.
+    pub span: Span,
+}
+
+/// Kind of a routine.
+#[derive(Clone, Debug)]
+pub enum RoutineKind {
+    /// Procedure.
+    Proc,
+    /// Function and the name of its type.
+    Func(Ident),
+    /// Interrupt routine.
+    Trap,
+}
+
+/// How an argument reaches the routine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParamMode {
+    /// By value.
+    In,
+    /// `VAR`.
+    Var,
+    /// `PERS`.
+    Pers,
+    /// `INOUT`.
+    InOut,
+}
+
+/// A formal parameter.
+#[derive(Clone, Debug)]
+pub struct Param {
+    /// How it is passed.
+    pub mode: ParamMode,
+    /// Name of the type; `switch` for switches.
+    pub type_name: Ident,
+    /// Its name.
+    pub name: Ident,
+    /// Number of `*` dimensions.
+    pub dims: usize,
+    /// `\name`.
+    pub optional: bool,
+    /// Index of the group of mutually exclusive parameters it belongs to
+    /// (parameters with the same number exclude each other).
+    pub group: usize,
+}
+
+/// A statement list.
+pub type Block = Vec<Stmt>;
+
+/// A statement.
+#[derive(Clone, Debug)]
+pub struct Stmt {
+    /// What it does.
+    pub kind: StmtKind,
+    /// From its first token to its last (`;`, `ENDIF` …), without the white
+    /// space and comments around it.
+    pub span: Span,
+}
+
+/// What a statement does.
+#[derive(Clone, Debug)]
+pub enum StmtKind {
+    /// `target := value;`
+    Assign {
+        /// Left side.
+        target: Expr,
+        /// Right side.
+        value: Expr,
+    },
+    /// Procedure call or instruction.
+    Call(Call),
+    /// `IF`, with and without `ELSE`, compact form too.
+    If {
+        /// Condition and statements of `IF` and each `ELSEIF`.
+        branches: Vec<(Expr, Block)>,
+        /// `ELSE`.
+        otherwise: Option<Block>,
+    },
+    /// `FOR`.
+    For {
+        /// Loop variable (implicit num, read only).
+        var: Ident,
+        /// First value.
+        from: Expr,
+        /// Last value.
+        to: Expr,
+        /// `STEP`.
+        step: Option<Expr>,
+        /// Statements.
+        body: Block,
+    },
+    /// `WHILE`.
+    While {
+        /// Condition.
+        condition: Expr,
+        /// Statements.
+        body: Block,
+    },
+    /// `TEST`.
+    Test {
+        /// Test value.
+        value: Expr,
+        /// Values and statements of each `CASE`.
+        cases: Vec<(Vec<Expr>, Block)>,
+        /// `DEFAULT`.
+        default: Option<Block>,
+    },
+    /// `GOTO label;`
+    Goto(Ident),
+    /// `label:`
+    Label(Ident),
+    /// `RETURN`.
+    Return(Option<Expr>),
+    /// `RAISE`.
+    Raise(Option<Expr>),
+    /// `EXIT`.
+    Exit,
+    /// `RETRY`.
+    Retry,
+    /// `TRYNEXT`.
+    TryNext,
+    /// `CONNECT var WITH trap;`
+    Connect {
+        /// Interrupt variable.
+        interrupt: Expr,
+        /// Trap routine.
+        trap: Ident,
+    },
+    /// A data declaration between statements (real files have them).
+    Data(Data),
+    /// `<SMT>` and its like, or a lone `;`.
+    Placeholder,
+    /// A statement with a syntax error.
+    Broken,
+}
+
+impl Routine {
+    /// The body and every handler.
+    pub fn blocks(&self) -> impl Iterator<Item = &Block> {
+        std::iter::once(&self.body)
+            .chain(&self.backward)
+            .chain(self.error.iter().map(|(_, block)| block))
+            .chain(&self.undo)
+    }
+}
+
+impl StmtKind {
+    /// The statement lists directly inside.
+    pub fn blocks(&self) -> Vec<&Block> {
+        match self {
+            StmtKind::If { branches, otherwise } => {
+                branches.iter().map(|(_, block)| block).chain(otherwise).collect()
+            }
+            StmtKind::For { body, .. } | StmtKind::While { body, .. } => vec![body],
+            StmtKind::Test { cases, default, .. } => {
+                cases.iter().map(|(_, block)| block).chain(default).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The expressions of the statement itself, without those of the statements inside.
+    pub fn exprs(&self) -> Vec<&Expr> {
+        match self {
+            StmtKind::Assign { target, value } => vec![target, value],
+            StmtKind::Call(call) => {
+                let late = match &call.callee {
+                    Callee::Late(expr) => Some(expr),
+                    Callee::Name(_) => None,
+                };
+                late.into_iter().chain(call.args.iter().filter_map(Arg::value)).collect()
+            }
+            StmtKind::If { branches, .. } => branches.iter().map(|(expr, _)| expr).collect(),
+            StmtKind::For { from, to, step, .. } => [from, to].into_iter().chain(step).collect(),
+            StmtKind::While { condition, .. } => vec![condition],
+            StmtKind::Test { value, cases, .. } => {
+                let values = cases.iter().flat_map(|(values, _)| values);
+                std::iter::once(value).chain(values).collect()
+            }
+            StmtKind::Return(expr) | StmtKind::Raise(expr) => expr.iter().collect(),
+            StmtKind::Connect { interrupt, .. } => vec![interrupt],
+            StmtKind::Data(data) => data.init.iter().collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Arg {
+    /// What it hands over; none for a switch.
+    pub fn value(&self) -> Option<&Expr> {
+        match &self.kind {
+            ArgKind::Positional(expr)
+            | ArgKind::Named(_, expr)
+            | ArgKind::Optional(_, Some(expr))
+            | ArgKind::Conditional(_, expr) => Some(expr),
+            ArgKind::Optional(_, None) => None,
+        }
+    }
+}
+
+impl Expr {
+    /// The expressions directly inside.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Field(base, _) | ExprKind::Unary(_, base) => vec![base],
+            ExprKind::Index(base, indices) => std::iter::once(&**base).chain(indices).collect(),
+            ExprKind::Call(_, args) => args.iter().filter_map(Arg::value).collect(),
+            ExprKind::Aggregate(items) => items.iter().collect(),
+            ExprKind::Binary(_, left, right) => vec![left, right],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The data of which it is a place: `d` of `d.x{2}.y`.
+    pub fn base(&self) -> Option<&Ident> {
+        match &self.kind {
+            ExprKind::Ref(name) => Some(name),
+            ExprKind::Field(inner, _) | ExprKind::Index(inner, _) => inner.base(),
+            _ => None,
+        }
+    }
+}
+
+/// A procedure call or instruction.
+#[derive(Clone, Debug)]
+pub struct Call {
+    /// Who is called.
+    pub callee: Callee,
+    /// With what.
+    pub args: Vec<Arg>,
+}
+
+/// Who is called.
+#[derive(Clone, Debug)]
+pub enum Callee {
+    /// By name; `module:name` keeps the name after the colon.
+    Name(Ident),
+    /// Late binding `%expr%`.
+    Late(Expr),
+}
+
+/// An actual argument.
+#[derive(Clone, Debug)]
+pub struct Arg {
+    /// Which form.
+    pub kind: ArgKind,
+    /// From its first token to its last.
+    pub span: Span,
+}
+
+/// The forms of an argument.
+#[derive(Clone, Debug)]
+pub enum ArgKind {
+    /// `expr`
+    Positional(Expr),
+    /// `name := expr`
+    Named(Ident, Expr),
+    /// `\name := expr`, or `\name` for a switch.
+    Optional(Ident, Option<Expr>),
+    /// `\name ? parameter`: given if the parameter is.
+    Conditional(Ident, Expr),
+}
+
+/// An expression.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// From its first token to its last.
+    pub span: Span,
+}
+
+/// What an expression is.
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// Number (`num` or `dnum`), read as a double.
+    Num(f64),
+    /// String, escapes resolved.
+    Str(String),
+    /// `TRUE`, `FALSE`.
+    Bool(bool),
+    /// A name.
+    Ref(Ident),
+    /// `base.component`
+    Field(Box<Expr>, Ident),
+    /// `base{i, j}`
+    Index(Box<Expr>, Vec<Expr>),
+    /// `f(args)`
+    Call(Ident, Vec<Arg>),
+    /// `[a, b, …]`
+    Aggregate(Vec<Expr>),
+    /// Unary operator.
+    Unary(UnaryOp, Box<Expr>),
+    /// Binary operator.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `*` in place of a position.
+    AnyPosition,
+    /// `<EXP>` and its like, or an omitted value.
+    Placeholder,
+    /// A syntax error.
+    Broken,
+}
+
+/// Unary operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnaryOp {
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+    /// `NOT`
+    Not,
+}
+
+/// Binary operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`
+    Div,
+    /// `DIV`
+    IntDiv,
+    /// `MOD`
+    Mod,
+    /// `=`
+    Eq,
+    /// `<>`
+    Ne,
+    /// `<`
+    Lt,
+    /// `<=`
+    Le,
+    /// `>`
+    Gt,
+    /// `>=`
+    Ge,
+    /// `AND`
+    And,
+    /// `OR`
+    Or,
+    /// `XOR`
+    Xor,
+}

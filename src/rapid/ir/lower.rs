@@ -1,0 +1,533 @@
+//! Syntax tree → plain data.
+//!
+//! Lowering evaluates nothing and drops nothing that runs: what has a syntax
+//! error becomes `Broken`, so that nobody takes half a statement for a whole.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::hir::{
+    Arg, ArgKind, BinaryOp, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module,
+    Name, Param, ParamMode, Routine, RoutineKind, Scope, Stmt, StmtKind, TypeDef, TypeDefKind,
+    UnaryOp,
+};
+use crate::rapid::syntax::{Node, NodeKind, Parse, Token, TokenKind, ast};
+use crate::rapid::text::{self, Charset, FileId, Span};
+
+/// The modules of a file, in order. Declarations that no `MODULE` encloses form
+/// a module with an empty name.
+#[must_use]
+pub fn lower(file: FileId, parse: &Parse, bytes: &[u8]) -> Vec<Module> {
+    let charset = text::charset(bytes);
+    let lowering = Lowering { file, bytes, charset, names: RefCell::default() };
+    let root = parse.tree.root();
+    let mut modules: Vec<Module> =
+        root.children().filter_map(ast::Module::cast).map(|node| lowering.module(node)).collect();
+    let mut bare = lowering.empty_module(root);
+    for child in root.children() {
+        lowering.item(child, &mut bare);
+    }
+    if !(bare.types.is_empty() && bare.data.is_empty() && bare.routines.is_empty()) {
+        modules.push(bare);
+    }
+    modules
+}
+
+struct Lowering<'a> {
+    file: FileId,
+    bytes: &'a [u8],
+    charset: Charset,
+    /// The names met so far, by their bytes.
+    names: RefCell<HashMap<&'a [u8], Arc<Name>>>,
+}
+
+impl<'a> Lowering<'a> {
+    fn span(&self, node: Node<'_>) -> Span {
+        let range = node.range();
+        Span { file: self.file, start: range.start, end: range.end }
+    }
+
+    // --- names ---
+
+    fn name(&self, bytes: &'a [u8]) -> Arc<Name> {
+        let new = || {
+            let text = self.charset.decode(bytes).into_owned();
+            Arc::new(Name { key: text.to_lowercase(), text })
+        };
+        self.names.borrow_mut().entry(bytes).or_insert_with(new).clone()
+    }
+
+    fn ident(&self, node: Node<'_>) -> Ident {
+        Ident::new(self.name(node.text(self.bytes)), self.span(node))
+    }
+
+    /// The name, or an empty one where `around` lacks it.
+    fn ident_in(&self, node: Option<Node<'_>>, around: Node<'_>) -> Ident {
+        node.map_or_else(
+            || {
+                let start = self.span(around).start;
+                Ident::new(self.name(&[]), Span { file: self.file, start, end: start })
+            },
+            |node| self.ident(node),
+        )
+    }
+
+    // --- declarations ---
+
+    fn empty_module(&self, node: Node<'_>) -> Module {
+        Module {
+            name: self.ident_in(None, node),
+            attributes: Vec::new(),
+            types: Vec::new(),
+            data: Vec::new(),
+            routines: Vec::new(),
+            span: self.span(node),
+        }
+    }
+
+    fn module(&self, module: ast::Module<'_>) -> Module {
+        let node = module.node();
+        let mut lowered = self.empty_module(node);
+        lowered.name = self.ident_in(module.name(), node);
+        lowered.attributes = module
+            .attributes()
+            .map(|token| String::from_utf8_lossy(token.text(self.bytes)).to_uppercase())
+            .collect();
+        for child in node.children() {
+            self.item(child, &mut lowered);
+        }
+        lowered
+    }
+
+    fn item(&self, node: Node<'_>, module: &mut Module) {
+        if let Some(data) = ast::Data::cast(node) {
+            module.data.push(self.data(data));
+        } else if let Some(routine) = ast::Routine::cast(node) {
+            module.routines.push(self.routine(routine));
+        } else if matches!(node.kind(), NodeKind::RecordDeclaration | NodeKind::AliasDeclaration) {
+            module.types.push(self.type_def(node));
+        }
+    }
+
+    fn type_def(&self, node: Node<'_>) -> TypeDef {
+        let kind = if node.kind() == NodeKind::AliasDeclaration {
+            TypeDefKind::Alias(self.ident_in(node.child(NodeKind::TypeName), node))
+        } else {
+            let component = |child: Node<'_>| {
+                (
+                    self.ident_in(child.child(NodeKind::TypeName), child),
+                    self.ident_in(child.child(NodeKind::Name), child),
+                )
+            };
+            TypeDefKind::Record(
+                node.children()
+                    .filter(|child| child.kind() == NodeKind::RecordComponent)
+                    .map(component)
+                    .collect(),
+            )
+        };
+        TypeDef {
+            scope: scope(node.own_tokens().next().map(Token::kind)),
+            name: self.ident_in(node.child(NodeKind::Name), node),
+            kind,
+            span: self.span(node),
+        }
+    }
+
+    fn data(&self, data: ast::Data<'_>) -> Data {
+        let node = data.node();
+        let broken = node.children().any(|child| child.kind() == NodeKind::Error);
+        let init = data.value().map(|value| self.expr(value));
+        Data {
+            scope: scope(data.scope()),
+            kind: match data.keyword() {
+                Some(TokenKind::Const) => DataKind::Const,
+                Some(TokenKind::Pers) => DataKind::Pers,
+                _ => DataKind::Var,
+            },
+            type_name: self.ident_in(data.type_name(), node),
+            name: self.ident_in(data.name(), node),
+            dims: data.dimensions().map(|dimension| self.expr(dimension)).collect(),
+            init: if broken { Some(self.broken(node)) } else { init },
+            span: self.span(node),
+        }
+    }
+
+    fn routine(&self, routine: ast::Routine<'_>) -> Routine {
+        let node = routine.node();
+        let kind = match node.kind() {
+            NodeKind::FuncDeclaration => {
+                RoutineKind::Func(self.ident_in(routine.type_name(), node))
+            }
+            NodeKind::TrapDeclaration => RoutineKind::Trap,
+            _ => RoutineKind::Proc,
+        };
+        let params = routine
+            .parameter_groups()
+            .enumerate()
+            .flat_map(|(group, parameters)| {
+                parameters.parameters().map(move |parameter| (group, parameters, parameter))
+            })
+            .map(|(group, parameters, parameter)| self.param(group, parameters, parameter))
+            .collect();
+        let handler = |kind| routine.handlers(kind).next().map(|node| self.block_in(node));
+        Routine {
+            kind,
+            scope: scope(routine.scope()),
+            name: self.ident_in(routine.name(), node),
+            params,
+            data: routine.data().map(|data| self.data(data)).collect(),
+            body: self.block_in(node),
+            backward: handler(NodeKind::BackwardHandler),
+            error: routine
+                .handlers(NodeKind::ErrorHandler)
+                .map(|node| {
+                    let numbers = node.child(NodeKind::ErrorNumbers);
+                    let numbers = numbers.into_iter().flat_map(Node::children);
+                    (numbers.map(|number| self.expr(number)).collect(), self.block_in(node))
+                })
+                .collect(),
+            undo: handler(NodeKind::UndoHandler),
+            span: self.span(node),
+        }
+    }
+
+    fn param(
+        &self,
+        group: usize,
+        parameters: ast::ParameterGroup<'_>,
+        parameter: ast::Parameter<'_>,
+    ) -> Param {
+        let node = parameter.node();
+        Param {
+            mode: match parameter.mode() {
+                Some(TokenKind::Var) => ParamMode::Var,
+                Some(TokenKind::Pers) => ParamMode::Pers,
+                Some(TokenKind::InOut) => ParamMode::InOut,
+                _ => ParamMode::In,
+            },
+            type_name: self.ident_in(parameter.type_name(), node),
+            name: self.ident_in(parameter.name(), node),
+            dims: parameter.dimensions(),
+            optional: parameters.is_optional(),
+            group,
+        }
+    }
+
+    // --- statements ---
+
+    /// The statements of the block in a node.
+    fn block_in(&self, node: Node<'_>) -> Block {
+        node.child(NodeKind::Block)
+            .into_iter()
+            .flat_map(Node::children)
+            .filter_map(|child| self.stmt(child))
+            .collect()
+    }
+
+    /// A statement. The depth of the recursion is limited by the parser.
+    fn stmt(&self, node: Node<'_>) -> Option<Stmt> {
+        let kind = match node.kind() {
+            NodeKind::IfStatement => self.if_statement(node),
+            NodeKind::CompactIf => self.compact_if(node),
+            NodeKind::ForStatement => self.for_statement(node),
+            NodeKind::WhileStatement => {
+                StmtKind::While { condition: self.header_value(node), body: self.block_in(node) }
+            }
+            NodeKind::TestStatement => self.test_statement(node),
+            NodeKind::DataDeclaration => StmtKind::Data(self.data(ast::Data::cast(node)?)),
+            NodeKind::Placeholder | NodeKind::EmptyStatement => StmtKind::Placeholder,
+            _ if has_error(node) => StmtKind::Broken,
+            _ => self.simple_statement(node).unwrap_or(StmtKind::Broken),
+        };
+        Some(Stmt { kind, span: self.span(node) })
+    }
+
+    /// A statement without statements in it, and without errors.
+    fn simple_statement(&self, node: Node<'_>) -> Option<StmtKind> {
+        let first = node.children().next();
+        let name = || node.child(NodeKind::Name).map(|name| self.ident(name));
+        Some(match node.kind() {
+            NodeKind::Assignment => {
+                let mut sides = node.children();
+                StmtKind::Assign {
+                    target: self.expr(sides.next()?),
+                    value: self.expr(sides.next()?),
+                }
+            }
+            NodeKind::CallStatement => {
+                let call = ast::Call::cast(node)?;
+                let callee = match call.late_binding() {
+                    Some(late) => Callee::Late(self.expr(late.children().next()?)),
+                    None => Callee::Name(self.ident(call.name()?)),
+                };
+                let args = exact(call.arguments(), call.arguments().count(), |arg| self.arg(arg));
+                StmtKind::Call(Call { callee, args })
+            }
+            NodeKind::GotoStatement => StmtKind::Goto(name()?),
+            NodeKind::LabelStatement => StmtKind::Label(name()?),
+            NodeKind::ReturnStatement => StmtKind::Return(first.map(|value| self.expr(value))),
+            NodeKind::RaiseStatement => StmtKind::Raise(first.map(|value| self.expr(value))),
+            NodeKind::ExitStatement => StmtKind::Exit,
+            NodeKind::RetryStatement => StmtKind::Retry,
+            NodeKind::TryNextStatement => StmtKind::TryNext,
+            NodeKind::ConnectStatement => {
+                StmtKind::Connect { interrupt: self.expr(first?), trap: name()? }
+            }
+            _ => return None,
+        })
+    }
+
+    fn if_statement(&self, node: Node<'_>) -> StmtKind {
+        let mut branches = vec![(self.header_value(node), self.block_in(node))];
+        let mut otherwise = None;
+        for child in node.children() {
+            match child.kind() {
+                NodeKind::ElseIfBranch => {
+                    branches.push((self.header_value(child), self.block_in(child)));
+                }
+                NodeKind::ElseBranch => otherwise = Some(self.block_in(child)),
+                _ => {}
+            }
+        }
+        StmtKind::If { branches, otherwise }
+    }
+
+    fn compact_if(&self, node: Node<'_>) -> StmtKind {
+        let parts = ast::If::cast(node).and_then(|view| view.condition().zip(view.statement()));
+        match parts {
+            Some((condition, statement)) if statement.kind() != NodeKind::Error => {
+                let body = self.stmt(statement).into_iter().collect();
+                StmtKind::If { branches: vec![(self.expr(condition), body)], otherwise: None }
+            }
+            _ => StmtKind::Broken,
+        }
+    }
+
+    fn for_statement(&self, node: Node<'_>) -> StmtKind {
+        let broken = node.children().any(|child| child.kind() == NodeKind::Error);
+        let parts = ast::For::cast(node)
+            .filter(|_| !broken)
+            .and_then(|view| Some((view.variable()?, view.bounds()?, view.step())));
+        let Some((variable, (from, to), step)) = parts else { return StmtKind::Broken };
+        StmtKind::For {
+            var: self.ident(variable),
+            from: self.expr(from),
+            to: self.expr(to),
+            step: step.map(|step| self.expr(step)),
+            body: self.block_in(node),
+        }
+    }
+
+    fn test_statement(&self, node: Node<'_>) -> StmtKind {
+        let mut cases = Vec::new();
+        let mut default = None;
+        for child in node.children() {
+            if let Some(case) = ast::Case::cast(child) {
+                let values = case.values().map(|value| self.expr(value)).collect();
+                cases.push((values, self.block_in(child)));
+            } else if child.kind() == NodeKind::DefaultBranch {
+                default = Some(self.block_in(child));
+            }
+        }
+        StmtKind::Test { value: self.header_value(node), cases, default }
+    }
+
+    /// The value in the header of a block statement.
+    fn header_value(&self, node: Node<'_>) -> Expr {
+        let mut header = node.children().take_while(|child| child.kind() != NodeKind::Block);
+        let value = header.next().filter(|child| ast::is_value(*child));
+        match value {
+            Some(value) if header.all(|child| child.kind() != NodeKind::Error) => self.expr(value),
+            _ => self.broken(node),
+        }
+    }
+
+    // --- expressions ---
+
+    fn broken(&self, node: Node<'_>) -> Expr {
+        Expr { kind: ExprKind::Broken, span: self.span(node) }
+    }
+
+    /// An expression. The depth of the recursion is limited by the parser.
+    fn expr(&self, node: Node<'_>) -> Expr {
+        if node.children().any(|child| child.kind() == NodeKind::Error) {
+            return self.broken(node);
+        }
+        let mut children = node.children();
+        let kind = match node.kind() {
+            // Parentheses only group: the span is that of the parentheses.
+            NodeKind::Parenthesized => children.next().map(|inner| self.expr(inner).kind),
+            NodeKind::NumberLiteral => number(node.text(self.bytes)).map(ExprKind::Num),
+            NodeKind::StringLiteral => Some(ExprKind::Str(self.string(node))),
+            NodeKind::BoolLiteral => {
+                Some(ExprKind::Bool(node.text(self.bytes).eq_ignore_ascii_case(b"TRUE")))
+            }
+            NodeKind::Reference => Some(ExprKind::Ref(self.ident(node))),
+            NodeKind::FieldAccess => children
+                .next()
+                .zip(children.next())
+                .map(|(base, name)| ExprKind::Field(Box::new(self.expr(base)), self.ident(name))),
+            NodeKind::IndexAccess => children.next().map(|base| {
+                let base = Box::new(self.expr(base));
+                ExprKind::Index(base, children.map(|index| self.expr(index)).collect())
+            }),
+            NodeKind::FunctionCall => children.next().map(|name| {
+                let count = node.children().count() - 1;
+                let args = exact(children, count, |argument| self.arg(argument));
+                ExprKind::Call(self.ident(name), args)
+            }),
+            NodeKind::Aggregate => {
+                let count = node.children().count();
+                Some(ExprKind::Aggregate(exact(children, count, |part| self.expr(part))))
+            }
+            NodeKind::UnaryExpression => unary_op(node)
+                .zip(children.next())
+                .map(|(op, operand)| ExprKind::Unary(op, Box::new(self.expr(operand)))),
+            NodeKind::BinaryExpression => {
+                match (binary_op(node), children.next(), children.next()) {
+                    (Some(op), Some(left), Some(right)) => Some(ExprKind::Binary(
+                        op,
+                        Box::new(self.expr(left)),
+                        Box::new(self.expr(right)),
+                    )),
+                    _ => None,
+                }
+            }
+            NodeKind::AnyPosition => Some(ExprKind::AnyPosition),
+            NodeKind::Placeholder => Some(ExprKind::Placeholder),
+            _ => None,
+        };
+        Expr { kind: kind.unwrap_or(ExprKind::Broken), span: self.span(node) }
+    }
+
+    fn arg(&self, node: Node<'_>) -> Arg {
+        let span = self.span(node);
+        let Some(argument) = ast::Argument::cast(node) else {
+            return Arg { kind: ArgKind::Positional(self.expr(node)), span };
+        };
+        let name = self.ident_in(argument.name(), node);
+        let kind = match (node.kind(), argument.value()) {
+            (NodeKind::OptionalArgument, value) => {
+                ArgKind::Optional(name, value.map(|value| self.expr(value)))
+            }
+            (NodeKind::ConditionalArgument, parameter) => {
+                let outer = self.ident_in(parameter, node);
+                let span = outer.span;
+                ArgKind::Conditional(name, Expr { kind: ExprKind::Ref(outer), span })
+            }
+            (_, Some(value)) => ArgKind::Named(name, self.expr(value)),
+            (_, None) => ArgKind::Named(name, self.broken(node)),
+        };
+        Arg { kind, span }
+    }
+
+    /// The text of a string, escapes resolved.
+    fn string(&self, node: Node<'_>) -> String {
+        let text = node.text(self.bytes);
+        let inner = text.get(1..text.len().saturating_sub(1)).unwrap_or_default();
+        unescape(&self.charset.decode(inner))
+    }
+}
+
+fn scope(keyword: Option<TokenKind>) -> Scope {
+    match keyword {
+        Some(TokenKind::Local) => Scope::Local,
+        Some(TokenKind::Task) => Scope::Task,
+        _ => Scope::Global,
+    }
+}
+
+/// Lowers the nodes of a list of known length: a vector that grows takes up to twice the memory,
+/// which is most of the time of a large file.
+fn exact<'t, T>(
+    nodes: impl Iterator<Item = Node<'t>>,
+    count: usize,
+    lower: impl FnMut(Node<'t>) -> T,
+) -> Vec<T> {
+    let mut list = Vec::with_capacity(count);
+    list.extend(nodes.map(lower));
+    list
+}
+
+fn has_error(node: Node<'_>) -> bool {
+    node.subtree().any(|inner| inner.kind() == NodeKind::Error)
+}
+
+/// `12`, `1.5E-3`, `.5`, `1.`, `0xFF`, `0b01`, `0o17`.
+fn number(text: &[u8]) -> Option<f64> {
+    let text = std::str::from_utf8(text).ok()?;
+    let radix = match text.as_bytes() {
+        [b'0', b'x' | b'X', ..] => 16,
+        [b'0', b'o' | b'O', ..] => 8,
+        [b'0', b'b' | b'B', ..] => 2,
+        _ => return text.parse().ok(),
+    };
+    let mut value = 0.0;
+    for digit in text.chars().skip(2) {
+        value = value * f64::from(radix) + f64::from(digit.to_digit(radix)?);
+    }
+    Some(value)
+}
+
+/// `""` → `"`, `\\` → `\`, `\hh` → the character of that code.
+fn unescape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text.chars();
+    while let Some(first) = rest.next() {
+        let mut ahead = rest.clone();
+        let second = ahead.next();
+        match (first, second, ahead.next()) {
+            ('"', Some('"'), _) | ('\\', Some('\\'), _) => {
+                out.push(first);
+                rest.next();
+            }
+            ('\\', Some(high), Some(low)) => {
+                if let (Some(high), Some(low)) = (high.to_digit(16), low.to_digit(16)) {
+                    out.extend(char::from_u32(high * 16 + low));
+                    rest.next();
+                    rest.next();
+                } else {
+                    out.push(first);
+                }
+            }
+            _ => out.push(first),
+        }
+    }
+    out
+}
+
+fn unary_op(node: Node<'_>) -> Option<UnaryOp> {
+    Some(match node.own_tokens().next()?.kind() {
+        TokenKind::Plus => UnaryOp::Plus,
+        TokenKind::Minus => UnaryOp::Minus,
+        TokenKind::Not => UnaryOp::Not,
+        _ => return None,
+    })
+}
+
+fn binary_op(node: Node<'_>) -> Option<BinaryOp> {
+    Some(match node.own_tokens().next()?.kind() {
+        TokenKind::Plus => BinaryOp::Add,
+        TokenKind::Minus => BinaryOp::Sub,
+        TokenKind::Star => BinaryOp::Mul,
+        TokenKind::Slash => BinaryOp::Div,
+        TokenKind::Div => BinaryOp::IntDiv,
+        TokenKind::Mod => BinaryOp::Mod,
+        TokenKind::Equal => BinaryOp::Eq,
+        TokenKind::NotEqual => BinaryOp::Ne,
+        TokenKind::Less => BinaryOp::Lt,
+        TokenKind::LessEqual => BinaryOp::Le,
+        TokenKind::Greater => BinaryOp::Gt,
+        TokenKind::GreaterEqual => BinaryOp::Ge,
+        TokenKind::And => BinaryOp::And,
+        TokenKind::Or => BinaryOp::Or,
+        TokenKind::Xor => BinaryOp::Xor,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a missing value fails the test")]
+mod tests;

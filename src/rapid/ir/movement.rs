@@ -1,0 +1,309 @@
+//! Movements, waits and signals as plain data in SI units.
+
+use std::sync::Arc;
+
+use nalgebra::Isometry3;
+
+use super::instructions::MoveForm;
+use super::value::{Datum, Origin};
+use crate::rapid::text::Span;
+
+/// Where a movement goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// Axis positions, rad (RAPID: degrees); the robot's six axes.
+    Joints([f64; 6]),
+    /// A pose of the tool in the work object's frame.
+    Pose(RobTarget),
+}
+
+/// A `robtarget`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobTarget {
+    /// Tool frame in the object frame, m.
+    pub pose: Isometry3<f64>,
+    /// `cf1, cf4, cf6, cfx`.
+    pub conf: [i32; 4],
+}
+
+/// A `speeddata`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// TCP speed, m/s.
+    pub tcp: f64,
+    /// Reorientation speed, rad/s.
+    pub orientation: f64,
+}
+
+/// A `zonedata`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// True for a stop point.
+    pub fine: bool,
+    /// Zone of the TCP path, m.
+    pub tcp: f64,
+    /// Zone of the reorientation, m of TCP path.
+    pub orientation: f64,
+    /// Zone of the reorientation, rad.
+    pub angle: f64,
+}
+
+/// What a stop point waits for before the next movement begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// Nothing but standing: `fine`.
+    Fine,
+    /// A time, s: `stoptime` and `fllwtime`.
+    Time(f64),
+    /// A share of the errors of position and speed at which `fine` is reached, but at least and
+    /// at most so long, s: `inpos`.
+    InPosition {
+        /// 1 = as for `fine`.
+        share: f64,
+        /// s.
+        least: f64,
+        /// s.
+        most: f64,
+    },
+}
+
+/// A `loaddata`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadData {
+    /// kg.
+    pub mass: f64,
+    /// Centre of mass, m, in the frame it was given in (tool or flange).
+    pub com: [f64; 3],
+    /// Principal moments of inertia about the centre of mass, kg m².
+    pub inertia: [f64; 3],
+    /// Principal axes, quaternion w, x, y, z.
+    pub axes: [f64; 4],
+}
+
+/// A `tooldata`.
+#[derive(Clone, Debug)]
+pub struct Tool {
+    /// As the program names it.
+    pub name: Arc<str>,
+    /// True if the robot holds the tool, false for a stationary tool.
+    pub robhold: bool,
+    /// TCP in the flange's frame (in the world's, if stationary), m.
+    pub frame: Isometry3<f64>,
+    /// Its load, in the flange's frame.
+    pub load: LoadData,
+}
+
+impl PartialEq for Tool {
+    /// RAPID's names have no case.
+    fn eq(&self, other: &Tool) -> bool {
+        self.name.to_lowercase() == other.name.to_lowercase()
+            && self.robhold == other.robhold
+            && self.frame == other.frame
+            && self.load == other.load
+    }
+}
+
+/// A `wobjdata`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorkObject {
+    /// True if the robot holds the work object.
+    pub robhold: bool,
+    /// Object frame in the world (user frame × object frame), m.
+    pub frame: Isometry3<f64>,
+    /// True if the user frame is fixed (`ufprog`), false if a mechanical unit moves it.
+    pub fixed: bool,
+}
+
+/// Motion settings that persist until changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// `VelSet` override, 1 = 100 %.
+    pub speed_override: f64,
+    /// `VelSet` maximum TCP speed, m/s.
+    pub speed_max: f64,
+    /// `AccSet` acceleration, 1 = 100 %.
+    pub acceleration: f64,
+    /// `AccSet` ramp, 1 = 100 %.
+    pub ramp: f64,
+    /// `AccSet\FinePointRamp`, 1 = 100 %: the ramp towards stop points.
+    pub fine_point_ramp: f64,
+    /// `SpeedRefresh` override, 1 = 100 %.
+    pub refresh: f64,
+    /// `PathAccLim`: largest acceleration and deceleration along the path of the TCP, m/s².
+    pub path_acceleration: [f64; 2],
+    /// `WorldAccLim`: largest acceleration of the TCP, m/s².
+    pub world_acceleration: f64,
+    /// `PathResol`, 1 = 100 %: how densely a path is interpolated; none where it is not known.
+    pub path_resolution: Option<f64>,
+    /// `CirPathMode`: how arcs turn the tool, as the controller numbers it.
+    pub circle_mode: u8,
+    /// `ConfJ`.
+    pub conf_joint: bool,
+    /// `ConfL`.
+    pub conf_linear: bool,
+    /// `PDispSet`/`PDispOn` displacement of programmed poses, none at identity.
+    pub displacement: Option<Isometry3<f64>>,
+    /// `GripLoad`, in the tool's frame.
+    pub grip_load: Option<LoadData>,
+    /// The same as the program has it.
+    pub grip_load_data: Option<Datum>,
+    /// `SingArea` other than `\Off`, as written: lines and arcs may turn the tool otherwise than
+    /// programmed.
+    pub sing_area: Option<Arc<str>>,
+    /// Settings in force that this compiler does not model, by instruction name.
+    pub other: Vec<Arc<str>>,
+}
+
+impl Settings {
+    /// True under `SingArea\Wrist`: lines and arcs turn the wrist axis by axis.
+    pub fn axiswise_wrist(&self) -> bool {
+        self.sing_area.as_ref().is_some_and(|area| area.to_lowercase().ends_with("\\wrist"))
+    }
+}
+
+impl Default for Settings {
+    /// As after the start of the program from `main`.
+    fn default() -> Settings {
+        Settings {
+            speed_override: 1.0,
+            speed_max: f64::INFINITY,
+            acceleration: 1.0,
+            ramp: 1.0,
+            fine_point_ramp: 1.0,
+            refresh: 1.0,
+            path_acceleration: [f64::INFINITY; 2],
+            world_acceleration: f64::INFINITY,
+            path_resolution: Some(1.0),
+            circle_mode: 0,
+            conf_joint: true,
+            conf_linear: true,
+            displacement: None,
+            grip_load: None,
+            grip_load_data: None,
+            sing_area: None,
+            other: Vec::new(),
+        }
+    }
+}
+
+/// An argument of a movement with the value that it had.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Argument {
+    /// The expression.
+    pub span: Span,
+    /// Name of the type that the instruction takes there.
+    pub type_name: &'static str,
+    /// Its value.
+    pub datum: Datum,
+}
+
+/// A movement as it is executed.
+#[derive(Clone, Debug)]
+pub struct Movement {
+    /// The instruction as written.
+    pub instruction: Arc<str>,
+    /// Interpolation.
+    pub form: MoveForm,
+    /// True for Move… that do nothing but move.
+    pub plain: bool,
+    /// The statement.
+    pub span: Span,
+    /// Name of the routine that holds it.
+    pub routine: Arc<str>,
+    /// The call through which its routine runs; none in the routine that starts the program.
+    pub called_at: Option<Span>,
+    /// Circle point of a circular movement.
+    pub via: Option<RobTarget>,
+    /// Where it goes.
+    pub target: Target,
+    /// The external axes of the target as written: mm or degrees, which of them the program does
+    /// not tell, 9E9 for an axis that is not there. `None` where they are not known.
+    pub external: Option<[f64; 6]>,
+    /// Speed, `\V` applied.
+    pub speed: Speed,
+    /// `\T`, s.
+    pub time: Option<f64>,
+    /// Zone, `\Z` and `\Inpos` applied.
+    pub zone: Zone,
+    /// `\Inpos`: what it waits for at a stop point.
+    pub stop: Stop,
+    /// Tool.
+    pub tool: Tool,
+    /// The argument that names it.
+    pub tool_span: Span,
+    /// Work object.
+    pub wobj: WorkObject,
+    /// `\TLoad`: replaces the tool's load and `GripLoad`, in the flange's frame.
+    pub total_load: Option<LoadData>,
+    /// Settings in force.
+    pub settings: Arc<Settings>,
+    /// `\Conc`: following logic runs during the movement.
+    pub concurrent: bool,
+    /// Optional arguments that change the movement in ways not modelled (`\Corr`, `\ID` …).
+    pub other_arguments: Vec<Arc<str>>,
+    /// What the arguments were computed from.
+    pub origin: Origin,
+    /// The arguments that say where and how it moves.
+    pub arguments: Vec<Argument>,
+}
+
+impl Movement {
+    /// The TCP speed that a line or arc states, m/s; infinite for a joint movement, along which it
+    /// holds on the average alone.
+    pub fn line_speed(&self) -> f64 {
+        match self.form {
+            MoveForm::Linear | MoveForm::Circular => self.speed.tcp.min(self.settings.speed_max),
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// A movement that can't be worked out.
+#[derive(Clone, Debug)]
+pub struct Unresolved {
+    /// The statement.
+    pub span: Span,
+    /// Why, in the user's words.
+    pub reason: String,
+    /// True if the robot may stand somewhere else afterwards.
+    pub moves: bool,
+}
+
+/// A wait.
+#[derive(Clone, Debug)]
+pub struct Wait {
+    /// The instruction as written.
+    pub instruction: Arc<str>,
+    /// The statement.
+    pub span: Span,
+    /// Name of the routine that holds it.
+    pub routine: Arc<str>,
+    /// Length in s where the program states it.
+    pub duration: Option<f64>,
+    /// The argument that states it, where that depends on literals and constants alone.
+    pub constant: Option<Span>,
+    /// `\MaxTime`: longest that it lasts, s.
+    pub max_time: Option<f64>,
+    /// The input that it waits for.
+    pub signal: Option<Arc<str>>,
+    /// For what it waits, in words, where neither is known.
+    pub other: Option<String>,
+    /// `GripLoad` in force, in the tool's frame.
+    pub grip_load: Option<LoadData>,
+    /// Where external axes stand after a movement of theirs, as written; `None` where it is none,
+    /// or they are not known.
+    pub external: Option<[f64; 6]>,
+}
+
+/// A change of an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// The instruction as written.
+    pub instruction: Arc<str>,
+    /// The statement.
+    pub span: Span,
+    /// The signal.
+    pub signal: Arc<str>,
+    /// Its new value as written, after evaluation.
+    pub value: String,
+}

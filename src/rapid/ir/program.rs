@@ -1,0 +1,317 @@
+//! The modules of a task and its symbols.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::sync::Arc;
+
+use super::hir::{
+    ArgKind, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode,
+    Routine, RoutineKind, Scope, StmtKind, TypeDefKind,
+};
+use super::{instructions, layout, user};
+use crate::rapid::text::Span;
+
+/// A data object at module level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct DataId {
+    /// Index of the module.
+    pub module: usize,
+    /// Index in the module's data.
+    pub index: usize,
+}
+
+/// A routine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RoutineId {
+    /// Index of the module.
+    pub module: usize,
+    /// Index in the module's routines.
+    pub index: usize,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symbol {
+    /// Data at module level.
+    Data(DataId),
+    /// A routine.
+    Routine(RoutineId),
+    /// More than one declaration: a [`Clash`].
+    Ambiguous,
+}
+
+/// A name that is declared more than once in one scope.
+#[derive(Clone, Debug)]
+pub struct Clash {
+    /// As the first declaration writes it.
+    pub name: Ident,
+    /// The module in which it is local; `None` for global names.
+    pub module: Option<usize>,
+    /// The name in each of the declarations.
+    pub spans: Vec<Span>,
+}
+
+/// Who may change data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Writer {
+    /// A statement of the program.
+    Program,
+    /// Only a call, by this name, of a routine that is not in the program.
+    UnknownCall(Arc<str>),
+}
+
+/// The modules of one task with their symbol tables.
+#[derive(Debug)]
+pub struct Program {
+    /// The modules, in the order of the input.
+    pub modules: Vec<Module>,
+    /// Names declared more than once.
+    pub clashes: Vec<Clash>,
+    global: BTreeMap<String, Symbol>,
+    local: Vec<BTreeMap<String, Symbol>>,
+    written: BTreeMap<DataId, Writer>,
+}
+
+/// What declares each name, by the module in which it is local.
+type Declarations<'a> = BTreeMap<(Option<usize>, &'a str), Vec<(Symbol, &'a Ident)>>;
+
+impl Program {
+    /// Builds the symbol tables; a name that is declared twice stands for nothing.
+    pub fn new(mut modules: Vec<Module>) -> Program {
+        modules.extend(user::missing(&modules));
+        let mut declared = Declarations::new();
+        for (m, module) in modules.iter().enumerate() {
+            let data = module.data.iter().enumerate().map(|(index, data)| {
+                (data.scope, Symbol::Data(DataId { module: m, index }), &data.name)
+            });
+            let routines = module.routines.iter().enumerate().map(|(index, routine)| {
+                (routine.scope, Symbol::Routine(RoutineId { module: m, index }), &routine.name)
+            });
+            for (scope, symbol, name) in data.chain(routines) {
+                let table = (scope == Scope::Local).then_some(m);
+                declared.entry((table, &name.key)).or_default().push((symbol, name));
+            }
+        }
+        let mut global = BTreeMap::new();
+        let mut local = vec![BTreeMap::new(); modules.len()];
+        let mut clashes = Vec::new();
+        for ((module, key), list) in declared {
+            let symbol = if let [(symbol, _)] = list.as_slice() {
+                *symbol
+            } else {
+                let spans = list.iter().map(|(_, name)| name.span).collect();
+                clashes.push(Clash { name: list[0].1.clone(), module, spans });
+                Symbol::Ambiguous
+            };
+            let table = module.map_or(&mut global, |m| &mut local[m]);
+            table.insert(key.to_owned(), symbol);
+        }
+        let mut program = Program { modules, clashes, global, local, written: BTreeMap::new() };
+        program.written = program.find_written();
+        program
+    }
+
+    /// What `key` means in a module.
+    pub fn resolve(&self, module: usize, key: &str) -> Option<Symbol> {
+        self.local[module].get(key).or_else(|| self.global.get(key)).copied()
+    }
+
+    /// What `key` means outside all modules.
+    pub fn resolve_global(&self, key: &str) -> Option<Symbol> {
+        self.global.get(key).copied()
+    }
+
+    /// The declaration.
+    pub fn data(&self, id: DataId) -> &Data {
+        &self.modules[id.module].data[id.index]
+    }
+
+    /// The routine.
+    pub fn routine(&self, id: RoutineId) -> &Routine {
+        &self.modules[id.module].routines[id.index]
+    }
+
+    /// True if some statement of the program may change this data.
+    pub fn is_written(&self, id: DataId) -> bool {
+        self.written.contains_key(&id)
+    }
+
+    /// Who may change this data.
+    pub fn writer(&self, id: DataId) -> Option<&Writer> {
+        self.written.get(&id)
+    }
+
+    /// The declarations of a global name, if there is more than one.
+    pub fn clash(&self, name: &str) -> Option<&Clash> {
+        let key = name.to_lowercase();
+        self.clashes.iter().find(|clash| clash.module.is_none() && clash.name.key == key)
+    }
+
+    /// The routine that starts the program: a procedure with this global name.
+    pub fn entry(&self, name: &str) -> Option<RoutineId> {
+        match self.resolve_global(&name.to_lowercase())? {
+            Symbol::Routine(id) if matches!(self.routine(id).kind, RoutineKind::Proc) => Some(id),
+            _ => None,
+        }
+    }
+
+    /// Component names and types of a record type, aliases followed.
+    pub fn components(&self, type_key: &str) -> Option<Vec<(String, String)>> {
+        let mut key = type_key.to_owned();
+        // An alias chain is short; a circular one ends here.
+        for _ in 0..16 {
+            if let Some(known) = layout::components(&key) {
+                return Some(known.iter().map(|(n, t)| ((*n).into(), (*t).into())).collect());
+            }
+            let def = self.modules.iter().flat_map(|m| &m.types).find(|t| t.name.key == key)?;
+            match &def.kind {
+                TypeDefKind::Record(parts) => {
+                    return Some(
+                        parts.iter().map(|(ty, name)| (name.key.clone(), ty.key.clone())).collect(),
+                    );
+                }
+                TypeDefKind::Alias(target) => key.clone_from(&target.key),
+            }
+        }
+        None
+    }
+
+    /// Module data that some assignment, or an argument that is written through, names.
+    fn find_written(&self) -> BTreeMap<DataId, Writer> {
+        let mut found = Written::default();
+        // A parameter found written makes its callers' arguments written: repeat until stable.
+        loop {
+            found.changed = false;
+            for (module, body) in self.modules.iter().enumerate() {
+                for (index, routine) in body.routines.iter().enumerate() {
+                    let scope = RoutineScope { program: self, id: RoutineId { module, index } };
+                    for block in routine.blocks() {
+                        scope.find(block, &mut found);
+                    }
+                }
+            }
+            if !found.changed {
+                return found.data;
+            }
+        }
+    }
+}
+
+#[derive(Default)]
+struct Written {
+    data: BTreeMap<DataId, Writer>,
+    /// Parameters by reference, by index.
+    params: BTreeMap<(RoutineId, usize), Writer>,
+    changed: bool,
+}
+
+/// Adds a writer; a statement of the program says more than a call that is not known. True if
+/// that is news.
+fn add<K: Ord>(written: &mut BTreeMap<K, Writer>, key: K, writer: &Writer) -> bool {
+    match written.entry(key) {
+        Entry::Vacant(place) => {
+            place.insert(writer.clone());
+            true
+        }
+        Entry::Occupied(mut known)
+            if *writer == Writer::Program && *known.get() != Writer::Program =>
+        {
+            known.insert(Writer::Program);
+            true
+        }
+        Entry::Occupied(_) => false,
+    }
+}
+
+struct RoutineScope<'a> {
+    program: &'a Program,
+    id: RoutineId,
+}
+
+impl RoutineScope<'_> {
+    fn find(&self, block: &Block, found: &mut Written) {
+        for stmt in block {
+            match &stmt.kind {
+                StmtKind::Assign { target, .. } => self.target(target, &Writer::Program, found),
+                StmtKind::Call(call) => self.call(call, found),
+                StmtKind::Connect { interrupt, .. } => {
+                    self.target(interrupt, &Writer::Program, found);
+                }
+                _ => {}
+            }
+            for inner in stmt.kind.blocks() {
+                self.find(inner, found);
+            }
+        }
+    }
+
+    fn call(&self, call: &Call, found: &mut Written) {
+        let callee = match &call.callee {
+            Callee::Name(name) => self.program.resolve(self.id.module, &name.key),
+            Callee::Late(_) => None,
+        };
+        // What a routine that is no routine of the program does to its arguments.
+        let outside = match (&call.callee, callee) {
+            (Callee::Name(name), None) if !instructions::may_write(&name.key) => return,
+            (Callee::Name(name), None) if instructions::is_writing(&name.key) => Writer::Program,
+            (Callee::Name(name), _) => Writer::UnknownCall(name.text.as_str().into()),
+            (Callee::Late(_), _) => Writer::UnknownCall("%…%".into()),
+        };
+        let only = match (&call.callee, callee) {
+            (Callee::Name(name), None) => instructions::written(&name.key),
+            _ => None,
+        };
+        let mut position = 0;
+        for arg in &call.args {
+            let (expr, name) = match &arg.kind {
+                ArgKind::Positional(expr) => (expr, None),
+                ArgKind::Named(name, expr) | ArgKind::Optional(name, Some(expr)) => {
+                    (expr, Some(&name.key))
+                }
+                ArgKind::Optional(_, None) | ArgKind::Conditional(..) => continue,
+            };
+            let writer = if let Some(Symbol::Routine(id)) = callee {
+                let params = &self.program.routine(id).params;
+                let index = if let Some(key) = name {
+                    params.iter().position(|p| p.name.key == *key)
+                } else {
+                    let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
+                    required.map(|(i, _)| i).nth(position)
+                };
+                index.and_then(|index| found.params.get(&(id, index)).cloned())
+            } else {
+                let is_it = only.is_none_or(|only| match name {
+                    Some(name) => name == only.name,
+                    None => position == only.position,
+                });
+                is_it.then(|| outside.clone())
+            };
+            if let Some(writer) = writer {
+                self.target(expr, &writer, found);
+            }
+            position += usize::from(name.is_none());
+        }
+    }
+
+    fn target(&self, expr: &Expr, writer: &Writer, found: &mut Written) {
+        match &expr.kind {
+            ExprKind::Ref(name) => {
+                let routine = self.program.routine(self.id);
+                if let Some(index) = routine.params.iter().position(|p| p.name.key == name.key) {
+                    if routine.params[index].mode != ParamMode::In {
+                        found.changed |= add(&mut found.params, (self.id, index), writer);
+                    }
+                } else if !routine.data.iter().any(|d| d.name.key == name.key)
+                    && let Some(Symbol::Data(id)) = self.program.resolve(self.id.module, &name.key)
+                    && self.program.data(id).kind != DataKind::Const
+                {
+                    found.changed |= add(&mut found.data, id, writer);
+                }
+            }
+            ExprKind::Field(base, _) | ExprKind::Index(base, _) => {
+                self.target(base, writer, found);
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Expressions: `grammar/expressions.ebnf`.
+
+use super::Parser;
+use crate::rapid::syntax::MAX_EXPRESSION_HEIGHT;
+use crate::rapid::syntax::node::NodeKind;
+use crate::rapid::syntax::token::TokenKind;
+use crate::rapid::syntax::tolerance::Tolerance;
+use crate::rapid::syntax::tree::Mark;
+
+/// How tightly an operator binds, loosest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Or,
+    And,
+    Relation,
+    Sum,
+    Product,
+    Primary,
+}
+
+impl Level {
+    fn of(kind: TokenKind) -> Option<Level> {
+        Some(match kind {
+            TokenKind::Or | TokenKind::Xor => Level::Or,
+            TokenKind::And => Level::And,
+            TokenKind::Equal
+            | TokenKind::NotEqual
+            | TokenKind::Less
+            | TokenKind::LessEqual
+            | TokenKind::Greater
+            | TokenKind::GreaterEqual => Level::Relation,
+            TokenKind::Plus | TokenKind::Minus => Level::Sum,
+            TokenKind::Star | TokenKind::Slash | TokenKind::Div | TokenKind::Mod => Level::Product,
+            _ => return None,
+        })
+    }
+
+    /// What the right operand of an operator of this level is made of.
+    fn tighter(self) -> Level {
+        match self {
+            Level::Or => Level::And,
+            Level::And => Level::Relation,
+            Level::Relation => Level::Sum,
+            Level::Sum => Level::Product,
+            Level::Product | Level::Primary => Level::Primary,
+        }
+    }
+}
+
+/// Levels of the tree of an expression.
+pub(super) type Height = u32;
+
+impl Parser<'_> {
+    /// `a, b, c`
+    pub(super) fn expressions(&mut self) -> Height {
+        let mut height = self.expression();
+        while self.eat(TokenKind::Comma) {
+            height = height.max(self.expression());
+        }
+        height
+    }
+
+    pub(super) fn expression(&mut self) -> Height {
+        self.expression_or("an expression")
+    }
+
+    /// An expression; `expected` is what a message says is missing.
+    pub(super) fn expression_or(&mut self, expected: &str) -> Height {
+        if self.lone_operand() { 1 } else { self.binary(Level::Or, expected) }
+    }
+
+    /// Reads an expression of one token, which most are, if the token behind it
+    /// shows that it is one.
+    fn lone_operand(&mut self) -> bool {
+        let kind = match self.current() {
+            TokenKind::Number => NodeKind::NumberLiteral,
+            TokenKind::String => NodeKind::StringLiteral,
+            TokenKind::True | TokenKind::False => NodeKind::BoolLiteral,
+            TokenKind::Identifier => NodeKind::Reference,
+            _ => return false,
+        };
+        let alone = matches!(
+            self.tokens.kind(self.position + 1),
+            TokenKind::Comma
+                | TokenKind::Semicolon
+                | TokenKind::Backslash
+                | TokenKind::RightParen
+                | TokenKind::RightBracket
+        );
+        if alone {
+            self.leaf(kind);
+        }
+        alone
+    }
+
+    fn binary(&mut self, least: Level, expected: &str) -> Height {
+        let mark = self.mark();
+        let mut height = self.operand(least, expected);
+        let mut related = false;
+        while let Some(level) = Level::of(self.current()) {
+            if level < least || height >= MAX_EXPRESSION_HEIGHT {
+                break;
+            }
+            if level == Level::Relation {
+                if related {
+                    let message = format!(
+                        "relations cannot be chained; put the first in parentheses before {}",
+                        self.found()
+                    );
+                    self.error_at(self.position, message);
+                }
+                related = true;
+            }
+            let comparing = self.at(TokenKind::Equal);
+            self.bump();
+            if comparing {
+                self.skip_doubled_equal();
+            }
+            let right = self.binary(level.tighter(), "an expression");
+            height = self.taller(mark, NodeKind::BinaryExpression, height.max(right));
+        }
+        height
+    }
+
+    /// Finishes a node above subtrees of the given height.
+    fn taller(&mut self, mark: Mark, kind: NodeKind, below: Height) -> Height {
+        self.finish(mark, kind);
+        let height = below + 1;
+        if height >= MAX_EXPRESSION_HEIGHT {
+            let message =
+                format!("expression of more than {MAX_EXPRESSION_HEIGHT} levels; split it up");
+            self.error_at(self.end.saturating_sub(1), message);
+        }
+        height
+    }
+
+    /// A primary with the signs or `NOT` before it.
+    fn operand(&mut self, least: Level, expected: &str) -> Height {
+        let mark = self.mark();
+        let level = match self.current() {
+            TokenKind::Not => {
+                if least > Level::And {
+                    self.tolerate(Tolerance::NotAfterOperator, self.position);
+                }
+                least.max(Level::And)
+            }
+            TokenKind::Plus | TokenKind::Minus => {
+                if least > Level::Sum {
+                    self.tolerate(Tolerance::SignAfterOperator, self.position);
+                }
+                least.max(Level::Product)
+            }
+            _ => return self.primary(expected),
+        };
+        let height = self.deeper(|parser| {
+            let not = parser.at(TokenKind::Not);
+            parser.bump();
+            if not && parser.at(TokenKind::Not) {
+                parser.tolerate(Tolerance::NotAfterOperator, parser.position);
+            }
+            let below = parser.binary(level, "an expression");
+            parser.taller(mark, NodeKind::UnaryExpression, below)
+        });
+        height.unwrap_or_else(|| self.missing_operand())
+    }
+
+    fn missing_operand(&mut self) -> Height {
+        self.missing();
+        1
+    }
+
+    fn primary(&mut self, expected: &str) -> Height {
+        match self.current() {
+            TokenKind::Number => self.leaf(NodeKind::NumberLiteral),
+            TokenKind::String => self.leaf(NodeKind::StringLiteral),
+            TokenKind::True | TokenKind::False => self.leaf(NodeKind::BoolLiteral),
+            TokenKind::Placeholder => return self.variable(),
+            TokenKind::UnclosedString => {
+                let message = "expected '\"' at the end of this string".to_owned();
+                self.error_at(self.position, message);
+                self.leaf(NodeKind::Error);
+            }
+            TokenKind::LeftParen => {
+                return self.bracketed(NodeKind::Parenthesized, TokenKind::RightParen);
+            }
+            TokenKind::LeftBracket => {
+                return self.bracketed(NodeKind::Aggregate, TokenKind::RightBracket);
+            }
+            TokenKind::Identifier => return self.variable_or_call(),
+            _ => {
+                self.error_expected(expected);
+                self.missing();
+            }
+        }
+        1
+    }
+
+    /// `(a)`, `[a, b]`
+    fn bracketed(&mut self, kind: NodeKind, closer: TokenKind) -> Height {
+        let mark = self.mark();
+        let height = self.deeper(|parser| {
+            parser.bump();
+            let below = if kind == NodeKind::Aggregate {
+                parser.expressions()
+            } else {
+                parser.expression()
+            };
+            let expected = match kind {
+                NodeKind::Aggregate => "',' or ']'",
+                _ => "an operator or ')'",
+            };
+            parser.close_bracket(closer, expected);
+            parser.taller(mark, kind, below)
+        });
+        height.unwrap_or_else(|| self.missing_operand())
+    }
+
+    /// `a`, `a.b`, `a{1}`
+    pub(super) fn variable(&mut self) -> Height {
+        let mark = self.mark();
+        match self.current() {
+            TokenKind::Identifier => self.leaf(NodeKind::Reference),
+            TokenKind::Placeholder => self.leaf(NodeKind::Placeholder),
+            _ => {
+                self.error_expected("a variable");
+                self.missing();
+                return 1;
+            }
+        }
+        self.components(mark, 1)
+    }
+
+    fn variable_or_call(&mut self) -> Height {
+        if self.next() != TokenKind::LeftParen {
+            return self.variable();
+        }
+        let mark = self.mark();
+        let height = self.deeper(|parser| {
+            parser.name();
+            parser.bump();
+            let mut below = 1;
+            if !parser.at(TokenKind::RightParen) {
+                below = parser.arguments();
+            }
+            parser.close_bracket(TokenKind::RightParen, "',' or ')'");
+            parser.taller(mark, NodeKind::FunctionCall, below)
+        });
+        let Some(height) = height else { return self.missing_operand() };
+        if matches!(self.current(), TokenKind::Dot | TokenKind::LeftBrace) && !self.quiet {
+            self.tolerate(Tolerance::ComponentOfCall, self.position);
+        }
+        self.components(mark, height)
+    }
+
+    /// `.b`, `{1, 2}` behind what began at `mark`.
+    fn components(&mut self, mark: Mark, mut height: Height) -> Height {
+        while height < MAX_EXPRESSION_HEIGHT {
+            match self.current() {
+                TokenKind::Dot => {
+                    self.bump();
+                    self.name();
+                    height = self.taller(mark, NodeKind::FieldAccess, height);
+                }
+                TokenKind::LeftBrace if self.brace_opens_block() => break,
+                TokenKind::LeftBracket if self.position == self.end => {
+                    self.bracketed_index();
+                    height = self.taller(mark, NodeKind::Error, height);
+                }
+                TokenKind::LeftBrace => {
+                    let indices = self.deeper(|parser| {
+                        parser.bump();
+                        let below = parser.expressions();
+                        parser.close_bracket(TokenKind::RightBrace, "',' or '}'");
+                        below
+                    });
+                    let Some(below) = indices else { break };
+                    height = self.taller(mark, NodeKind::IndexAccess, height.max(below));
+                }
+                _ => break,
+            }
+        }
+        height
+    }
+}

@@ -1,0 +1,122 @@
+//! Replacements of byte ranges; what no edit names stays byte for byte.
+
+use thiserror::Error;
+
+use super::Span;
+
+/// Replaces the bytes of `span` by `text`; an empty span inserts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// Original bytes to replace.
+    pub span: Span,
+    /// What stands there afterwards, in the file's own encoding.
+    pub text: Vec<u8>,
+}
+
+/// Edits that cannot be applied together.
+#[derive(Debug, Error, PartialEq, Eq)]
+pub enum EditError {
+    /// Two edits want the same bytes.
+    #[error(
+        "two edits overlap at bytes {first_start}..{first_end} and {second_start}..{second_end}; \
+         apply one of them and read the file again before the other"
+    )]
+    Overlap {
+        /// Start of the earlier edit.
+        first_start: u32,
+        /// End of the earlier edit.
+        first_end: u32,
+        /// Start of the later edit.
+        second_start: u32,
+        /// End of the later edit.
+        second_end: u32,
+    },
+    /// An edit outside the file, or one that ends before it starts.
+    #[error(
+        "the edit of bytes {start}..{end} does not lie in the file of {length} bytes; \
+         make edits from the bytes that they are applied to"
+    )]
+    Outside {
+        /// Start of the edit.
+        start: u32,
+        /// End of the edit.
+        end: u32,
+        /// Bytes in the file.
+        length: usize,
+    },
+}
+
+/// Applies `edits`, given in any order, to `bytes`. Insertions at one place
+/// keep the order in which they are given and come before a replacement that
+/// starts there.
+///
+/// # Errors
+/// When edits overlap, or one of them lies outside the file.
+pub fn apply(bytes: &[u8], edits: &[Edit]) -> Result<Vec<u8>, EditError> {
+    let mut ordered: Vec<&Edit> = edits.iter().collect();
+    ordered.sort_by_key(|edit| (edit.span.start, edit.span.end));
+    let added: usize = edits.iter().map(|edit| edit.text.len()).sum();
+    let mut out = Vec::with_capacity(bytes.len() + added);
+    let mut done: u32 = 0;
+    let mut previous: Option<&Edit> = None;
+    for edit in ordered {
+        let Span { start, end, .. } = edit.span;
+        if start > end || end as usize > bytes.len() {
+            return Err(EditError::Outside { start, end, length: bytes.len() });
+        }
+        if let Some(first) = previous
+            && start < done
+        {
+            return Err(EditError::Overlap {
+                first_start: first.span.start,
+                first_end: first.span.end,
+                second_start: start,
+                second_end: end,
+            });
+        }
+        out.extend_from_slice(&bytes[done as usize..start as usize]);
+        out.extend_from_slice(&edit.text);
+        done = end;
+        previous = Some(edit);
+    }
+    out.extend_from_slice(&bytes[done as usize..]);
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rapid::text::FileId;
+
+    fn edit(start: u32, end: u32, text: &str) -> Edit {
+        Edit { span: Span { file: FileId(0), start, end }, text: text.as_bytes().to_vec() }
+    }
+
+    #[test]
+    fn edits_apply_in_the_order_of_the_file() {
+        let edits = [edit(7, 9, "XY"), edit(0, 1, ""), edit(3, 3, "--"), edit(3, 3, "++")];
+        assert_eq!(apply(b"0123456789", &edits), Ok(b"12--++3456XY9".to_vec()));
+    }
+
+    #[test]
+    fn overlapping_edits_are_refused() {
+        let edits = [edit(2, 5, "a"), edit(4, 6, "b")];
+        assert_eq!(
+            apply(b"0123456789", &edits),
+            Err(EditError::Overlap {
+                first_start: 2,
+                first_end: 5,
+                second_start: 4,
+                second_end: 6
+            })
+        );
+        assert_eq!(apply(b"0123456789", &[edit(2, 4, ""), edit(4, 6, "b")]), Ok(b"01b6789".into()));
+    }
+
+    #[test]
+    fn edits_outside_the_file_are_refused() {
+        for bad in [edit(2, 11, ""), edit(5, 4, "")] {
+            assert!(matches!(apply(b"0123456789", &[bad]), Err(EditError::Outside { .. })));
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! What differs from the model in plausible robots, as the features of its torques take it.
+
+use nalgebra::DMatrix;
+
+use super::features;
+use crate::arm::dynamics::{RIGID, link_parameters};
+use crate::arm::robot::Model;
+use crate::arm::robot::prior::Plausible;
+
+/// What differs from the model in some robots.
+#[derive(Clone, Debug)]
+pub struct Changes {
+    pub(super) joints: Vec<ChangesOfJoint>,
+    /// By robot, W.
+    pub(super) base_w: Vec<f64>,
+    /// By robot, W.
+    pub(super) coils_w: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct ChangesOfJoint {
+    /// Differences of the features' parameters, a column for each robot; the first of a column is 1, for
+    /// the model's own torque.
+    pub(super) values: DMatrix<f64>,
+    /// By robot.
+    pub(super) loss: Vec<f64>,
+    pub(super) model_loss: f64,
+}
+
+impl Changes {
+    /// Of plausible robots.
+    pub fn of(model: &Model, robots: &[Plausible]) -> Changes {
+        let own = Plausible::of(model);
+        let parameters = |robot: &Plausible| -> Vec<[f64; RIGID]> {
+            robot.links.iter().map(link_parameters).collect()
+        };
+        let own_bodies = parameters(&own);
+        let bodies: Vec<Vec<[f64; RIGID]>> = robots.iter().map(parameters).collect();
+        let joint = |j: usize| {
+            let mut values = DMatrix::zeros(features::count(model, j), robots.len());
+            for ((mut column, robot), bodies) in values.column_iter_mut().zip(robots).zip(&bodies) {
+                let bodies = bodies[j..].iter().flatten().zip(own_bodies[j..].iter().flatten());
+                let of_joint = [
+                    robot.rotors[j] - own.rotors[j],
+                    robot.viscous[j] - own.viscous[j],
+                    robot.coulomb[j] - own.coulomb[j],
+                    robot.spring - own.spring,
+                ];
+                let all =
+                    std::iter::once(1.0).chain(bodies.map(|(new, old)| new - old)).chain(of_joint);
+                column.iter_mut().zip(all).for_each(|(value, x)| *value = x);
+            }
+            let loss = robots.iter().map(|robot| robot.loss[j]).collect();
+            ChangesOfJoint { values, loss, model_loss: own.loss[j] }
+        };
+        Changes {
+            joints: (0..model.dof).map(joint).collect(),
+            base_w: robots.iter().map(|robot| robot.base_w - own.base_w).collect(),
+            coils_w: robots.iter().map(|robot| robot.coils_w - own.coils_w).collect(),
+        }
+    }
+
+    /// Of one.
+    pub fn of_one(model: &Model, robot: &Plausible) -> Changes {
+        Changes::of(model, std::slice::from_ref(robot))
+    }
+}

@@ -1,0 +1,103 @@
+//! The largest torque of each joint over plausible robots.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::along::{Along, Instant};
+use super::plausible::{Interval, Robots};
+use crate::arm::dynamics::{Data, torque};
+use crate::arm::robot::{MAX_DOF, Model};
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::{Event, Run, What};
+
+/// Time between two instants that are looked at \[s\], and parts of it that are looked at around a peak.
+const STEP: f64 = 0.02;
+const PARTS: i32 = 8;
+/// Instants of a joint at which plausible robots are looked at: those with the model's largest torques,
+/// each the largest within this time \[s\].
+const MOST: usize = 6;
+const APART: f64 = 0.1;
+/// Instants that may lie within that time of each other.
+const NEAR: usize = 12;
+
+/// Largest torques in a simulation by joint \[Nm\]; 0 where nothing moves.
+pub(super) fn peaks(model: &Model, robots: &Robots, simulation: &Simulation) -> Vec<Interval> {
+    let instants = largest(model, simulation);
+    let along = Along::of(model, &instants, Vec::new());
+    let torques = along.torques(robots.drawn());
+    let largest = |torques: DMatrix<f64>| -> Vec<f64> {
+        torques.column_iter().map(|of_robot| of_robot.amax()).collect()
+    };
+    torques.into_iter().map(|torques| Interval::of(&largest(torques))).collect()
+}
+
+/// A look at a run of a simulation.
+struct Look<'s> {
+    event: &'s Event,
+    run: &'s Run,
+    /// Time in the run \[s\].
+    t: f64,
+    /// Absolute torques of the model \[Nm\].
+    torque: [f64; MAX_DOF],
+}
+
+impl<'s> Look<'s> {
+    fn at(model: &Model, data: &mut Data, (event, run): (&'s Event, &'s Run), t: f64) -> Look<'s> {
+        let state = run.at(t);
+        let tau = torque(model, data, &run.load, &state.q, &state.qd, &state.qdd);
+        let torque = std::array::from_fn(|j| (tau.rigid[j] + tau.friction[j]).abs());
+        Look { event, run, t, torque }
+    }
+
+    /// Time in the simulation \[s\].
+    fn time(&self) -> f64 {
+        self.event.t_start + self.t
+    }
+
+    /// The instant of the joint's largest torque around this look.
+    fn peak(&self, model: &Model, data: &mut Data, joint: usize) -> Instant {
+        let around = (1 - PARTS..PARTS).map(|i| self.t + STEP * f64::from(i) / f64::from(PARTS));
+        let (mut t, mut most) = (self.t, self.torque[joint]);
+        for near in around.filter(|t| (0.0..=self.event.duration).contains(t)) {
+            let torque = Look::at(model, data, (self.event, self.run), near).torque[joint];
+            if torque > most {
+                (t, most) = (near, torque);
+            }
+        }
+        let state = self.run.at(t);
+        Instant { load: self.run.load.clone(), state: [state.q, state.qd, state.qdd] }
+    }
+}
+
+/// Instants at which some joint has one of its largest torques.
+fn largest(model: &Model, simulation: &Simulation) -> Vec<Instant> {
+    let looks: Vec<Look> =
+        simulation.events.par_iter().flat_map_iter(|event| looks(model, event)).collect();
+    let mut data = Data::new();
+    let mut instants = Vec::new();
+    for j in 0..model.dof {
+        let mut order: Vec<&Look> = looks.iter().collect();
+        let larger = |a: &&Look, b: &&Look| b.torque[j].total_cmp(&a.torque[j]);
+        if order.len() > MOST * NEAR {
+            order.select_nth_unstable_by(MOST * NEAR, larger);
+            order.truncate(MOST * NEAR);
+        }
+        order.sort_by(larger);
+        let mut own: Vec<&Look> = Vec::new();
+        for look in order {
+            if own.len() < MOST && own.iter().all(|it| (it.time() - look.time()).abs() > APART) {
+                own.push(look);
+            }
+        }
+        instants.extend(own.into_iter().map(|look| look.peak(model, &mut data, j)));
+    }
+    instants
+}
+
+fn looks<'s>(model: &Model, event: &'s Event) -> Vec<Look<'s>> {
+    let What::Run(run) = &event.what else { return Vec::new() };
+    let mut data = Data::new();
+    let steps = (event.duration / STEP).ceil().max(1.0);
+    let times = (0..=steps as usize).map(|i| event.duration * i as f64 / steps);
+    times.map(|t| Look::at(model, &mut data, (event, run), t)).collect()
+}

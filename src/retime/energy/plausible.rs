@@ -1,0 +1,215 @@
+//! The energy of a simulation over plausible robots.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::account::Account;
+use super::change::Changes;
+use super::moments::Moments;
+use super::parts::EnergyParts;
+use super::peaks::peaks;
+use crate::arm::robot::Model;
+use crate::arm::robot::prior::{Draws, Plausible, Spread};
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::Event;
+
+/// Robots that are drawn.
+pub const DRAWS: usize = 256;
+/// Share of them in an interval.
+const WITHIN: f64 = 0.9;
+/// Groups that a report lists, at most.
+const LISTED: usize = 5;
+/// Parts of a simulation whose sums are worked out beside each other; each takes memory.
+const PARTS: usize = 4;
+/// Share of the variance below which a group is not listed.
+pub const LEAST: f64 = 0.02;
+
+/// A number over plausible robots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Half of the robots lie below.
+    pub median: f64,
+    /// 90 % of them lie between these.
+    pub low: f64,
+    /// As before.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Of the values of all draws.
+    pub fn of(values: &[f64]) -> Interval {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let place = share * (sorted.len().max(1) - 1) as f64;
+            let (i, rest) = (place.floor() as usize, place.fract());
+            let value = |i: usize| sorted.get(i).copied().unwrap_or(0.0);
+            value(i) + rest * (value((i + 1).min(sorted.len().max(1) - 1)) - value(i))
+        };
+        let tail = 0.5 * (1.0 - WITHIN);
+        Interval { median: at(0.5), low: at(tail), high: at(1.0 - tail) }
+    }
+}
+
+/// Something that is not known of the robot, with the share of the variance of a result that would go
+/// if it were known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contribution {
+    /// What it is.
+    pub group: String,
+    /// Share of the variance.
+    pub share: f64,
+    /// What would tell.
+    pub narrowed_by: &'static str,
+}
+
+/// Robots as plausible as a model, ready for sums.
+pub struct Robots {
+    spread: Spread,
+    pub(super) draws: Draws,
+    changes: Changes,
+}
+
+impl Robots {
+    /// Of a model; `None` where it is known, or has no dynamics.
+    pub fn of(model: &Model) -> Option<Robots> {
+        if !model.has_dynamics() {
+            return None;
+        }
+        let spread = Spread::of(model);
+        if spread.latents.is_empty() {
+            return None;
+        }
+        let draws = spread.draws(model, DRAWS);
+        let changes = Changes::of(model, &draws.robots);
+        Some(Robots { spread, draws, changes })
+    }
+
+    /// The robots.
+    pub fn drawn_robots(&self) -> &[Plausible] {
+        &self.draws.robots
+    }
+
+    /// What differs in the robots.
+    pub fn drawn(&self) -> &Changes {
+        &self.changes
+    }
+
+    /// What each of the robots takes more than the model, J.
+    pub fn changes(&self, model: &Model, moments: &Moments) -> Vec<EnergyParts> {
+        moments.changes(model, &self.changes)
+    }
+
+    /// What the variance of a result comes from, the largest first. Each group has the part that those
+    /// before it leave: of a calibrated robot groups are correlated, and several may tell the same.
+    pub fn contributions(&self, values: &[f64]) -> Vec<Contribution> {
+        let mut groups: BTreeMap<&str, Vec<&Vec<f64>>> = BTreeMap::new();
+        for (latent, z) in self.spread.latents.iter().zip(&self.draws.latents) {
+            groups.entry(&latent.group).or_default().push(z);
+        }
+        let count = values.len() as f64;
+        let mut rest = DVector::from_column_slice(values);
+        rest.add_scalar_mut(-rest.mean());
+        let variance = rest.norm_squared();
+        let mut parts = Vec::new();
+        while parts.len() < LISTED {
+            let explained = groups.iter().map(|(group, latents)| {
+                let part = explained(latents, &rest);
+                // By chance, too, a group explains something.
+                let chance = latents.len() as f64 / count * rest.norm_squared();
+                let share = (part.norm_squared() - chance) / variance;
+                (*group, share, part)
+            });
+            let most = explained.max_by(|(_, a, _), (_, b, _)| a.total_cmp(b));
+            let Some((group, share, part)) = most.filter(|(_, share, _)| *share >= LEAST) else {
+                break;
+            };
+            groups.remove(group);
+            rest -= part;
+            let narrowed_by = narrowed_by(group);
+            parts.push(Contribution { group: group.to_owned(), share, narrowed_by });
+        }
+        parts
+    }
+}
+
+/// The linear function of a group's latent numbers that is nearest to some values, draw by draw.
+fn explained(latents: &[&Vec<f64>], values: &DVector<f64>) -> DVector<f64> {
+    let columns: Vec<DVector<f64>> =
+        latents.iter().map(|z| DVector::from_column_slice(z)).collect();
+    let z = DMatrix::from_columns(&columns);
+    let slopes = z.tr_mul(&z).svd(true, true).solve(&z.tr_mul(values), SINGULAR);
+    slopes.map_or_else(|_| DVector::zeros(values.len()), |slopes| z * slopes)
+}
+
+/// Singular values of latent numbers below this are none.
+const SINGULAR: f64 = 1e-9;
+
+/// The measurement that would tell most of a group.
+fn narrowed_by(group: &str) -> &'static str {
+    match group {
+        "base power" | "brake coils" => "the cabinet's power at standstill, brakes closed and open",
+        "release of the brakes" => "the cabinet's power while brakes open",
+        "total mass" => "the robot's data sheet: mass in its file",
+        _ if group.starts_with("masses") || group.starts_with("balancer") => {
+            "currents of an excitation (joulepath excite, identify)"
+        }
+        _ => {
+            "the cabinet's power in the running program, or currents of an excitation (joulepath identify)"
+        }
+    }
+}
+
+/// Energies of a simulation over plausible robots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plausibility {
+    /// All energy, J.
+    pub energy_j: Interval,
+    /// That of motions, J.
+    pub motion_energy_j: Interval,
+    /// Largest torque of each joint \[Nm\].
+    pub torque_nm: Vec<Interval>,
+    /// What the variance of all energy comes from.
+    pub contributions: Vec<Contribution>,
+}
+
+/// The sums of a whole simulation.
+pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
+    let of = |events: &[Event]| {
+        let mut sums = Moments::none(model);
+        for event in events {
+            sums.event(model, event);
+        }
+        sums
+    };
+    let length = simulation.events.len().div_ceil(PARTS).max(1);
+    let parts: Vec<Moments> = simulation.events.par_chunks(length).map(of).collect();
+    // In their order, so that the same input has the same digits.
+    let sum = |mut all: Moments, part: Moments| {
+        all.add(&part, 1.0);
+        all
+    };
+    parts.into_iter().reduce(sum).unwrap_or_else(|| Moments::none(model))
+}
+
+/// How far the energies of a simulation are known.
+pub fn plausibility(
+    model: &Model,
+    simulation: &Simulation,
+    account: &Account,
+) -> Option<Plausibility> {
+    let robots = Robots::of(model)?;
+    let changes = robots.changes(model, &moments(model, simulation));
+    let of = |part: &dyn Fn(&EnergyParts) -> f64| -> Vec<f64> {
+        changes.iter().map(|change| part(&account.total) + part(change)).collect()
+    };
+    let energy = of(&EnergyParts::energy_j);
+    Some(Plausibility {
+        energy_j: Interval::of(&energy),
+        motion_energy_j: Interval::of(&of(&EnergyParts::motion_energy_j)),
+        torque_nm: peaks(model, &robots, simulation),
+        contributions: robots.contributions(&energy),
+    })
+}

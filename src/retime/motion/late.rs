@@ -1,0 +1,122 @@
+//! What becomes of a stream that asks for more than the robot can do.
+//!
+//! `\T` is a wish: a controller that cannot get from one point to the next in time takes longer
+//! there, and keeps the times of the points that it can reach in time. So intervals are lengthened
+//! where the motion exceeds a limit, each a little, until none is exceeded.
+
+use super::sampling::Loaded;
+use super::stream::{Piece, Stream};
+use crate::arm::dynamics::{Data, torque};
+use crate::arm::robot::Model;
+use crate::retime::path::joint_path::{DOF, Joints};
+
+/// Excess over a limit that is rounding of emitted figures and no reason to be late.
+const ROUNDING: f64 = 1e-3;
+/// Share by which an interval gets longer in one round, at most.
+const STEP: f64 = 0.03;
+/// Rounds, at most: the last resort is a stream that is slower as a whole.
+const ROUNDS: usize = 300;
+/// Longest a stream gets in all, times.
+const SLOWEST: f64 = 20.0;
+
+/// The stream as the robot can run it; the same one where it is within all limits.
+pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
+    let limits = Limits::new(loaded.model);
+    let mut data = Data::new();
+    let longest = SLOWEST * stream.duration();
+    let mut late = stream;
+    for _ in 0..ROUNDS {
+        let factors: Vec<f64> =
+            late.pieces().map(|piece| limits.longer(loaded, &mut data, &piece)).collect();
+        if factors.iter().all(|factor| *factor <= 1.0) || late.duration() > longest {
+            break;
+        }
+        // Piece p runs from the middle of interval p to that of the next one, from 1.
+        let count = late.intervals().len();
+        let interval = |i: usize| late.intervals()[i] * factors[i].max(factors[i + 1]);
+        let intervals = (0..count).map(interval).collect();
+        match Stream::new(*late.start(), late.points().to_vec(), intervals) {
+            Ok(next) => late = next,
+            Err(_) => break,
+        }
+    }
+    late
+}
+
+struct Limits {
+    velocity: Joints,
+    acceleration: Joints,
+    torque: Joints,
+}
+
+impl Limits {
+    fn new(model: &Model) -> Limits {
+        let list = |limits: &Option<Vec<f64>>| -> Joints {
+            let limit = |j: usize| limits.as_ref().and_then(|limits| limits.get(j)).copied();
+            std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
+        };
+        let limits = &model.limits;
+        Limits {
+            velocity: list(&limits.velocity),
+            acceleration: list(&limits.acceleration),
+            torque: list(&model.torque_bounds().cloned()),
+        }
+    }
+
+    /// The factor by which the intervals at a piece get longer, 1 where it is within the limits.
+    fn longer(&self, loaded: Loaded<'_>, data: &mut Data, piece: &Piece) -> f64 {
+        let mut excess: f64 = 1.0;
+        for share in [0.0, 0.5, 1.0] {
+            let (q, qd, qdd) = piece.at(share * piece.length);
+            let tau = if self.torque.iter().any(|limit| limit.is_finite()) {
+                let found = torque(loaded.model, data, loaded.load, &q, &qd, &qdd);
+                std::array::from_fn(|j| found.rigid[j] + found.friction[j])
+            } else {
+                [0.0; DOF]
+            };
+            for j in 0..DOF {
+                excess = excess
+                    .max(qd[j].abs() / self.velocity[j])
+                    .max((qdd[j].abs() / self.acceleration[j]).sqrt())
+                    .max((tau[j].abs() / self.torque[j]).sqrt());
+            }
+        }
+        if excess > 1.0 + ROUNDING { excess.min(1.0 + STEP) } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::*;
+    use crate::arm::dynamics::Load;
+    use crate::arm::robot;
+
+    /// Joint 1 goes 1 rad and back in such intervals, s.
+    fn stream(interval: f64) -> Stream {
+        let place = |i: usize| 0.5 - 0.5 * (i as f64 * std::f64::consts::PI / 20.0).cos();
+        let point = |i: usize| std::array::from_fn(|j| if j == 0 { place(i) } else { 0.3 });
+        Stream::new(point(0), (1..=20).map(point).collect(), vec![interval; 20]).unwrap()
+    }
+
+    #[test]
+    fn only_what_asks_for_too_much_takes_longer() {
+        let model = robot::find("IRB1600-10/1.45").unwrap();
+        let load = Load::none();
+        let loaded = Loaded { model: &model, load: &load };
+        let calm = stream(0.08);
+        assert_eq!(within_limits(loaded, calm.clone()), calm);
+        let hasty = stream(0.03);
+        let most = model.limits.acceleration.as_ref().unwrap()[0];
+        let ratio = (hasty.max_acceleration()[0] / most).sqrt();
+        assert!(ratio > 1.0, "{ratio}");
+        let late = within_limits(loaded, hasty.clone());
+        assert!(late.max_acceleration()[0] <= (1.0 + 2.0 * ROUNDING) * most);
+        // Slower as a whole would take this long.
+        assert!(late.duration() > hasty.duration());
+        assert!(late.duration() < ratio.max(1.0) * hasty.duration() * 1.05, "{}", late.duration());
+        let middle = |stream: &Stream| stream.intervals()[10] / stream.intervals()[0];
+        assert!(middle(&late) < 1.0, "{:?}", late.intervals());
+    }
+}

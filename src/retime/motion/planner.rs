@@ -1,0 +1,163 @@
+//! The timing that the controller gives to a path.
+//!
+//! The fastest motion within the speeds, accelerations and torques, then a
+//! moving average over the time in which the acceleration builds up
+//! (docs/controller.md has the measurements).
+
+use std::sync::Arc;
+
+use super::averaged::Averaged;
+use super::controller::Planning;
+use super::leg_times::{TimedLeg, in_time};
+use super::pace::{Pace, pace};
+use super::sampling::{self, Loaded, SpeedCap};
+use super::tcp_limits;
+use super::timed::TimedMotion;
+use super::timing::limits::PathLimits;
+use super::timing::profile::Profile;
+use super::timing::reachability::time_optimal;
+use crate::retime::path::JointPath;
+use crate::retime::path::joint_path::Joints;
+
+/// Intervals of the grid for one path, besides those of its zones.
+const INTERVALS: usize = 48;
+
+/// What a path may not exceed under the settings in force.
+#[derive(Clone, Debug)]
+pub struct MotionLimits {
+    /// rad/s².
+    pub acceleration: Joints,
+    /// Nm, infinite where the robot has no dynamics.
+    pub torque: Joints,
+}
+
+/// Why a path has no timing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("no timing within the limits was found for the path")]
+pub struct NoTiming;
+
+/// The controller's motion along a path, and what sets the pace of its legs.
+///
+/// `caps` holds the speed limits by leg; `times` the durations that `\T` asks for (s).
+///
+/// # Errors
+/// [`NoTiming`]: the robot can't even stand still within its torque limits.
+pub fn plan(
+    loaded: Loaded<'_>,
+    path: &Arc<JointPath>,
+    caps: &[SpeedCap],
+    limits: &MotionLimits,
+    planning: &Planning,
+    times: &[Option<f64>],
+) -> Result<(TimedMotion, Vec<Pace>), NoTiming> {
+    let nodes = sampling::nodes(loaded.model, path, caps, INTERVALS);
+    let limits = PathLimits::new(limits.acceleration, limits.torque).map_err(|_| NoTiming)?;
+    let task = Task { loaded, path, nodes: &nodes, limits: &limits, planning, times };
+    let planned = task.plan(caps)?;
+    if !tcp_limits::limited(&caps[path.legs()]) {
+        return Ok(planned);
+    }
+    let mut tightened = caps.to_vec();
+    let mut planned = planned;
+    for _ in 0..TIGHTENINGS {
+        let worst = tcp_limits::worst(loaded.model, path, caps, &planned.0);
+        let excess = |leg: usize| worst.get(leg).copied().filter(|x| *x > 1.0 + TCP_TOLERANCE);
+        if (0..worst.len()).all(|leg| excess(leg).is_none()) {
+            break;
+        }
+        for (i, leg) in path.legs().enumerate() {
+            // A corner is made by both of its legs.
+            let around = [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten();
+            let Some(worst) = around.filter_map(excess).max_by(f64::total_cmp) else { continue };
+            let factor = (1.0 - TIGHTER) / worst;
+            let cap = &mut tightened[leg];
+            cap.path_acceleration = cap.path_acceleration.map(|x| x * factor);
+            cap.world_acceleration *= factor;
+        }
+        planned = task.plan(&tightened)?;
+    }
+    Ok(planned)
+}
+
+/// Times that the limits on the TCP's acceleration are tightened.
+const TIGHTENINGS: usize = 6;
+/// By how much more than needed they are, so that few rounds do.
+const TIGHTER: f64 = 0.01;
+/// Accepted excess of the TCP's acceleration over its limit, share.
+const TCP_TOLERANCE: f64 = 1e-3;
+
+struct Task<'a> {
+    loaded: Loaded<'a>,
+    path: &'a Arc<JointPath>,
+    nodes: &'a [f64],
+    limits: &'a PathLimits,
+    planning: &'a Planning,
+    times: &'a [Option<f64>],
+}
+
+impl Task<'_> {
+    fn plan(&self, caps: &[SpeedCap]) -> Result<(TimedMotion, Vec<Pace>), NoTiming> {
+        let Task { path, limits, planning, .. } = self;
+        let grid = sampling::grid(self.loaded, path, self.nodes, caps).map_err(|_| NoTiming)?;
+        let fastest = time_optimal(&grid, limits).into_profile().ok_or(NoTiming)?;
+        let asked = &self.times[path.legs()];
+        let profile = if asked.iter().any(Option::is_some) {
+            let legs = self.timed_legs();
+            let profile = in_time(&grid, limits, &legs, fastest).ok_or(NoTiming)?;
+            exact(profile, &legs)
+        } else {
+            fastest
+        };
+        let mut begin = 0.0;
+        let last = path.legs().end - 1;
+        let paces = path.legs().map(|leg| {
+            let end = path.leg_end(leg);
+            let took = profile.time_at(end) - profile.time_at(begin);
+            let smoothing = self.smoothing(leg);
+            let pace = match self.times[leg] {
+                Some(time) if took + smoothing <= time * (1.0 + TIME_KEPT) => Pace::Time,
+                _ if leg == last || took > 0.0 => {
+                    pace(&grid, limits, &profile, begin..end, smoothing)
+                }
+                _ => Pace::None,
+            };
+            begin = end;
+            pace
+        });
+        let paces = paces.collect();
+        // The grid of a long path is large.
+        drop(grid);
+        let timing = Averaged::new(path, profile, planning.average);
+        Ok((TimedMotion::Path((*path).clone(), Box::new(timing)), paces))
+    }
+
+    /// What the average adds to the time of a leg, s: it begins at rest and ends there.
+    fn smoothing(&self, leg: usize) -> f64 {
+        let average = &self.planning.average;
+        let legs = self.path.legs();
+        let first = if leg == legs.start { 0.5 * average.window } else { 0.0 };
+        let last = if leg + 1 == legs.end { 0.5 * average.window - average.closing } else { 0.0 };
+        first + last
+    }
+
+    fn timed_legs(&self) -> Vec<TimedLeg> {
+        let path = self.path;
+        let leg = |leg: usize| TimedLeg {
+            end: path.leg_end(leg),
+            time: self.times[leg].map(|time| (time - self.smoothing(leg)).max(0.0)),
+        };
+        path.legs().map(leg).collect()
+    }
+}
+
+/// Excess over `\T` that still keeps it, share.
+const TIME_KEPT: f64 = 1e-3;
+
+/// The profile in exactly the time of its legs, where all have one and it does not take longer.
+fn exact(profile: Profile, legs: &[TimedLeg]) -> Profile {
+    let time: Option<f64> = legs.iter().map(|leg| leg.time).sum();
+    match time {
+        Some(time) if profile.duration() <= time => profile.scaled_to(time).unwrap_or(profile),
+        _ => profile,
+    }
+}

@@ -1,0 +1,164 @@
+//! Plans the movements between two stop points.
+
+use std::sync::Arc;
+
+use super::controller::{Planning, motion_limits};
+use super::late::within_limits;
+use super::pace::Pace;
+use super::planner::plan;
+use super::sampling::{Loaded, SpeedCap};
+use super::stream::Stream;
+use super::tcp_limits;
+use super::timed::TimedMotion;
+use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::ir::movement::{Movement, Settings};
+use crate::retime::path::{Leg, LegKind, build};
+
+/// The motion of a run.
+pub(super) struct Planned {
+    /// Motions with their start in the run, s.
+    pub motions: Vec<(f64, TimedMotion)>,
+    /// Duration of each movement (s) and what sets its pace.
+    pub pieces: Vec<(f64, Pace)>,
+    /// What went wrong at which leg.
+    pub problem: Option<(usize, String)>,
+    /// Time at rest before the next movement, s; a timed movement has it in its time.
+    pub settling_s: f64,
+}
+
+/// Plans the legs of movements; `times` are their `\T` under the overrides (s), `settings` those
+/// in force at the first of them.
+pub(super) fn plan_run(
+    loaded: Loaded<'_>,
+    legs: &[Leg],
+    movements: &[Movement],
+    times: &[Option<f64>],
+    settings: &Settings,
+) -> Planned {
+    match as_stream(legs, movements, times) {
+        Some(stream) => realise(loaded, stream, Planning::new(loaded.model, settings)),
+        None => plan_paths(loaded, legs, movements, times, settings),
+    }
+}
+
+/// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
+fn as_stream(legs: &[Leg], movements: &[Movement], times: &[Option<f64>]) -> Option<Stream> {
+    if movements.iter().any(|movement| movement.form != MoveForm::AbsJ) {
+        return None;
+    }
+    let intervals: Option<Vec<f64>> = times.iter().copied().collect();
+    // Distances between neighbouring points; the robot's own place does not count for zones
+    // of the points after it.
+    for pair in legs.windows(2) {
+        let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
+        if pair[0].zone.tcp < 0.5 * apart.norm() {
+            return None;
+        }
+    }
+    let points = legs.iter().map(|leg| leg.end).collect();
+    Stream::new(legs[0].start, points, intervals?).ok()
+}
+
+fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
+    // What the controller can't reach in time it does later.
+    let asked = stream.duration();
+    let stream = within_limits(loaded, stream);
+    let pace = if stream.duration() > asked { Pace::Acceleration } else { Pace::Time };
+    // A point's share of the time: up to the middle of the corner at it.
+    let times = stream.knots().times();
+    let count = stream.points().len();
+    let pieces = (0..count).map(|i| {
+        let end =
+            if i + 1 == count { stream.duration() } else { 0.5 * (times[i + 1] + times[i + 2]) };
+        let begin = if i == 0 { 0.0 } else { 0.5 * (times[i] + times[i + 1]) };
+        (end - begin, pace)
+    });
+    let pieces = pieces.collect();
+    // The law of a stream says nothing of its end: what follows waits as after other movements.
+    let settling_s = if count > 1 { planning.settling_s } else { settling_after(pace, &planning) };
+    let motions = vec![(0.0, TimedMotion::Stream(stream))];
+    Planned { motions, pieces, problem: None, settling_s }
+}
+
+fn plan_paths(
+    loaded: Loaded<'_>,
+    legs: &[Leg],
+    movements: &[Movement],
+    times: &[Option<f64>],
+    settings: &Settings,
+) -> Planned {
+    let model = loaded.model;
+    let caps: Vec<SpeedCap> =
+        legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
+    let planning = Planning::new(model, settings);
+    // An early end needs more acceleration than the rest of the motion.
+    let planning = if tcp_limits::limited(&caps) { planning.complete() } else { planning };
+    let limits = motion_limits(model, 1.0);
+    let mut pieces = vec![(0.0, Pace::None); legs.len()];
+    let (paths, mut problem) = match build(model, legs) {
+        Ok(paths) => (paths, None),
+        Err(error) => {
+            // For the time alone: the same points joint by joint.
+            let joint: Vec<Leg> =
+                legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
+            let hint = "its time is estimated joint by joint, the real one is longer";
+            let problem = Some((error.leg(), format!("{error}; {hint}")));
+            (build(model, &joint).unwrap_or_default(), problem)
+        }
+    };
+    let mut motions = Vec::new();
+    let mut t = 0.0;
+    for path in paths {
+        let path = Arc::new(path);
+        let indices = path.legs();
+        let (motion, paces) = match plan(loaded, &path, &caps, &limits, &planning, times) {
+            Ok(planned) => planned,
+            Err(error) => {
+                problem = Some((indices.start, error.to_string()));
+                break;
+            }
+        };
+        // Where there is no room for a zone the robot stops as at a stop point.
+        if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty()) {
+            let settling = settling_after(pieces[last].1, &planning);
+            pieces[last].0 += settling;
+            t += settling;
+        }
+        let mut before = 0.0;
+        for (leg, pace) in indices.zip(paces) {
+            let at = motion.time_at(path.leg_end(leg));
+            pieces[leg].0 += at - before;
+            pieces[leg].1 = pace;
+            before = at;
+        }
+        let duration = motion.duration();
+        motions.push((t, motion));
+        t += duration;
+    }
+    if problem.is_some() {
+        for (_, pace) in &mut pieces {
+            *pace = Pace::Estimated;
+        }
+    }
+    let settling_s = settling_after(pieces[pieces.len() - 1].1, &planning);
+    Planned { motions, pieces, problem, settling_s }
+}
+
+fn settling_after(pace: Pace, planning: &Planning) -> f64 {
+    if pace == Pace::Time { 0.0 } else { planning.settling_s }
+}
+
+/// The programmed speed of a movement as a cap; a timed one has none but its time.
+fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
+    let settings = &movement.settings;
+    let limits = SpeedCap {
+        acceleration: settings.acceleration,
+        path_acceleration: settings.path_acceleration,
+        world_acceleration: settings.world_acceleration,
+        ..SpeedCap::NONE
+    };
+    match movement.time {
+        None => SpeedCap { tcp: leg.speed.tcp, orientation: leg.speed.orientation, ..limits },
+        Some(_) => limits,
+    }
+}

@@ -1,0 +1,55 @@
+//! `PathAccLim` and `WorldAccLim` on the averaged motion.
+//!
+//! The average keeps bounds on the joints but not on the TCP, whose way is no linear function of
+//! them: what it leaves over the limit in corners is found on the motion itself.
+
+use super::sampling::SpeedCap;
+use super::timed::TimedMotion;
+use crate::arm::robot::Model;
+use crate::retime::path::JointPath;
+
+/// Longest step between two looks at the motion, s.
+const STEP: f64 = 0.002;
+/// A TCP slower than this has no direction, m/s.
+const SLOW: f64 = 1e-4;
+
+/// True if a leg has a limit on the acceleration of its TCP.
+pub(super) fn limited(caps: &[SpeedCap]) -> bool {
+    caps.iter().any(|cap| {
+        cap.world_acceleration.is_finite() || cap.path_acceleration.iter().any(|x| x.is_finite())
+    })
+}
+
+/// The largest share of these limits that the motion uses on each leg of the path.
+pub(super) fn worst(
+    model: &Model,
+    path: &JointPath,
+    caps: &[SpeedCap],
+    motion: &TimedMotion,
+) -> Vec<f64> {
+    let mut begin = 0.0;
+    let leg_worst = |leg: usize| {
+        let end = motion.time_at(path.leg_end(leg));
+        let tool = path.extent(leg).tool;
+        let steps = ((end - begin) / STEP).ceil().max(1.0);
+        let mut worst: f64 = 0.0;
+        for i in 0..=steps as usize {
+            let state = motion.at(begin + (end - begin) * i as f64 / steps);
+            let qd = nalgebra::Vector6::from(state.qd);
+            let jacobian = tool.jacobian(model, &state.q);
+            let v = (jacobian * qd).fixed_rows::<3>(0).into_owned();
+            let a = jacobian * nalgebra::Vector6::from(state.qdd)
+                + tool.jacobian_dot(model, &state.q, &state.qd) * qd;
+            let a = a.fixed_rows::<3>(0).into_owned();
+            worst = worst.max(a.norm() / caps[leg].world_acceleration);
+            if v.norm() > SLOW {
+                let along = a.dot(&v) / v.norm();
+                let [up, down] = caps[leg].path_acceleration;
+                worst = worst.max(along / up).max(-along / down);
+            }
+        }
+        begin = end;
+        worst
+    };
+    path.legs().map(leg_worst).collect()
+}

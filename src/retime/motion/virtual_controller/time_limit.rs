@@ -1,0 +1,91 @@
+//! Where a simulation ends that would last too long.
+
+use super::{MAX_EVENTS, MAX_MOVES, MAX_TIME, Planned, RunDraft, VirtualController, What};
+use crate::arm::kinematics::fk;
+use crate::rapid::ir::movement::Movement;
+use crate::retime::path::{Leg, LegKind};
+
+/// Zones may shorten movements to this share.
+const SHORTEST: f64 = 0.5;
+
+impl VirtualController<'_> {
+    pub(super) fn max_time(&self) -> f64 {
+        self.options.max_time.unwrap_or(MAX_TIME)
+    }
+
+    pub(super) fn is_long(&self) -> bool {
+        let events = self.events.len() + self.drafts.len() + self.pending.len();
+        self.moves > MAX_MOVES || events > MAX_EVENTS
+    }
+
+    /// Time that a movement takes without acceleration, s.
+    pub(super) fn time_at_speed(&self, leg: &Leg, movement: &Movement) -> f64 {
+        if let Some(time) = self.timed(movement) {
+            return time;
+        }
+        let before = leg.tool.pose(&fk(self.model, &leg.start));
+        let way = match leg.kind {
+            LegKind::Joint => 0.0,
+            _ => (leg.target.translation.vector - before.translation.vector).norm(),
+        };
+        let joints = self.model.limits.velocity.iter().flatten();
+        let turns = leg.start.iter().zip(&leg.end).zip(joints);
+        let slowest = turns.map(|((a, b), speed)| (b - a).abs() / speed).fold(0.0, f64::max);
+        slowest.max(way / leg.speed.tcp)
+    }
+
+    /// Ends fly-by movements that last too long however short their zones make them.
+    pub(super) fn flush_if_late(&mut self) {
+        if self.time + SHORTEST * self.pending_s > self.max_time() {
+            self.flush();
+            self.lay_out();
+            self.late = true;
+        }
+    }
+
+    /// A run up to the movement during which the largest time is over; the robot stops behind it.
+    pub(super) fn in_time(&mut self, mut run: RunDraft, plan: Planned) -> (RunDraft, Planned) {
+        let left = self.max_time() - self.time;
+        let mut t = 0.0;
+        let late = plan.pieces.iter().position(|(duration, _)| {
+            t += duration;
+            t > left
+        });
+        let Some(late) = late else { return (run, plan) };
+        self.late = true;
+        if late + 1 == run.movements.len() {
+            return (run, plan);
+        }
+        run.truncate(late + 1);
+        let plan = run.plan(self.model);
+        (run, plan)
+    }
+
+    /// Tells at which instruction the simulation ended, if it was not at the program's end.
+    pub(super) fn tell_length(&mut self) {
+        let reason = if self.late {
+            format!(
+                "the cycle lasts longer than {} s (--max-time): it is shown up to the end of this \
+                 instruction, at {:.3} s",
+                self.max_time(),
+                self.time
+            )
+        } else if self.is_long() {
+            format!(
+                "more than {MAX_MOVES} movements or {MAX_EVENTS} stops, waits and outputs, as if \
+                 the program did not end: the cycle is shown up to here (--max-time ends it earlier)"
+            )
+        } else {
+            return;
+        };
+        let span = self.events.iter().rev().find_map(|event| match &event.what {
+            What::Run(run) => run.moves.last().map(|record| record.movement.span),
+            What::Wait(record) => Some(record.wait.span),
+            What::Output(output, _) => Some(output.span),
+            What::Left(left) => Some(left.span),
+        });
+        if let Some(span) = span {
+            self.note(span, &reason);
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! Where a realised motion may be and how fast: the programmed path with its tolerances.
+
+use nalgebra::{Isometry3, Vector4};
+
+use super::allowed::{Allowed, Ceiling};
+use super::freedom::Freedom;
+use crate::arm::kinematics::fk;
+use crate::arm::robot::Model;
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timeline::Run;
+use crate::retime::path::PieceKind;
+use crate::retime::path::joint_path::{DOF, Joints};
+
+/// Distance of the samples of the path, m.
+const SPACING: f64 = 0.002;
+/// A turn of the tool counts as this much distance, m/rad.
+const METRES_PER_RADIAN: f64 = 0.1;
+/// Allowed distance from a line or arc, m.
+pub const LINE_TOLERANCE: f64 = 0.001;
+/// Allowed distance from a joint movement, m.
+pub const JOINT_TOLERANCE: f64 = 0.005;
+/// Allowed distance in a corner zone, in units of its size.
+pub const ZONE_TOLERANCE: f64 = 0.1;
+/// Allowed distance of the polygon near stops, m: grippers and fixtures are near there.
+pub(super) const STOP_TOLERANCE: f64 = 0.0005;
+/// How far from a stop the path counts as near it, m: 50 mm, and what lies between places.
+const NEAR_STOP: f64 = 0.05 + 3.0 * SPACING;
+/// By how much the tolerance of the polygon grows behind that, m/m: a motion cannot follow a step.
+const WIDENING: f64 = 0.05;
+/// How many samples ahead and behind the last place are searched for the nearest.
+const WINDOW: (usize, usize) = (8, 24);
+
+/// One sample of the programmed path.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    pose: Isometry3<f64>,
+    /// Largest speeds here.
+    ceiling: Ceiling,
+    /// Largest distance from here, m.
+    tolerance: f64,
+    /// The same for the polygon of the points.
+    polygon: f64,
+    /// The same if it is near a stop.
+    stop_tolerance: f64,
+}
+
+/// The programmed path of a run.
+#[derive(Clone, Debug)]
+pub struct Corridor {
+    places: Vec<Place>,
+    /// What a stream in it may ask of the robot.
+    pub(super) allowed: Allowed,
+}
+
+/// How a pose lies to the corridor.
+#[derive(Clone, Copy, Debug)]
+pub struct Offset {
+    /// Distance of the TCP, m, the turn of the tool included.
+    pub distance: f64,
+    /// Allowed distance, m.
+    pub tolerance: f64,
+    /// Allowed distance of the points' polygon, m.
+    pub polygon: f64,
+    /// Largest speeds.
+    pub ceiling: Ceiling,
+}
+
+/// Lowers the tolerances of the polygon near both ends of a path.
+fn near_stops(places: &mut [Place]) {
+    let stops = [0, places.len() - 1].map(|i| places[i].pose.translation.vector);
+    for place in places {
+        let distances = stops.map(|stop| (place.pose.translation.vector - stop).norm());
+        let beyond = (distances[0].min(distances[1]) - NEAR_STOP).max(0.0);
+        place.polygon = place.polygon.min(place.stop_tolerance + WIDENING * beyond);
+    }
+}
+
+impl Corridor {
+    /// The corridor of a run along one path; `None` for streams.
+    pub fn new(model: &Model, run: &Run, freedom: &Freedom) -> Option<Corridor> {
+        let allowed = Allowed::new(model, run, freedom);
+        let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return None };
+        let mut places = Vec::new();
+        for piece in path.pieces() {
+            let movement = &run.moves[piece.leg].movement;
+            let zone = &run.legs[piece.leg].zone;
+            let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
+            // A piece of a zone belongs to the leg before or after its corner: so does its ceiling.
+            let ceiling = allowed.moves[piece.leg];
+            let tolerance = match piece.kind {
+                PieceKind::Joint => JOINT_TOLERANCE,
+                PieceKind::Cartesian => LINE_TOLERANCE,
+                PieceKind::CartesianZone | PieceKind::JointZone => {
+                    let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
+                    let size = if after { before.map_or(0.0, |z| z.tcp) } else { zone.tcp };
+                    LINE_TOLERANCE.max(ZONE_TOLERANCE * size)
+                }
+            };
+            // A corner is free where both of its movements are.
+            let corner = match piece.kind {
+                PieceKind::CartesianZone | PieceKind::JointZone => {
+                    let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
+                    if after { piece.leg.checked_sub(1) } else { Some(piece.leg + 1) }
+                }
+                PieceKind::Joint | PieceKind::Cartesian => None,
+            };
+            let other = corner.and_then(|leg| run.moves.get(leg)).map(|record| &record.movement);
+            let movements = std::iter::once(movement).chain(other);
+            let free = movements.map(|movement| freedom.of(movement)).fold(f64::INFINITY, f64::min);
+            // In a corner joints come from the one speed to the other.
+            let beyond = corner.and_then(|leg| allowed.moves.get(leg)).unwrap_or(&ceiling);
+            let tcp = if corner.is_some() { ceiling.corner } else { ceiling.tcp };
+            let ceiling = Ceiling { tcp, joints: ceiling.max(beyond).joints, ..ceiling };
+            let tolerance = tolerance.max(free);
+            let stop_tolerance = STOP_TOLERANCE.max(free);
+            let extent = path.extent(piece.leg);
+            let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
+            // A turn of the tool by more than half a turn looks shorter from its ends.
+            let ends = [piece.s, piece.s + piece.length].map(|s| piece.eval(s).q);
+            let turned = (0..DOF).map(|j| (ends[1][j] - ends[0][j]).abs()).fold(0.0, f64::max);
+            let way = (piece.length * share).max(METRES_PER_RADIAN * turned);
+            let n = (way / SPACING).ceil().max(1.0) as usize;
+            let poses: Vec<Isometry3<f64>> = (0..=n)
+                .map(|i| piece.s + piece.length * i as f64 / n as f64)
+                .map(|s| extent.tool.pose(&fk(model, &piece.eval(s).q)))
+                .collect();
+            // Where zones fail an original goes to the corner itself; the polygon may go as far.
+            let cut = corner.and_then(|other| run.legs.get(other.min(piece.leg))).map(|leg| {
+                let corner = extent.tool.pose(&fk(model, &leg.end)).translation.vector;
+                let distance = |pose: &Isometry3<f64>| (pose.translation.vector - corner).norm();
+                poses.iter().map(distance).fold(f64::INFINITY, f64::min) + LINE_TOLERANCE
+            });
+            let polygon = cut.map_or(tolerance, |cut| tolerance.max(cut));
+            let place = |pose| Place { pose, ceiling, tolerance, polygon, stop_tolerance };
+            places.extend(poses.into_iter().map(place));
+        }
+        near_stops(&mut places);
+        Some(Corridor { places, allowed })
+    }
+
+    /// The offset of a pose, searched near the place `from`, which is moved on.
+    pub fn offset(&self, pose: &Isometry3<f64>, from: &mut usize) -> Offset {
+        let begin = from.saturating_sub(WINDOW.0);
+        let end = (*from + WINDOW.1).min(self.places.len() - 1);
+        let mut best = (f64::INFINITY, *from);
+        for i in begin..=end {
+            let distance = self.distance(pose, i);
+            if distance < best.0 {
+                best = (distance, i);
+            }
+        }
+        *from = best.1;
+        let place = &self.places[best.1];
+        // Between two stretches the more generous figure holds: they meet there.
+        let lo = &self.places[best.1.saturating_sub(1)];
+        let hi = &self.places[(best.1 + 1).min(self.places.len() - 1)];
+        Offset {
+            distance: best.0,
+            tolerance: place.tolerance.max(lo.tolerance).max(hi.tolerance),
+            polygon: place.polygon.max(lo.polygon).max(hi.polygon),
+            ceiling: place.ceiling.max(&lo.ceiling).max(&hi.ceiling),
+        }
+    }
+
+    /// The TCP speeds of all places, each lower one holding from `reach` (m) before it to as much
+    /// behind it and rising from there as a motion can that gains `acceleration` (m/s²): the
+    /// same for a motion, but without steps.
+    pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
+        let last = self.places.len() - 1;
+        let n = (reach / SPACING).ceil() as usize;
+        let mut eased: Vec<f64> = (0..=last)
+            .map(|i| {
+                let around = i.saturating_sub(n)..=(i + n).min(last);
+                self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        let step = |i: usize| {
+            let (a, b) = (&self.places[i].pose, &self.places[i + 1].pose);
+            (a.translation.vector - b.translation.vector).norm()
+        };
+        let rise = |from: f64, d: f64| (from * from + 2.0 * acceleration * d).sqrt();
+        for i in 0..last {
+            eased[i + 1] = eased[i + 1].min(rise(eased[i], step(i)));
+        }
+        for i in (0..last).rev() {
+            eased[i] = eased[i].min(rise(eased[i + 1], step(i)));
+        }
+        eased
+    }
+
+    /// The largest speeds at a place.
+    pub(super) fn ceiling(&self, place: usize) -> &Ceiling {
+        &self.places[place].ceiling
+    }
+
+    /// The distance of a pose over what is allowed there, and the value there of something given
+    /// at each place. The place is searched near `from`, which is moved on.
+    pub fn locate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> (f64, f64) {
+        let i = self.nearest(pose, from);
+        let distance = self.distance(pose, i) / self.places[i].tolerance;
+        // Between the nearest place and its neighbour on the side of the pose.
+        let here = self.places[i].pose.translation.vector;
+        let offset = pose.translation.vector - here;
+        for k in [i + 1, i.wrapping_sub(1)] {
+            if k >= self.places.len() {
+                continue;
+            }
+            let along = self.places[k].pose.translation.vector - here;
+            let share = offset.dot(&along) / along.norm_squared();
+            if share > 0.0 {
+                return (distance, values[i] + (values[k] - values[i]) * share.min(1.0));
+            }
+        }
+        (distance, values[i])
+    }
+
+    /// The distance of a pose on the polygon of the points over what is allowed there, searched in
+    /// the same way.
+    pub(super) fn polygon_share(&self, pose: &Isometry3<f64>, from: &mut usize) -> f64 {
+        let i = self.nearest(pose, from);
+        self.distance(pose, i) / self.places[i].polygon
+    }
+
+    /// The place nearest to a pose, searched near `from`, which becomes that place.
+    fn nearest(&self, pose: &Isometry3<f64>, from: &mut usize) -> usize {
+        const STRIDE: usize = 8;
+        const AHEAD: usize = 32 * STRIDE;
+        let square = |place: &Place| {
+            let turn = METRES_PER_RADIAN * turn(&pose.rotation.coords, &place.pose.rotation.coords);
+            (pose.translation.vector - place.pose.translation.vector).norm_squared() + turn * turn
+        };
+        let nearest = |range: &mut dyn Iterator<Item = usize>| {
+            let pairs = range.map(|i| (square(&self.places[i]), i));
+            pairs.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a }).1
+        };
+        let last = self.places.len() - 1;
+        let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
+        let coarse = nearest(&mut window.step_by(STRIDE));
+        *from = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
+        *from
+    }
+
+    /// Distance of a pose from the stretch before and after a place.
+    fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
+        let place = &self.places[i].pose;
+        let from = pose.translation.vector - place.translation.vector;
+        let rotation = place.rotation.coords;
+        let turned = METRES_PER_RADIAN * turn_vector(&rotation, &pose.rotation.coords);
+        let aside = |k: usize| {
+            let next = &self.places[k].pose;
+            let along = next.translation.vector - place.translation.vector;
+            let turns = METRES_PER_RADIAN * turn_vector(&rotation, &next.rotation.coords);
+            let square = along.norm_squared() + turns.norm_squared();
+            let dot = from.dot(&along) + turned.dot(&turns);
+            let share = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
+            (from - along * share).norm().hypot((turned - turns * share).norm())
+        };
+        let last = self.places.len() - 1;
+        let neighbours = [i.saturating_sub(1), (i + 1).min(last)];
+        neighbours.map(aside).into_iter().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// From one orientation to another: as long as the angle between them, rad, where it is small.
+fn turn_vector(from: &Vector4<f64>, to: &Vector4<f64>) -> Vector4<f64> {
+    let sign = if from.dot(to) < 0.0 { -1.0 } else { 1.0 };
+    2.0 * (sign * to - from)
+}
+
+/// The angle between two orientations, rad, where it is small; a chord of it where it is large,
+/// which orders them the same without the cost of the arc.
+fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
+    (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
+}
+
+/// Distance of the TCP from each joint's axis at most along the run, m: weighs joint errors.
+pub(super) fn levers(model: &Model, run: &Run) -> Joints {
+    let mut lever = [MIN_LEVER; DOF];
+    for leg in &run.legs {
+        for q in [&leg.start, &leg.end] {
+            let j = leg.tool.jacobian(model, q);
+            for (i, lever) in lever.iter_mut().enumerate() {
+                *lever = lever.max(j.fixed_view::<3, 1>(0, i).norm());
+            }
+        }
+    }
+    lever
+}
+
+/// A joint whose axis passes the TCP still turns the tool, m/rad.
+const MIN_LEVER: f64 = 0.1;

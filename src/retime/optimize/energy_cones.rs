@@ -1,0 +1,520 @@
+//! The cone programs for the speed profile of least energy on a fixed path.
+//!
+//! Variables at the nodes: b = ṡ² and c ≤ √b (c² ≤ b); on the intervals: d ≥ 1/(c₀ + c₁), which
+//! is the time over 2 Δs, and epigraphs. With τ = ℓ + δ √b, ℓ linear in (u, b) and δ the viscous
+//! part, the copper loss on an interval is
+//!
+//! ∫ k τ² dt = ∫ k ℓ²/√b ds + ∫ 2 k δ ℓ ds + ∫ k δ² √b ds:
+//!
+//! a rotated cone, a linear term and a concave one. Viscous work is ∫ Σ δ q' √b ds, concave too.
+//! All else is convex or a constant of the path (potential energy, Coulomb work): Verscheure,
+//! Demeulenaere, Swevers, De Schutter, Diehl, "Time-optimal path tracking for robots: a convex
+//! optimization approach" (2009). The concave terms w √b are treated in two ways:
+//!
+//! - √b ≤ its tangent at the profile before: the program is an inner approximation that is exact
+//!   there.
+//! - w √b ≥ w g with g d ≥ 1: as a function of the time per length the viscous work is convex.
+//!   This relaxation is exact wherever time is worth more than the friction that it saves. Where
+//!   it is not, √b ≥ its secant over the speeds that the time leaves.
+//!
+//! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
+//! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
+//! those that come near their bound are in a program, and it is solved again when others turn up.
+//! The rest at both ends is eliminated: there the cones would have no interior.
+
+use nalgebra::SMatrix;
+
+use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
+use super::path_energy::{EnergyModel, Sharing, evaluate};
+use crate::retime::motion::stream::DOF;
+use crate::retime::motion::timing::grid::PathGrid;
+use crate::retime::motion::timing::limits::{PathLimits, Row, rows};
+use crate::retime::motion::timing::profile::Profile;
+
+/// What stands for √b where it is concave.
+#[derive(Clone, Copy)]
+pub(super) enum Root<'a> {
+    /// The convex lower bound.
+    Relaxed,
+    /// The tangent at this b, which is above.
+    Tangent(&'a [f64]),
+}
+
+/// The solution of a program. The energies leave out the constants of the path.
+pub(super) struct Step {
+    /// ṡ² at the nodes.
+    pub(super) b: Vec<f64>,
+    /// The objective, J.
+    pub(super) energy: f64,
+    /// Dual bound of the program, J.
+    pub(super) bound: f64,
+    /// By how much the tangents overestimate the energy of this profile, J.
+    pub(super) excess: f64,
+    /// Energy that one more second saves, W.
+    pub(super) marginal: f64,
+}
+
+/// Relative room that the programs keep to the time and to the limits, so that what the solver
+/// leaves open does not break them.
+const MARGIN: f64 = 1e-5;
+/// Share of its limit from which a row is part of the first program.
+const NEAR_AT_FIRST: f64 = 0.6;
+/// Share of its limit from which a row is added when another one is broken.
+const NEAR: f64 = 0.85;
+/// Rounds in which rows are added.
+const MAX_ROUNDS: usize = 8;
+/// Smallest scaled speed at which a tangent is taken.
+const SLOWEST: f64 = 1e-6;
+/// ∫ √b ds over an interval, per Δs √b at the moving end, where the other end rests.
+const MEAN_ROOT_FROM_REST: f64 = 2.0 / 3.0;
+
+/// sign · row ≤ 1 at the share `at` of an interval.
+struct Limit {
+    interval: usize,
+    at: f64,
+    sign: f64,
+    row: Row,
+    active: bool,
+}
+
+/// The costs of one interval in units of the objective and of scaled variables.
+struct IntervalCost {
+    /// Vector whose square over c₀ + c₁ is the copper loss.
+    copper: Vec<Affine>,
+    /// The part of the copper loss that is linear in (u, b).
+    cross: Affine,
+    /// Factor w of the mean √b.
+    viscous: f64,
+    /// Works that count when they are negative, each with the factor of the mean √b.
+    brakes: Vec<(Affine, f64)>,
+    /// Time per d, over the given duration.
+    time: f64,
+    /// Base energy per d.
+    base: f64,
+}
+
+/// The programs of one problem, with the rows that have turned out to matter.
+pub(super) struct Programs<'a> {
+    grid: &'a PathGrid,
+    duration: f64,
+    /// ṡ per scaled speed.
+    speed: f64,
+    /// J per unit of the objective.
+    unit: f64,
+    costs: Vec<IntervalCost>,
+    /// Rows at the ends of the intervals, and in their middles for the relaxation.
+    limits: [Vec<Limit>; 2],
+    /// Largest scaled b at each node, and whether the row is in the program.
+    b_max: Vec<(f64, bool)>,
+    convex: bool,
+    /// Scaled bounds on √b at the nodes, for the relaxation.
+    roots: Vec<[f64; 2]>,
+}
+
+impl<'a> Programs<'a> {
+    /// The programs for profiles that take at most `duration` (s); `start` sets the scales and
+    /// chooses the first rows.
+    pub(super) fn new(
+        grid: &'a PathGrid,
+        limits: &PathLimits,
+        model: &EnergyModel,
+        start: &Profile,
+        duration: f64,
+    ) -> Programs<'a> {
+        let n = grid.intervals();
+        let parts = evaluate(grid, start, model);
+        let unit = parts.friction.abs() + parts.copper + parts.drive + parts.base + parts.speed;
+        let unit = if unit > 0.0 { unit } else { 1.0 };
+        let speed = grid.length() / start.duration();
+        let scale = Scale { speed, unit, duration };
+        let costs: Vec<IntervalCost> =
+            (0..n).map(|k| IntervalCost::new(grid, model, k, &scale)).collect();
+        let all = [limits_at(grid, limits, &[0.0, 1.0]), limits_at(grid, limits, &[0.5])];
+        let concave = costs.iter().any(|cost| cost.viscous > 0.0)
+            || all[0].iter().any(|limit| limit.row.root != 0.0);
+        let b_max = (0..=n).map(|k| (grid.b_max(k) / (speed * speed), false)).collect();
+        let mut programs = Programs {
+            grid,
+            duration,
+            speed,
+            unit,
+            costs,
+            limits: all,
+            b_max,
+            convex: !concave,
+            roots: Vec::new(),
+        };
+        programs.activate(start.b(), NEAR_AT_FIRST);
+        programs
+    }
+
+    /// With bounds on ṡ² at the nodes that every profile in the time keeps.
+    pub(super) fn within(mut self, range: &[(f64, f64)]) -> Programs<'a> {
+        let scaled = |b: f64| b.max(0.0).sqrt() / self.speed;
+        self.roots = range.iter().map(|(lo, hi)| [scaled(*lo), scaled(*hi)]).collect();
+        self
+    }
+
+    /// The secant of √b at a node between its bounds: below √b.
+    fn secant(&self, layout: &Layout, node: usize) -> Affine {
+        match self.roots.get(node) {
+            Some([lo, hi]) if lo + hi > 0.0 => {
+                let slope = 1.0 / (lo + hi);
+                Affine::constant(lo * hi * slope).plus(layout.b(node), slope)
+            }
+            _ => Affine::constant(0.0),
+        }
+    }
+
+    /// Whether nothing is concave, so that one program with tangents is the problem.
+    pub(super) fn is_convex(&self) -> bool {
+        self.convex
+    }
+
+    /// Solves the program, adding rows until none is broken. None if the solver fails.
+    pub(super) fn solve(&mut self, root: Root<'_>) -> Option<Step> {
+        for _ in 0..MAX_ROUNDS {
+            let layout = Layout::new(self, root);
+            let (program, time_row) = self.build(&layout, root);
+            let solution = program.solve();
+            if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
+                return None;
+            }
+            let step = self.read(&layout, &solution, time_row, root);
+            if !self.broken(&step.b, root) {
+                return Some(step);
+            }
+            self.activate(&step.b, NEAR);
+        }
+        None
+    }
+
+    fn read(
+        &self,
+        layout: &Layout,
+        solution: &ConeSolution,
+        time_row: usize,
+        root: Root<'_>,
+    ) -> Step {
+        let scaled = |k: usize| layout.b(k).map_or(0.0, |i| solution.x[i].max(0.0));
+        let n = self.grid.intervals();
+        let b: Vec<f64> = (0..=n).map(|k| scaled(k) * self.speed * self.speed).collect();
+        let excess = match root {
+            Root::Relaxed => 0.0,
+            Root::Tangent(at) => self.excess(&b, at),
+        };
+        Step {
+            b,
+            energy: solution.objective * self.unit,
+            bound: solution.bound * self.unit,
+            excess: excess * self.unit,
+            marginal: solution.multipliers[time_row] * self.unit / self.duration,
+        }
+    }
+
+    /// Σ w (tangent of √b at `at` − √b).
+    fn excess(&self, b: &[f64], at: &[f64]) -> f64 {
+        let n = self.grid.intervals();
+        let above = |node: usize| {
+            let (root, tangent) = (b[node].sqrt(), at[node].sqrt());
+            if tangent > 0.0 { 0.5 * (root - tangent).powi(2) / tangent / self.speed } else { 0.0 }
+        };
+        let of = |(k, cost): (usize, &IntervalCost)| {
+            mean_root(k, n).map(|(node, share)| cost.viscous * share * above(node))
+        };
+        self.costs.iter().enumerate().flat_map(of).sum()
+    }
+
+    /// Whether a row that is not in the program is broken by the profile b.
+    fn broken(&self, b: &[f64], root: Root<'_>) -> bool {
+        let limit = |l: &Limit| !l.active && self.value(l, b) > 1.0;
+        let speed = |(k, (max, active)): (usize, &(f64, bool))| {
+            !active && b[k] > max * self.speed * self.speed
+        };
+        self.limits[kind(root)].iter().any(limit) || self.b_max.iter().enumerate().any(speed)
+    }
+
+    /// Brings in all rows that use more than the share `near` of their limit.
+    fn activate(&mut self, b: &[f64], near: f64) {
+        for kind in 0..self.limits.len() {
+            for i in 0..self.limits[kind].len() {
+                let value = self.value(&self.limits[kind][i], b);
+                self.limits[kind][i].active |= value > near;
+            }
+        }
+        let square = self.speed * self.speed;
+        for ((max, active), b) in self.b_max.iter_mut().zip(b) {
+            *active |= *b > near * *max * square;
+        }
+    }
+
+    fn value(&self, limit: &Limit, b: &[f64]) -> f64 {
+        let k = limit.interval;
+        let u = (b[k + 1] - b[k]) / (2.0 * self.grid.delta(k));
+        limit.sign * limit.row.value(u, b[k] + limit.at * (b[k + 1] - b[k]))
+    }
+
+    /// The program and the index of its time row.
+    fn build(&self, layout: &Layout, root: Root<'_>) -> (ConeProgram, usize) {
+        let n = self.grid.intervals();
+        let mut program = ConeProgram::new(layout.variables());
+        let mut time = Affine::constant(-(1.0 - MARGIN));
+        for k in 1..n {
+            let (b, c) = (Affine::default().plus(layout.b(k), 1.0), layout.c(k));
+            let one = Affine::constant(1.0);
+            program.rotated_cone(&b, &one, vec![Affine::default().plus(c, 1.0)]);
+            let (max, active) = self.b_max[k];
+            if active {
+                program
+                    .at_most_zero(Affine::constant(-(1.0 - MARGIN)).plus(layout.b(k), 1.0 / max));
+            }
+        }
+        for (k, cost) in self.costs.iter().enumerate() {
+            let speeds = Affine::default().plus(layout.c(k), 1.0).plus(layout.c(k + 1), 1.0);
+            let d = Affine::default().plus(Some(layout.d(k)), 1.0);
+            program.rotated_cone(&d, &speeds, vec![Affine::constant(1.0)]);
+            time.add(Some(layout.d(k)), cost.time);
+            program.minimize(&d.clone().times(cost.base));
+            program.minimize(&cost.cross);
+            if let Some(e) = layout.copper(k) {
+                let e = Affine::default().plus(Some(e), 1.0);
+                program.minimize(&e);
+                program.rotated_cone(&e, &speeds, cost.copper.clone());
+            }
+            if cost.viscous > 0.0 {
+                program.minimize(&self.viscous(layout, root, k));
+            }
+            if let Some(g) = layout.root(k) {
+                let g = Affine::default().plus(Some(g), 1.0);
+                program.rotated_cone(&g, &d, vec![Affine::constant(1.0)]);
+                if !self.roots.is_empty() {
+                    let ends = self.secant(layout, k).sum(&self.secant(layout, k + 1));
+                    program.at_most_zero(ends.sum(&g.times(-1.0)));
+                }
+            }
+            for (i, (work, factor)) in cost.brakes.iter().enumerate() {
+                let lost = Some(layout.brake(k, i));
+                program.minimize(&Affine::default().plus(lost, 1.0));
+                program.at_most_zero(Affine::default().plus(lost, -1.0));
+                let mut row = work.clone().times(-1.0).plus(lost, -1.0);
+                for (node, share) in mean_root(k, n) {
+                    row.add(layout.c(node), -factor * share);
+                }
+                program.at_most_zero(row);
+            }
+        }
+        for limit in self.limits[kind(root)].iter().filter(|limit| limit.active) {
+            program.at_most_zero(self.limit_row(layout, root, limit));
+        }
+        let time_row = program.at_most_zero(time);
+        (program, time_row)
+    }
+
+    /// The cost w · mean √b of interval k.
+    fn viscous(&self, layout: &Layout, root: Root<'_>, k: usize) -> Affine {
+        let (weight, n) = (self.costs[k].viscous, self.grid.intervals());
+        match root {
+            Root::Relaxed => {
+                // g ≥ c₀ + c₁, of which the mean takes the share of either node.
+                let [(_, share), _] = mean_root(k, n);
+                Affine::default().plus(layout.root(k), weight * share)
+            }
+            Root::Tangent(at) => {
+                let mut cost = Affine::default();
+                for (node, share) in mean_root(k, n) {
+                    if let Some(index) = layout.b(node) {
+                        let b = Affine::default().plus(Some(index), 1.0);
+                        cost = cost.sum(&self.tangent(&b, at[node]).times(weight * share));
+                    }
+                }
+                cost
+            }
+        }
+    }
+
+    /// The tangent of √b at the b `at`.
+    fn tangent(&self, b: &Affine, at: f64) -> Affine {
+        let speed = at.sqrt().max(SLOWEST * self.speed) / self.speed;
+        b.clone().times(0.5 / speed).shift(0.5 * speed)
+    }
+
+    /// The row of an active limit: friction that adds to the load by its upper approximation,
+    /// friction that relieves by c.
+    fn limit_row(&self, layout: &Layout, root: Root<'_>, limit: &Limit) -> Affine {
+        let (k, Row { u, b, root: viscous, constant }) = (limit.interval, limit.row);
+        let square = self.speed * self.speed;
+        let per_u = limit.sign * u * square * 0.5 / self.grid.delta(k);
+        let ends = |before: Option<usize>, after: Option<usize>| {
+            Affine::default().plus(before, 1.0 - limit.at).plus(after, limit.at)
+        };
+        let here = ends(layout.b(k), layout.b(k + 1));
+        let row = Affine::constant(limit.sign * constant - (1.0 - MARGIN))
+            .plus(layout.b(k), -per_u)
+            .plus(layout.b(k + 1), per_u)
+            .sum(&here.clone().times(limit.sign * b * square));
+        let viscous = limit.sign * viscous * self.speed;
+        let speed = match root {
+            Root::Tangent(at) if viscous > 0.0 && !here.is_constant() => {
+                self.tangent(&here, at[k] + limit.at * (at[k + 1] - at[k]))
+            }
+            _ => ends(layout.c(k), layout.c(k + 1)),
+        };
+        row.sum(&speed.times(viscous))
+    }
+}
+
+/// All limits at the given shares of each interval.
+fn limits_at(grid: &PathGrid, limits: &PathLimits, shares: &[f64]) -> Vec<Limit> {
+    let mut all = Vec::new();
+    for (interval, [begin, end]) in grid.ends().iter().enumerate() {
+        for at in shares {
+            for row in rows(&begin.toward(end, *at), limits) {
+                for sign in [1.0, -1.0] {
+                    all.push(Limit { interval, at: *at, sign, row, active: false });
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Index of the rows that a program of this kind keeps.
+fn kind(root: Root<'_>) -> usize {
+    match root {
+        Root::Tangent(_) => 0,
+        Root::Relaxed => 1,
+    }
+}
+
+/// Units of the scaled variables.
+struct Scale {
+    speed: f64,
+    unit: f64,
+    duration: f64,
+}
+
+impl IntervalCost {
+    /// The costs of interval k by the midpoint rule in s.
+    fn new(grid: &PathGrid, model: &EnergyModel, k: usize, scale: &Scale) -> IntervalCost {
+        let [begin, end] = &grid.ends()[k];
+        let middle = begin.toward(end, 0.5);
+        let delta = grid.delta(k);
+        let square = scale.speed * scale.speed;
+        let before = (k > 0).then(|| Layout::b_of(k));
+        let after = (k + 1 < grid.intervals()).then(|| Layout::b_of(k + 1));
+        // ℓ, Nm: linear in b at both nodes; the factors of these and the rest.
+        let factors = |j: usize| {
+            let (u, b) = (middle.m[j] * 0.5 / delta, 0.5 * middle.c[j]);
+            [(b - u) * square, (b + u) * square, middle.g[j] + middle.coulomb[j]]
+        };
+        let affine = |[x, y, rest]: [f64; 3]| Affine::constant(rest).plus(before, x).plus(after, y);
+        let linear = |j: usize| affine(factors(j));
+        let (mut cross, mut viscous) = (Affine::default(), 0.0);
+        let mut losses = SMatrix::<f64, DOF, 3>::zeros();
+        for j in 0..DOF {
+            let friction = middle.viscous[j];
+            viscous += friction * (model.work * middle.q1[j] + model.loss[j] * friction)
+                + model.speed * middle.q1[j] * middle.q1[j];
+            if model.loss[j] > 0.0 {
+                let per_unit = 2.0 * delta * model.loss[j] / (scale.unit * scale.speed);
+                losses.row_mut(j).copy_from_slice(&factors(j).map(|x| x * per_unit.sqrt()));
+                let factor = 2.0 * delta * model.loss[j] * friction / scale.unit;
+                cross = cross.sum(&linear(j).times(factor));
+            }
+        }
+        // All joints together depend on two variables: the same square in three terms.
+        let copper = if losses.iter().any(|x| *x != 0.0) {
+            losses.qr().r().row_iter().map(|row| affine([row[0], row[1], row[2]])).collect()
+        } else {
+            Vec::new()
+        };
+        let lost = (1.0 - model.regeneration) * delta / scale.unit;
+        let joint_work = |j: usize| {
+            let factor = middle.viscous[j] * middle.q1[j] * scale.speed;
+            (linear(j).times(lost * middle.q1[j]), lost * factor)
+        };
+        let mut brakes: Vec<(Affine, f64)> = Vec::new();
+        if lost > 0.0 {
+            let moving = (0..DOF).filter(|j| middle.q1[*j] != 0.0).map(joint_work);
+            match model.sharing {
+                Sharing::PerJoint => brakes.extend(moving),
+                Sharing::Bus => brakes.extend(moving.reduce(|x, y| (x.0.sum(&y.0), x.1 + y.1))),
+            }
+        }
+        let seconds = 2.0 * delta / scale.speed;
+        IntervalCost {
+            copper,
+            cross,
+            viscous: viscous * delta * scale.speed / scale.unit,
+            brakes,
+            time: seconds / scale.duration,
+            base: model.base_w * seconds / scale.unit,
+        }
+    }
+}
+
+/// Shares of √b at the nodes of interval k in the mean of √b over it.
+fn mean_root(k: usize, n: usize) -> [(usize, f64); 2] {
+    let share = if k == 0 || k + 1 == n { MEAN_ROOT_FROM_REST } else { 0.5 };
+    [(k, share), (k + 1, share)]
+}
+
+/// Where the variables are: b and c of the inner nodes, then the variables of each interval.
+struct Layout {
+    intervals: usize,
+    /// Index of the first variable of each interval, and the number of variables at the end.
+    first: Vec<usize>,
+    copper: Vec<bool>,
+    root: Vec<bool>,
+}
+
+impl Layout {
+    fn new(programs: &Programs<'_>, root: Root<'_>) -> Layout {
+        let relaxed = matches!(root, Root::Relaxed);
+        let intervals = programs.costs.len();
+        let mut layout = Layout {
+            intervals,
+            first: vec![2 * (intervals - 1)],
+            copper: programs.costs.iter().map(|cost| !cost.copper.is_empty()).collect(),
+            root: programs.costs.iter().map(|cost| relaxed && cost.viscous > 0.0).collect(),
+        };
+        for (k, cost) in programs.costs.iter().enumerate() {
+            let own = usize::from(layout.copper[k]) + usize::from(layout.root[k]);
+            layout.first.push(layout.first[k] + 1 + own + cost.brakes.len());
+        }
+        layout
+    }
+
+    fn variables(&self) -> usize {
+        self.first[self.intervals]
+    }
+
+    /// b of an inner node.
+    fn b_of(node: usize) -> usize {
+        2 * (node - 1)
+    }
+
+    fn b(&self, node: usize) -> Option<usize> {
+        (node > 0 && node < self.intervals).then(|| Layout::b_of(node))
+    }
+
+    fn c(&self, node: usize) -> Option<usize> {
+        self.b(node).map(|b| b + 1)
+    }
+
+    fn d(&self, k: usize) -> usize {
+        self.first[k]
+    }
+
+    fn copper(&self, k: usize) -> Option<usize> {
+        self.copper[k].then(|| self.first[k] + 1)
+    }
+
+    fn root(&self, k: usize) -> Option<usize> {
+        self.root[k].then(|| self.first[k] + 1 + usize::from(self.copper[k]))
+    }
+
+    fn brake(&self, k: usize, index: usize) -> usize {
+        self.first[k] + 1 + usize::from(self.copper[k]) + usize::from(self.root[k]) + index
+    }
+}

@@ -1,0 +1,82 @@
+//! What a stream may do that its movements did not.
+
+use std::collections::BTreeSet;
+
+use super::allowed::Loads;
+use crate::arm::kinematics::Obstacle;
+use crate::arm::robot::Model;
+use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::ir::movement::Movement;
+use crate::rapid::text::Span;
+
+/// What bounds a stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// What the movements themselves reach.
+    Original,
+    /// The limits of the robot.
+    Robot,
+}
+
+/// What a stream may do that its movements did not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Freedom {
+    /// TCP speed along lines and arcs; [`Bound::Original`] includes their programmed speed.
+    pub tcp: Bound,
+    /// Joint speeds, and the TCP speed of joint movements.
+    pub joints: Bound,
+    /// Joint accelerations, jerks and torques; `None` where the limits of the robot are known.
+    pub loads: Option<Loads>,
+    /// How far free movements may leave their path, m; 0 where none is free.
+    pub deviation: f64,
+    /// Statements of lines, arcs and waits that the user made free; joint movements are.
+    pub freed: BTreeSet<Span>,
+    /// What arm and tool keep out of where they leave their path.
+    pub keep_out: Vec<Obstacle>,
+}
+
+impl Freedom {
+    /// None.
+    pub fn none() -> Freedom {
+        Freedom {
+            tcp: Bound::Original,
+            joints: Bound::Original,
+            loads: None,
+            deviation: 0.0,
+            freed: BTreeSet::new(),
+            keep_out: Vec::new(),
+        }
+    }
+
+    /// All that the robot can do on the path.
+    pub fn of_the_robot() -> Freedom {
+        let robot = Bound::Robot;
+        Freedom { tcp: robot, joints: robot, ..Freedom::none() }
+    }
+
+    /// What the joints of a robot may bear.
+    pub fn loads(&self, model: &Model) -> Loads {
+        self.loads.unwrap_or_else(|| Loads::limits(model))
+    }
+
+    /// What bounds the speed of a movement.
+    pub fn bound(&self, movement: &Movement) -> Bound {
+        match movement.form {
+            MoveForm::Linear | MoveForm::Circular => self.tcp,
+            _ => self.joints,
+        }
+    }
+
+    /// The same without leaving any path.
+    #[must_use]
+    pub fn strict(&self) -> Freedom {
+        Freedom { deviation: 0.0, ..self.clone() }
+    }
+
+    /// How far a movement may leave its path, m, more than the least that is always allowed.
+    pub fn of(&self, movement: &Movement) -> f64 {
+        let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
+        let free = joint || self.freed.contains(&movement.span);
+        if free { self.deviation } else { 0.0 }
+    }
+}

@@ -1,0 +1,134 @@
+//! What the optimiser of a stream asks of the robot, and what a realised stream costs there.
+
+use super::path_energy::{EnergyModel, EnergyParts};
+use crate::retime::motion::stream::{DOF, Joints, Piece, Stream};
+
+/// Shares of the limits of a path.
+pub type PathShares = [f64; 4];
+
+/// The robot that runs a stream.
+pub trait Plant {
+    /// Torques without dry friction, Nm, at positions (rad), velocities and accelerations.
+    fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints;
+
+    /// The change of [`torque`](Plant::torque) per change of q (Nm/rad), q̇ and q̈ of each joint:
+    /// `[kind][joint that changes][torque]`. By differences, where nothing better is known.
+    fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
+        let here = self.torque(q, qd, qdd);
+        std::array::from_fn(|kind| {
+            std::array::from_fn(|joint| {
+                let mut state = [*q, *qd, *qdd];
+                state[kind][joint] += DIFFERENCES[kind];
+                let [q, qd, qdd] = state;
+                let next = self.torque(&q, &qd, &qdd);
+                std::array::from_fn(|j| (next[j] - here[j]) / DIFFERENCES[kind])
+            })
+        })
+    }
+
+    /// Dry friction of each joint, Nm, which acts against its motion.
+    fn dry_friction(&self) -> Joints;
+
+    /// Largest |τ| of each joint, Nm.
+    fn torque_limit(&self) -> Joints;
+
+    /// What else has a limit, over that limit: the speed of the tool, that of the joints there, the
+    /// distance of the tool from the path, and how near arm and tool come to what the cell keeps
+    /// free. `place` says where on its path the robot was a moment ago, and then where it is: a path
+    /// may cross itself.
+    fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> PathShares {
+        PathShares::default()
+    }
+
+    /// What a place on the polygon of the points has of its limits: its distance from the path and how
+    /// near arm and tool come there to what the cell keeps free. `place` as above.
+    fn polygon_share(&self, _q: &Joints, _place: &mut usize) -> f64 {
+        0.0
+    }
+
+    /// Number of steps on a piece in which it is judged, even.
+    fn steps(&self, _piece: &Piece) -> usize {
+        LEAST_STEPS
+    }
+
+    /// Torques with dry friction, Nm; none at rest.
+    fn full_torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
+        let (smooth, dry) = (self.torque(q, qd, qdd), self.dry_friction());
+        std::array::from_fn(|j| smooth[j] + dry[j] * direction(qd[j]))
+    }
+}
+
+/// A speed that is the rounding of none, rad/s: where a motion ends it has no direction, and no
+/// dry friction helps to brake.
+pub(super) const STILL: f64 = 1e-9;
+
+/// The sign of a velocity, 0 at rest.
+pub(super) fn direction(velocity: f64) -> f64 {
+    if velocity.abs() < STILL { 0.0 } else { velocity.signum() }
+}
+
+/// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
+pub(super) const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
+/// Room that is kept to the limits.
+pub(super) const ROOM: f64 = 1e-3;
+/// Steps on a piece in which it is judged, at least; even, for Simpson's rule.
+pub(super) const LEAST_STEPS: usize = 8;
+
+/// What the motion that a stream is realised as costs, and how near it comes to the limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Realised {
+    /// Energies. Friction is the dry part; the viscous part is with the mechanical one, from
+    /// which a plant does not tell it.
+    pub energy: EnergyParts,
+    /// The largest share of a torque limit or of a limit of the path.
+    pub worst_share: f64,
+    /// Sum over the samples of what shares exceed the limit less a little room by.
+    pub excess: f64,
+}
+
+/// Plays a stream on a plant, by Simpson's rule on each piece.
+pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Realised {
+    let (dry, limit) = (plant.dry_friction(), plant.torque_limit());
+    let mut out = Realised::default();
+    let sum = &mut out.energy;
+    let mut place = 0;
+    for piece in stream.pieces() {
+        let steps = plant.steps(&piece);
+        let step = piece.length / steps as f64;
+        for i in 0..=steps {
+            let (q, qd, qdd) = piece.at(i as f64 * step);
+            let ends = i == 0 || i == steps;
+            let weight = if ends { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+            let seconds = weight / 3.0 * step;
+            let smooth = plant.torque(&q, &qd, &qdd);
+            let torque: Joints = std::array::from_fn(|j| smooth[j] + dry[j] * direction(qd[j]));
+            let power: Joints = std::array::from_fn(|j| torque[j] * qd[j]);
+            sum.time += seconds;
+            sum.base += seconds * model.base_w;
+            sum.drive += seconds * model.braked(&power);
+            let path = plant.path_shares(&q, &qd, &mut place);
+            let loads = (0..DOF).map(|j| torque[j].abs() / limit[j]);
+            for share in path.into_iter().chain(loads) {
+                out.worst_share = out.worst_share.max(share);
+                out.excess += (share - (1.0 - ROOM)).max(0.0);
+            }
+            for j in 0..DOF {
+                sum.mechanical += seconds * model.work * smooth[j] * qd[j];
+                sum.friction += seconds * model.work * dry[j] * qd[j].abs();
+                sum.speed += seconds * model.speed * qd[j] * qd[j];
+                sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
+            }
+        }
+    }
+    let mut place = 0;
+    for edge in stream.polygon() {
+        for share in EDGE_PLACES.map(|tau| plant.polygon_share(&edge.at(tau).0, &mut place)) {
+            out.worst_share = out.worst_share.max(share);
+            out.excess += (share - (1.0 - ROOM)).max(0.0);
+        }
+    }
+    out
+}
+
+/// Places on the way from one point to the next at which it is judged, shares of it.
+pub(super) const EDGE_PLACES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];

@@ -1,0 +1,196 @@
+//! A wait of known length spent at a pose nearby that is cheaper to hold: there, standing, back.
+//!
+//! Holding power as in Paes et al. 2014, table 3; the way there and back has to cost less than it
+//! saves.
+
+use super::allowed::Loads;
+use super::check::{Check, Room, check};
+use super::standstill::standing;
+use super::stream_rounding::{rounded_intervals, rounded_points};
+use crate::arm::dynamics::Load;
+use crate::arm::kinematics::{Body, Tcp};
+use crate::arm::robot::Model;
+use crate::retime::energy::power::motion_energy;
+use crate::retime::energy::{EnergyParts, account};
+use crate::retime::motion::stream::{Joints, Stream};
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::path::joint_path::DOF;
+
+/// A robot that stands and waits.
+#[derive(Clone, Copy)]
+pub struct Standstill<'a> {
+    /// The robot.
+    pub model: &'a Model,
+    /// Tool and payload.
+    pub load: &'a Load,
+    /// The tool.
+    pub tool: &'a Tcp,
+    /// Where, rad.
+    pub q: Joints,
+    /// How long, s.
+    pub duration: f64,
+    /// What the joints may bear.
+    pub loads: &'a Loads,
+    /// Arm and tool among what the cell keeps free.
+    pub body: Option<&'a Body<'a>>,
+}
+
+/// The wait with a pose nearby.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// The way there, as emitted.
+    pub out: Stream,
+    /// How long the robot stands there, s.
+    pub wait_s: f64,
+    /// The way back, as emitted.
+    pub back: Stream,
+    /// What both ways do to the limits.
+    pub check: Check,
+    /// Energy of the whole wait.
+    pub energy: EnergyParts,
+    /// What it takes without moving, J.
+    pub energy_before_j: f64,
+}
+
+/// Shares of the way to the best pose that are tried.
+const SHARES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+/// Points of a way, fewest and most.
+const POINTS: (usize, usize) = (4, 16);
+/// Step between the times of a way that are tried.
+const SLOWER: f64 = 1.25;
+/// Share of the wait that the ways may take.
+const MOVING: f64 = 0.8;
+/// A rest has to save this share of what the holding takes, at least.
+const WORTHWHILE: f64 = 0.05;
+/// Least way that is worth a stream, rad.
+const LEAST_WAY: f64 = 0.02;
+
+/// The rest of least energy at a pose no joint of which is farther than `distance` (rad) away, in
+/// streams with `spacing` (s) between their points at least. `None` where standing still is as
+/// good.
+pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<Rest> {
+    let Standstill { model, load, q, duration, .. } = standstill;
+    let standing = standing(model, None, load, q, distance);
+    let worth = (1.0 - WORTHWHILE) * standing.holding_w() * duration;
+    let farthest = (0..DOF).map(|j| (standing.best[j] - q[j]).abs()).fold(0.0, f64::max);
+    if farthest < LEAST_WAY || standing.best_w * duration >= worth {
+        return None;
+    }
+    let base = account::base(model, *duration).energy_j();
+    let taken = |rest: &Rest| rest.energy.energy_j() - base;
+    let best = SHARES.iter().filter_map(|share| {
+        let low = std::array::from_fn(|j| q[j] + share * (standing.best[j] - q[j]));
+        let mut best: Option<Rest> = None;
+        let mut time = POINTS.0 as f64 * spacing;
+        while 2.0 * time <= MOVING * duration {
+            match trip(standstill, &low, time, spacing) {
+                // Slower ways leave less time at the pose: beyond the best one it only gets worse.
+                Ok(found) if best.as_ref().is_some_and(|best| taken(best) <= taken(&found)) => {
+                    break;
+                }
+                Ok(found) => best = Some(found),
+                Err(Obstructed::Anyway) => break,
+                Err(Obstructed::Quick) => {}
+            }
+            time *= SLOWER;
+        }
+        best
+    });
+    best.min_by(|a, b| taken(a).total_cmp(&taken(b))).filter(|rest| taken(rest) < worth)
+}
+
+/// Why there is no way.
+enum Obstructed {
+    /// It is too quick.
+    Quick,
+    /// However slow it is.
+    Anyway,
+}
+
+/// There and back in `time` (s) each, if that keeps the limits.
+fn trip(
+    standstill: &Standstill<'_>,
+    low: &Joints,
+    time: f64,
+    spacing: f64,
+) -> Result<Rest, Obstructed> {
+    let Standstill { model, load, tool, q, duration, loads, body } = standstill;
+    let out = way(q, low, time, spacing).ok_or(Obstructed::Anyway)?;
+    let back = way(out.end(), q, time, spacing).ok_or(Obstructed::Anyway)?;
+    let checked = |stream: &Stream, end: &Joints| {
+        check(model, load, tool, stream, Room::Free(loads), end, *body)
+    };
+    let check = checked(&out, low).max(&checked(&back, q));
+    if check.intrusion_m > 0.0 || !check.in_range {
+        return Err(Obstructed::Anyway);
+    }
+    if !check.holds() {
+        return Err(Obstructed::Quick);
+    }
+    let moving = |stream: &Stream| {
+        let time = stream.duration();
+        let motion = TimedMotion::Stream(stream.clone());
+        motion_energy(model, load, &motion, 0.0, time) + account::base(model, time)
+    };
+    let wait_s = duration - out.duration() - back.duration();
+    let energy = moving(&out) + account::at_rest(model, load, out.end(), wait_s) + moving(&back);
+    let energy_before_j = account::at_rest(model, load, q, *duration).energy_j();
+    Ok(Rest { out, wait_s, back, check, energy, energy_before_j })
+}
+
+/// A stream along the straight line between two poses that eases in and out.
+fn way(from: &Joints, to: &Joints, time: f64, spacing: f64) -> Option<Stream> {
+    let n = ((time / spacing).floor() as usize).clamp(POINTS.0, POINTS.1);
+    let eased = |x: f64| x * x * x * (10.0 - x * (15.0 - 6.0 * x));
+    let point = |i: usize| {
+        let share = eased(i as f64 / n as f64);
+        std::array::from_fn(|j| from[j] + share * (to[j] - from[j]))
+    };
+    let intervals = rounded_intervals(&vec![time / n as f64; n], time);
+    let stream = Stream::new(*from, (1..=n).map(point).collect(), intervals).ok()?;
+    rounded_points(&stream).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use nalgebra::Isometry3;
+
+    use super::*;
+    use crate::arm::robot;
+
+    /// Rounding of the times of a rest, s.
+    const TIME: f64 = 1e-9;
+
+    #[test]
+    fn a_long_wait_is_spent_where_holding_is_cheap_and_a_short_one_is_not() {
+        let model = robot::find("IRB1600-10/1.45").unwrap();
+        let q = [0.0, 1.0, -0.4, 0.0, 0.5, 0.0];
+        let (load, tool) = (Load::none(), Tcp::Held(Isometry3::identity()));
+        let loads = Loads::limits(&model);
+        let standstill = |duration| Standstill {
+            model: &model,
+            load: &load,
+            tool: &tool,
+            q,
+            duration,
+            loads: &loads,
+            body: None,
+        };
+        let long = rest(&standstill(60.0), 0.5, 0.05).unwrap();
+        assert!(long.energy.energy_j() < long.energy_before_j, "{:?}", long.energy);
+        let time = long.out.duration() + long.wait_s + long.back.duration();
+        assert!((time - 60.0).abs() < TIME, "{time}");
+        assert!(long.check.holds() && long.check.velocity > 0.0, "{:?}", long.check);
+        for j in 0..DOF {
+            assert!((long.out.end()[j] - q[j]).abs() <= 0.5 + 1e-6);
+            assert!((long.back.end()[j] - q[j]).abs() < 1e-6);
+        }
+        // The longer the wait, the more it pays; a moment is not worth the way.
+        let longer = rest(&standstill(120.0), 0.5, 0.05).unwrap();
+        let saved = |rest: &Rest| rest.energy_before_j - rest.energy.energy_j();
+        assert!(saved(&longer) > 1.5 * saved(&long), "{} {}", saved(&longer), saved(&long));
+        assert!(rest(&standstill(0.5), 0.5, 0.05).is_none());
+    }
+}

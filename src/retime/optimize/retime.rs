@@ -1,0 +1,477 @@
+//! A run of movements as a stream of least energy in a given time.
+//!
+//! The convex program on the path gives an intended motion; a stream is fitted
+//! to it and checked as the controller will realise it. What breaks a limit
+//! tightens the margins and is tried again.
+
+use super::allowed::{Ceiling, Loads, speeds};
+use super::attempt::{Attempt, Intended};
+use super::check::{Check, Room, check};
+use super::corridor::{Corridor, JOINT_TOLERANCE, LINE_TOLERANCE, levers};
+use super::cost::Cost;
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
+use super::freedom::Freedom;
+use super::keep_out;
+use super::margins::{FIRST_DISTANCE, Margins};
+use super::path_energy::EnergyModel;
+use super::path_grid;
+use super::reason::Reason;
+use super::stream_limits::StreamLimits;
+use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
+use crate::arm::dynamics::potential_energy;
+use crate::arm::kinematics::Body;
+use crate::arm::robot::Model;
+use crate::retime::energy::power::motion_energy;
+use crate::retime::energy::{EnergyParts, account};
+use crate::retime::motion::sampling::{Loaded, SpeedCap};
+use crate::retime::motion::stream::Stream;
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timeline::Run;
+use crate::retime::motion::timing::grid::PathGrid;
+use crate::retime::motion::timing::limits::PathLimits;
+use crate::retime::motion::timing::profile::Profile;
+use crate::retime::motion::timing::reachability::time_optimal;
+use crate::retime::path::joint_path::{DOF, JointPath, Joints};
+
+/// A run to be timed anew.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    /// The robot.
+    pub model: &'a Model,
+    /// The run as the controller executes it.
+    pub run: &'a Run,
+    /// Its energy.
+    pub energy_before: EnergyParts,
+    /// Least time between two points, s.
+    pub spacing_s: f64,
+    /// The same where the polygon of the points would be too far from the path otherwise, s.
+    pub closest_s: f64,
+    /// What the stream may do that the run did not.
+    pub freedom: &'a Freedom,
+    /// What is minimised.
+    pub cost: Cost,
+}
+
+/// The time of a run, settling included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Least energy in at most this time, s; only if it saves energy.
+    Within(f64),
+    /// Least energy in this time, s.
+    Exactly(f64),
+    /// Least time.
+    Fastest,
+}
+
+/// A stream that stands for a run.
+#[derive(Clone, Debug)]
+pub struct Retiming {
+    /// As emitted: its figures are rounded like the text.
+    pub stream: Stream,
+    /// What it does to the limits.
+    pub check: Check,
+    /// Energy of the run with it, settling included.
+    pub energy: EnergyParts,
+    /// Energy of the run as it was, J.
+    pub energy_before_j: f64,
+    /// Duration of the run with it, s.
+    pub duration_s: f64,
+    /// No timing of the path takes less in this time, J, all six parts.
+    pub lower_bound_j: f64,
+    /// Whether it keeps to the path.
+    pub path: PathUse,
+}
+
+/// What a stream makes of the path of its run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PathUse {
+    /// It keeps to it, within the tolerance.
+    Kept,
+    /// It keeps to it for this reason, although it was free.
+    KeptFor(Reason),
+    /// It leaves it, as far as it is free.
+    Left,
+}
+
+/// Intervals of the grid besides those of zones.
+const INTERVALS: usize = 44;
+/// Attempts with tighter margins.
+const ATTEMPTS: usize = 8;
+/// Time over which the points of a stream smooth its speed to either side, s.
+const SHAPING_TIME: f64 = 0.04;
+/// Rounding between two integrations of the same energy, relative.
+const BOUND_ROUNDING: f64 = 1e-5;
+/// Distance from the path that costs the polishing a share of the energy, in tolerances of it.
+const CORRIDOR: f64 = 0.3;
+/// Share of a limit beyond which an attempt is begun anew instead of polished on.
+const NEARLY: f64 = 2.0;
+/// Smallest saving that is worth a stream, share of the motion energy.
+const WORTHWHILE: f64 = 1e-3;
+/// Share of the energy that more polishing is not expected to take off a stream.
+const HOPELESS: f64 = 0.05;
+/// Where a motion is slow, the ramp time is a short step: at least this share of its time.
+const SLOW_STEP: f64 = 0.02;
+/// Steps of the search for the time of the fastest stream, share of the ramp time.
+const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
+
+/// The stream of a run.
+///
+/// # Errors
+/// The reason why the run stays as it is.
+pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
+    let mut moves = task.run.moves.iter();
+    if !moves.any(|record| task.freedom.of(&record.movement) > 0.0) {
+        return on_path(task, goal);
+    }
+    // What is free is never worse than what keeps to the path.
+    let strict = task.freedom.strict();
+    let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
+    let body = keep_out::body(task.model, task.run, task.freedom);
+    if body.is_some_and(|body| keep_out::enters(&body, task.run)) {
+        let path = PathUse::KeptFor(Reason::KeepOut);
+        return kept.map(|kept| Retiming { path, ..kept });
+    }
+    let free = on_path(task, goal).map(|free| Retiming { path: PathUse::Left, ..free });
+    match (kept, free) {
+        (Ok(kept), Ok(free)) => {
+            let bound = free_bound(task, free.duration_s - task.run.settling);
+            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+            let better = match goal {
+                Goal::Fastest => free.duration_s < kept.duration_s,
+                _ => free.energy.energy_j() < kept.energy.energy_j(),
+            };
+            Ok(if better { Retiming { lower_bound_j: bound + idle, ..free } } else { kept })
+        }
+        (Ok(only), Err(_)) => Ok(only),
+        (Err(_), Ok(free)) => {
+            let bound = free_bound(task, free.duration_s - task.run.settling);
+            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+            Ok(Retiming { lower_bound_j: bound + idle, ..free })
+        }
+        (Err(reason), Err(_)) => Err(reason),
+    }
+}
+
+/// No motion between the ends of a run in this time (s) takes less, J: what it gains in height,
+/// dry friction over the way, and viscous friction of the same speed all the time.
+fn free_bound(task: &Task<'_>, time: f64) -> f64 {
+    let Task { model, run, .. } = task;
+    let height = |q: &Joints| potential_energy(model, &run.load, q);
+    let friction: f64 = (0..DOF)
+        .map(|j| (run.end[j] - run.start[j]).abs())
+        .enumerate()
+        .map(|(j, way)| way * (model.friction.coulomb[j] + model.friction.viscous[j] * way / time))
+        .sum();
+    height(&run.end) - height(&run.start) + friction
+}
+
+fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
+    let work = Work::new(task)?;
+    match goal {
+        Goal::Within(time) => {
+            let before = task.energy_before.motion_energy_j();
+            let worth = before - WORTHWHILE * before.abs();
+            let retiming =
+                work.least_energy(time, worth).or_else(|reason| work.instead(reason, time))?;
+            let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
+            if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
+        }
+        Goal::Exactly(time) => {
+            work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
+                Reason::NoSaving => work.within(time),
+                reason => work.instead(reason, time),
+            })
+        }
+        Goal::Fastest => work.least_time(),
+    }
+}
+
+/// The least time of a run as a stream, s; `None` where there is no stream.
+pub fn fastest(task: &Task<'_>) -> Option<f64> {
+    Work::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
+}
+
+/// A run is made slower by this factor at most.
+pub const SLOWEST: f64 = 10.0;
+
+pub(super) struct Work<'a> {
+    pub(super) task: &'a Task<'a>,
+    pub(super) path: &'a JointPath,
+    pub(super) corridor: Corridor,
+    pub(super) body: Option<Body<'a>>,
+    pub(super) limits: StreamLimits,
+    /// What the robot takes.
+    pub(super) electrical: EnergyModel,
+    /// What is minimised.
+    pub(super) model: EnergyModel,
+    pub(super) lever: Joints,
+}
+
+impl<'a> Work<'a> {
+    pub(super) fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
+        let [(_, TimedMotion::Path(path, _))] = task.run.motions.as_slice() else {
+            return Err(Reason::SharpCorner);
+        };
+        let corridor =
+            Corridor::new(task.model, task.run, task.freedom).ok_or(Reason::SharpCorner)?;
+        let robot = task.model;
+        let (electrical, model) = (Cost::Electrical.model(robot), task.cost.model(robot));
+        let Loads { acceleration, jerk, .. } = corridor.allowed.loads;
+        let limits = StreamLimits { velocity: speeds(robot), acceleration, jerk };
+        let lever = levers(robot, task.run);
+        let body = keep_out::body(robot, task.run, task.freedom);
+        Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
+    }
+
+    /// Least energy in a time, settling included, if it is below `worth` (J, motion).
+    fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
+        let budget = round_down(time - self.task.run.settling);
+        let bound = self.bound(budget);
+        let mut margins = Margins::first(self.tolerance());
+        let mut problem = None;
+        let mut begun: Option<Intended> = None;
+        let mut worst = NEARLY;
+        let mut is_tight = false;
+        for _ in 0..ATTEMPTS {
+            let intended = begun.take().map_or_else(
+                || {
+                    let program = self.least_energy_program(budget, &margins, bound.as_ref());
+                    is_tight |= matches!(program, Err(Reason::NoSaving));
+                    program.or_else(|reason| self.as_before(reason, budget, &margins))
+                },
+                Ok,
+            );
+            let outcome = intended.and_then(|intended| self.realise(intended, &margins));
+            match outcome {
+                Ok(attempt) if attempt.check.holds() => {
+                    let bound = bound.map(|bound| bound.lower_bound);
+                    let retiming = self.retiming(attempt.stream, attempt.check, bound);
+                    let saves = retiming.energy.motion_energy_j() < worth;
+                    return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
+                }
+                Ok(attempt) => {
+                    // Tighter margins do not make it cheaper, more polishing a little.
+                    let energy = self.moving(&attempt.stream).motion_energy_j();
+                    if energy - HOPELESS * energy.abs() >= worth {
+                        return Err(Reason::NoSaving);
+                    }
+                    problem = Some(attempt.check.fault());
+                    let share = margins.worst(&attempt.check);
+                    if share < worst {
+                        // The polygon is asked for from now on.
+                        let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
+                        worst = if is_new { f64::INFINITY } else { share };
+                        margins.tighten_a_little(&attempt.check);
+                        begun = Some(attempt.intended);
+                    } else {
+                        worst = NEARLY;
+                        margins.tighten(&attempt.check);
+                    }
+                }
+                Err(Reason::NoStream(why)) => {
+                    margins.lighten();
+                    problem = Some(why);
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Err(if is_tight { Reason::NoSaving } else { Reason::NoStream(problem.unwrap_or_default()) })
+    }
+
+    /// The convex program's answer and a stream fitted to it.
+    fn least_energy_program(
+        &self,
+        budget: f64,
+        margins: &Margins,
+        bound: Option<&EnergyBound>,
+    ) -> Result<Intended, Reason> {
+        let (mut grid, limits) = self.grid(margins)?;
+        let mut fast = fastest_profile(&grid, &limits)?;
+        if fast.duration() > budget {
+            // Too short a time for a shaped motion: polishing shapes it.
+            (grid, _) = self.bare_grid(margins)?;
+            fast = fastest_profile(&grid, &limits)?;
+        }
+        // The relaxation of another cost says nothing of this one.
+        let bound = bound.filter(|_| self.model == self.electrical);
+        let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
+            .into_optimum()
+            .ok_or(Reason::NoSaving)?;
+        self.intend(&optimum.profile, budget, margins)
+    }
+
+    /// A bound on the motion energy of the path in this time at the full limits.
+    fn bound(&self, budget: f64) -> Option<EnergyBound> {
+        let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
+        let fast = fastest_profile(&grid, &limits).ok()?;
+        energy_bound(&grid, &limits, &self.electrical, &fast, budget)
+    }
+
+    /// Least time: the fastest profile, given as much longer as the jerk limit needs.
+    fn least_time(&self) -> Result<Retiming, Reason> {
+        let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
+        let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
+        let mut problem = Reason::NoSaving;
+        for _ in 0..ATTEMPTS {
+            let (grid, limits) = self.grid(&margins)?;
+            let fast = fastest_profile(&grid, &limits)?;
+            let mut best: Option<Attempt> = None;
+            let step = ramp.max(SLOW_STEP * fast.duration());
+            for share in RAMP_SHARES {
+                let budget = round_up(fast.duration() + share * step);
+                let intended = self.intend(&fast, budget, &margins);
+                match intended.and_then(|intended| self.realise(intended, &margins)) {
+                    Ok(attempt) if attempt.check.holds() => {
+                        return Ok(self.retiming(attempt.stream, attempt.check, None));
+                    }
+                    Ok(attempt) => {
+                        problem = Reason::NoStream(attempt.check.fault());
+                        best = Some(attempt);
+                    }
+                    Err(reason) => problem = reason,
+                }
+            }
+            match best {
+                Some(attempt) => margins.tighten(&attempt.check),
+                None => margins.lighten(),
+            }
+        }
+        Err(problem)
+    }
+
+    /// The fastest stream made as slow, where the time is too short for more.
+    fn within(&self, time: f64) -> Result<Retiming, Reason> {
+        let retiming = self.least_time()?;
+        if retiming.duration_s > time + quantum() {
+            return Err(Reason::TooShort(retiming.duration_s));
+        }
+        let slowed = self.slowed(&retiming.stream, round_down(time - self.task.run.settling));
+        let better = slowed.filter(|slow| slow.energy.energy_j() < retiming.energy.energy_j());
+        Ok(better.unwrap_or(retiming))
+    }
+
+    /// The same where no attempt at a stream of its own held; else the reason for that.
+    fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
+        match reason {
+            Reason::NoStream(_) => self.within(time).or(Err(reason)),
+            other => Err(other),
+        }
+    }
+
+    /// A stream with all its intervals longer, if it still holds: friction and weight don't fall
+    /// with the speed.
+    fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
+        let longer = duration / stream.duration();
+        let intervals: Vec<f64> = stream.intervals().iter().map(|x| x * longer).collect();
+        let intervals = rounded_intervals(&intervals, duration);
+        let slow = Stream::new(*stream.start(), stream.points().to_vec(), intervals).ok()?;
+        let check = self.check(&slow);
+        let bound = self.bound(duration).map(|bound| bound.lower_bound);
+        check.holds().then(|| self.retiming(slow, check, bound))
+    }
+
+    /// What a stream does as the controller will realise it.
+    pub(super) fn check(&self, stream: &Stream) -> Check {
+        let Task { model, run, .. } = self.task;
+        let tool = &run.legs[0].tool;
+        let room = Room::Corridor(&self.corridor);
+        check(model, &run.load, tool, stream, room, &run.end, self.body.as_ref())
+    }
+
+    /// How far the motion may leave the path somewhere, m, before the polishing minds.
+    pub(super) fn looseness(&self) -> f64 {
+        let moves = self.task.run.moves.iter();
+        let free = moves.map(|record| self.task.freedom.of(&record.movement)).fold(0.0, f64::max);
+        if free > 0.0 { free } else { CORRIDOR * self.tolerance() }
+    }
+
+    /// The smallest tolerance on the path, m.
+    pub(super) fn tolerance(&self) -> f64 {
+        let line = self
+            .task
+            .run
+            .legs
+            .iter()
+            .any(|leg| !matches!(leg.kind, crate::retime::path::LegKind::Joint));
+        if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
+    }
+
+    /// The problem on the path, shaped so that a stream can follow its solution.
+    pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+        self.grid_of(margins, INTERVALS)
+    }
+
+    /// The same with so many intervals besides those of zones.
+    pub(super) fn grid_of(
+        &self,
+        margins: &Margins,
+        intervals: usize,
+    ) -> Result<(PathGrid, PathLimits), Reason> {
+        let (grid, limits) = self.bare_grid_of(margins, intervals)?;
+        Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
+    }
+
+    pub(super) fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
+        self.bare_grid_of(margins, INTERVALS)
+    }
+
+    fn bare_grid_of(
+        &self,
+        margins: &Margins,
+        intervals: usize,
+    ) -> Result<(PathGrid, PathLimits), Reason> {
+        let allowed = &self.corridor.allowed;
+        let cap = |ceiling: &Ceiling| SpeedCap {
+            peak: [ceiling.tcp, ceiling.corner].map(|speed| margins.speed * speed),
+            joints: ceiling.joints.map(|speed| margins.speed * speed),
+            ..SpeedCap::NONE
+        };
+        let caps: Vec<SpeedCap> = allowed.moves.iter().map(cap).collect();
+        let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
+        let nodes = path_grid::nodes(self.task.model, self.path, &caps, intervals);
+        let no_grid = |why: String| Reason::NoStream(why);
+        let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
+            .map_err(|error| no_grid(error.to_string()))?;
+        let acceleration = allowed.loads.acceleration.map(|x| x * margins.load);
+        let torque = allowed.loads.torque.map(|x| x * margins.torque());
+        let limits =
+            PathLimits::new(acceleration, torque).map_err(|error| no_grid(error.to_string()))?;
+        Ok((grid, limits))
+    }
+
+    /// Energy of a stream's motion, settling not included.
+    fn moving(&self, stream: &Stream) -> EnergyParts {
+        let motion = TimedMotion::Stream(stream.clone());
+        motion_energy(self.task.model, &self.task.run.load, &motion, 0.0, stream.duration())
+    }
+
+    fn retiming(&self, stream: Stream, check: Check, bound: Option<f64>) -> Retiming {
+        let task = self.task;
+        let duration = stream.duration();
+        let moving = self.moving(&stream);
+        let energy = moving
+            + account::base(task.model, duration)
+            + account::at_rest(task.model, &task.run.load, &task.run.end, task.run.settling);
+        let idle = energy.energy_j() - energy.motion_energy_j();
+        // The realised motion may cut a corner within the tolerance and so pass below the bound of
+        // the path itself: then the bound says no more than that.
+        let achieved = moving.motion_energy_j();
+        let bound =
+            bound.unwrap_or(f64::NEG_INFINITY).min(achieved - BOUND_ROUNDING * achieved.abs());
+        Retiming {
+            stream,
+            check,
+            energy,
+            energy_before_j: task.energy_before.energy_j(),
+            duration_s: duration + task.run.settling,
+            lower_bound_j: bound + idle,
+            path: PathUse::Kept,
+        }
+    }
+}
+
+pub(super) fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
+    time_optimal(grid, limits)
+        .into_profile()
+        .ok_or_else(|| Reason::NoStream("the torque limits leave no timing on the path".into()))
+}

@@ -1,0 +1,406 @@
+//! Sites: the places of a program where a stream can stand for movements.
+//!
+//! A site is a sequence of neighbouring statements of one statement list that
+//! ran, at least once, from one stop point to the next. Each different way in
+//! which it ran (another start, other values of loop variables or parameters)
+//! is a variant.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::reason::Reason;
+use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Stmt, StmtKind};
+use crate::rapid::ir::instructions::{MoveForm, is_movement};
+use crate::rapid::ir::movement::{Argument, Movement, Settings};
+use crate::rapid::ir::program::Program;
+use crate::rapid::ir::value::Dependence;
+use crate::rapid::text::Span;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timeline::{Run, What};
+use crate::retime::path::joint_path::{DOF, JointPath, Joints, PieceKind};
+
+/// A place with the ways in which it ran.
+#[derive(Debug)]
+pub struct Site {
+    /// From the first statement to the last.
+    pub span: Span,
+    /// The distinct ways.
+    pub variants: Vec<Variant>,
+    /// Why the whole site stays, if it does.
+    pub reason: Option<Reason>,
+    /// Its movements.
+    statements: BTreeSet<Span>,
+}
+
+/// One way in which a site ran.
+#[derive(Debug)]
+pub struct Variant {
+    /// Indices of the simulation's events in which it ran so.
+    pub events: Vec<usize>,
+    /// The arguments of its movements, each place of the text once.
+    pub arguments: Vec<Argument>,
+    /// Why it stays, if it does.
+    pub reason: Option<Reason>,
+}
+
+/// Ways of one site beyond which none is rewritten.
+const MAX_VARIANTS: usize = 64;
+/// Joints closer than this are the same start, rad.
+const SAME_START: f64 = 1e-6;
+
+/// The sites of a simulated program, in the order of the source.
+pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
+    let places = Places::new(program);
+    let mut sites: BTreeMap<(Span, Span), Site> = BTreeMap::new();
+    let mut first = true;
+    let joined = joined_by_repetition(simulation);
+    for (index, event) in simulation.events.iter().enumerate() {
+        let What::Run(run) = &event.what else { continue };
+        let (Some(head), Some(tail)) = (run.moves.first(), run.moves.last()) else { continue };
+        let (head, tail) = (head.movement.span, tail.movement.span);
+        let reason = eligibility(run, std::mem::take(&mut first))
+            .err()
+            .or_else(|| places.neighbours(run).err())
+            .or_else(|| sets_on_the_way(simulation, index).then_some(Reason::EarlyOutput))
+            .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
+            .or_else(|| places.flies_on(run).then_some(Reason::FliesOn));
+        let same_file = head.file == tail.file;
+        let span = if same_file { head.to(tail) } else { head };
+        let site = sites.entry((head, tail)).or_insert_with(|| Site {
+            span,
+            variants: Vec::new(),
+            reason: None,
+            statements: BTreeSet::new(),
+        });
+        site.statements.extend(run.moves.iter().map(|record| record.movement.span));
+        let arguments = arguments(run);
+        let known = site.variants.iter_mut().find(|variant| {
+            let other = variant.events.first().map(|i| &simulation.events[*i].what);
+            matches!(other, Some(What::Run(other)) if same(run, other))
+                && variant.arguments == arguments
+        });
+        match known {
+            Some(variant) => {
+                variant.events.push(index);
+                if variant.reason.is_none() {
+                    variant.reason = reason;
+                }
+            }
+            None => site.variants.push(Variant { events: vec![index], arguments, reason }),
+        }
+    }
+    let mut sites: Vec<Site> = sites.into_values().collect();
+    mark_overlaps(&mut sites);
+    for site in &mut sites {
+        let n = site.variants.len();
+        if n > MAX_VARIANTS && site.reason.is_none() {
+            site.reason = Some(Reason::TooManyVariants(n));
+        }
+    }
+    sites
+}
+
+/// Whether an output is set while the movements of a run are under way.
+fn sets_on_the_way(simulation: &Simulation, run: usize) -> bool {
+    let before = simulation.events[..run].iter().rev();
+    before
+        .map_while(|event| match &event.what {
+            What::Output(_, under_way) => Some(*under_way),
+            _ => None,
+        })
+        .any(|under_way| under_way > 0)
+}
+
+/// The runs that are one run where the program begins again: its last movement flies on into the
+/// first one of the loop that never ends.
+fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
+    let events = || simulation.events.iter().enumerate();
+    let runs = || events().filter(|(_, event)| matches!(event.what, What::Run(_)));
+    let last = events().rfind(|(_, event)| !matches!(event.what, What::Output(..)));
+    let Some((last, event)) = last else { return Vec::new() };
+    let flies_on = match &event.what {
+        What::Run(run) => run.moves.last().is_some_and(|record| !record.movement.zone.fine),
+        _ => false,
+    };
+    if !flies_on {
+        return Vec::new();
+    }
+    let from = simulation.repeats_from.unwrap_or(0);
+    let first = runs().map(|(index, _)| index).find(|index| *index >= from);
+    std::iter::once(last).chain(first).collect()
+}
+
+/// Sites that share a statement can't both be replaced.
+fn mark_overlaps(sites: &mut [Site]) {
+    let mut users: BTreeMap<Span, usize> = BTreeMap::new();
+    for statement in sites.iter().flat_map(|site| &site.statements) {
+        *users.entry(*statement).or_default() += 1;
+    }
+    for site in sites {
+        let shared = site.statements.iter().any(|statement| users[statement] > 1);
+        if shared && site.reason.is_none() {
+            site.reason = Some(Reason::Overlapping);
+        }
+    }
+}
+
+fn same(a: &Run, b: &Run) -> bool {
+    let close = |a: &Joints, b: &Joints| (0..DOF).all(|j| (a[j] - b[j]).abs() < SAME_START);
+    close(&a.start, &b.start)
+        && a.load == b.load
+        && a.legs.len() == b.legs.len()
+        && a.legs
+            .iter()
+            .zip(&b.legs)
+            .all(|(a, b)| close(&a.end, &b.end) && a.speed == b.speed && a.zone == b.zone)
+}
+
+fn arguments(run: &Run) -> Vec<Argument> {
+    let mut arguments: Vec<Argument> = Vec::new();
+    for argument in run.moves.iter().flat_map(|record| &record.movement.arguments) {
+        if !arguments.contains(argument) {
+            arguments.push(argument.clone());
+        }
+    }
+    arguments
+}
+
+/// Whether a run may be replaced at all.
+fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
+    if first {
+        return Err(Reason::FirstMovement);
+    }
+    for record in &run.moves {
+        movement_is_eligible(&record.movement)?;
+    }
+    if run.moves.iter().any(|record| !record.movement.tool.robhold) {
+        return Err(Reason::Setting("a stationary tool".into()));
+    }
+    if run.moves.windows(2).any(|pair| pair[0].movement.tool != pair[1].movement.tool) {
+        return Err(Reason::Setting("a change of tool".into()));
+    }
+    if !run.start_known {
+        return Err(Reason::UnknownStart("a movement before it could not be worked out".into()));
+    }
+    if let Some(problem) = &run.problem {
+        return Err(Reason::Path(problem.clone()));
+    }
+    match run.motions.as_slice() {
+        [] => Err(Reason::NoMotion),
+        [(_, TimedMotion::Path(path, _))] if passes_singularity(path) => {
+            Err(Reason::Path("a line passes close to a singularity".into()))
+        }
+        [(_, TimedMotion::Path(path, _))] if path.legs().any(|leg| path.extent(leg).flat_arc) => {
+            Err(Reason::Path("the three points of an arc lie on a line".into()))
+        }
+        [(_, TimedMotion::Path(..))] => Ok(()),
+        [(_, TimedMotion::Stream(_))] => Err(Reason::Timed),
+        _ => Err(Reason::SharpCorner),
+    }
+}
+
+/// Whether joints turn so fast along a line or arc, rad per m, that small errors of the model
+/// would count.
+fn passes_singularity(path: &JointPath) -> bool {
+    const NEAR_SINGULAR: f64 = 30.0;
+    path.pieces().iter().any(|piece| {
+        matches!(piece.kind, PieceKind::Cartesian | PieceKind::CartesianZone)
+            && piece.eval(piece.s).q1.iter().any(|rate| rate.abs() > NEAR_SINGULAR)
+    })
+}
+
+fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
+    if !movement.plain || movement.form == MoveForm::ExternalJoint {
+        return Err(Reason::Instruction(movement.instruction.to_string()));
+    }
+    if movement.time.is_some() {
+        return Err(Reason::Timed);
+    }
+    if movement.concurrent {
+        return Err(Reason::Argument("Conc".into()));
+    }
+    if movement.total_load.is_some() {
+        return Err(Reason::Argument("TLoad".into()));
+    }
+    if let Some(name) = movement.other_arguments.first() {
+        return Err(Reason::Argument(name.to_string()));
+    }
+    let settings = &movement.settings;
+    match &settings.sing_area {
+        Some(option) if matches!(movement.form, MoveForm::Linear | MoveForm::Circular) => {
+            Err(Reason::Setting(option.to_string()))
+        }
+        _ => settings_allow(settings),
+    }
+}
+
+/// Why the arguments of a movement may be others at the next run, if they may: what stands for it
+/// without a condition would be wrong then.
+pub fn not_constant(movement: &Movement) -> Option<Reason> {
+    let what = |dependence: &Dependence| match dependence {
+        Dependence::Local(_) | Dependence::TrustedPersistent(_) => None,
+        Dependence::Inner(name) => {
+            Some(format!("it is computed from {name}, which only its function can name"))
+        }
+        Dependence::Variable(name) => {
+            Some(format!("it is computed from the variable {name}, which the program changes"))
+        }
+        Dependence::Persistent(name) => {
+            Some(format!("it uses PERS {name}, whose stored value can differ from the source"))
+        }
+        Dependence::Exposed(name, call) => {
+            Some(format!("it uses {name}, which {call} may change: {call} is in no file given"))
+        }
+        Dependence::Input(name) => Some(format!("it is computed from the signal {name}")),
+        Dependence::RobotState => Some("it is computed from where the robot stands".to_owned()),
+    };
+    movement.origin.iter().find_map(what).map(Reason::NotConstant)
+}
+
+fn settings_allow(settings: &Settings) -> Result<(), Reason> {
+    let setting = |name: &str| Err(Reason::Setting(name.to_owned()));
+    if settings.speed_override != 1.0 {
+        return setting("VelSet");
+    }
+    if settings.acceleration != 1.0 || settings.ramp != 1.0 {
+        return setting("AccSet");
+    }
+    if settings.fine_point_ramp != 1.0 {
+        return setting("AccSet\\FinePointRamp");
+    }
+    if settings.refresh != 1.0 {
+        return setting("SpeedRefresh");
+    }
+    if settings.path_acceleration.iter().any(|limit| limit.is_finite()) {
+        return setting("PathAccLim");
+    }
+    if settings.world_acceleration.is_finite() {
+        return setting("WorldAccLim");
+    }
+    if settings.displacement.is_some() {
+        return setting("PDispSet");
+    }
+    match settings.other.first() {
+        Some(name) => setting(name),
+        None => Ok(()),
+    }
+}
+
+/// Where each statement stands: its list and its place in it.
+struct Places {
+    by_span: BTreeMap<Span, (usize, usize)>,
+    /// The statements that wait for a time, and so let the robot stop.
+    stops: BTreeSet<(usize, usize)>,
+    /// Statements of compact IFs.
+    compact: BTreeSet<Span>,
+}
+
+impl Places {
+    fn new(program: &Program) -> Places {
+        let mut places =
+            Places { by_span: BTreeMap::new(), stops: BTreeSet::new(), compact: BTreeSet::new() };
+        let mut lists = 0;
+        for module in &program.modules {
+            for routine in &module.routines {
+                for block in routine.blocks() {
+                    places.block(block, &mut lists);
+                }
+            }
+        }
+        places
+    }
+
+    fn block(&mut self, block: &Block, lists: &mut usize) {
+        let list = *lists;
+        *lists += 1;
+        for (index, stmt) in block.iter().enumerate() {
+            self.by_span.insert(stmt.span, (list, index));
+            if is_wait(stmt) {
+                self.stops.insert((list, index));
+            }
+            for inner in stmt.kind.blocks() {
+                // A compact IF ends with its statement, the long form with ENDIF after it.
+                if let Some(last) = inner.last()
+                    && last.span.end == stmt.span.end
+                {
+                    self.compact.insert(last.span);
+                }
+                self.block(inner, lists);
+            }
+        }
+    }
+
+    /// Whether a run ends in a zone and nothing behind it makes sure that the robot stops there: in
+    /// another branch, or where an input is on already, it flies on.
+    fn flies_on(&self, run: &Run) -> bool {
+        let Some(last) = run.moves.last().filter(|record| !record.movement.zone.fine) else {
+            return false;
+        };
+        let place = self.by_span.get(&last.movement.span);
+        place.is_none_or(|(list, index)| !self.stops.contains(&(*list, index + 1)))
+    }
+
+    /// Whether the statements of a run follow each other in one list.
+    fn neighbours(&self, run: &Run) -> Result<(), Reason> {
+        if run.moves.iter().any(|record| self.compact.contains(&record.movement.span)) {
+            return Err(Reason::CompactIf);
+        }
+        for pair in run.moves.windows(2) {
+            let place = |i: usize| self.by_span.get(&pair[i].movement.span);
+            match (place(0), place(1)) {
+                (Some((a, i)), Some((b, k))) if a == b && *k == i + 1 => {}
+                (Some((a, i)), Some((b, k))) if a == b && *k > *i => {
+                    return Err(Reason::LogicBetween);
+                }
+                _ => return Err(Reason::Scattered),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a statement waits for a time that is not 0.
+fn is_wait(stmt: &Stmt) -> bool {
+    let StmtKind::Call(call) = &stmt.kind else { return false };
+    let is_zero = |arg: &Arg| matches!(&arg.kind, ArgKind::Positional(Expr { kind: ExprKind::Num(x), .. }) if *x == 0.0);
+    matches!(&call.callee, Callee::Name(name) if name.key == "waittime")
+        && !call.args.iter().any(is_zero)
+}
+
+/// The movement statements of a program that did not run in a simulation.
+pub fn not_reached(program: &Program, simulation: &Simulation) -> Vec<Span> {
+    let mut ran: BTreeSet<Span> = BTreeSet::new();
+    for event in &simulation.events {
+        match &event.what {
+            What::Run(run) => ran.extend(run.moves.iter().map(|record| record.movement.span)),
+            What::Left(unresolved) => {
+                ran.insert(unresolved.span);
+            }
+            What::Wait(_) | What::Output(..) => {}
+        }
+    }
+    let mut spans = Vec::new();
+    for module in &program.modules {
+        for routine in &module.routines {
+            for block in routine.blocks() {
+                movements(block, &mut spans);
+            }
+        }
+    }
+    spans.retain(|span| !ran.contains(span));
+    spans
+}
+
+fn movements(block: &Block, spans: &mut Vec<Span>) {
+    for stmt in block {
+        if let StmtKind::Call(call) = &stmt.kind
+            && let Callee::Name(name) = &call.callee
+            && is_movement(&name.key)
+        {
+            spans.push(stmt.span);
+        }
+        for inner in stmt.kind.blocks() {
+            movements(inner, spans);
+        }
+    }
+}

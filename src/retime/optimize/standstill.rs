@@ -1,0 +1,270 @@
+//! Standing still: what a pose costs, and where nearby it costs least.
+//!
+//! Paes et al. 2014, table 3 and figure 7. Holding power is cheap to evaluate and has
+//! several minima: the search looks at poses over the whole box and at its corners, and
+//! descends from the cheapest of them (R. Hooke, T. A. Jeeves, "Direct search solution of
+//! numerical and statistical problems", J. ACM 8, 1961).
+
+use crate::arm::dynamics::Load;
+use crate::arm::effects::drawn;
+use crate::arm::kinematics::{limits_ok, radical_inverse};
+use crate::arm::robot::Model;
+use crate::retime::energy::brakes::break_even_s;
+use crate::retime::energy::plausible::{Contribution, Interval, Robots};
+use crate::retime::energy::power::holding_w;
+use crate::retime::path::joint_path::{DOF, Joints};
+
+/// Positions of each joint at which the search starts, as shares of the distance;
+/// staying comes first, so that it wins among equals.
+const SHARES: [f64; 3] = [0.0, -1.0, 1.0];
+/// Further poses, spread evenly over the box.
+const SPREAD: u32 = 1024;
+/// Bases of that spread, one for each joint.
+const BASES: [u32; DOF] = [2, 3, 5, 7, 11, 13];
+/// Poses from which the search descends.
+const STARTS: usize = 32;
+/// The search ends at steps below this share of the distance.
+const FINEST: f64 = 1e-4;
+/// A pose is better by at least this much \[W\].
+const BETTER: f64 = 1e-6;
+
+/// A robot at rest.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    /// Where, rad.
+    pub q: Joints,
+    /// Holding power by joint, W.
+    pub per_joint_w: Joints,
+    /// From which length of a dwell on closing the brakes pays, s; `None` where
+    /// nothing is spared or no brake is known.
+    pub break_even_s: Option<f64>,
+    /// The pose of least holding power nearby, rad.
+    pub best: Joints,
+    /// Its holding power, W.
+    pub best_w: f64,
+    /// What is known of it where the robot is uncertain.
+    pub plausible: Option<Range>,
+}
+
+/// Standing over plausible robots.
+#[derive(Clone, Debug)]
+pub struct Range {
+    /// Holding power \[W\].
+    pub holding_w: Interval,
+    /// Break-even time \[s\]; `None` where in some robot nothing is spared.
+    pub break_even_s: Option<Interval>,
+    /// What the variance of that time comes from, or else that of the holding power.
+    pub contributions: Vec<Contribution>,
+}
+
+/// Robots as plausible as a model, with the model of each.
+pub struct Plausible {
+    robots: Robots,
+    models: Vec<Model>,
+}
+
+impl Plausible {
+    /// Of a model; `None` where it is known, or its effects lead to what no robot has.
+    pub fn of(model: &Model) -> Option<Plausible> {
+        let robots = Robots::of(model)?;
+        let models: Result<Vec<Model>, _> =
+            robots.drawn_robots().iter().map(|robot| drawn(model, robot)).collect();
+        Some(Plausible { robots, models: models.ok()? })
+    }
+
+    fn range(&self, load: &Load, q: &Joints) -> Range {
+        let holding: Vec<f64> = self.models.iter().map(|robot| total(robot, load, q)).collect();
+        let times = self.models.iter().zip(&holding).map(|(robot, w)| break_even_s(robot, *w));
+        let times: Option<Vec<f64>> = times.collect();
+        Range {
+            holding_w: Interval::of(&holding),
+            contributions: self.robots.contributions(times.as_ref().unwrap_or(&holding)),
+            break_even_s: times.map(|times| Interval::of(&times)),
+        }
+    }
+}
+
+impl Standing {
+    /// Holding power, W.
+    pub fn holding_w(&self) -> f64 {
+        self.per_joint_w.iter().sum()
+    }
+}
+
+/// A loaded robot at rest at `q`, and the best pose inside the position limits that
+/// no joint is more than `distance` \[rad\] away from; over plausible robots where they are given.
+pub fn standing(
+    model: &Model,
+    plausible: Option<&Plausible>,
+    load: &Load,
+    q: &Joints,
+    distance: f64,
+) -> Standing {
+    let per_joint_w = holding_w(model, load, q);
+    let best = best_nearby(model, load, q, distance);
+    Standing {
+        q: *q,
+        per_joint_w,
+        break_even_s: break_even_s(model, per_joint_w.iter().sum()),
+        best,
+        best_w: total(model, load, &best),
+        plausible: plausible.map(|plausible| plausible.range(load, q)),
+    }
+}
+
+fn total(model: &Model, load: &Load, q: &Joints) -> f64 {
+    holding_w(model, load, q).iter().sum()
+}
+
+/// Where to look: no joint farther than `distance` \[rad\] from `from`, nor outside its range.
+struct Search<'a> {
+    model: &'a Model,
+    load: &'a Load,
+    from: &'a Joints,
+    distance: f64,
+}
+
+impl Search<'_> {
+    fn power(&self, at: &Joints) -> f64 {
+        total(self.model, self.load, at)
+    }
+
+    /// The pose with each joint, from the base on, moved into where it may be.
+    fn inside(&self, mut at: Joints) -> Joints {
+        for joint in 0..DOF {
+            let [low, high] = self.model.limits.position_at(&at, joint);
+            let [least, most] = [-1.0, 1.0].map(|sense| self.from[joint] + sense * self.distance);
+            at[joint] = at[joint].max(low.max(least)).min(high.min(most));
+        }
+        at
+    }
+
+    /// Poses over the whole box, the cheapest first, one of each power.
+    fn starts(&self) -> Vec<(Joints, f64)> {
+        let grid = (0..SHARES.len().pow(DOF as u32)).map(|combination| {
+            let mut rest = combination;
+            self.from.map(|angle| {
+                let share = SHARES[rest % SHARES.len()];
+                rest /= SHARES.len();
+                angle + share * self.distance
+            })
+        });
+        let spread = (1..=SPREAD).map(|n| {
+            std::array::from_fn(|joint| {
+                let share = 2.0 * radical_inverse(n, BASES[joint]) - 1.0;
+                self.from[joint] + share * self.distance
+            })
+        });
+        let mut starts: Vec<(Joints, f64)> = grid
+            .chain(spread)
+            .map(|at| self.inside(at))
+            .filter(|at| limits_ok(self.model, at).is_ok())
+            .map(|at| (at, self.power(&at)))
+            .collect();
+        starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+        // The same power is the same pose but for axes that carry nothing.
+        starts.dedup_by(|later, kept| later.1 - kept.1 < BETTER);
+        starts.truncate(STARTS);
+        starts
+    }
+
+    /// Every joint a step to either side, where that helps.
+    fn explored(&self, from: (Joints, f64), step: f64) -> (Joints, f64) {
+        let mut best = from;
+        for joint in 0..DOF {
+            for sense in [-step, step] {
+                let mut at = best.0;
+                at[joint] += sense;
+                self.consider(at, &mut best);
+            }
+        }
+        best
+    }
+
+    fn consider(&self, at: Joints, best: &mut (Joints, f64)) {
+        let at = self.inside(at);
+        let power = self.power(&at);
+        if power < best.1 - BETTER && limits_ok(self.model, &at).is_ok() {
+            *best = (at, power);
+        }
+    }
+
+    /// The minimum that a start leads to.
+    fn descended(&self, start: (Joints, f64)) -> (Joints, f64) {
+        let mut best = start;
+        let mut step = 0.25 * self.distance;
+        while step > FINEST * self.distance {
+            let found = self.explored(best, step);
+            if found.1 >= best.1 {
+                step *= 0.5;
+                continue;
+            }
+            // On along the way that helped, as long as it does.
+            let (mut before, mut here) = (best, found);
+            while here.1 < before.1 {
+                let ahead = std::array::from_fn(|j| 2.0 * here.0[j] - before.0[j]);
+                let mut next = here;
+                self.consider(ahead, &mut next);
+                (before, here) = (here, next);
+            }
+            best = here;
+        }
+        best
+    }
+}
+
+fn best_nearby(model: &Model, load: &Load, q: &Joints, distance: f64) -> Joints {
+    let search = Search { model, load, from: q, distance };
+    let mut best = (*q, search.power(q));
+    if distance <= 0.0 {
+        return best.0;
+    }
+    for start in search.starts() {
+        let found = search.descended(start);
+        if found.1 < best.1 - BETTER {
+            best = found;
+        }
+    }
+    // Joints that need not have moved go back.
+    for joint in 0..DOF {
+        let mut at = best.0;
+        at[joint] = q[joint];
+        if search.power(&at) <= best.1 + BETTER && limits_ok(model, &at).is_ok() {
+            best.0 = at;
+        }
+    }
+    best.0
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::*;
+    use crate::arm::robot::find;
+
+    /// What many more descents may find \[W\].
+    const MISSED_W: f64 = 0.01;
+
+    #[test]
+    fn descents_from_many_other_poses_find_nothing_better() {
+        let model = find("IRB1600-10/1.45").unwrap();
+        let load = Load { mass: 8.0, com: [0.05, 0.03, 0.2].into(), ..Load::none() };
+        let spread = |n: u32, low: &Joints, high: &Joints| -> Joints {
+            std::array::from_fn(|j| low[j] + radical_inverse(n, BASES[j]) * (high[j] - low[j]))
+        };
+        let range = |end: usize| std::array::from_fn(|j| model.limits.position[j][end]);
+        for n in 1..=12 {
+            let q = spread(n, &range(0), &range(1));
+            let distance = 60.0_f64.to_radians();
+            let best = standing(&model, None, &load, &q, distance).best_w;
+            let search = Search { model: &model, load: &load, from: &q, distance };
+            let [low, high] = [-distance, distance].map(|by| q.map(|angle| angle + by));
+            for other in SPREAD + 1..=SPREAD + 200 {
+                let at = search.inside(spread(other, &low, &high));
+                let found = search.descended((at, search.power(&at))).1;
+                assert!(best < found + MISSED_W, "pose {n}: {best} {found}");
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Where a line or arc arrives whose target states no configuration.
+
+use super::build::{MAX_PIECE, measure};
+use super::joint_path::Joints;
+use super::leg::Leg;
+use crate::arm::kinematics::ik_near;
+use crate::arm::robot::Model;
+
+/// Joints at the end of a Cartesian leg (rad), reached along it from its start, each solution the
+/// nearest to the one before; `None` where a place on the way has none.
+pub fn arrival(model: &Model, leg: &Leg) -> Option<Joints> {
+    let curve = measure(model, leg, 0, &leg.start).ok()?.curve?;
+    let steps = (curve.length() / MAX_PIECE).ceil().max(1.0) as usize;
+    let mut q = leg.start;
+    for i in 1..=steps {
+        let pose = curve.eval(curve.length() * i as f64 / steps as f64).pose;
+        q = ik_near(model, &leg.tool.flange(&pose), &q).ok()?;
+    }
+    Some(q)
+}

@@ -1,0 +1,230 @@
+//! A joint path q(s) as pieces of quintic polynomials.
+
+use std::ops::Range;
+
+use crate::arm::kinematics::Tcp;
+
+/// Joints of a robot that RAPID programs move.
+pub const DOF: usize = 6;
+
+/// One number per joint.
+pub type Joints = [f64; DOF];
+
+/// Coefficients, lowest first, of the polynomial of degree 5 with this value, first and second
+/// derivative at 0 and at 1.
+pub fn quintic([p0, v0, a0]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 6] {
+    let d = p1 - p0;
+    [
+        p0,
+        v0,
+        0.5 * a0,
+        10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1,
+        -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1,
+        6.0 * d - 3.0 * (v0 + v1) - 0.5 * (a0 - a1),
+    ]
+}
+
+/// What kind of curve a piece belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PieceKind {
+    /// Straight in joint space.
+    Joint,
+    /// On a programmed line or arc.
+    Cartesian,
+    /// In a corner zone between two Cartesian legs.
+    CartesianZone,
+    /// In a corner zone that a joint leg touches.
+    JointZone,
+}
+
+/// A stretch [s, s + length] of a joint path.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Where it begins.
+    pub s: f64,
+    /// How long it is.
+    pub length: f64,
+    /// Index of the leg that it belongs to.
+    pub leg: usize,
+    /// Its kind.
+    pub kind: PieceKind,
+    /// Coefficients of u = (s − begin)/length, lowest first, per joint.
+    coefficients: [[f64; 6]; DOF],
+}
+
+/// Values and derivatives by s at one place: q, q′, q″.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// Joint positions, rad.
+    pub q: Joints,
+    /// dq/ds.
+    pub q1: Joints,
+    /// d²q/ds².
+    pub q2: Joints,
+}
+
+impl Piece {
+    /// The quintic with these values and derivatives at its ends.
+    pub fn hermite(
+        (s, length): (f64, f64),
+        leg: usize,
+        kind: PieceKind,
+        a: &PathPoint,
+        b: &PathPoint,
+    ) -> Piece {
+        let h = length;
+        let mut coefficients = [[0.0; 6]; DOF];
+        for j in 0..DOF {
+            let (p0, v0, a0) = (a.q[j], a.q1[j] * h, a.q2[j] * h * h);
+            let (p1, v1, a1) = (b.q[j], b.q1[j] * h, b.q2[j] * h * h);
+            coefficients[j] = quintic([p0, v0, a0], [p1, v1, a1]);
+        }
+        Piece { s, length, leg, kind, coefficients }
+    }
+
+    /// q at s, which must lie in the piece.
+    pub fn position(&self, s: f64) -> Joints {
+        let u = (s - self.s) / self.length;
+        let mut q = [0.0; DOF];
+        for (q, [c0, c1, c2, c3, c4, c5]) in q.iter_mut().zip(&self.coefficients) {
+            *q = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
+        }
+        q
+    }
+
+    /// dq/ds at s, which must lie in the piece.
+    pub fn rates(&self, s: f64) -> Joints {
+        let u = (s - self.s) / self.length;
+        let mut q1 = [0.0; DOF];
+        for (q1, [_, c1, c2, c3, c4, c5]) in q1.iter_mut().zip(&self.coefficients) {
+            let rest = 3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5);
+            *q1 = (c1 + u * (2.0 * c2 + u * rest)) / self.length;
+        }
+        q1
+    }
+
+    /// Values at s, which must lie in the piece.
+    pub fn eval(&self, s: f64) -> PathPoint {
+        let h = self.length;
+        let u = (s - self.s) / h;
+        let mut point = PathPoint { q: [0.0; DOF], q1: [0.0; DOF], q2: [0.0; DOF] };
+        for j in 0..DOF {
+            let [c0, c1, c2, c3, c4, c5] = self.coefficients[j];
+            point.q[j] = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
+            point.q1[j] =
+                (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h;
+            point.q2[j] = (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
+        }
+        point
+    }
+}
+
+/// What the TCP does on a leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Length of its path, m.
+    pub length: f64,
+    /// Angle that the tool turns by, rad.
+    pub angle: f64,
+    /// Length in the parameter s.
+    pub extent: f64,
+    /// Where the TCP is fixed, m.
+    pub tool: Tcp,
+    /// True for an arc whose three points lie on a line, along which it is followed.
+    pub flat_arc: bool,
+}
+
+/// A joint path over [0, length]: q and q′ are continuous, and q″ up to jumps that
+/// straight joint lines without a zone between them do not have.
+#[derive(Clone, Debug, Default)]
+pub struct JointPath {
+    pieces: Vec<Piece>,
+    /// Index of the first leg, and the legs from there on.
+    legs: (usize, Vec<Extent>),
+    /// Joints where the path begins and ends, rad.
+    ends: [Joints; 2],
+}
+
+impl JointPath {
+    /// From pieces that follow each other without a gap, the legs from the index `first` on
+    /// that they belong to, and the joints at both ends without the pieces' rounding.
+    pub fn new(
+        pieces: Vec<Piece>,
+        first: usize,
+        legs: Vec<Extent>,
+        ends: [Joints; 2],
+    ) -> JointPath {
+        JointPath { pieces, legs: (first, legs), ends }
+    }
+
+    /// Joints where the path begins, rad.
+    pub fn start(&self) -> Joints {
+        self.ends[0]
+    }
+
+    /// Joints where the path ends, rad.
+    pub fn end(&self) -> Joints {
+        self.ends[1]
+    }
+
+    /// What is known of a leg of the path.
+    pub fn extent(&self, leg: usize) -> Extent {
+        self.legs.1[leg - self.legs.0]
+    }
+
+    /// The indices of the legs.
+    pub fn legs(&self) -> Range<usize> {
+        self.legs.0..self.legs.0 + self.legs.1.len()
+    }
+
+    /// Where the path passes the programmed end of a leg: in the middle of the zone.
+    pub fn leg_end(&self, leg: usize) -> f64 {
+        let after = self.pieces.partition_point(|p| p.leg <= leg);
+        self.pieces.get(after).map_or(self.length(), |p| p.s)
+    }
+
+    /// The pieces in order.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// End of the parameter.
+    pub fn length(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |p| p.s + p.length)
+    }
+
+    /// The piece that holds s; outside, the nearest.
+    pub fn piece_at(&self, s: f64) -> &Piece {
+        let after = self.pieces.partition_point(|p| p.s <= s);
+        &self.pieces[after.saturating_sub(1)]
+    }
+
+    /// Values at s, clamped to [0, length].
+    pub fn eval(&self, s: f64) -> PathPoint {
+        let s = s.clamp(0.0, self.length());
+        self.piece_at(s).eval(s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hermite_reproduces_a_quintic() {
+        let c = [0.3, -1.0, 0.5, 2.0, -0.7, 0.2];
+        let poly = |s: f64| {
+            let q = c.iter().rev().fold(0.0, |acc, x| acc * s + x);
+            let q1 = (1..6).rev().fold(0.0, |acc, i| acc * s + c[i] * i as f64);
+            let q2 = (2..6).rev().fold(0.0, |acc, i| acc * s + c[i] * (i * (i - 1)) as f64);
+            PathPoint { q: [q; DOF], q1: [q1; DOF], q2: [q2; DOF] }
+        };
+        let piece = Piece::hermite((0.2, 0.9), 0, PieceKind::Joint, &poly(0.2), &poly(1.1));
+        for s in [0.2, 0.5, 0.77, 1.1] {
+            let (got, want) = (piece.eval(s), poly(s));
+            for (a, b) in [(got.q, want.q), (got.q1, want.q1), (got.q2, want.q2)] {
+                assert!((a[3] - b[3]).abs() < 1e-9, "at {s}: {} {}", a[3], b[3]);
+            }
+        }
+    }
+}

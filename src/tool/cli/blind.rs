@@ -1,0 +1,309 @@
+//! `joulepath blind`: the sealed examination of `diagnose`.
+
+mod family;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use clap::{Args, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use rayon::prelude::*;
+use serde_json::Value;
+
+use self::family::family;
+use super::common::{self, Format};
+use super::{diagnose, output};
+use crate::examine::blind::{
+    self, Asked, Case, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings,
+};
+use crate::tool::report::html::grades_report;
+
+/// The sealed examination of diagnose: generate cases, grade what was said of them.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath blind generate --out cases --seed 7 --count 20\n         \
+    joulepath blind grade cases --format json"
+)]
+pub struct BlindArgs {
+    #[command(subcommand)]
+    command: BlindCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum BlindCommand {
+    Generate(GenerateArgs),
+    Grade(GradeArgs),
+}
+
+/// Write cases: nominal models with logs, the truth sealed beside them.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: joulepath blind generate --out cases --seed 7 --count 20")]
+struct GenerateArgs {
+    /// A folder that does not exist yet or has no cases.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+
+    /// The same seed gives the same bytes.
+    #[arg(long, value_name = "N")]
+    seed: u64,
+
+    /// Number of cases.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=9999))]
+    count: u32,
+
+    /// Periods in each log.
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(2..=100))]
+    cycles: u32,
+
+    /// Length of a period, s.
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    period: f64,
+
+    /// No notes and no progress on standard error.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Open the seals and grade what was said of the cases.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: joulepath blind grade cases --results diagnoses --format json")]
+struct GradeArgs {
+    /// The folder that `blind generate` wrote.
+    #[arg(value_name = "DIR")]
+    cases: PathBuf,
+
+    /// Where the diagnoses are, as case-0001/diagnosis.json; otherwise beside the logs.
+    #[arg(long, value_name = "DIR")]
+    results: Option<PathBuf>,
+
+    /// An effect that the library is without: only its cases are graded, and not to know is
+    /// right. `family`: each case with one effect of the torque, without all of its family.
+    #[arg(long, value_name = "EFFECT|family")]
+    leave_out: Option<String>,
+
+    /// A page with the confusion, the rates and what probabilities are worth.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+
+    /// How the result is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Periods that the generator's motions can have \[s\].
+const PERIODS_S: [f64; 2] = [2.0, 60.0];
+
+/// Runs the command.
+///
+/// # Errors
+/// Cases that can't be written or read, seals that don't fit.
+pub fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
+    match &args.command {
+        BlindCommand::Generate(args) => generate(args),
+        BlindCommand::Grade(args) => grade(args),
+    }
+}
+
+fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
+    let out = &args.out;
+    if !(PERIODS_S[0]..=PERIODS_S[1]).contains(&args.period) {
+        bail!("--period {}: give {} to {} s", args.period, PERIODS_S[0], PERIODS_S[1]);
+    }
+    if out.join(KEY).exists() || out.join(SEALS).exists() {
+        bail!(
+            "'{}' has cases with seals already; name a new folder with --out, or remove that one",
+            out.display()
+        );
+    }
+    let settings = Settings {
+        seed: args.seed,
+        cycles: args.cycles as usize,
+        // Whole rows of a log.
+        period_s: (args.period * 10.0).round() / 10.0,
+    };
+    let progress = progress(u64::from(args.count), args.quiet);
+    let labels: anyhow::Result<Vec<_>> = (1..=args.count as usize)
+        .into_par_iter()
+        .map(|number| {
+            let case = blind::case(&settings, number)
+                .context("the catalogue has none of the robots of the examination")?;
+            write_case(out, &case)?;
+            progress.inc(1);
+            Ok((case.label, case.salt))
+        })
+        .collect();
+    let sealed = blind::seal(&labels?)?;
+    output::write(&out.join(KEY), sealed.key.as_bytes())?;
+    output::write(&out.join(SEALS), sealed.seals.as_bytes())?;
+    progress.finish_and_clear();
+    let text = format!("{} cases in '{}', the truth sealed in {KEY}", args.count, out.display());
+    common::note(args.quiet, &text);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write_case(out: &Path, case: &Case) -> anyhow::Result<()> {
+    let folder = out.join(&case.name);
+    let files: Vec<(PathBuf, &[u8])> =
+        case.files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes())).collect();
+    output::write_folder(&folder, &files)
+}
+
+fn progress(count: u64, quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    ProgressBar::with_draw_target(Some(count), target)
+}
+
+fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
+    let sealed =
+        Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
+    let labels = blind::open(&sealed)?;
+    if let Some(id) = &args.leave_out
+        && !labels.iter().any(|label| blind::is_of(label, id))
+    {
+        bail!(
+            "--leave-out {id}: no case has this effect alone; name one that the examination has, or \
+             {FAMILY}"
+        );
+    }
+    let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
+    for label in &labels {
+        // A name in a key is no path.
+        if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
+            bail!("{KEY}: '{}' is no name of a case; take the file that was written", label.case);
+        }
+        let without = without(label, args.leave_out.as_deref());
+        if args.leave_out.is_some() && without.is_empty() {
+            continue;
+        }
+        // Results that are given were computed without what is left out.
+        let (beside, name) = match (&args.results, &args.leave_out) {
+            (Some(results), _) => (results, "diagnosis.json".to_owned()),
+            (None, None) => (&args.cases, "diagnosis.json".to_owned()),
+            (None, Some(id)) => (&args.cases, format!("diagnosis-without-{id}.json")),
+        };
+        let path = beside.join(&label.case).join(&name);
+        diagnoses.push(if path.exists() {
+            let shown = path.display();
+            serde_json::from_str(&read(&path)?)
+                .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))?
+        } else {
+            diagnosed(&args.cases.join(&label.case), &name, &without)?
+        });
+        graded.push(label.clone());
+    }
+    let grades = blind::grade(&graded, &diagnoses, args.leave_out.as_deref())?;
+    if let Some(path) = &args.report {
+        let page = grades_report(&grades)?;
+        output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
+    }
+    let text = match args.format {
+        Format::Json => serde_json::to_string_pretty(&grades)? + "\n",
+        Format::Text => table(&grades),
+    };
+    std::io::stdout().lock().write_all(text.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Effects that the library is without for a case; none where the case is not asked for.
+fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
+    match left_out {
+        Some(id) if !blind::is_of(label, id) => Vec::new(),
+        Some(FAMILY) => label.effects.iter().flat_map(|of| family(&of.id)).copied().collect(),
+        Some(id) => vec![id],
+        None => Vec::new(),
+    }
+}
+
+/// What `diagnose` says of a case by a library without some effects, in its JSON, which is kept
+/// under a name.
+fn diagnosed(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
+    let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
+        .with_context(|| format!("'{}' has no case.json", case.display()))?;
+    let value =
+        diagnose::of_case(case, &options, without).with_context(|| case.display().to_string())?;
+    // What was said once need not be computed again.
+    let text = format!("{value:#}\n");
+    output::write(&case.join(name), text.as_bytes())?;
+    Ok(value)
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    let shown = path.display();
+    fs::read_to_string(path).with_context(|| {
+        format!("cannot read '{shown}'; name the folder that joulepath blind generate wrote")
+    })
+}
+
+fn table(grades: &Grades) -> String {
+    let mut text = format!("{} cases", grades.cases);
+    if grades.undetectable > 0 {
+        let _ = write!(
+            text,
+            ", {} show too little of their effects to be asked for",
+            grades.undetectable
+        );
+    }
+    text.push_str("\n\n");
+    let mut columns: Vec<&str> =
+        grades.confusion.values().flat_map(|row| row.keys().copied()).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let _ = writeln!(
+        text,
+        "{:<22}{}",
+        "truth",
+        columns.iter().fold(String::new(), |mut row, name| {
+            let _ = write!(row, "{name:>16}");
+            row
+        })
+    );
+    for (truth, row) in &grades.confusion {
+        let _ = write!(text, "{truth:<22}");
+        for column in &columns {
+            let _ = write!(text, "{:>16}", row.get(column).copied().unwrap_or(0));
+        }
+        text.push('\n');
+    }
+    text.push_str("\nrate                          of      %   95 % interval   asked\n");
+    for rate in &grades.rates {
+        let (sign, asked) = match rate.asked {
+            Asked::AtMost(most) => ("<=", most),
+            Asked::AtLeast(least) => (">=", least),
+        };
+        let percent = rate.rate.map_or_else(|| "-".into(), |rate| format!("{:.1}", 100.0 * rate));
+        let verdict = match rate.met() {
+            Some(true) => "met",
+            Some(false) => "missed",
+            None => "no cases",
+        };
+        let _ = writeln!(
+            text,
+            "{:<26}{:>4}/{:<4}{percent:>6}   {:>5.1} to {:>5.1}   {sign} {:.0} {verdict}",
+            rate.name,
+            rate.hits,
+            rate.of,
+            100.0 * rate.low,
+            100.0 * rate.high,
+            100.0 * asked,
+        );
+    }
+    text.push_str("\nstated probability   mean   there\n");
+    for bin in grades.reliability.iter().filter(|bin| bin.of > 0) {
+        let _ = writeln!(
+            text,
+            "{:>6.2} to {:<6.2}     {:>6.3}   {}/{}",
+            bin.from, bin.to, bin.stated, bin.hits, bin.of
+        );
+    }
+    if let Some(share) = grades.shrink_of_oracle {
+        let _ = writeln!(text, "\nclaimed shrink over an oracle's, median: {share:.2}");
+    }
+    for wrong in &grades.wrong {
+        let _ = writeln!(text, "{}: {} taken for {}", wrong.case, wrong.truth, wrong.said);
+    }
+    text
+}

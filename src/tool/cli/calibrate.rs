@@ -1,0 +1,135 @@
+//! `joulepath calibrate`: a robot's estimate narrowed by measured power.
+
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use clap::Args;
+
+use super::common::{self, Format, ProgramArgs};
+use super::{output, signals};
+use crate::arm::robot::{Model, to_toml};
+use crate::learn::calibrate::calibrate;
+use crate::learn::identify::per_ampere;
+use crate::learn::log::{self, Channel, ColumnMap, Log};
+use crate::retime::motion;
+use crate::tool::report::calibrate as report;
+use crate::tool::retrofit::read_program;
+
+/// The robot's estimated dynamics narrowed by the cabinet's power in the running program.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath calibrate fixtures/pick_place --robot IRB2600-20/1.65 --log power.csv --out cell.toml\n         then: joulepath optimize fixtures/pick_place --robot cell.toml"
+)]
+pub struct CalibrateArgs {
+    #[command(flatten)]
+    program: ProgramArgs,
+
+    /// The log, CSV or Parquet: `t`, `power` of the cabinet (W or kW), and where there are any `cycle`,
+    /// `cmd`, `tau1…` or `i1…`.
+    #[arg(long, value_name = "FILE")]
+    log: PathBuf,
+
+    /// Columns under other names, such as `power=P_total`.
+    #[arg(long, value_name = "CHANNEL=COLUMN,…", default_value = "", hide_default_value = true)]
+    map: String,
+
+    /// Where the robot goes, Robot TOML.
+    #[arg(long, value_name = "CELL.toml")]
+    out: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Unusable input, a log that is not of the program or the robot, output that can't be written.
+pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
+    if args.program.point_estimate {
+        bail!("--point-estimate has no use here: the plausible robots are what a log narrows");
+    }
+    let job = common::prepare(&args.program)?;
+    let real = |path: &Path| path.canonicalize().ok();
+    let modules = job.input.files.iter().map(|file| Path::new(&file.source.path));
+    let mut inputs =
+        modules.chain([args.log.as_path()]).chain(job.model.file.as_deref().map(Path::new));
+    if let Some(out) = real(&args.out)
+        && inputs.any(|input| real(input).is_some_and(|input| input == out))
+    {
+        bail!("'{}' is read by this command, too: name another file for --out", args.out.display());
+    }
+    let (program, entry) = read_program(&job.files, &job.entry)?;
+    signals::check(&args.program.cell, &job.options.levels, &program)?;
+    let quiet = args.program.cell.quiet;
+    let shown = args.log.display().to_string();
+    let file = File::open(&args.log)
+        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
+    let log = log::read_from(file, &ColumnMap::parse(&args.map)?).with_context(|| shown.clone())?;
+    for rejected in log.rejected.iter().take(SHOWN) {
+        common::note(
+            quiet,
+            &format!("{shown}: row {} is left out: {}", rejected.row, rejected.reason),
+        );
+    }
+    if log.rejected.len() > SHOWN {
+        let more = log.rejected.len() - SHOWN;
+        common::note(quiet, &format!("{shown}: {more} more rows are left out"));
+    }
+    if log.column(Channel::Power).is_none() {
+        bail!(
+            "{shown}: there is no column `power`: log the cabinet's power in W or kW, or name its column \
+             with --map power=NAME"
+        );
+    }
+    let (torques, said) = torques(&job.model, &log);
+    if let Some(said) = said {
+        common::note(quiet, &format!("{shown}: {said}"));
+    }
+    let simulation = motion::simulate(&program, entry, &job.model, &job.options);
+    let found = calibrate(&job.model, &simulation, &log, torques.as_deref())
+        .with_context(|| shown.clone())?;
+    let head = format!(
+        "# {} calibrated by joulepath with the power of {} cycles of {}.\n",
+        job.model.name, found.found.cycles, job.entry
+    );
+    output::write(&args.out, (head + &to_toml(&found.model)).as_bytes())?;
+    let mut out = std::io::stdout().lock();
+    let path = args.out.display().to_string();
+    match args.program.format {
+        Format::Json => {
+            serde_json::to_writer_pretty(&mut out, &report::json(&found, &path))?;
+            writeln!(out)?;
+        }
+        Format::Text => write!(out, "{}", report::text(&found, &path))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Rejected rows that are told one by one.
+const SHOWN: usize = 3;
+
+/// Torques of all joints, logged or from currents, and what keeps currents from being used.
+fn torques(model: &Model, log: &Log) -> (Option<Vec<Vec<f64>>>, Option<String>) {
+    let of = |channel: fn(usize) -> Channel| -> Option<Vec<&[f64]>> {
+        (0..model.dof).map(|joint| log.column(channel(joint))).collect()
+    };
+    if let Some(tau) = of(Channel::Torque) {
+        return (Some(tau.into_iter().map(<[f64]>::to_vec).collect()), None);
+    }
+    let Some(currents) = of(Channel::Current) else {
+        let some = |channel: fn(usize) -> Channel| {
+            (0..model.dof).any(|joint| log.column(channel(joint)).is_some())
+        };
+        let said = "torques or currents of some joints only are not used: all of them are needed";
+        let is_part = some(Channel::Torque) || some(Channel::Current);
+        return (None, is_part.then(|| said.to_owned()));
+    };
+    match per_ampere(model) {
+        Ok(factors) => {
+            let tau = currents.iter().zip(&factors);
+            (Some(tau.map(|(i, k)| i.iter().map(|i| i * k).collect()).collect()), None)
+        }
+        Err(error) => (None, Some(format!("the currents are not used: {error}"))),
+    }
+}

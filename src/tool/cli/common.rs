@@ -1,0 +1,396 @@
+//! Options that several commands share.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+
+use super::backup::motion_configuration;
+use super::choice;
+use super::input::{self, Input};
+use super::refresh::Streams;
+use crate::arm::effects;
+use crate::arm::kinematics::limits_ok;
+use crate::arm::robot::{self, Model};
+use crate::rapid::text::{self, FileId, SourceFile, is_encoded_module};
+use crate::retime::motion::{Options, Simulation};
+use crate::tool::config::{self, Config};
+use crate::tool::retrofit::Source;
+
+/// A program, its robot, and what is known of its cell.
+#[derive(Debug, Default, Args)]
+pub struct CellArgs {
+    /// Module files, folders, .pgf programs or controller backups.
+    #[arg(required = true)]
+    pub paths: Vec<PathBuf>,
+
+    /// The robot: a name (joulepath robots list) or a robot file.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub robot: Option<String>,
+
+    /// Configuration; otherwise the nearest joulepath.toml above the program.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+
+    /// The procedure that starts the program.
+    #[arg(long)]
+    pub entry: Option<String>,
+
+    /// Where the robot stands at first, axes in degrees.
+    #[arg(long, value_name = "DEG,…", allow_hyphen_values = true)]
+    pub start: Option<String>,
+
+    /// When an input comes, such as diPart=2.5 (s after the start or the last wait for it).
+    #[arg(long = "input", value_name = "SIGNAL=SECONDS")]
+    pub inputs: Vec<String>,
+
+    /// The level of an input that the program asks for, such as di1=1; otherwise 0.
+    #[arg(long = "assume", value_name = "SIGNAL=LEVEL")]
+    pub levels: Vec<String>,
+
+    /// No notes on standard error.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Options of commands that run a program.
+#[derive(Debug, Default, Args)]
+pub struct ProgramArgs {
+    /// What is run, and where.
+    #[command(flatten)]
+    pub cell: CellArgs,
+
+    /// Override of all speeds in %, as on the operator's panel.
+    #[arg(long = "speed-override", value_name = "PERCENT", allow_negative_numbers = true)]
+    pub speed_override: Option<f64>,
+
+    /// Take the robot's estimated numbers as they are, without plausible others and their intervals.
+    #[arg(long = "point-estimate")]
+    pub point_estimate: bool,
+
+    /// How often the loop that never ends runs.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub passes: Option<u32>,
+
+    /// End the simulation after this time, s.
+    #[arg(long = "max-time", value_name = "SECONDS", allow_negative_numbers = true)]
+    pub max_time: Option<f64>,
+
+    /// How the result is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// Forms of a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// A program ready to run.
+pub struct Job {
+    /// What was read.
+    pub input: Input,
+    /// The files of the program; their ids count from 0.
+    pub files: Vec<Source>,
+    /// The streams that it had, if they are made anew.
+    pub streams: Streams,
+    /// The robot.
+    pub model: Model,
+    /// The configuration.
+    pub config: Config,
+    /// The routine that starts the program.
+    pub entry: String,
+    /// For simulations.
+    pub options: Options,
+    /// The inputs of the options as the user writes them.
+    pub inputs: Vec<String>,
+}
+
+impl Job {
+    /// Whether streams that the program had are made anew.
+    pub fn is_refreshed(&self) -> bool {
+        !self.streams.modules.is_empty()
+    }
+
+    /// The files of other tasks that were read beside those of the program.
+    pub fn others(&self) -> impl Iterator<Item = &SourceFile> {
+        let is_own = |path: &str| self.files.iter().any(|own| own.file.path == path);
+        let all = self.input.files.iter().map(|file| &file.source);
+        all.filter(move |source| !is_own(&source.path))
+    }
+
+    /// The files alone, for reports.
+    pub fn sources(&self) -> Vec<SourceFile> {
+        self.files.iter().map(|source| source.file.clone()).collect()
+    }
+
+    /// Notes on inputs for which a simulated cycle does not wait.
+    pub fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
+        let asked = &simulation.inputs_asked;
+        let unused = self.inputs.iter().filter(|name| !asked.contains(&name.to_lowercase()));
+        unused
+            .map(|name| {
+                let known = asked.iter().map(String::as_str);
+                let meant = robot::nearest(name, known)
+                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                format!("the cycle does not wait for the input {name}: its time is not used{meant}")
+            })
+            .collect()
+    }
+}
+
+/// Reads program, configuration and robot.
+///
+/// # Errors
+/// Whatever is missing or wrong, with the way out.
+pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
+    prepare_read(program, input::read(&program.cell.paths)?)
+}
+
+/// The same for a program that was read.
+///
+/// # Errors
+/// As of [`prepare`].
+pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> {
+    let args = &program.cell;
+    for unreadable in &input.unreadable {
+        note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
+    }
+    let choice = choice::choose(&input)?;
+    for text in &choice.notes {
+        note(args.quiet, text);
+    }
+    for file in choice.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
+        let path = &file.source.path;
+        note(args.quiet, &format!("'{path}' is an encoded module: what it declares is not known"));
+    }
+    let (config, folder) = configuration(args)?;
+    let of_task = choice.task.and_then(|task| task.robot.as_deref());
+    let name = robot_name(args, &config, &folder).or_else(|| of_task.map(str::to_owned));
+    let name = name.with_context(which_robot)?;
+    let of_backup = args.robot.is_none() && config.robot.is_none();
+    let model = effects::load_estimated(&name).map_err(|error| {
+        if of_backup {
+            anyhow::anyhow!("the robot of the backup is a {name}: {error}; name yours with --robot")
+        } else {
+            error.into()
+        }
+    })?;
+    let model = match choice.backup.filter(|_| of_backup) {
+        Some(backup) => as_configured(backup, model, args.quiet),
+        None => model,
+    };
+    if of_backup {
+        note(args.quiet, &format!("the robot is {}, as the backup says ({name})", model.name));
+    }
+    if model.dof != 6 {
+        bail!(
+            "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
+            model.name,
+            model.dof
+        );
+    }
+    let of_task = choice.task.and_then(|task| task.entry.clone());
+    let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
+    let entry = entry.unwrap_or_else(|| "main".into());
+    let (options, inputs) = simulation_options(args, &config, Some(&model))?;
+    let options = in_force(program, options)?;
+    let files: Vec<Source> = choice
+        .files
+        .iter()
+        .enumerate()
+        .map(|(i, file)| Source {
+            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
+            relative: file.relative.clone(),
+        })
+        .collect();
+    let streams = Streams::default();
+    Ok(Job { input, files, streams, model, config, entry, options, inputs })
+}
+
+/// How a program is simulated, and the inputs whose time is stated, as the user writes them.
+///
+/// # Errors
+/// An option is wrong.
+pub fn simulation_options(
+    args: &CellArgs,
+    config: &Config,
+    model: Option<&Model>,
+) -> anyhow::Result<(Options, Vec<String>)> {
+    let mut times: Vec<(String, f64)> =
+        config.inputs.iter().map(|(name, t)| (name.clone(), *t)).collect();
+    for text in &args.inputs {
+        let (name, seconds) = input_time(text)?;
+        times.retain(|(known, _)| known.to_lowercase() != name.to_lowercase());
+        times.push((name, seconds));
+    }
+    if let Some((name, t)) = times.iter().find(|(_, t)| !(t.is_finite() && *t >= 0.0)) {
+        bail!("the input {name} comes after {t} s; give a time of 0 or more");
+    }
+    let mut levels = config.assume.clone();
+    let mut stated = BTreeMap::new();
+    for text in &args.levels {
+        let (name, level) = input_level(text)?;
+        let key = name.to_lowercase();
+        if stated.insert(key.clone(), level).is_some_and(|before| before != level) {
+            bail!("--assume states two levels of {name}; give one");
+        }
+        levels.retain(|known, _| known.to_lowercase() != key);
+        levels.insert(name, level);
+    }
+    let options = Options {
+        levels: levels.iter().map(|(name, level)| (name.to_lowercase(), *level)).collect(),
+        start: args.start.as_deref().map(|text| start(model, text)).transpose()?,
+        inputs: times.iter().map(|(name, t)| (name.to_lowercase(), *t)).collect(),
+        ..Options::default()
+    };
+    let inputs = times.into_iter().map(|(name, _)| name).collect();
+    Ok((options, inputs))
+}
+
+/// The options with what is said of the run itself.
+fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
+    if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
+        bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
+    }
+    if let Some(limit) = args.max_time.filter(|t| !(t.is_finite() && *t > 0.0)) {
+        bail!("--max-time {limit}: give a time in seconds above 0");
+    }
+    Ok(Options {
+        speed_override: args.speed_override.map(|percent| percent / 100.0),
+        passes: args.passes,
+        max_time: args.max_time,
+        ..options
+    })
+}
+
+/// The robot with what its backup says of it: ranges, base frame, loads of the arm.
+pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
+    let Some(path) = motion_configuration(backup) else { return model };
+    let shown = path.display().to_string();
+    let configured =
+        fs::read(&path).map_err(|error| format!("{shown}: {error}")).and_then(|bytes| {
+            let text = robot::import_moc(&shown, &text::decode(&bytes).text, None);
+            let model = text.and_then(|text| robot::from_toml(&shown, &text));
+            model.map_err(|error| error.to_string())
+        });
+    configured.unwrap_or_else(|why| {
+        note(quiet, &format!("the robot is used as it comes, not as set up: {why}"));
+        model
+    })
+}
+
+/// The robot of options and configuration, for commands that need no program.
+///
+/// # Errors
+/// None is named, or it can't be read.
+pub fn robot(args: &CellArgs) -> anyhow::Result<Model> {
+    let (config, folder) = configuration(args)?;
+    Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
+}
+
+/// The robot that options or configuration name.
+pub fn robot_name(args: &CellArgs, config: &Config, folder: &Path) -> Option<String> {
+    let configured = || {
+        let name = config.robot.as_ref()?;
+        let beside = folder.join(name);
+        Some(if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.clone() })
+    };
+    args.robot.clone().or_else(configured)
+}
+
+fn which_robot() -> String {
+    format!(
+        "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
+         --robot FILE.toml, or robot = \"…\" in {}",
+        config::FILE_NAME
+    )
+}
+
+/// The configuration, and the folder that it lies in.
+///
+/// # Errors
+/// It can't be read.
+pub fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
+    let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
+        path: path.to_string_lossy().into_owned(),
+        reason: error.to_string(),
+    };
+    let read = |path: &Path| -> anyhow::Result<(Config, PathBuf)> {
+        let text = fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        Ok((config::parse(&path.to_string_lossy(), &text)?, folder))
+    };
+    if let Some(path) = &args.config {
+        return read(path);
+    }
+    if let Some(first) = args.paths.first() {
+        let absolute = fs::canonicalize(first).unwrap_or_else(|_| first.clone());
+        if let Some(path) = config::candidates(&absolute).into_iter().find(|p| p.is_file()) {
+            return read(&path);
+        }
+    }
+    Ok((Config::default(), PathBuf::new()))
+}
+
+/// Where the robot stands at first \[rad\].
+fn start(model: Option<&Model>, text: &str) -> anyhow::Result<[f64; 6]> {
+    let q = six_degrees("--start", text)?;
+    if let Some(model) = model
+        && let Err(error) = limits_ok(model, &q)
+    {
+        bail!("--start {text}: {error}; give a position that {} can have", model.name);
+    }
+    Ok(q)
+}
+
+fn input_level(text: &str) -> anyhow::Result<(String, f64)> {
+    let wrong = || format!("--assume {text}: write it as SIGNAL=LEVEL, such as di1=1");
+    let (name, level) = text.split_once('=').with_context(wrong)?;
+    let level: f64 = level.trim().parse().map_err(|_| anyhow::anyhow!(wrong()))?;
+    if !level.is_finite() {
+        bail!(wrong());
+    }
+    Ok((name.trim().to_owned(), level))
+}
+
+fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
+    let wrong = || format!("--input {text}: write it as SIGNAL=SECONDS, such as diPart=2.5");
+    let (name, seconds) = text.split_once('=').with_context(wrong)?;
+    let seconds = seconds.trim().trim_end_matches('s').trim();
+    let seconds: f64 = seconds.parse().map_err(|_| anyhow::anyhow!(wrong()))?;
+    Ok((name.trim().to_owned(), seconds))
+}
+
+/// Six axis positions that an option gives in degrees \[rad\].
+///
+/// # Errors
+/// They are not six numbers.
+pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
+    let wrong = || {
+        anyhow::anyhow!(
+            "{option} {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0"
+        )
+    };
+    let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let values: [f64; 6] = values.map_err(|_| wrong())?.try_into().map_err(|_| wrong())?;
+    if values.iter().any(|x: &f64| !x.is_finite()) {
+        return Err(wrong());
+    }
+    Ok(values.map(f64::to_radians))
+}
+
+/// A note on standard error, if somebody reads it.
+pub fn note(quiet: bool, text: &str) {
+    if !quiet {
+        writeln!(std::io::stderr(), "note: {text}").unwrap_or_default();
+    }
+}

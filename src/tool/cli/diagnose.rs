@@ -1,0 +1,378 @@
+//! `joulepath diagnose`: which effect separates a model from its robot.
+
+mod channels;
+mod pictures;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::Value;
+
+use super::common::{self, Format};
+use super::logs::{Read, Reader, Ready, held_out, read_all};
+use super::output;
+use crate::arm::effects::{self, ALL, Effect};
+use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
+use crate::gap::{
+    Diagnosis, Logs, Phase, Record, Settings, Trust, Verdict, common_factor, diagnose_logs,
+    diagnose_power, diagnose_runs,
+};
+use crate::learn::identify::{Hints, Samples};
+use crate::learn::log::{Channel, ColumnMap};
+use crate::tool::report::diagnose as report;
+use crate::tool::report::html::diagnose_report;
+
+/// Where a model and logs of its robot part, which effect it is, and how far the gap shrinks.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"
+)]
+pub struct DiagnoseArgs {
+    /// The robot as it is believed: a name (joulepath robots list) or a robot file.
+    #[arg(long, value_name = "NAME|FILE")]
+    robot: String,
+
+    /// Logs of the robot as it is now, CSV or Parquet: `t`, `q1…` and `tau1…`, `i1…` or
+    /// `ia1,ib1,ic1…`.
+    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
+    log: Vec<PathBuf>,
+
+    /// Logs that only grade; otherwise the last of several logs.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    heldout: Vec<PathBuf>,
+
+    /// Logs from when the model was believed true.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    baseline: Vec<PathBuf>,
+
+    /// The program whose runs the logs are, by their column `cmd`.
+    #[arg(long, value_name = "PATH")]
+    program: Option<PathBuf>,
+
+    /// How much the model's parameters are believed; by default commissioned with a baseline,
+    /// otherwise cad.
+    #[arg(long, value_enum)]
+    trust: Option<TrustArg>,
+
+    /// Effects that may be found, such as payload,stribeck; with a minus before the first, all
+    /// but these.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    effects: Option<String>,
+
+    /// Columns under other names, such as `q1_deg=J1,tau1=Torque_1`.
+    #[arg(long, value_name = "CHANNEL=COLUMN,…", default_value = "", hide_default_value = true)]
+    map: String,
+
+    /// Duration of a repetition, seconds; otherwise it is found.
+    #[arg(long, value_name = "SECONDS")]
+    period: Option<f64>,
+
+    /// Where the improved model goes, Robot TOML.
+    #[arg(long, value_name = "MODEL.toml")]
+    out: Option<PathBuf>,
+
+    /// A page with residuals, shapes of the effects and shares of the gap.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+
+    /// How the result is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+
+    /// No notes on standard error.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Cut-off frequency of the filter of runs of a program \[Hz\].
+const OF_RUNS: f64 = 10.0;
+/// How often the bar is drawn.
+const TICK: Duration = Duration::from_millis(200);
+
+/// How much parameters are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TrustArg {
+    /// Identified on this robot.
+    Commissioned,
+    /// From drawings.
+    Cad,
+    /// Not at all.
+    Unknown,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A log or a robot that can't be used, or output that can't be written.
+pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
+    let (found, basis) = diagnosed(args)?;
+    let mut out = std::io::stdout().lock();
+    match args.format {
+        Format::Json => writeln!(out, "{:#}", report::json(&found, &basis))?,
+        Format::Text => write!(out, "{}", report::text(&found, &basis))?,
+    }
+    Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// The JSON of a case that `blind generate` wrote, by a library without some effects; with all of
+/// them, the model is written as well.
+///
+/// # Errors
+/// As of [`run`].
+pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
+    let text = |key: &str| options.get(key).and_then(Value::as_str);
+    let baseline = case.join("baseline-1.csv");
+    let args = DiagnoseArgs {
+        robot: case.join("nominal.toml").display().to_string(),
+        log: vec![case.join("log-1.csv"), case.join("log-2.csv")],
+        heldout: vec![case.join("heldout.csv")],
+        baseline: if baseline.exists() { vec![baseline] } else { Vec::new() },
+        program: text("program").map(|folder| case.join(folder)),
+        trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
+        effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
+        map: String::new(),
+        period: options.get("period").and_then(Value::as_f64),
+        out: without.is_empty().then(|| case.join("improved.toml")),
+        report: None,
+        format: Format::Json,
+        quiet: true,
+    };
+    let (found, basis) = diagnosed(&args)?;
+    Ok(report::json(&found, &basis))
+}
+
+/// No file that is read is written, and no log grades or is compared with itself.
+fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let within = |path: &Path, files: &[PathBuf]| {
+        real(path).is_some_and(|path| files.iter().any(|file| real(file).as_ref() == Some(&path)))
+    };
+    let robot = vec![PathBuf::from(&args.robot)];
+    let read = [&robot, &args.log, &args.heldout, &args.baseline];
+    for (option, written) in [("--out", &args.out), ("--report", &args.report)] {
+        if let Some(path) = written
+            && read.iter().any(|files| within(path, files))
+        {
+            bail!("{option} {}: this file is read; give another name", path.display());
+        }
+    }
+    if let (Some(model), Some(page)) = (&args.out, &args.report)
+        && (model == page || real(model).is_some_and(|model| Some(model) == real(page)))
+    {
+        bail!("--report {}: --out writes this file; give another name", page.display());
+    }
+    for (number, path) in args.log.iter().enumerate() {
+        if within(path, &args.log[..number]) {
+            bail!("--log {}: this file is given twice; give it once", path.display());
+        }
+    }
+    for (option, files) in [("--heldout", &args.heldout), ("--baseline", &args.baseline)] {
+        if let Some(path) = files.iter().find(|path| within(path, &args.log)) {
+            bail!(
+                "{option} {}: this file is in --log too; give a log that takes no part there, or \
+                 leave {option} out",
+                path.display()
+            );
+        }
+    }
+    Ok(())
+}
+
+fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+    check_paths(args)?;
+    let model = effects::load(&args.robot)?;
+    ready(&model, Use::Predict)?;
+    let map = ColumnMap::parse(&args.map)?;
+    if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
+        bail!("--period {period}: give the duration of a repetition in seconds, more than 0");
+    }
+    let wanted = wanted(args.effects.as_deref())?;
+    let trust = match args.trust {
+        Some(TrustArg::Unknown) => Trust::Unknown,
+        Some(TrustArg::Cad) => Trust::Cad,
+        None if args.baseline.is_empty() => Trust::Cad,
+        Some(TrustArg::Commissioned) | None => Trust::Commissioned,
+    };
+    let hints = Hints { period: args.period, cutoff: None };
+    let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
+    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
+        let one = |read: Read| {
+            // Repetitions of a program are never alike to the millisecond.
+            let is_run = read.log.column(Channel::Command).is_some();
+            let cutoff = is_run.then_some(OF_RUNS);
+            reader.ready(read, Hints { cutoff, ..hints })
+        };
+        read_all(paths, &map, &model)?.into_iter().map(one).collect()
+    };
+    let mut train = read(&args.log)?;
+    let mut held = read(&args.heldout)?;
+    let mut basis = report::Basis {
+        robot: args.robot.clone(),
+        heldout: "file".to_owned(),
+        ..report::Basis::default()
+    };
+    for other in &held {
+        if let Some(same) = train.iter().find(|of| of.record.1 == other.record.1) {
+            bail!(
+                "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
+                 --heldout out",
+                other.record.0,
+                same.record.0
+            );
+        }
+    }
+    if held.is_empty() && train.len() > 1 {
+        "trajectory".clone_into(&mut basis.heldout);
+        held.extend(train.pop());
+    } else if held.is_empty() {
+        "cycles".clone_into(&mut basis.heldout);
+        let [first, last] = held_out(&model, &train[0])?;
+        (train, held) = (vec![first], vec![last]);
+    }
+    basis.graded = held.iter().map(|of| of.record.0.clone()).collect();
+    let records = |logs: &[Ready]| -> Vec<Record<'_>> {
+        logs.iter().flat_map(|log| Record::all(&model, &log.samples)).collect()
+    };
+    if let Some(factor) = common_factor(&records(&train), trust) {
+        bail!(
+            "the torques of all joints are {factor:.3} times those of the model: give torques in Nm \
+             at the joints, currents as i1… in A, or the --robot that was logged"
+        );
+    }
+    let before = read(&args.baseline)?;
+    let lines = match &args.program {
+        Some(program) => channels::lines(program, &args.robot)
+            .with_context(|| format!("--program {}", program.display()))?,
+        None => Vec::new(),
+    };
+    let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
+    let of_power = diagnose_power(
+        &model,
+        &channels::powers(&before),
+        &channels::powers(&train),
+        &channels::powers(&held),
+        &may,
+    );
+    let of_runs = diagnose_runs(
+        &model,
+        &channels::runs(&before),
+        &channels::runs(&train),
+        &channels::runs(&held),
+        &may,
+    );
+    // Those of the logs have been told.
+    let told = reader.notes.len();
+    basis.notes = reader.notes;
+    // Without a mean there is no noise to weigh effects by.
+    let of_torque = if of_runs.is_some() {
+        basis
+            .notes
+            .push("the logs are runs of a program: torques are not searched for effects".into());
+        Vec::new()
+    } else {
+        wanted.clone()
+    };
+    // What takes a while is not to fail at its end.
+    for path in args.out.iter().chain(&args.report) {
+        output::stage(path, &[])?;
+    }
+    let settings = Settings { trust, effects: of_torque };
+    let compared = if of_runs.is_some() { &[][..] } else { &before };
+    let mut found = of_logs(&model, [&train, &held, compared], &settings, &progress(args.quiet));
+    for said in found.before.iter().flatten() {
+        basis.notes.push(format!("{}: in the baseline already", report::called(said)));
+    }
+    if !compared.is_empty() && found.before.is_none() {
+        basis.notes.push(
+            "the baseline is not compared with the torques: log it as often repeated as the others"
+                .into(),
+        );
+    }
+    if let Some(of) = &of_power {
+        found.add_power(of);
+    }
+    if let Some(of) = &of_runs {
+        found.add_runs(of);
+        for place in &mut found.places {
+            let movement = place.movement.and_then(|movement| movement.checked_sub(1));
+            place.line = movement.and_then(|movement| lines.get(movement).cloned());
+        }
+    } else if args.program.is_some() {
+        basis.notes.push(
+            "--program tells nothing of these logs: give logs and a --baseline whose column `cmd` has \
+             the number of the movement that runs"
+                .into(),
+        );
+    }
+    if let Some(path) = &args.out {
+        output::write(path, to_toml(&found.improved.written).as_bytes())
+            .with_context(|| path.display().to_string())?;
+        basis.model = path.display().to_string();
+    }
+    if let Some(path) = &args.report {
+        let graded = records(if held.is_empty() { &train } else { &held });
+        let pictures = pictures::pictures(&model, &graded, &found);
+        let page = diagnose_report(&model.name, &found, &basis, &pictures)?;
+        output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
+    }
+    for text in &basis.notes[told..] {
+        common::note(args.quiet, text);
+    }
+    Ok((found, basis))
+}
+
+fn of_logs(
+    model: &Model,
+    [train, held, before]: [&[Ready]; 3],
+    settings: &Settings,
+    progress: &ProgressBar,
+) -> Diagnosis {
+    let tell = |phase: Phase| {
+        let before = Phase::ALL.iter().position(|of| *of == phase);
+        progress.set_position(before.unwrap_or(0) as u64);
+        progress.set_message(phase.name());
+    };
+    let [train, held, before]: [Vec<&Samples>; 3] =
+        [train, held, before].map(|logs| logs.iter().map(|log| &log.samples).collect());
+    let logs = Logs { train: &train, held: &held, before: &before };
+    let found = diagnose_logs(model, logs, settings, &tell);
+    progress.finish_and_clear();
+    found
+}
+
+/// A bar over the phases of a diagnosis; nothing where standard error is no terminal.
+fn progress(quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(Phase::ALL.len() as u64), target);
+    let style = ProgressStyle::with_template("{elapsed:>4} {bar:20} {pos}/{len} {msg}");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(TICK);
+    bar
+}
+
+/// The effects that may be found.
+fn wanted(list: Option<&str>) -> anyhow::Result<Vec<&'static Effect>> {
+    let Some(list) = list else { return Ok(ALL.iter().collect()) };
+    let (but, list) = match list.trim().strip_prefix('-') {
+        Some(rest) => (true, rest),
+        None => (false, list),
+    };
+    let mut named = Vec::new();
+    for id in list.split(',').map(|id| id.trim().trim_start_matches('-')) {
+        if effects::find(id).is_none() {
+            let near = nearest(id, ALL.iter().map(|effect| effect.id));
+            let meant = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            let ids: Vec<&str> = ALL.iter().map(|effect| effect.id).collect();
+            bail!("--effects {id}: no effect has this id{meant}; there are {}", ids.join(", "));
+        }
+        named.push(id);
+    }
+    Ok(ALL.iter().filter(|effect| named.contains(&effect.id) != but).collect())
+}

@@ -1,0 +1,87 @@
+//! Power and motion of logs, beside their torques.
+
+use std::path::Path;
+
+use super::super::common::{self, CellArgs, ProgramArgs};
+use super::super::logs::Ready;
+use crate::gap::{Powers, Run};
+use crate::learn::identify::Source;
+use crate::learn::log::Channel;
+use crate::retime::motion::simulate;
+use crate::retime::motion::timeline::{MoveRecord, What};
+use crate::tool::report::place::Places;
+use crate::tool::retrofit::read_program;
+
+/// Mean powers of the motions of logs that have them.
+pub(super) fn powers(logs: &[Ready]) -> Vec<Powers> {
+    logs.iter().filter_map(power).collect()
+}
+
+fn power(log: &Ready) -> Option<Powers> {
+    let measured = log.log.column(Channel::Power)?;
+    let time = log.log.time();
+    let samples = &log.samples;
+    let [block] = samples.blocks.as_slice() else { return None };
+    let (count, period) = match samples.source {
+        Source::Periodic { period, periods, .. } => (periods, period),
+        Source::Filtered { .. } | Source::Logged => (1, 0.0),
+    };
+    let mut mean = vec![0.0; block.len()];
+    for repetition in 0..count {
+        let mut row = 0;
+        for (k, t) in block.t.iter().enumerate() {
+            let t = t + period * repetition as f64;
+            while row + 2 < time.len() && time[row + 1] <= t {
+                row += 1;
+            }
+            let next = (row + 1).min(time.len() - 1);
+            let step = (time[next] - time[row]).max(1e-9);
+            let share = ((t - time[row]) / step).clamp(0.0, 1.0);
+            mean[k] += (measured[row] * (1.0 - share) + measured[next] * share) / count as f64;
+        }
+    }
+    Some(Powers { qd: block.qd.clone(), tau: block.tau.clone(), power: mean })
+}
+
+/// Runs of a program, of logs that mark its movements.
+pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
+    logs.iter()
+        .filter_map(|log| {
+            let command = log.log.column(Channel::Command)?;
+            let q = log.log.of_joints(Channel::Position)?;
+            Some(Run {
+                t: log.log.time().to_vec(),
+                q: q.into_iter().map(<[f64]>::to_vec).collect(),
+                command: command.iter().map(|x| x.max(0.0).round() as usize).collect(),
+            })
+        })
+        .collect()
+}
+
+/// File and line of each movement of a program.
+///
+/// # Errors
+/// The program can't be run.
+pub(super) fn lines(program: &Path, robot: &str) -> anyhow::Result<Vec<(String, usize)>> {
+    let cell = CellArgs {
+        paths: vec![program.to_path_buf()],
+        robot: Some(robot.to_owned()),
+        quiet: true,
+        ..CellArgs::default()
+    };
+    let args = ProgramArgs { cell, ..ProgramArgs::default() };
+    let job = common::prepare(&args)?;
+    let (read, entry) = read_program(&job.files, &job.entry)?;
+    let simulation = simulate(&read, entry, &job.model, &job.options);
+    let sources = job.sources();
+    let places = Places::new(&sources);
+    let runs = simulation.events.iter().filter_map(|event| match &event.what {
+        What::Run(run) => Some(&run.moves),
+        What::Wait(_) | What::Output(..) | What::Left(_) => None,
+    });
+    let place = |record: &MoveRecord| {
+        let place = places.of(record.movement.span);
+        (place.file, place.first as usize)
+    };
+    Ok(runs.flatten().map(place).collect())
+}

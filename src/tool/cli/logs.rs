@@ -1,0 +1,316 @@
+//! Measured logs as `identify` and `diagnose` take them.
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use sha2::{Digest, Sha256};
+
+use super::common;
+use crate::arm::robot::Model;
+use crate::learn::identify::{
+    Hints, Samples, Source, beyond_range, check_angles, check_torques, cleaned, prepare,
+    synchronised, torques, weight_factor,
+};
+use crate::learn::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
+
+/// Share of a log that is held out where there is no other one, and repetitions of which none can
+/// be.
+const HELD_OUT: f64 = 0.3;
+const LEAST_CYCLES: usize = 3;
+
+/// A log that was read.
+pub struct Read {
+    /// Its path as given.
+    pub shown: String,
+    /// SHA-256.
+    pub hash: String,
+    /// The log.
+    pub log: Log,
+    /// How well its halves were brought together, where it has two.
+    clocks: Option<String>,
+}
+
+/// A log ready to be used.
+pub struct Ready {
+    /// Path as given, SHA-256, usable rows, rows left out.
+    pub record: (String, String, usize, usize),
+    /// The instants.
+    pub samples: Samples,
+    /// Where the torques come from.
+    pub origin: String,
+    /// The usable rows.
+    pub log: Log,
+    /// How many times the weight of the robot file's masses the torques carry, where that is
+    /// strange.
+    pub weight: Option<f64>,
+}
+
+/// Reads the logs of one robot.
+pub struct Reader<'a> {
+    /// The robot.
+    pub model: &'a Model,
+    /// Columns under other names.
+    pub map: &'a ColumnMap,
+    /// No notes on standard error.
+    pub quiet: bool,
+    /// What a reader of the result has to know of the logs.
+    pub notes: Vec<String>,
+}
+
+impl Reader<'_> {
+    fn tell(&mut self, text: String) {
+        if self.notes.contains(&text) {
+            return;
+        }
+        common::note(self.quiet, &text);
+        self.notes.push(text);
+    }
+
+    /// Checks a log and makes instants of it.
+    ///
+    /// # Errors
+    /// It is not of this robot, or of no use.
+    pub fn ready(&mut self, read: Read, hints: Hints) -> anyhow::Result<Ready> {
+        let model = self.model;
+        let Read { shown, hash, log, clocks } = read;
+        if log.joints() != model.dof {
+            bail!(
+                "{shown}: positions of {} joints are logged, {} has {}; give a log with q1 to q{}, or \
+                 another --robot",
+                log.joints(),
+                model.name,
+                model.dof,
+                model.dof
+            );
+        }
+        let (log, impossible) = cleaned(&log);
+        for text in summed_up(log.rejected.iter().chain(&impossible)) {
+            common::note(self.quiet, &format!("{shown}: {text}"));
+        }
+        let left_out = log.rejected.len() + impossible.len();
+        let usable = log.time().len();
+        if usable < MIN_ROWS || left_out > usable {
+            let first = log.rejected.iter().chain(&impossible).next();
+            let why = first.map_or_else(String::new, |first| {
+                format!("; the first is row {}: {}", first.row, first.reason)
+            });
+            bail!("{shown}: {left_out} rows can't be used and {usable} can{why}");
+        }
+        check_angles(model, &log).with_context(|| shown.clone())?;
+        for (joint, q) in beyond_range(model, &log) {
+            let [low, high] = model.limits.position[joint].map(f64::to_degrees);
+            self.tell(format!(
+                "{shown}: q{} goes to {:.1} deg, beyond the range of {} ({low:.1} to {high:.1}): is it \
+                 the log of another robot?",
+                joint + 1,
+                q.to_degrees(),
+                model.name
+            ));
+        }
+        let torque = torques(model, &log).with_context(|| shown.clone())?;
+        check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
+        let weight = weight_factor(model, &log, &torque.tau);
+        let strange = weight.map(|(factor, joint)| of_weight(factor, joint));
+        for text in clocks.into_iter().chain(strange) {
+            self.tell(format!("{shown}: {text}"));
+        }
+        for text in torque.notes {
+            self.tell(format!("{shown}: {text}"));
+        }
+        if let Some(text) = unused(&log) {
+            self.tell(format!("{shown}: {text}"));
+        }
+        let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
+        if let Some(text) = unfitting(hints.period, &samples.source) {
+            self.tell(format!("{shown}: {text}"));
+        }
+        Ok(Ready {
+            record: (shown, hash, usable, left_out),
+            samples,
+            origin: torque.origin,
+            log,
+            weight: weight.map(|(factor, _)| factor),
+        })
+    }
+}
+
+/// A log without its last part, which is held out: the last of its repetitions, or of the whole.
+///
+/// # Errors
+/// A part is too short.
+pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
+    let t = of.log.time();
+    let (begins, ends) = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(0.0));
+    let (at, period) = match of.samples.source {
+        Source::Periodic { period, periods, .. } if periods > LEAST_CYCLES => {
+            let held = (HELD_OUT * periods as f64) as usize;
+            (begins + period * (periods - held.max(1)) as f64, Some(period))
+        }
+        _ => (ends - HELD_OUT * (ends - begins), None),
+    };
+    let cutoff = match of.samples.source {
+        Source::Filtered { cutoff } => Some(cutoff),
+        Source::Periodic { .. } | Source::Logged => None,
+    };
+    let (first, last): (Vec<usize>, Vec<usize>) = (0..t.len()).partition(|row| t[*row] < at);
+    let part = |rows: &[usize]| -> anyhow::Result<Ready> {
+        let log = of.log.of_rows(rows);
+        let torque = torques(model, &log)?;
+        let samples = prepare(&log, &torque.tau, Hints { period, cutoff })?;
+        let (record, origin) = (of.record.clone(), of.origin.clone());
+        Ok(Ready { record, samples, origin, log, weight: of.weight })
+    };
+    let shown = &of.record.0;
+    Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
+}
+
+/// Reads logs; halves of one run become one.
+///
+/// # Errors
+/// A log can't be read.
+pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Result<Vec<Read>> {
+    let mut logs: Vec<Read> = Vec::new();
+    for path in paths {
+        let read = read(path, map)?;
+        let half = logs
+            .iter_mut()
+            .find(|other| are_halves(&other.log, &read.log) || are_halves(&read.log, &other.log));
+        let Some(other) = half else {
+            logs.push(read);
+            continue;
+        };
+        let (positions, currents) = if are_halves(&other.log, &read.log) {
+            (&other.log, &read.log)
+        } else {
+            (&read.log, &other.log)
+        };
+        let both = aligned(positions, currents)
+            .with_context(|| format!("{} and {}", other.shown, read.shown))?;
+        let (both, said) = synchronised(model, both);
+        (other.log, other.clocks) = (both, Some(said));
+        other.shown = format!("{} + {}", other.shown, read.shown);
+        other.hash = format!("{} + {}", other.hash, read.hash);
+    }
+    Ok(logs)
+}
+
+fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
+    let shown = path.display().to_string();
+    if path.is_dir() {
+        bail!("{shown}: this is a folder; give the log files in it one by one");
+    }
+    let file = File::open(path)
+        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
+    let mut stream = Hashed { stream: file, hash: Sha256::new() };
+    let log = log::read_from(&mut stream, map).with_context(|| shown.clone())?;
+    let hash = format!("{:x}", stream.hash.finalize());
+    Ok(Read { shown, hash, log, clocks: None })
+}
+
+/// A stream whose bytes are hashed as they are read.
+struct Hashed {
+    stream: File,
+    hash: Sha256,
+}
+
+impl io::Read for Hashed {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(buffer)?;
+        self.hash.update(&buffer[..count]);
+        Ok(count)
+    }
+}
+
+/// Torques that do not carry the masses of the robot file.
+fn of_weight(factor: f64, joint: usize) -> String {
+    let times = |times: f64| if times < 10.0 { times } else { times.round() };
+    if factor < 1.0 {
+        format!(
+            "the torques carry {:.0} times less than the masses of the robot file weigh (joint {}): \
+             are they those of the motors, before the gear? Then multiply each tau by its ratio",
+            times(1.0 / factor),
+            joint + 1
+        )
+    } else {
+        format!(
+            "the torques carry {:.0} times what the masses of the robot file weigh (joint {}): are \
+             they in Nm, and is it this robot?",
+            times(factor),
+            joint + 1
+        )
+    }
+}
+
+/// A period that was given and is not that of the motion.
+fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
+    let given = period?;
+    match source {
+        Source::Periodic { period, .. } if (period / given - 1.0).abs() <= OTHER_PERIOD => None,
+        Source::Periodic { period, .. } => {
+            Some(format!("--period {given}: the motion repeats every {period:.4} s; that was used"))
+        }
+        Source::Logged => {
+            Some(format!("--period {given} is not used: rates and accelerations are logged"))
+        }
+        Source::Filtered { .. } => Some(format!(
+            "--period {given}: the motion does not repeat so; it is differentiated by a filter"
+        )),
+    }
+}
+
+/// Share by which a period may differ from the one that was given.
+const OTHER_PERIOD: f64 = 0.01;
+
+/// Rows of one kind that are told one by one.
+const TOLD: usize = 3;
+
+/// What was left out; of many rows for one reason the first ones and the number of the others.
+fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
+    // Numbers differ from row to row, the words tell the kind.
+    let kind = |reason: &str| -> String {
+        let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
+        reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
+    };
+    let mut kinds: Vec<(String, u64, usize)> = Vec::new();
+    let mut texts = Vec::new();
+    for row in rejected {
+        let text = format!("row {} left out: {}", row.row, row.reason);
+        let kind = kind(&row.reason);
+        if let Some((.., count)) = kinds.iter_mut().find(|(known, ..)| *known == kind) {
+            *count += 1;
+            if *count <= TOLD {
+                texts.push(text);
+            }
+        } else {
+            kinds.push((kind, row.row, 1));
+            texts.push(text);
+        }
+    }
+    for (_, first, count) in kinds.into_iter().filter(|(.., count)| *count > TOLD) {
+        texts.push(format!(
+            "{} more rows left out for the same reason as row {first}",
+            count - TOLD
+        ));
+    }
+    texts
+}
+
+/// Rates and accelerations that are logged, but not of all joints.
+fn unused(log: &Log) -> Option<String> {
+    let part = |name: &str, channel: fn(usize) -> Channel| {
+        let has = |joint: &usize| log.column(channel(*joint)).is_some();
+        let (with, without): (Vec<usize>, Vec<usize>) = (0..log.joints()).partition(has);
+        let list = |joints: &[usize]| -> String {
+            joints.iter().map(|j| format!("{name}{}", j + 1)).collect::<Vec<_>>().join(", ")
+        };
+        let told = !with.is_empty() && !without.is_empty();
+        told.then(|| format!("no column {}: {} not used", list(&without), list(&with)))
+    };
+    let parts: Vec<String> = [part("qd", Channel::Velocity), part("qdd", Channel::Acceleration)]
+        .into_iter()
+        .flatten()
+        .collect();
+    (!parts.is_empty()).then(|| format!("{}; differentiated instead", parts.join("; ")))
+}

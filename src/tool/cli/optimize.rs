@@ -1,0 +1,467 @@
+//! `joulepath optimize`: the main job.
+
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::bail;
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use nalgebra::{Point3, Vector3};
+use similar::TextDiff;
+
+use super::common::{self, Format, Job, ProgramArgs};
+use super::written::{now, outside, whole_backup, write_folder, write_in_place};
+use super::{backinfo, input, listing, output, refresh, undo};
+use crate::arm::kinematics::{self, Obstacle, Plane};
+use crate::rapid::text::charset;
+use crate::retime::optimize::cost::Cost;
+use crate::retime::optimize::freedom::{Bound, Freedom};
+use crate::retime::optimize::retime::SLOWEST;
+use crate::tool::config::KeepOut;
+use crate::tool::emit::Layout;
+use crate::tool::report::place::Places;
+use crate::tool::report::{self};
+use crate::tool::retrofit::{
+    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, freed, is_streams, retrofit,
+    written_in,
+};
+
+/// Retrofit a program: the same work with less energy in no more time.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath optimize fixtures/pick_place --robot IRB1600-10/1.45 --out optimized"
+)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
+pub struct OptimizeArgs {
+    #[command(flatten)]
+    program: ProgramArgs,
+
+    /// Write the complete program into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Print the changes as a unified diff.
+    #[arg(long)]
+    diff: bool,
+
+    /// Change the files themselves. The originals go to a folder beside that of the program (of a
+    /// backup: beside the backup), with `.joulepath-undo` appended to its name.
+    #[arg(long)]
+    in_place: bool,
+
+    /// Take back what --in-place did to the program at this path: restore the files that it
+    /// changed, delete those that it added, and remove the folder with the originals.
+    #[arg(long, conflicts_with_all = ["in_place", "out", "diff", "report"])]
+    undo: bool,
+
+    /// Write a report as one HTML file.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+
+    /// What is minimised.
+    #[arg(long, value_enum, default_value_t = ObjectiveArg::Energy)]
+    objective: ObjectiveArg,
+
+    /// What stands for energy on each path. Joules, bounds and the sharing of time stay electrical.
+    #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
+    energy: EnergyArg,
+
+    /// Add the curve of least energy over time of each segment to the JSON and the report, with
+    /// so many points.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=200), hide_default_value = true)]
+    pareto: u16,
+
+    /// Time for the cycle, s; otherwise no run takes longer than before.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        conflicts_with = "time_factor",
+        allow_negative_numbers = true
+    )]
+    takt: Option<f64>,
+
+    /// Each run takes this many times as long as before, at most 10.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    time_factor: Option<f64>,
+
+    /// Least time between two points of a stream, s (0.05; 0.04 where the straight ways between them
+    /// would leave the path too far).
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    spacing: Option<f64>,
+
+    /// What is written.
+    #[arg(long, value_enum, default_value_t = EmitArg::Absj)]
+    emit: EmitArg,
+
+    /// How the points of streams are written.
+    #[arg(long, value_enum, default_value_t = LayoutArg::Auto)]
+    layout: LayoutArg,
+
+    /// Let lines and arcs be faster than programmed.
+    #[arg(long)]
+    allow_faster_tcp: bool,
+
+    /// Let joints, and the tool in joint movements, be faster than in the original movements.
+    #[arg(long)]
+    allow_faster_joints: bool,
+
+    /// Rewrite movements whose target stands in the movement itself: nobody may change such a target
+    /// by `ModPos` afterwards, because no guard sees it.
+    #[arg(long)]
+    inline_targets: bool,
+
+    /// Let joint movements leave their path, and lines and arcs whose statement has the comment
+    /// `! joulepath: free` on its line.
+    #[arg(long)]
+    free_path: bool,
+
+    /// How far a free movement may leave its path, mm.
+    #[arg(long, value_name = "MM", requires = "free_path", allow_negative_numbers = true)]
+    deviation: Option<f64>,
+
+    /// Spend waits of stated length at a pose nearby where holding takes less, no joint farther
+    /// away than this, degrees. A wait after an output of the same place stays, unless its line
+    /// has the comment `! joulepath: free`. Only the keep-outs of joulepath.toml are known to
+    /// stand in the way.
+    #[arg(
+        long,
+        value_name = "DEG",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "15"
+    )]
+    dwell_pose: Option<f64>,
+
+    /// Exit with 1 if some movement was refused.
+    #[arg(long)]
+    strict: bool,
+}
+
+/// What is minimised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ObjectiveArg {
+    /// Energy in the time that there is.
+    Energy,
+    /// Time.
+    Time,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EmitArg {
+    /// Streams of joint targets in place of movements.
+    Absj,
+    /// The movements with other speeds; lines and arcs not faster than programmed.
+    Retime,
+    /// The program as it is, and positions for externally guided motion in the folder egm.
+    Egm,
+}
+
+/// How the points of streams are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LayoutArg {
+    /// An instruction for each point.
+    Plain,
+    /// Constant arrays and a loop.
+    Array,
+    /// Arrays for long streams.
+    Auto,
+}
+
+/// What stands for energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EnergyArg {
+    /// What the robot takes from the grid.
+    Electrical,
+    /// The same with all braking energy lost.
+    ElectricalNoRegeneration,
+    /// Mechanical work, as if braking gave everything back.
+    Mechanical,
+    /// Squares of the joint speeds.
+    Velocity,
+    /// Squares of the joint torques.
+    Torque,
+}
+
+/// Least spacing that a controller may be asked for, s.
+const LEAST_SPACING_S: f64 = 0.004;
+/// Largest sensible spacing, s.
+const LARGEST_SPACING_S: f64 = 1.0;
+
+/// How far a free movement may leave its path where nothing is said, mm.
+const DEVIATION_MM: f64 = 50.0;
+/// Beyond this a path says nothing any more, mm.
+const LARGEST_DEVIATION_MM: f64 = 1000.0;
+
+/// Beyond this a pose is not nearby, degrees.
+const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
+
+/// Runs the command.
+///
+/// # Errors
+/// Unusable input, or output that can't be written.
+pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    if args.undo {
+        return take_back(args);
+    }
+    work(args, &common::prepare(&args.program)?)
+}
+
+/// The same for a program that has streams already, which are made anew.
+///
+/// # Errors
+/// The program has none, and all that [`run`] refuses.
+pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    if args.undo {
+        bail!("refresh takes nothing back: joulepath optimize --undo does");
+    }
+    let mut input = input::read(&args.program.cell.paths)?;
+    let streams = refresh::take_out(&mut input)?;
+    let job = common::prepare_read(&args.program, input)?;
+    work(args, &Job { streams, ..job })
+}
+
+fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
+    let settings = settings(args, job)?;
+    // A folder of one task has no list of the controller's modules to be written with it.
+    let paths = args.program.cell.paths.as_slice();
+    let backup = whole_backup(paths, job);
+    if let (Some(folder), None) = (&args.out, backup) {
+        outside(folder, paths)?;
+    }
+    let lists = backup.is_some() || (args.in_place && args.out.is_none());
+    let result = {
+        let bar = progress(args.program.cell.quiet);
+        let result = retrofit(&job.files, &job.model, &settings, &|done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        });
+        bar.finish_and_clear();
+        let mut result = result?;
+        result.notes.extend(job.unused_inputs(&result.before.0));
+        if job.files.iter().any(|source| is_streams(&source.file.bytes)) {
+            result.notes.push(
+                "the program has streams already, which stay as they are: joulepath refresh makes \
+                 them anew from the data of today"
+                    .to_owned(),
+            );
+        }
+        refresh::hand_on(job, &mut result);
+        listing::add(&mut result, &job.input, &job.files);
+        if lists {
+            backinfo::add(&mut result, &job.input);
+        }
+        result
+    };
+    for text in &result.notes {
+        common::note(args.program.cell.quiet, text);
+    }
+    let sources = job.sources();
+    let places = Places::new(&sources);
+    let mut written = Vec::new();
+    if let Some(folder) = &args.out {
+        written.extend(write_folder(folder, job, &result, backup)?);
+    }
+    if args.in_place {
+        written.extend(write_in_place(paths, job, &result)?);
+    }
+    if let Some(path) = &args.report {
+        let html = report::html::optimize_report(&result, &job.files, &job.model, &job.entry)?;
+        output::write(path, html.as_bytes())?;
+        written.push(path.display().to_string());
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            let value = report::json::retrofit(&job.model, &job.entry, places, &result, &written);
+            serde_json::to_writer_pretty(&mut out, &value)?;
+            writeln!(out)?;
+        }
+        Format::Text => {
+            for text in report::text::notes(&job.model, places, &result.before.0) {
+                common::note(args.program.cell.quiet, &text);
+            }
+            for path in &written {
+                common::note(args.program.cell.quiet, &format!("wrote {path}"));
+            }
+            if args.diff || job.is_refreshed() {
+                write!(out, "{}", diff(job, &result))?;
+            } else {
+                write!(out, "{}", report::text::retrofit(&job.model, places, &result))?;
+            }
+        }
+    }
+    let refused = args.strict && result.refused();
+    Ok(ExitCode::from(u8::from(refused)))
+}
+
+fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
+    let positive = |value: f64, flag: &str| {
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            bail!("{flag} {value}: give a positive number")
+        }
+    };
+    let takt = args.takt.or(if args.time_factor.is_some() { None } else { job.config.takt_s });
+    let budget = match (takt, args.time_factor) {
+        (Some(takt), _) => Budget::Takt(positive(takt, "--takt")?),
+        (None, Some(factor)) if factor > SLOWEST => {
+            bail!("--time-factor {factor}: give at most {SLOWEST}; slower travel saves nothing")
+        }
+        (None, Some(factor)) => Budget::Factor(positive(factor, "--time-factor")?),
+        (None, None) => Budget::AsBefore,
+    };
+    let asked = args.spacing.or(job.config.spacing_s);
+    let spacing_s = spacing(asked)?;
+    if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
+        bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
+    }
+    Ok(Settings {
+        entry: job.entry.clone(),
+        options: job.options.clone(),
+        objective: match args.objective {
+            ObjectiveArg::Energy => Objective::Energy,
+            ObjectiveArg::Time => Objective::Time,
+        },
+        budget,
+        spacing_s,
+        closest_s: if asked.is_some() { spacing_s } else { CLOSEST_S },
+        freedom: Freedom {
+            tcp: bound(args.allow_faster_tcp),
+            joints: bound(args.allow_faster_joints),
+            loads: None,
+            deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
+            freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
+            keep_out: job.config.keep_out.iter().map(obstacle).collect::<Result<_, _>>()?,
+        },
+        inline_targets: args.inline_targets,
+        form: match args.emit {
+            EmitArg::Absj => Form::Streams,
+            EmitArg::Retime => Form::Speeds,
+            EmitArg::Egm => Form::Guided,
+        },
+        layout: match args.layout {
+            LayoutArg::Plain => Layout::Plain,
+            LayoutArg::Array => Layout::Array,
+            LayoutArg::Auto => Layout::Auto,
+        },
+        cost: match args.energy {
+            EnergyArg::Electrical => Cost::Electrical,
+            EnergyArg::ElectricalNoRegeneration => Cost::ElectricalWithoutRegeneration,
+            EnergyArg::Mechanical => Cost::Mechanical,
+            EnergyArg::Velocity => Cost::Velocity,
+            EnergyArg::Torque => Cost::Torque,
+        },
+        point_estimate: args.program.point_estimate,
+        dwell_pose: args.dwell_pose.map(dwell_pose).transpose()?,
+        pareto: usize::from(args.pareto),
+        written_elsewhere: written_in(job.others()),
+    })
+}
+
+/// A part of the cell.
+fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
+    match part {
+        KeepOut::Box([one, other]) => {
+            if one.iter().chain(other).any(|x| !x.is_finite()) {
+                bail!("keep_out: box {one:?}, {other:?}: give two corners in m");
+            }
+            let corners = [one, other].map(|corner| Point3::from(*corner));
+            Ok(Obstacle::KeepOut(kinematics::KeepOut::between(corners[0], corners[1])))
+        }
+        KeepOut::Plane([x, y, z, distance]) => {
+            let normal = Vector3::new(*x, *y, *z);
+            let size = normal.norm();
+            if !(size > 0.0 && size.is_finite() && distance.is_finite()) {
+                bail!(
+                    "keep_out: plane [{x}, {y}, {z}, {distance}]: give a normal and a distance, m"
+                );
+            }
+            Ok(Obstacle::Plane(Plane { normal: normal / size, distance: distance / size }))
+        }
+    }
+}
+
+/// What bounds a speed that a flag sets free.
+fn bound(is_free: bool) -> Bound {
+    if is_free { Bound::Robot } else { Bound::Original }
+}
+
+/// How far free movements may leave their path, m.
+fn deviation(asked: Option<f64>) -> anyhow::Result<f64> {
+    let mm = asked.unwrap_or(DEVIATION_MM);
+    if !(mm > 0.0 && mm <= LARGEST_DEVIATION_MM) {
+        bail!("--deviation {mm}: give more than 0 and at most {LARGEST_DEVIATION_MM} mm");
+    }
+    Ok(mm * 1e-3)
+}
+
+/// How far a joint may go to where waiting takes less, rad.
+fn dwell_pose(degrees: f64) -> anyhow::Result<f64> {
+    if !(degrees > 0.0 && degrees <= LARGEST_DWELL_POSE_DEG) {
+        bail!(
+            "--dwell-pose {degrees}: give more than 0 and at most {LARGEST_DWELL_POSE_DEG} degrees"
+        );
+    }
+    Ok(degrees.to_radians())
+}
+
+/// Least time between two points of a stream, s.
+///
+/// # Errors
+/// A time that no controller or user can mean.
+pub fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
+    let spacing_s = asked.unwrap_or(SPACING_S);
+    if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
+        bail!("--spacing {spacing_s}: give {LEAST_SPACING_S} to {LARGEST_SPACING_S} s");
+    }
+    Ok(spacing_s)
+}
+
+fn progress(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} runs {elapsed}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Takes back what an earlier run changed in place.
+fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+    let cell = &args.program.cell;
+    let mut done = Vec::new();
+    for path in &cell.paths {
+        done.extend(undo::undo(path)?);
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            serde_json::to_writer_pretty(&mut out, &serde_json::json!({ "undone": done }))?;
+            writeln!(out)?;
+        }
+        Format::Text => done.iter().for_each(|text| common::note(cell.quiet, text)),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn diff(job: &Job, result: &Retrofit) -> String {
+    let mut text = String::new();
+    for file in &result.outputs {
+        let before = now(job, file).unwrap_or_default();
+        if before == file.bytes {
+            continue;
+        }
+        let charset = charset(&file.bytes);
+        let (old, new) = (charset.decode(&before), charset.decode(&file.bytes));
+        let from =
+            if before.is_empty() { "/dev/null".to_owned() } else { format!("a/{}", file.path) };
+        let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
+        text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
+    }
+    text
+}

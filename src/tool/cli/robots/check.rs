@@ -1,0 +1,121 @@
+//! `joulepath robots check`: whether a robot is sound, and what it lacks.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use serde_json::{Map, Value, json};
+
+use crate::arm::effects;
+use crate::arm::kinematics::{fk, ik_near, limits_ok, radical_inverse};
+use crate::arm::robot::{self, Lack, Model, Use, implausible, lacking};
+use crate::tool::cli::common::Format;
+
+/// Poses over the ranges of the joints at which forward and inverse kinematics
+/// are held against each other.
+const POSES: u32 = 64;
+/// Largest difference of the poses \[m\] and \[rad\].
+const SAME: f64 = 1e-6;
+
+/// What was found of one robot.
+struct Finding {
+    name: String,
+    joints: usize,
+    problems: Vec<String>,
+    lacks: Vec<(Use, Vec<Lack>)>,
+}
+
+/// Checks the robots; all of the catalogue where none is named.
+pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode> {
+    let names: Vec<String> = if robots.is_empty() {
+        robot::names().map(str::to_owned).collect()
+    } else {
+        robots.to_vec()
+    };
+    let mut findings = Vec::with_capacity(names.len());
+    for name in &names {
+        findings.push(checked(&effects::load(name)?, &effects::load_estimated(name)?));
+    }
+    let passed = findings.iter().filter(|finding| finding.problems.is_empty()).count();
+    let mut out = std::io::stdout().lock();
+    match format {
+        Format::Text => {
+            for finding in &findings {
+                write!(out, "{}", text(finding))?;
+            }
+            writeln!(out, "{passed} of {} sound", findings.len())?;
+        }
+        Format::Json => {
+            let robots: Vec<Value> = findings.iter().map(document).collect();
+            writeln!(out, "{:#}", json!({ "robots": robots, "passed": passed }))?;
+        }
+    }
+    Ok(if passed == findings.len() { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// What is found of a robot as its file has it, and with estimates.
+fn checked(model: &Model, estimated: &Model) -> Finding {
+    let mut problems = implausible(model);
+    let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
+    if missed > 0 {
+        problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));
+    }
+    let lacks = Use::ALL.map(|of| (of, lacking(estimated, of))).to_vec();
+    Finding { name: model.name.clone(), joints: model.dof, problems, lacks }
+}
+
+/// Whether the inverse of the `n`-th pose has that pose. Robots without six joints
+/// need a finite pose only.
+fn leads_back(model: &Model, n: u32) -> bool {
+    const BASES: [u32; 7] = [2, 3, 5, 7, 11, 13, 17];
+    let q: Vec<f64> = model
+        .limits
+        .position
+        .iter()
+        .zip(BASES)
+        .map(|([low, high], base)| low + radical_inverse(n, base) * (high - low))
+        .collect();
+    let pose = fk(model, &q);
+    let Ok(q) = <[f64; 6]>::try_from(q.as_slice()) else {
+        return pose.to_homogeneous().iter().all(|entry| entry.is_finite());
+    };
+    // The rods of a parallelogram may not allow the pose: then nothing is to be found.
+    if limits_ok(model, &q).is_err() {
+        return true;
+    }
+    ik_near(model, &pose, &q).is_ok_and(|found| {
+        let miss = fk(model, &found).inverse() * pose;
+        miss.translation.vector.norm() < SAME && miss.rotation.angle() < SAME
+    })
+}
+
+fn text(finding: &Finding) -> String {
+    let verdict = if finding.problems.is_empty() { "sound" } else { "NOT SOUND" };
+    let mut text = format!("{}: {verdict}, {} joints\n", finding.name, finding.joints);
+    for problem in &finding.problems {
+        let _ = writeln!(text, "  {problem}");
+    }
+    for (command, missing) in finding.lacks.iter().filter(|(_, missing)| !missing.is_empty()) {
+        let _ = writeln!(text, "  {command} lacks {}", words(missing).join(", "));
+    }
+    text
+}
+
+fn words(lacks: &[Lack]) -> Vec<String> {
+    lacks.iter().map(ToString::to_string).collect()
+}
+
+fn document(finding: &Finding) -> Value {
+    let lacks: Map<String, Value> = finding
+        .lacks
+        .iter()
+        .map(|(command, missing)| (command.to_string(), json!(words(missing))))
+        .collect();
+    json!({
+        "name": finding.name,
+        "joints": finding.joints,
+        "sound": finding.problems.is_empty(),
+        "problems": finding.problems,
+        "lacks": lacks,
+    })
+}

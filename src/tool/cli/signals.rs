@@ -1,0 +1,66 @@
+//! Checks what the command line says of signals against the program.
+
+use std::collections::BTreeMap;
+
+use anyhow::bail;
+
+use super::common::CellArgs;
+use crate::arm::robot::nearest;
+use crate::rapid::ir::program::Program;
+use crate::rapid::ir::signals::{Signal, SignalKind, signals};
+use crate::retime::motion::Simulation;
+
+/// Checks the names of `--assume` and `--input`, and all levels.
+///
+/// # Errors
+/// A signal that the program does not name, or a level that it can't have.
+pub fn check(
+    args: &CellArgs,
+    levels: &BTreeMap<String, f64>,
+    program: &Program,
+) -> anyhow::Result<()> {
+    let known = signals(program);
+    for (option, texts) in [("--assume", &args.levels), ("--input", &args.inputs)] {
+        for text in texts {
+            let name = text.split('=').next().unwrap_or_default().trim();
+            if !known.contains_key(&name.to_lowercase()) {
+                let names = known.values().map(|signal| signal.name.as_str());
+                let way_out = nearest(name, names).map_or_else(
+                    || "leave it out or correct the name".to_owned(),
+                    |near| format!("did you mean {near}?"),
+                );
+                bail!("{option} {text}: the program names no signal '{name}'; {way_out}");
+            }
+        }
+    }
+    for (key, level) in levels {
+        let Some(Signal { name, kind: Some(kind) }) = known.get(key) else { continue };
+        let (fits, what) = match kind {
+            SignalKind::Digital => {
+                (*level == 0.0 || *level == 1.0, "a digital signal; its level is 0 or 1")
+            }
+            SignalKind::Group => (
+                *level >= 0.0 && level.fract() == 0.0,
+                "a group of signals; its level is a whole number from 0",
+            ),
+            SignalKind::Analog => (level.is_finite(), "an analogue signal; its level is a number"),
+        };
+        if !fits {
+            bail!("--assume {name}={level}: {name} is {what}");
+        }
+    }
+    Ok(())
+}
+
+/// Notes on levels that the simulated cycle did not ask for.
+pub fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
+    let mut notes = Vec::new();
+    for text in &args.levels {
+        let name = text.split('=').next().unwrap_or_default().trim();
+        let begin = format!("{} is ", name.to_lowercase());
+        if !simulation.assumed.iter().any(|text| text.to_lowercase().starts_with(&begin)) {
+            notes.push(format!("the cycle does not ask for the level of {name}: it is not used"));
+        }
+    }
+    notes
+}

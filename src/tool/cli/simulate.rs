@@ -1,0 +1,111 @@
+//! `joulepath simulate`: a program on the virtual controller.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::bail;
+use clap::Args;
+
+use super::common::{self, Format, ProgramArgs};
+use super::{output, signals};
+use crate::retime::energy::account;
+use crate::retime::energy::plausible::plausibility;
+use crate::retime::energy::trajectory::{STEP, trajectory};
+use crate::retime::motion;
+use crate::tool::report::html::simulate_report;
+use crate::tool::report::place::Places;
+use crate::tool::report::{self};
+use crate::tool::retrofit::read_program;
+
+/// Run a program on the virtual controller: time and energy of each move.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath simulate fixtures/pick_place --robot IRB1600-10/1.45 --input diMcReady=20"
+)]
+pub struct SimulateArgs {
+    #[command(flatten)]
+    program: ProgramArgs,
+
+    /// Write the planned motion as CSV, at most 2 ms apart.
+    #[arg(long, value_name = "FILE.csv")]
+    trajectory: Option<PathBuf>,
+
+    /// Write a report as one HTML file: the cycle over time, power, joints, the source with joules.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+}
+
+/// Rows of a trajectory that fit into memory.
+const MAX_ROWS: f64 = 5e6;
+
+/// Runs the command.
+///
+/// # Errors
+/// Unusable input, or output that can't be written.
+pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
+    let job = common::prepare(&args.program)?;
+    let (program, entry) = read_program(&job.files, &job.entry)?;
+    signals::check(&args.program.cell, &job.options.levels, &program)?;
+    let simulation = motion::simulate(&program, entry, &job.model, &job.options);
+    let account = account(&job.model, &simulation);
+    let sources = job.sources();
+    let places = Places::new(&sources);
+    let plausible = if args.program.point_estimate {
+        None
+    } else {
+        plausibility(&job.model, &simulation, &account)
+    };
+    if args.trajectory.is_some() || args.report.is_some() {
+        let rows = simulation.cycle_s / STEP;
+        if rows > MAX_ROWS {
+            bail!(
+                "the cycle of {:.0} s has {rows:.0} rows of trajectory, more than {MAX_ROWS:.0}: \
+                 end it earlier with --max-time, or leave --trajectory and --report out",
+                simulation.cycle_s
+            );
+        }
+        let samples = trajectory(&job.model, &simulation);
+        if let Some(path) = &args.trajectory {
+            output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;
+        }
+        if let Some(path) = &args.report {
+            let (model, entry) = (&job.model, &job.entry);
+            let energies = (&account, plausible.as_ref());
+            let page = simulate_report(&simulation, energies, &samples, &sources, model, entry)?;
+            output::write(path, page.as_bytes())?;
+        }
+    }
+    let mut notes = job.unused_inputs(&simulation);
+    notes.extend(signals::unused_levels(&args.program.cell, &simulation));
+    for text in &notes {
+        common::note(args.program.cell.quiet, text);
+    }
+    let mut out = std::io::stdout().lock();
+    match args.program.format {
+        Format::Json => {
+            let (model, entry) = (&job.model, &job.entry);
+            let value = report::json::simulation(
+                model,
+                entry,
+                places,
+                &simulation,
+                &account,
+                plausible.as_ref(),
+                &notes,
+            );
+            serde_json::to_writer_pretty(&mut out, &value)?;
+            writeln!(out)?;
+        }
+        Format::Text => {
+            for text in report::text::notes(&job.model, places, &simulation) {
+                common::note(args.program.cell.quiet, &text);
+            }
+            let plausible = plausible.as_ref();
+            let text =
+                report::text::simulation(&job.model, places, &simulation, &account, plausible);
+            write!(out, "{text}")?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,230 @@
+//! Where a changed program goes: into a folder, or in place of the original.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+
+use super::common::Job;
+use super::{output, undo};
+use crate::rapid::text::{FileId, SourceFile};
+use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
+
+/// The backup, if the command line names the whole of it.
+pub(super) fn whole_backup<'j>(paths: &[PathBuf], job: &'j Job) -> Option<&'j Path> {
+    let [path] = paths else { return None };
+    let [(root, _)] = job.input.backups.as_slice() else { return None };
+    (path.canonicalize().ok()? == *root).then_some(root.as_path())
+}
+
+/// The folder of the program: that of its backup, or the deepest one that holds all that is named.
+fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
+    let mut shared: Option<PathBuf> = job.input.backups.first().map(|(root, _)| root.clone());
+    for path in paths {
+        let mut folder =
+            path.canonicalize().with_context(|| format!("cannot find '{}'", path.display()))?;
+        if !folder.is_dir() {
+            folder.pop();
+        }
+        let mut common = shared.unwrap_or_else(|| folder.clone());
+        while !folder.starts_with(&common) && common.pop() {}
+        shared = Some(common);
+    }
+    shared.context("no file or folder given")
+}
+
+/// The files of a backup that are not among the outputs, with their paths below it.
+fn rest_of_backup(
+    root: &Path,
+    out: &Path,
+    (job, result): (&Job, &Retrofit),
+) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
+    let known: BTreeSet<PathBuf> =
+        result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
+    let real = |path: &Path| path.canonicalize().ok();
+    let streams: Vec<_> = job.streams.modules.iter().map(|path| real(path)).collect();
+    let is_stream = |path: &Path| streams.contains(&real(path));
+    let mut rest = Vec::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let failed = || format!("cannot read the backup's '{}'", folder.display());
+        for entry in std::fs::read_dir(&folder).with_context(failed)? {
+            let path = entry.with_context(failed)?.path();
+            let kind = std::fs::symlink_metadata(&path).with_context(failed)?;
+            let relative = path.strip_prefix(root).unwrap_or(&path).to_owned();
+            if kind.is_dir() && path != out {
+                folders.push(path);
+            } else if kind.is_file() && !known.contains(&relative) && !is_stream(&path) {
+                let bytes = std::fs::read(&path)
+                    .with_context(|| format!("cannot read '{}'", path.display()))?;
+                rest.push((relative, bytes));
+            }
+        }
+    }
+    rest.sort();
+    Ok(rest)
+}
+
+/// Refuses a folder for the new program within one of those from which the program is read.
+pub(super) fn outside(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
+    let wanted = std::path::absolute(folder)?;
+    let mut ancestors = wanted.ancestors();
+    let real = ancestors.find_map(|path| path.canonicalize().ok());
+    let around = |path: &&PathBuf| {
+        let root = path.canonicalize().ok().filter(|root| root.is_dir());
+        // The folder itself is told with the file that would be overwritten.
+        root.is_some_and(|root| {
+            real.as_ref().is_some_and(|real| real.starts_with(&root))
+                && wanted.canonicalize().ok() != Some(root)
+        })
+    };
+    if let Some(root) = paths.iter().find(around) {
+        bail!(
+            "'{}' lies in '{}', so that it would be read as a part of the program next time; name a \
+             folder outside of that, or give --in-place",
+            folder.display(),
+            root.display()
+        );
+    }
+    Ok(())
+}
+
+/// The complete program below a folder, of a backup all of it.
+pub(super) fn write_folder(
+    folder: &Path,
+    job: &Job,
+    result: &Retrofit,
+    backup: Option<&Path>,
+) -> anyhow::Result<Vec<String>> {
+    let real = |path: &Path| path.canonicalize().ok();
+    for file in &result.outputs {
+        let path = folder.join(&file.path);
+        let target = real(&path);
+        if target.is_some()
+            && job.files.iter().any(|source| real(Path::new(&source.file.path)) == target)
+        {
+            bail!(
+                "'{}' is a file of the program itself; name another folder, or give --in-place, \
+                 which keeps the originals",
+                path.display()
+            );
+        }
+    }
+    let stored: Vec<(PathBuf, Cow<'_, [u8]>)> =
+        new_first(result).map(|file| (PathBuf::from(&file.path), stored(job, file))).collect();
+    let rest = match backup {
+        Some(root) => {
+            let out = std::path::absolute(folder)?;
+            rest_of_backup(root, &real(&out).unwrap_or(out), (job, result))?
+        }
+        None => Vec::new(),
+    };
+    let files = stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref()));
+    let unchanged = rest.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
+    output::write_folder(folder, &files.chain(unchanged).collect::<Vec<_>>())?;
+    let written = result.outputs.iter().map(|file| folder.join(&file.path));
+    let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
+    Ok(written.map(|path| path.display().to_string()).collect())
+}
+
+/// New files before those that call them: a write that breaks off leaves a program that works.
+fn new_first(result: &Retrofit) -> impl Iterator<Item = &OutputFile> {
+    let of =
+        |new: bool| result.outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
+    of(true).chain(of(false))
+}
+
+/// The changed files in place of the original ones, which are kept; new files beside.
+pub(super) fn write_in_place(
+    paths: &[PathBuf],
+    job: &Job,
+    result: &Retrofit,
+) -> anyhow::Result<Vec<String>> {
+    let mut changes = Vec::new();
+    for file in new_first(result) {
+        let (path, after) = (place(job, file), stored(job, file));
+        let before = match original(job, file) {
+            Some((path, bytes)) => {
+                // A file that can't be read can't be restored.
+                let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
+                // What has streams already is taken back to what it is without them.
+                let before =
+                    if job.is_refreshed() { encoded(job, file, bytes) } else { (&now).into() };
+                if before == after && now == *after {
+                    continue;
+                }
+                Some(before.into_owned())
+            }
+            None => None,
+        };
+        changes.push(undo::Change { path, before, after });
+    }
+    if changes.is_empty() {
+        return Ok(Vec::new());
+    }
+    let plan = undo::plan(&program_folder(paths, job)?, &changes, &job.streams.modules)?;
+    let staged: anyhow::Result<Vec<output::Staged>> =
+        changes.iter().map(|change| output::stage(&change.path, &change.after)).collect();
+    let staged = staged?;
+    let kept = plan.write()?;
+    staged.into_iter().try_for_each(output::Staged::put)?;
+    let is_written = |path: &&PathBuf| changes.iter().any(|change| change.path == **path);
+    for path in job.streams.modules.iter().filter(|path| !is_written(path)) {
+        std::fs::remove_file(path)
+            .with_context(|| format!("cannot delete '{}'", path.display()))?;
+    }
+    let paths = std::iter::once(&kept).chain(changes.iter().map(|change| &change.path));
+    Ok(paths.map(|path| path.display().to_string()).collect())
+}
+
+/// The bytes of an output in the encoding of the file that it stands for.
+fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
+    encoded(job, file, &file.bytes)
+}
+
+fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
+    match file.input.and_then(|i| job.files.get(i)) {
+        Some(source) => source.file.stored(bytes),
+        None => Cow::Borrowed(bytes),
+    }
+}
+
+/// What the user's file holds in place of an output, decoded as that is.
+pub(super) fn now(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
+    if !job.is_refreshed() {
+        return original(job, file).map(|(_, bytes)| bytes.to_vec());
+    }
+    let path = place(job, file);
+    let bytes = std::fs::read(&path).ok()?;
+    Some(SourceFile::new(FileId(0), path.display().to_string(), bytes).bytes)
+}
+
+/// Path and bytes of the file of the input that an output stands for.
+fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+    match (file.kind, file.input) {
+        (OutputKind::New, _) => None,
+        (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
+        (_, None) => {
+            let listing = job.input.listings.iter().find(|l| l.relative == file.path);
+            let listing = listing.map(|l| (l.path.as_str(), l.bytes.as_slice()));
+            let information = job.input.information.iter().find(|i| i.relative == file.path);
+            listing.or_else(|| information.map(|i| (i.path.as_str(), i.bytes.as_slice())))
+        }
+    }
+}
+
+/// Where an output lies in the user's own tree.
+fn place(job: &Job, file: &OutputFile) -> PathBuf {
+    if let Some((path, _)) = original(job, file) {
+        return PathBuf::from(path);
+    }
+    let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    // A new file lies beside one of the same folder, others where the relative paths start.
+    let beside = job.files.iter().find(|s| folder(&s.relative) == folder(&file.path));
+    if let (Some(source), Some(name)) = (beside, Path::new(&file.path).file_name()) {
+        return folder(&source.file.path).join(name);
+    }
+    let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
+    PathBuf::from(root.unwrap_or_default()).join(&file.path)
+}

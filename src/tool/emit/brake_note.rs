@@ -1,0 +1,37 @@
+//! The note on dwells in which the brake would pay.
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+/// A dwell in the note.
+#[derive(Clone, Debug, Serialize)]
+pub struct BrakeDwell {
+    /// File and line.
+    pub place: String,
+    /// s.
+    pub duration: String,
+    /// W.
+    pub holding: String,
+    /// s.
+    pub break_even: String,
+    /// J.
+    pub potential: String,
+}
+
+/// The note with an opt-in configuration fragment.
+///
+/// # Errors
+/// The template failed.
+pub fn brake_note(
+    robot: &str,
+    dwells: &[BrakeDwell],
+    break_even: &str,
+) -> Result<String, tera::Error> {
+    let mut context = Context::new();
+    context.insert("robot", robot);
+    context.insert("dwells", dwells);
+    context.insert("break_even", break_even);
+    let mut tera = Tera::default();
+    tera.add_raw_template("brakes", include_str!("../../../templates/brakes.txt.tera"))?;
+    tera.render("brakes", &context)
+}

@@ -1,0 +1,162 @@
+//! An excitation as RAPID: a motion module, and a logger for a second task.
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
+
+/// Names of everything that is declared begin with this.
+const PREFIX: &str = "jpExcite";
+/// The motion task, the mechanical unit and the mark, as a controller names them.
+pub(super) const TASK: &str = "T_ROB1";
+const UNIT: &str = "ROB_1";
+const SIGNAL: &str = "doJpSync";
+/// Decimals of gear ratios.
+const RATIO_DECIMALS: usize = 5;
+/// Interval of the logger \[s\]: the fastest that test signals have.
+pub(super) const INTERVAL: f64 = 0.004;
+/// Rows of the logger at most: what a RAPID array takes from a task's memory.
+const MOST_ROWS: usize = 30_000;
+
+/// Points that are run through one after another.
+#[derive(Clone, Debug)]
+pub struct Points {
+    /// What they are.
+    pub what: &'static str,
+    /// Suffix of their name.
+    pub name: &'static str,
+    /// Whether they are repeated.
+    pub repeated: bool,
+    /// \[rad\].
+    pub points: Vec<[f64; 6]>,
+}
+
+/// Where a controller tells the torques.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoggedTorques {
+    /// Test signal 4002: arm side.
+    TestSignals,
+    /// `GetMotorTorque`, motor side.
+    Motors {
+        /// Gear ratios.
+        ratio: Vec<f64>,
+        /// Turns of motor 6 for a turn of axis 5, relative to its ratio.
+        coupling: f64,
+    },
+}
+
+/// A motion to emit.
+#[derive(Clone, Debug)]
+pub struct Excitation {
+    /// What it is for.
+    pub title: String,
+    /// The robot.
+    pub robot: String,
+    /// Number of repetitions.
+    pub cycles: usize,
+    /// Duration of one \[s\].
+    pub period: f64,
+    /// Time between points \[s\].
+    pub spacing: f64,
+    /// Where it begins \[rad\].
+    pub start: [f64; 6],
+    /// The points.
+    pub lists: Vec<Points>,
+    /// Where it ends \[rad\].
+    pub stop: [f64; 6],
+    /// Angles of joint 1 at which the mark falls and rises \[rad\].
+    pub marks: [f64; 2],
+    /// Where the logger has torques from.
+    pub torques: LoggedTorques,
+}
+
+/// Two modules with their names.
+#[derive(Clone, Debug)]
+pub struct ExcitationModules {
+    /// File name and text of the motion.
+    pub motion: (String, String),
+    /// File name and text of the logger.
+    pub logger: (String, String),
+}
+
+#[derive(Serialize)]
+struct List {
+    what: &'static str,
+    name: String,
+    repeated: bool,
+    points: Vec<String>,
+}
+
+/// Renders the modules of an excitation.
+///
+/// # Errors
+/// A template that does not fit its data.
+pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
+    let mut tera = Tera::default();
+    tera.add_raw_templates(vec![
+        ("motion", include_str!("../../../templates/excitation.mod.tera")),
+        ("logger", include_str!("../../../templates/excitation_logger.mod.tera")),
+    ])?;
+    let lists: Vec<List> = of
+        .lists
+        .iter()
+        .filter(|list| !list.points.is_empty())
+        .map(|list| List {
+            what: list.what,
+            name: format!("{PREFIX}{}", list.name),
+            repeated: list.repeated,
+            points: list.points.iter().map(|q| joints(q)).collect(),
+        })
+        .collect();
+    let count: usize = of
+        .lists
+        .iter()
+        .map(|list| list.points.len() * if list.repeated { of.cycles } else { 1 })
+        .sum();
+    let duration = of.spacing * count as f64 + 3.0;
+    // A long motion is logged less often rather than cut off.
+    let every = (duration / MOST_ROWS as f64 / INTERVAL).ceil().max(1.0);
+    let interval = INTERVAL * every;
+    let rows = (duration / interval).ceil() as usize;
+    let (motion, logger) = ("JoulepathExcitation", "JoulepathLogger");
+    let mut context = Context::new();
+    context.insert("version", env!("CARGO_PKG_VERSION"));
+    context.insert("module", motion);
+    context.insert("prefix", PREFIX);
+    context.insert("title", &of.title);
+    context.insert("robot", &of.robot);
+    context.insert("cycles", &of.cycles.to_string());
+    context.insert("period", &number(of.period, TIME_DECIMALS));
+    context.insert("spacing", &number(of.spacing, TIME_DECIMALS));
+    context.insert("start", &joints(&of.start));
+    context.insert("stop", &joints(&of.stop));
+    context.insert("lists", &lists);
+    context.insert("tool", "tool0");
+    let motion_text = tera.render("motion", &context)?;
+    context.insert("module", logger);
+    context.insert("motion", motion);
+    context.insert("task", TASK);
+    context.insert("unit", UNIT);
+    context.insert("signal", SIGNAL);
+    context.insert("file", "joulepath_log.csv");
+    context.insert("rows", &rows.to_string());
+    context.insert("interval", &number(interval, TIME_DECIMALS));
+    context.insert("mark_low", &number(of.marks[0].to_degrees(), 2));
+    context.insert("mark_high", &number(of.marks[1].to_degrees(), 2));
+    context.insert("joints", &["1", "2", "3", "4", "5", "6"]);
+    match &of.torques {
+        LoggedTorques::TestSignals => context.insert("test_signals", &true),
+        LoggedTorques::Motors { ratio, coupling } => {
+            let shown: Vec<String> = ratio.iter().map(|n| number(*n, RATIO_DECIMALS)).collect();
+            context.insert("test_signals", &false);
+            context.insert("ratios", &shown);
+            let coupled = *coupling != 0.0;
+            context.insert("coupling", &coupled.then(|| number(*coupling, RATIO_DECIMALS)));
+        }
+    }
+    let logger_text = tera.render("logger", &context)?;
+    Ok(ExcitationModules {
+        motion: (format!("{motion}.mod"), motion_text),
+        logger: (format!("{logger}.mod"), logger_text),
+    })
+}

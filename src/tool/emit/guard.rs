@@ -1,0 +1,323 @@
+//! Guards: what stands before the movements of a site, and what the module compares for it.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+use super::names::Names;
+use super::site::{EmitError, Parameter, Recorded, Site};
+use super::stream_module::{end_of_line, has_external};
+use crate::rapid::ir::number::number;
+use crate::rapid::text::{Charset, Edit, SourceFile, Span};
+
+/// What stands behind the ELSE of a guard: literals in the lines below are not compared.
+pub const EDIT_REMARK: &str = " ! after an edit of these lines: joulepath refresh";
+
+/// Longest line of an inserted condition, characters.
+const LINE: usize = 90;
+/// Longest name of a datum in a message, characters: with the place and a component it fits into the
+/// 80 characters of a string.
+const LABEL: usize = 20;
+/// Longest name of a place in a message, characters.
+const PLACE: usize = 30;
+/// Instructions of a guard that always run: its call and the settings (21), the robot (7), where it
+/// stands, and the count of what runs then (7).
+const COMMON: usize = 35;
+/// Instructions for a way that is looked at.
+const EACH: usize = 5;
+/// Instructions for an argument that is compared but for rounding.
+const ROUNDED: usize = 2;
+/// Instructions that lead to the points of a stream.
+const LEAD: usize = 4;
+
+/// A guard as text.
+#[derive(Serialize)]
+pub(super) struct Guard {
+    pub(super) origin: String,
+    /// The same, short enough for a line of the `FlexPendant`.
+    pub(super) label: String,
+    number: String,
+    /// The record of what is compared.
+    record: String,
+    fits: String,
+    run: String,
+    tell: String,
+    tool: String,
+    parts: Vec<PartText>,
+    /// Number of streams, alone and in the braces of a declaration.
+    ways: String,
+    count: String,
+    /// Arrays of where the streams start and what they are made for.
+    from: String,
+    made: String,
+    /// Arguments of the function that looks at the settings.
+    settings: String,
+    external: bool,
+    /// Instructions in a cycle.
+    #[serde(skip)]
+    pub(super) instructions: usize,
+}
+
+/// A component of a record.
+#[derive(Serialize)]
+struct PartText {
+    name: String,
+    r#type: &'static str,
+    /// The argument; empty for what the module records.
+    text: String,
+    /// What stands for it in a comparison, before and after the record that it is compared with.
+    now: [String; 2],
+    /// What messages call it.
+    label: String,
+}
+
+/// A type that guards compare.
+#[derive(Serialize)]
+pub(super) struct TypeText {
+    name: &'static str,
+    parts: Vec<ComponentText>,
+}
+
+/// A part of a datum that fits into a message.
+#[derive(Serialize)]
+struct ComponentText {
+    /// As it is written behind the datum.
+    dotted: String,
+    /// As messages say it.
+    said: String,
+}
+
+/// The guard of a site.
+pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usize) -> Guard {
+    let prefix = &names.prefix;
+    let parts: Vec<PartText> = site
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(i, parameter)| part(parameter, prefix, format!("p{}", i + 1)))
+        .collect();
+    let settings = &site.settings;
+    let word = |on: bool| if on { "TRUE" } else { "FALSE" };
+    Guard {
+        label: shortened(&site.origin),
+        origin: site.origin.clone(),
+        number: index.to_string(),
+        record: format!("{prefix}Data{index}"),
+        fits: format!("{prefix}Fits{index}"),
+        run: format!("{prefix}Run{index}"),
+        tell: format!("{prefix}Tell{index}"),
+        tool: site.tool.clone(),
+        ways: site.streams.len().to_string(),
+        count: format!("{{{}}}", site.streams.len()),
+        from: format!("{prefix}From{index}"),
+        made: format!("{prefix}Made{index}"),
+        instructions: instructions(site, recorded),
+        parts,
+        settings: format!(
+            "{},{},{},{}",
+            number(settings.fastest, 3),
+            word(settings.conf_joint),
+            word(settings.conf_linear),
+            word(settings.lines),
+        ),
+        external: site.streams.iter().any(has_external),
+    }
+}
+
+fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
+    let own = if parameter.text.is_some() { name.clone() } else { format!("{prefix}Load") };
+    let near = match parameter.type_name {
+        "robtarget" if parameter.is_computed => Some("NearTarget"),
+        "jointtarget" if parameter.is_computed => Some("NearJoints"),
+        "num" if parameter.is_computed => Some("NearNumber"),
+        _ => None,
+    };
+    let now = match near {
+        Some(near) => [format!("{prefix}{near}({own},"), format!(".{name})")],
+        None => [own, String::new()],
+    };
+    PartText {
+        r#type: parameter.type_name,
+        label: escaped(&parameter.label.chars().take(LABEL).collect::<String>()),
+        text: parameter.text.clone().unwrap_or_default(),
+        now,
+        name,
+    }
+}
+
+/// The types that guards compare, with what is told of each.
+pub(super) fn types(guards: &[&Guard]) -> Vec<TypeText> {
+    let parts = guards.iter().flat_map(|guard| &guard.parts);
+    let names: BTreeSet<&'static str> = parts.map(|part| part.r#type).collect();
+    let text = |name: &'static str| TypeText {
+        name,
+        parts: components(name)
+            .iter()
+            .map(|part| match *part {
+                "" => ComponentText { dotted: String::new(), said: String::new() },
+                part => ComponentText { dotted: format!(".{part}"), said: format!(" {part}") },
+            })
+            .collect(),
+    };
+    names.into_iter().map(text).collect()
+}
+
+/// The parts of a type whose texts are short enough for a string.
+fn components(type_name: &str) -> &'static [&'static str] {
+    match type_name {
+        "robtarget" => &["trans", "rot", "robconf", "extax"],
+        "jointtarget" => &["robax", "extax"],
+        "tooldata" => &[
+            "robhold",
+            "tframe.trans",
+            "tframe.rot",
+            "tload.mass",
+            "tload.cog",
+            "tload.aom",
+            "tload.ix",
+            "tload.iy",
+            "tload.iz",
+        ],
+        "wobjdata" => &[
+            "robhold",
+            "ufprog",
+            "ufmec",
+            "uframe.trans",
+            "uframe.rot",
+            "oframe.trans",
+            "oframe.rot",
+        ],
+        "loaddata" => &["mass", "cog", "aom", "ix", "iy", "iz"],
+        _ => &[""],
+    }
+}
+
+/// The inside of a string of RAPID.
+fn escaped(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('"', "\"\"")
+}
+
+/// Instructions that the guard of a site runs in a cycle. Ways are looked at from the one behind
+/// the last, in a circle.
+fn instructions(site: &Site, recorded: &Recorded) -> usize {
+    let ways = site.streams.len();
+    let rounded = site.parameters.iter().filter(|parameter| parameter.is_computed).count();
+    let each = EACH + ROUNDED * rounded;
+    let mut last = ways - 1;
+    let run = |way: &Option<usize>| {
+        let Some(way) = *way else { return ways * each };
+        let looked_at = (way + ways - last - 1) % ways + 1;
+        last = way;
+        looked_at * each + LEAD
+    };
+    let looks: usize = site.order.iter().map(run).sum();
+    looks + site.order.len() * (COMMON + recorded.switches.len())
+}
+
+/// The end of a place's name: the line counts more than the folder.
+fn shortened(origin: &str) -> String {
+    let count = origin.chars().count();
+    origin.chars().skip(count.saturating_sub(PLACE)).collect()
+}
+
+/// Insertions before and after the statements of a site.
+pub(super) fn insertions(
+    tera: &Tera,
+    file: &SourceFile,
+    charset: Charset,
+    site: &Site,
+    guard: &Guard,
+) -> Result<[Edit; 2], EmitError> {
+    let span = site.span;
+    let before = &file.bytes[..span.start as usize];
+    let line = before.iter().rposition(|b| *b == b'\n' || *b == b'\r').map_or(0, |i| i + 1);
+    let indent: String = before[line..]
+        .iter()
+        .take_while(|b| matches!(b, b' ' | b'\t'))
+        .map(|b| char::from(*b))
+        .collect();
+    let end_of_line = end_of_line(&file.bytes);
+    let mut context = Context::new();
+    context.insert("indent", &indent);
+    context.insert("guard", guard);
+    let arguments = guard.parts.iter().map(|part| part.text.as_str()).filter(|t| !t.is_empty());
+    context.insert("remark", EDIT_REMARK);
+    context.insert("arguments", &lines(arguments, &indent));
+    let head = tera.render("guard", &context)?;
+    let head = head.strip_suffix('\n').unwrap_or(&head).replace('\n', end_of_line);
+    let after = file.bytes.get(span.end as usize);
+    let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
+    let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
+    // Names of tools and data may be in it: it is written as the file is.
+    let insertion = |at: u32, text: String| Edit {
+        span: Span { file: span.file, start: at, end: at },
+        text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
+    };
+    Ok([insertion(span.start, head), insertion(span.end, tail)])
+}
+
+/// Arguments with commas, on lines that are not too long.
+fn lines<'t>(arguments: impl Iterator<Item = &'t str>, indent: &str) -> String {
+    let mut text = String::new();
+    let mut width = indent.len();
+    for (i, argument) in arguments.enumerate() {
+        if i > 0 {
+            text.push(',');
+        }
+        if width + argument.len() > LINE {
+            text.push('\n');
+            text.push_str(indent);
+            text.push_str("        ");
+            width = indent.len() + 8;
+        }
+        text.push_str(argument);
+        width += argument.len() + 1;
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tool::emit::{EmittedStream, MotionSettings};
+
+    /// A stream is looked at first that comes after the last one: in their order each costs one look.
+    #[test]
+    fn ways_in_their_order_cost_one_look() {
+        let stream = EmittedStream {
+            start: [0.0; 6],
+            points: Vec::new(),
+            intervals: Vec::new(),
+            pause: None,
+            external: [9e9; 6],
+            values: Vec::new(),
+            origin: String::new(),
+            before: String::new(),
+            after: String::new(),
+        };
+        let site = |order: &[Option<usize>]| Site {
+            span: Span { file: crate::rapid::text::FileId(0), start: 0, end: 0 },
+            origin: String::new(),
+            parameters: Vec::new(),
+            settings: MotionSettings {
+                fastest: 0.0,
+                conf_joint: true,
+                conf_linear: true,
+                lines: false,
+            },
+            tool: "tool0".into(),
+            streams: vec![stream.clone(); 4],
+            order: order.to_vec(),
+        };
+        let looks = |order: &[Option<usize>]| {
+            let runs = order.iter().flatten().count();
+            let fixed = order.len() * COMMON + runs * LEAD;
+            (instructions(&site(order), &Recorded::default()) - fixed) / EACH
+        };
+        let [a, b, c, d] = [Some(0), Some(1), Some(2), Some(3)];
+        assert_eq!(looks(&[a, b, c, d, a, b, c, d]), 8);
+        assert_eq!(looks(&[a, a]), 1 + 4);
+        assert_eq!(looks(&[d, None, a]), 4 + 4 + 1);
+    }
+}

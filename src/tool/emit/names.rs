@@ -1,0 +1,189 @@
+//! Names that no module of the program has.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+
+use crate::rapid::ir::hir::{Block, ExprKind, Routine, StmtKind};
+use crate::rapid::ir::program::Program;
+use crate::rapid::syntax::{TokenKind, tokenize};
+use crate::rapid::text::{SourceFile, Span};
+
+/// The names of a streams module.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Names {
+    /// Prefix of all names.
+    pub prefix: String,
+    /// The module.
+    pub module: String,
+}
+
+impl Names {
+    /// Names whose prefix begins no word of the files, whatever the word stands for: data,
+    /// routines, labels, loop variables, and signals and modules that are declared elsewhere. No
+    /// module is named as one of the files.
+    pub fn free(files: &[SourceFile]) -> Names {
+        let taken = taken(files);
+        let is_free = |beginning: &str| {
+            let beginning = beginning.to_lowercase();
+            let next = taken.range(beginning.clone()..).next();
+            next.is_none_or(|word| !word.starts_with(&beginning))
+        };
+        let mut prefix = "jp".to_owned();
+        let mut round = 1;
+        while !is_free(&prefix) || !is_free(&module_name(round)) {
+            round += 1;
+            prefix = format!("jp{round}_");
+        }
+        Names { module: module_name(round), prefix }
+    }
+
+    /// The module with a part of the streams, from 0.
+    pub fn part(&self, index: usize) -> String {
+        if index == 0 { self.module.clone() } else { format!("{}_{}", self.module, index + 1) }
+    }
+}
+
+/// A guard of a program whose module of streams is not among the files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingStreams {
+    /// The function that it calls.
+    pub function: String,
+    /// Where.
+    pub span: Span,
+    /// The file that declares it.
+    pub module: String,
+}
+
+/// The first guard that calls a function of a module of streams that the program does not have.
+pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
+    program.modules.iter().enumerate().find_map(|(m, module)| {
+        let mut blocks = module.routines.iter().flat_map(Routine::blocks);
+        blocks.find_map(|block| guard(program, m, block))
+    })
+}
+
+/// Whether a module of streams, or of positions for a guide, is among those of the program.
+pub fn has_streams(program: &Program) -> bool {
+    program.modules.iter().any(|module| {
+        let ours = module.name.key.starts_with(&module_name(1).to_lowercase());
+        let is_at = |routine: &Routine| round_of(&routine.name.key).is_some();
+        ours && (module.name.key.contains("egm") || module.routines.iter().any(is_at))
+    })
+}
+
+/// A name that a module of streams uses as RAPID has it, and the program has otherwise.
+pub fn own_name(program: &Program) -> Option<&'static str> {
+    USED.into_iter().find(|name| program.resolve_global(&name.to_lowercase()).is_some())
+}
+
+/// What RAPID declares and streams use.
+const USED: [&str; 24] = [
+    "Abs",
+    "C_MOTSET",
+    "C_PROGDISP",
+    "CalcRobT",
+    "CJointT",
+    "CSpeedOverride",
+    "Distance",
+    "ErrWrite",
+    "fine",
+    "GetSysInfo",
+    "Incr",
+    "MoveAbsJ",
+    "StrLen",
+    "StrMatch",
+    "StrPart",
+    "tool0",
+    "TPErase",
+    "TPWrite",
+    "v1000",
+    "ValToStr",
+    "WaitTime",
+    "z200",
+    "load0",
+    "motsetdata",
+];
+
+fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStreams> {
+    block.iter().find_map(|stmt| {
+        if let StmtKind::If { branches, .. } = &stmt.kind
+            && let Some(ExprKind::Call(name, _)) = branches.first().map(|(c, _)| &c.kind)
+            && let Some(round) = round_of(&name.key)
+            && program.resolve(module, &name.key).is_none()
+        {
+            return Some(MissingStreams {
+                function: name.text.clone(),
+                span: name.span,
+                module: format!("{}.mod", module_name(round)),
+            });
+        }
+        stmt.kind.blocks().into_iter().find_map(|inner| guard(program, module, inner))
+    })
+}
+
+/// The round in which a lower-case name is that of the function of a guard.
+fn round_of(key: &str) -> Option<usize> {
+    let (round, site) = key.strip_prefix("jp")?.split_once("fits")?;
+    site.parse::<usize>().ok()?;
+    match round {
+        "" => Some(1),
+        round => round.strip_suffix('_')?.parse().ok(),
+    }
+}
+
+fn module_name(round: usize) -> String {
+    if round == 1 { "Joulepath".to_owned() } else { format!("Joulepath{round}") }
+}
+
+/// All words of the files and the names of the files, in lower case.
+fn taken(files: &[SourceFile]) -> BTreeSet<String> {
+    let mut taken = BTreeSet::new();
+    for file in files {
+        let name = file.path.rsplit(['/', '\\']).next().unwrap_or(&file.path);
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        taken.insert(stem.to_lowercase());
+        let tokens = tokenize(&file.bytes);
+        for index in (0..tokens.len()).filter(|i| tokens.kind(*i) == TokenKind::Identifier) {
+            let range = tokens.range(index);
+            let word = &file.bytes[range.start as usize..range.end as usize];
+            taken.insert(String::from_utf8_lossy(word).to_lowercase());
+        }
+    }
+    taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rapid::text::FileId;
+
+    fn names(path: &str, text: &str) -> Names {
+        Names::free(&[SourceFile::new(FileId(0), path.into(), text.into())])
+    }
+
+    #[test]
+    fn a_word_that_begins_as_ours_is_taken_whatever_it_stands_for() {
+        let free = names("a/m.mod", "MODULE m\nPROC main()\nSetDO doA,1;\nENDPROC\nENDMODULE\n");
+        assert_eq!((free.prefix.as_str(), free.part(0).as_str()), ("jp", "Joulepath"));
+        assert_eq!(free.part(1), "Joulepath_2");
+        let uses = [
+            "VAR num JPx;",
+            "PROC a()\nJPagain:\nGOTO JPagain;\nENDPROC",
+            "PROC a()\nFOR jpI FROM 1 TO 2 DO\nENDFOR\nENDPROC",
+            "PROC a()\nSetDO jpSignal,1;\nENDPROC",
+            "PROC a(num jp)\nENDPROC",
+            "PROC a()\n%\"x\"%;\njpElsewhere;\nENDPROC",
+            "PROC a()\nLoad \"HOME:\" \\File:=\"x\"; Joulepath_3:rGo;\nENDPROC",
+        ];
+        for text in uses {
+            let taken = names("m.mod", &format!("MODULE m\n{text}\nENDMODULE\n"));
+            assert_eq!(taken.prefix, "jp2_", "{text}");
+            assert_eq!(taken.part(1), "Joulepath2_2", "{text}");
+        }
+        // A name in a text or a comment is none.
+        let said = names("m.mod", "MODULE m\nCONST string s:=\"jpAt\"; ! jpAt\nENDMODULE\n");
+        assert_eq!(said.prefix, "jp");
+        assert_eq!(names("x/JOULEPATH.MOD", "MODULE m\nENDMODULE\n").module, "Joulepath2");
+    }
+}

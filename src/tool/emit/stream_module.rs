@@ -1,0 +1,237 @@
+//! The modules of streams, and the guards in the original.
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+use super::guard::{Guard, guard, insertions, types};
+use super::layout::{Layout, parts};
+use super::literal::NO_AXIS;
+use super::names::Names;
+use super::site::{EmitError, Emitted, EmittedStream, Recorded, Robot, Site};
+use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
+use crate::rapid::text::{Charset, SourceFile, charset};
+
+/// How near the robot must stand to the start of a stream, degrees: half a millimetre at the
+/// stretched arm of 1.45 m. At a stop point servos are nearer.
+const JOINT_TOLERANCE_DEG: f64 = 0.02;
+/// The same for an external axis, degrees or mm.
+const EXTERNAL_TOLERANCE: f64 = 0.1;
+/// Rounding of a position that the controller works out, mm: a `num` holds 1,000 mm to 0.00006.
+const POSITION_ROUNDING_MM: f64 = 0.005;
+/// The same for the components of a quaternion: less than 0.005 mm at 1 m from the flange.
+const ORIENTATION_ROUNDING: f64 = 0.000_002;
+/// The same for numbers and joint angles in degrees.
+const NUMBER_ROUNDING: f64 = 0.0001;
+/// How far the controller's own kinematics may be from those of the streams, mm.
+const PLACE_TOLERANCE_MM: f64 = 0.1;
+
+/// Decimals of a pause, s: with the ways to it and back it takes as long as the wait did.
+const PAUSE_DECIMALS: usize = 7;
+
+/// Speed override at which movements take their `\T`, %.
+const FULL_SPEED: f64 = 100.0;
+/// Decimals of a `\T` that is stretched by an override, s: it is a share of a time that has
+/// [`TIME_DECIMALS`].
+const STRETCHED_DECIMALS: usize = 7;
+
+/// A stream as text.
+#[derive(Serialize)]
+struct StreamText {
+    origin: String,
+    before: String,
+    after: String,
+    proc_name: String,
+    start: String,
+    made: Vec<String>,
+    points: Vec<PointText>,
+    array: Option<ArrayText>,
+}
+
+/// What a stream from arrays needs besides its points.
+#[derive(Serialize)]
+struct ArrayText {
+    points: String,
+    times: String,
+    /// The number of points in the braces of an index.
+    last: String,
+    /// The number of the last point but one.
+    fly_by: String,
+}
+
+#[derive(Serialize)]
+struct PointText {
+    target: String,
+    time: String,
+    zone: &'static str,
+    /// How long the robot stands there, s; empty where it flies on.
+    pause: String,
+}
+
+/// A site as text.
+#[derive(Serialize)]
+struct SiteText {
+    guard: Guard,
+    streams: Vec<StreamText>,
+}
+
+/// What streams are made for and how they are written.
+pub struct Emission<'a> {
+    /// The original files.
+    pub files: &'a [SourceFile],
+    /// Names that are free.
+    pub names: &'a Names,
+    /// How points are written.
+    pub layout: Layout,
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The operator's speed override at which streams run, %.
+    pub override_percent: f64,
+    /// What the program writes down for the guards.
+    pub recorded: &'a Recorded,
+    /// What tells the original from others.
+    pub program: &'a str,
+}
+
+/// Renders the streams of the sites.
+///
+/// # Errors
+/// A value that can't be written as RAPID.
+pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitError> {
+    let Emission { files, names, robot, recorded, .. } = emission;
+    let mut tera = Tera::default();
+    tera.add_raw_templates(vec![
+        ("streams.mod", include_str!("../../../templates/streams.mod.tera")),
+        ("guards.mod", include_str!("../../../templates/guards.mod.tera")),
+        ("guard", include_str!("../../../templates/guard.tera")),
+    ])?;
+    let charsets: Vec<Charset> = files.iter().map(|file| charset(&file.bytes)).collect();
+    let mut texts = Vec::new();
+    let mut edits = recorded.edits.clone();
+    let mut instructions = Vec::new();
+    for (index, site) in sites.iter().enumerate() {
+        let guard = guard(site, names, recorded, index + 1);
+        let streams: Result<Vec<StreamText>, EmitError> = site
+            .streams
+            .iter()
+            .enumerate()
+            .map(|(way, stream)| stream_text(emission, site, stream, (index + 1, way + 1)))
+            .collect();
+        let file = site.span.file.0 as usize;
+        edits.extend(insertions(&tera, &files[file], charsets[file], site, &guard)?);
+        instructions.push(guard.instructions);
+        texts.push(SiteText { guard, streams: streams? });
+    }
+    let mut context = Context::new();
+    context.insert("version", env!("CARGO_PKG_VERSION"));
+    context.insert("program", emission.program);
+    context.insert("p", &names.prefix);
+    context.insert("robot", &robot.kind);
+    context.insert("override", &number(emission.override_percent, 6));
+    context.insert("posture", &joints(&robot.posture));
+    let place: Vec<String> = robot.place.iter().map(|x| number(1e3 * x, 4)).collect();
+    context.insert("place", &place.join(","));
+    context.insert("place_tolerance", &number(PLACE_TOLERANCE_MM, 6));
+    context.insert("joint_tolerance", &number(JOINT_TOLERANCE_DEG, 6));
+    context.insert("position_rounding", &number(POSITION_ROUNDING_MM, 6));
+    context.insert("orientation_rounding", &number(ORIENTATION_ROUNDING, 6));
+    context.insert("number_rounding", &number(NUMBER_ROUNDING, 6));
+    context.insert("external_tolerance", &number(EXTERNAL_TOLERANCE, 6));
+    context.insert("external", &sites.iter().flat_map(|site| &site.streams).any(has_external));
+    context.insert("switches", &recorded.switches);
+    context.insert("load", &recorded.load);
+    context.insert("count", &sites.len().to_string());
+    let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();
+    context.insert("labels", &list(&|site| format!("\"{}\"", site.guard.label)).join(","));
+    context.insert("zeros", &list(&|_| "0".to_owned()).join(","));
+    context.insert("types", &types(&texts.iter().map(|site| &site.guard).collect::<Vec<_>>()));
+    let counts: Vec<usize> = texts
+        .iter()
+        .map(|site| site.streams.iter().map(|stream| stream.points.len()).sum())
+        .collect();
+    let modules: Result<Vec<(String, String)>, tera::Error> = parts(&counts)
+        .into_iter()
+        .enumerate()
+        .map(|(index, part)| {
+            let name = names.part(index);
+            context.insert("module", &name);
+            context.insert("sites", &texts[part]);
+            context.insert("functions", &(index == 0));
+            Ok((name, tera.render("streams.mod", &context)?))
+        })
+        .collect();
+    Ok(Emitted { modules: modules?, edits, instructions })
+}
+
+fn stream_text(
+    emission: &Emission<'_>,
+    site: &Site,
+    stream: &EmittedStream,
+    (number_of_site, way): (usize, usize),
+) -> Result<StreamText, EmitError> {
+    let prefix = &emission.names.prefix;
+    let index = format!("{number_of_site}_{way}");
+    let made = site.parameters.iter().zip(&stream.values).map(|(parameter, value)| {
+        super::literal::literal(value).ok_or_else(|| EmitError::Value(parameter.label.clone()))
+    });
+    let count = stream.points.len();
+    let last = count.saturating_sub(1);
+    let external = stream.external.map(external_axis).join(",");
+    let array = (stream.pause.is_none() && emission.layout.is_array(count)).then(|| ArrayText {
+        points: format!("{prefix}Points{index}"),
+        times: format!("{prefix}Times{index}"),
+        last: format!("{{{count}}}"),
+        fly_by: last.to_string(),
+    });
+    let points = stream
+        .points
+        .iter()
+        .zip(&stream.intervals)
+        .enumerate()
+        .map(|(i, (q, t))| {
+            let pause = stream.pause.filter(|pause| pause.after == i);
+            PointText {
+                target: format!("[[{}],[{external}]]", joints(q)),
+                time: time(*t, emission.override_percent),
+                zone: if i == last || pause.is_some() { "fine" } else { "z200" },
+                pause: pause.map_or(String::new(), |pause| number(pause.seconds, PAUSE_DECIMALS)),
+            }
+        })
+        .collect();
+    Ok(StreamText {
+        origin: stream.origin.clone(),
+        before: stream.before.clone(),
+        after: stream.after.clone(),
+        start: format!("[[{}],[{external}]]", joints(&stream.start)),
+        made: made.collect::<Result<_, _>>()?,
+        proc_name: format!("{prefix}Move{index}"),
+        points,
+        array,
+    })
+}
+
+/// `\T` of a movement that takes `t` seconds: a speed override stretches it.
+fn time(t: f64, override_percent: f64) -> String {
+    if override_percent == FULL_SPEED {
+        number(t, TIME_DECIMALS)
+    } else {
+        number(override_percent / FULL_SPEED * t, STRETCHED_DECIMALS)
+    }
+}
+
+/// Whether the targets of a stream name external axes.
+pub(super) fn has_external(stream: &EmittedStream) -> bool {
+    stream.external.iter().any(|x| *x < NO_AXIS)
+}
+
+fn external_axis(x: f64) -> String {
+    if x >= NO_AXIS { "9E9".to_owned() } else { number(x, 9) }
+}
+
+/// The end of line that a file uses first; LF where it has none.
+pub fn end_of_line(bytes: &[u8]) -> &'static str {
+    match bytes.iter().position(|b| *b == b'\n' || *b == b'\r') {
+        Some(i) if bytes[i] == b'\r' && bytes.get(i + 1) == Some(&b'\n') => "\r\n",
+        Some(i) if bytes[i] == b'\r' => "\r",
+        _ => "\n",
+    }
+}

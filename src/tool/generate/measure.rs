@@ -1,0 +1,76 @@
+//! How much of the limits a motion uses.
+
+use crate::arm::dynamics::Load;
+use crate::arm::kinematics::{fk, jacobian, limits_ok};
+use crate::arm::robot::Model;
+use crate::retime::energy::power::power;
+use crate::retime::motion::timed::JointState;
+use crate::retime::path::joint_path::Joints;
+use nalgebra::{Isometry3, Vector6};
+
+/// Shares of the limits that a motion uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measure {
+    /// Of the joint speeds.
+    pub velocity: f64,
+    /// Of the joint accelerations.
+    pub acceleration: f64,
+    /// Of the joint torques.
+    pub torque: f64,
+    /// Of the robot's largest speed of the tool.
+    pub tcp_speed: f64,
+    /// Largest distance of the flange from where it should be at each time, m.
+    pub deviation_m: f64,
+    /// Whether some joint leaves its range.
+    pub out_of_range: bool,
+}
+
+impl Measure {
+    /// Takes a state into account; nothing is at the flange.
+    pub(super) fn add(
+        &mut self,
+        model: &Model,
+        data: &mut crate::arm::dynamics::Data,
+        state: &JointState,
+    ) {
+        let limits = &model.limits;
+        let share = |values: &[f64], limit: &Option<Vec<f64>>| {
+            limit.as_ref().map_or(0.0, |limit| {
+                values.iter().zip(limit).map(|(x, most)| x.abs() / most).fold(0.0, f64::max)
+            })
+        };
+        self.velocity = self.velocity.max(share(&state.qd, &limits.velocity));
+        self.acceleration = self.acceleration.max(share(&state.qdd, &limits.acceleration));
+        self.out_of_range |= limits_ok(model, &state.q).is_err();
+        if model.has_dynamics() {
+            let tau = power(model, data, &Load::none(), state).tau;
+            self.torque = self.torque.max(share(&tau, &limits.torque));
+        }
+        if let Some(limit) = limits.tcp_speed {
+            let rate = jacobian(model, &state.q, &Isometry3::identity()) * Vector6::from(state.qd);
+            self.tcp_speed = self.tcp_speed.max(rate.fixed_rows::<3>(0).norm() / limit);
+        }
+    }
+
+    /// Takes a position and where it should be into account.
+    pub(super) fn stray(&mut self, model: &Model, q: &Joints, intended: &Joints) {
+        let distance =
+            (fk(model, q).translation.vector - fk(model, intended).translation.vector).norm();
+        self.deviation_m = self.deviation_m.max(distance);
+    }
+
+    /// What is exceeded, in words.
+    pub(super) fn fault(&self) -> Option<String> {
+        let figures = [
+            ("joint speed", self.velocity),
+            ("joint acceleration", self.acceleration),
+            ("torque", self.torque),
+            ("speed of the tool", self.tcp_speed),
+        ];
+        let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        if worst.1 > 1.0 {
+            return Some(format!("the {} would be {:.1} % of the limit", worst.0, 100.0 * worst.1));
+        }
+        self.out_of_range.then(|| "a joint would leave its range".to_owned())
+    }
+}

@@ -1,0 +1,148 @@
+//! Points without times as movement instructions.
+
+use nalgebra::Isometry3;
+
+use super::Form;
+use super::table::{Amount, Points, Table};
+use crate::arm::kinematics::{
+    Conf, IkError, LimitViolation, conf_of, fk, ik_conf, ik_near, limits_ok,
+};
+use crate::arm::robot::Model;
+use crate::rapid::ir::number::number;
+use crate::rapid::ir::predefined::lookup;
+use crate::retime::path::joint_path::{DOF, Joints};
+
+/// Speed where the file says none.
+const SPEED: &str = "v200";
+/// Zone where the file says none, and of the last point.
+const STOP: &str = "fine";
+
+/// A movement to each point.
+pub(super) struct Moves {
+    pub(super) form: Form,
+    pub(super) targets: Vec<Target>,
+    pub(super) notes: Vec<String>,
+}
+
+/// A point with what the robot does there.
+pub(super) struct Target {
+    /// Joint positions, rad.
+    pub(super) q: Joints,
+    pub(super) pose: Isometry3<f64>,
+    pub(super) conf: Conf,
+    /// As RAPID writes it.
+    pub(super) speed: String,
+    /// As RAPID writes it.
+    pub(super) zone: String,
+}
+
+/// Why a point can't be moved to.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MovesError {
+    /// Out of range.
+    #[error("row {row}: {violation}; if the columns are degrees, name them q1_deg … q6_deg")]
+    Range {
+        /// Line of the file.
+        row: usize,
+        /// Which joint.
+        violation: LimitViolation,
+    },
+    /// Out of reach, or not in this configuration.
+    #[error("row {row}: {error}")]
+    Pose {
+        /// Line of the file.
+        row: usize,
+        /// Why.
+        error: IkError,
+    },
+    /// A name that RAPID does not have.
+    #[error("row {row}: '{name}' is no {what} of RAPID's own; give {example}, or a number")]
+    Name {
+        /// Line of the file.
+        row: usize,
+        /// As given.
+        name: String,
+        /// `speed` or `zone`.
+        what: &'static str,
+        /// Some that are.
+        example: &'static str,
+    },
+}
+
+/// The movements to the points of a table that has no times.
+pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, MovesError> {
+    let positions = match &table.points {
+        Points::Trajectory(_, q) | Points::Joints(q) => q.clone(),
+        Points::Poses(poses) => solved(model, poses)?,
+    };
+    let mut notes = Vec::new();
+    let last = positions.len() - 1;
+    let mut targets = Vec::with_capacity(positions.len());
+    for (i, q) in positions.into_iter().enumerate() {
+        let row = i + 2;
+        limits_ok(model, &q).map_err(|violation| MovesError::Range { row, violation })?;
+        let (pose, conf) = match &table.points {
+            Points::Poses(poses) => (poses[i].0, poses[i].1.unwrap_or_else(|| conf_of(model, &q))),
+            _ => (fk(model, &q), conf_of(model, &q)),
+        };
+        let speed = named(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
+            format!("v1000\\V:={}", number(metres * 1e3, 3))
+        })?;
+        let zone = named(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
+            format!("z10\\Z:={}", number(metres * 1e3, 3))
+        })?;
+        let zone = if i == last && zone != STOP {
+            notes
+                .push(format!("the last point is {STOP} instead of {zone}: the motion ends there"));
+            STOP.to_owned()
+        } else {
+            zone
+        };
+        targets.push(Target { q, pose, conf, speed, zone });
+    }
+    Ok(Moves { form, targets, notes })
+}
+
+/// Joint positions of poses: in their configuration, else near those of the point before.
+fn solved(
+    model: &Model,
+    poses: &[(Isometry3<f64>, Option<Conf>)],
+) -> Result<Vec<Joints>, MovesError> {
+    let mut near = [0.0; DOF];
+    let mut positions = Vec::with_capacity(poses.len());
+    for (i, (pose, conf)) in poses.iter().enumerate() {
+        let solution = match conf {
+            Some(conf) => ik_conf(model, pose, *conf),
+            None => ik_near(model, pose, &near),
+        };
+        near = solution.map_err(|error| MovesError::Pose { row: i + 2, error })?;
+        positions.push(near);
+    }
+    Ok(positions)
+}
+
+/// A speed or zone as RAPID writes it.
+fn named(
+    row: usize,
+    amount: Option<&Amount>,
+    r#type: &str,
+    default: &str,
+    written: impl Fn(f64) -> String,
+) -> Result<String, MovesError> {
+    match amount {
+        None => Ok(default.to_owned()),
+        Some(Amount::Value(metres)) => Ok(written(*metres)),
+        Some(Amount::Name(name)) => match lookup(name) {
+            Some(value) if &*value.type_key == r#type => Ok(name.clone()),
+            _ => {
+                let speed = r#type == "speeddata";
+                Err(MovesError::Name {
+                    row,
+                    name: name.clone(),
+                    what: if speed { "speed" } else { "zone" },
+                    example: if speed { "v100 or vmax" } else { "fine or z10" },
+                })
+            }
+        },
+    }
+}

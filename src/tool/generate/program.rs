@@ -1,0 +1,218 @@
+//! The files of a generated program, and what reading them again and simulating them shows.
+
+use super::follow::{self, Followed, Sampled, TOLERANCE};
+use super::measure::Measure;
+use super::moves::{Moves, Target};
+use super::{Form, GenerateError};
+use crate::arm::kinematics::limits_ok;
+use crate::arm::robot::Model;
+use crate::rapid::ir::number::number;
+use crate::rapid::syntax;
+use crate::retime::motion::stream::Stream;
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timeline::What;
+use crate::retime::motion::{Options, Simulation, simulate};
+use crate::retime::path::joint_path::DOF;
+use crate::tool::emit::{self, EmitError, GeneratedMove, GeneratedNames, jointtarget, stream_time};
+use crate::tool::retrofit::{OutputFile, OutputKind, read_again, read_program};
+
+/// Largest distance of a reached point from the one asked for, rad.
+const REACHED: f64 = 1e-4;
+/// Samples of a simulated motion per second.
+const SAMPLES: f64 = 500.0;
+
+/// A trajectory as a stream.
+pub(super) fn stream(
+    names: &GeneratedNames,
+    stream: &Stream,
+) -> Result<Vec<OutputFile>, GenerateError> {
+    let start = GeneratedMove {
+        instruction: "MoveAbsJ",
+        target: jointtarget(stream.start()),
+        speed: "v200".into(),
+        zone: "fine".into(),
+    };
+    let last = stream.points().len() - 1;
+    let points = stream.points().iter().zip(stream.intervals()).enumerate();
+    let points = points.map(|(i, (q, t))| GeneratedMove {
+        instruction: "MoveAbsJ",
+        target: jointtarget(q),
+        speed: stream_time(*t),
+        zone: if i == last { "fine" } else { "z200" }.into(),
+    });
+    let moves: Vec<GeneratedMove> = std::iter::once(start).chain(points).collect();
+    let seconds = number(stream.duration(), 3);
+    let about = format!("A trajectory of {seconds} s as a stream of {} points", last + 1);
+    complete(names, emit::generated_module(names, &about, &moves)?)
+}
+
+/// Points as movements.
+pub(super) fn moves(
+    names: &GeneratedNames,
+    moves: &Moves,
+) -> Result<Vec<OutputFile>, GenerateError> {
+    let robtarget = |target: &Target| {
+        let p = target.pose.translation.vector * 1e3;
+        let r = target.pose.rotation;
+        let length = |x: f64| number(x, 4);
+        let part = |x: f64| number(x, 9);
+        let c = target.conf;
+        format!(
+            "[[{},{},{}],[{},{},{},{}],[{},{},{},{}],[9E9,9E9,9E9,9E9,9E9,9E9]]",
+            length(p.x),
+            length(p.y),
+            length(p.z),
+            part(r.w),
+            part(r.i),
+            part(r.j),
+            part(r.k),
+            c.cf1,
+            c.cf4,
+            c.cf6,
+            c.cfx,
+        )
+    };
+    let list: Vec<GeneratedMove> = moves
+        .targets
+        .iter()
+        .enumerate()
+        .map(|(i, target)| GeneratedMove {
+            instruction: match moves.form {
+                Form::MoveJ => "MoveJ",
+                // A line needs a known beginning.
+                Form::MoveL if i == 0 => "MoveJ",
+                Form::MoveL => "MoveL",
+                Form::AbsJ | Form::Egm => "MoveAbsJ",
+            },
+            target: match moves.form {
+                Form::MoveJ | Form::MoveL => robtarget(target),
+                Form::AbsJ | Form::Egm => jointtarget(&target.q),
+            },
+            speed: target.speed.clone(),
+            zone: target.zone.clone(),
+        })
+        .collect();
+    let about = format!("{} points", list.len());
+    complete(names, emit::generated_module(names, &about, &list)?)
+}
+
+/// Positions for externally guided motion with the module that runs them.
+pub(super) fn egm(
+    names: &GeneratedNames,
+    sampled: &Sampled,
+) -> Result<Vec<OutputFile>, GenerateError> {
+    let text = emit::egm_rows(&sampled.positions);
+    let module = emit::egm_module(names, &sampled.positions, "tool0", "wobj0")?;
+    let mut outputs = complete(names, module)?;
+    outputs.push(new_file(format!("{}.csv", names.module), text));
+    parses(&outputs[..2])?;
+    Ok(outputs)
+}
+
+/// The module with its entry.
+fn complete(names: &GeneratedNames, module: String) -> Result<Vec<OutputFile>, GenerateError> {
+    let main: Result<String, EmitError> = emit::main_module(names);
+    Ok(vec![
+        new_file(format!("{}.mod", names.module), module),
+        new_file(format!("{}.mod", names.main), main?),
+    ])
+}
+
+fn new_file(path: String, text: String) -> OutputFile {
+    OutputFile { path, kind: OutputKind::New, bytes: text.into_bytes(), input: None }
+}
+
+fn parses(outputs: &[OutputFile]) -> Result<(), GenerateError> {
+    let clean = outputs.iter().all(|output| {
+        let parse = syntax::parse(&output.bytes);
+        parse.errors.is_empty() && parse.tolerances.is_empty()
+    });
+    if clean { Ok(()) } else { Err(broken("the text does not parse")) }
+}
+
+fn broken(what: impl Into<String>) -> GenerateError {
+    GenerateError::Verification(what.into())
+}
+
+/// The cycle of the emitted text.
+fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, GenerateError> {
+    parses(outputs)?;
+    let files = read_again(outputs);
+    let (program, entry) =
+        read_program(&files, "main").map_err(|error| broken(error.to_string()))?;
+    let simulation = simulate(&program, entry, model, &Options::default());
+    match simulation.unresolved.first() {
+        Some(note) => {
+            let file = &files[note.span.file.0 as usize].file;
+            let line = file.position(note.span.start).line;
+            Err(broken(format!("{}:{line}: {}", file.path, note.reason)))
+        }
+        None => Ok(simulation),
+    }
+}
+
+/// The emitted stream as it runs.
+pub(super) fn verify_stream(
+    model: &Model,
+    outputs: &[OutputFile],
+    followed: &Followed,
+) -> Result<Measure, GenerateError> {
+    let simulation = simulated(model, outputs)?;
+    let stream = simulation.events.iter().rev().find_map(|event| match &event.what {
+        What::Run(run) => match run.motions.as_slice() {
+            [(_, TimedMotion::Stream(stream))] => Some(stream),
+            _ => None,
+        },
+        _ => None,
+    });
+    let stream = stream.ok_or_else(|| broken("the points do not run as a stream"))?;
+    let measure = follow::measure(model, stream, &followed.reference);
+    if let Some(fault) = measure.fault() {
+        return Err(broken(fault));
+    }
+    if measure.deviation_m > TOLERANCE {
+        return Err(broken("the stream strays from the trajectory"));
+    }
+    Ok(measure)
+}
+
+/// The emitted movements as they run, and their time from the first point on.
+pub(super) fn verify_moves(
+    model: &Model,
+    outputs: &[OutputFile],
+    moves: &Moves,
+) -> Result<f64, GenerateError> {
+    let simulation = simulated(model, outputs)?;
+    let mut reached = 0;
+    for event in &simulation.events {
+        let What::Run(run) = &event.what else { continue };
+        if let Some(problem) = &run.problem {
+            return Err(broken(format!("row {}: {problem}", reached + 2)));
+        }
+        for leg in &run.legs {
+            let far = |j: usize| (leg.end[j] - moves.targets[reached].q[j]).abs();
+            if let Some(joint) = (0..DOF).find(|j| far(*j) > REACHED) {
+                return Err(broken(format!(
+                    "row {}: the movement would end with joint {} elsewhere; give its configuration \
+                     (cf1,cf4,cf6,cfx), or another point between",
+                    reached + 2,
+                    joint + 1
+                )));
+            }
+            reached += 1;
+        }
+        let count = (run.duration() * SAMPLES).ceil().max(1.0) as usize;
+        let mut times = (0..=count).map(|i| run.duration() * i as f64 / count as f64);
+        if let Some(violation) = times.find_map(|t| limits_ok(model, &run.at(t).q).err()) {
+            return Err(broken(format!("on the way to row {}: {violation}", reached + 1)));
+        }
+    }
+    if reached != moves.targets.len() {
+        return Err(broken(format!("{reached} of {} points are reached", moves.targets.len())));
+    }
+    let first = simulation.events.first().map_or(0.0, |event| match &event.what {
+        What::Run(run) => run.moves.first().map_or(0.0, |first| first.duration),
+        _ => 0.0,
+    });
+    Ok(simulation.cycle_s - first)
+}

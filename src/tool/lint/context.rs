@@ -1,0 +1,425 @@
+//! What rules look at: one program with its flow, its trace and its simulated cycle.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{Isometry3, Vector3};
+
+use super::flow::{Class, Flow, Next, Place, Through};
+use super::quiet::Quiet;
+use super::site::{Site, compact, constant, facts_of, site};
+use super::system::System;
+use super::trace::{Deed, Done, executions};
+use super::weigh::{Change, Cycle, Difference, Weighed, difference, weigh};
+use crate::arm::robot::Model;
+use crate::rapid::ir::exec::Note;
+use crate::rapid::ir::graph::Step as GraphStep;
+use crate::rapid::ir::hir::{Call, Callee, Expr, Stmt, StmtKind};
+use crate::rapid::ir::movement::Target;
+use crate::rapid::ir::program::{Program, RoutineId};
+use crate::rapid::ir::value::Datum;
+use crate::rapid::text::{SourceFile, Span};
+use crate::retime::motion::timeline::{MoveRecord, Run, What};
+use crate::retime::path::Leg;
+
+/// One program, as rules see it.
+pub struct Context<'c> {
+    /// All files, by their ids.
+    pub files: &'c [SourceFile],
+    /// The modules.
+    pub program: &'c Program,
+    /// The routine that starts it, if it is among the files.
+    pub entry: Option<RoutineId>,
+    /// The robot, if it is known.
+    pub model: Option<&'c Model>,
+    /// A cycle of it, if it could be simulated.
+    pub cycle: Option<&'c Cycle>,
+    /// What it does, in order; empty without an entry.
+    pub trace: Vec<Done<'c>>,
+    /// What could not be worked out.
+    pub unresolved: &'c [Note],
+    /// Its control flow.
+    pub flow: Flow<'c>,
+    /// What names stand for.
+    pub quiet: Quiet<'c>,
+    /// Its movement statements, in the order of the files.
+    pub sites: Vec<Site<'c>>,
+    /// The controller's configuration, of a backup.
+    pub system: Option<&'c System>,
+    by_place: BTreeMap<Place, usize>,
+    /// The movements before each, whatever stands between.
+    before: Vec<Vec<usize>>,
+    /// Movements before which the robot may be anywhere.
+    starts: BTreeSet<usize>,
+}
+
+/// The way through the goal of a movement, at its worst.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Shortest way to it, m.
+    pub before: f64,
+    /// Shortest way from it, m.
+    pub after: f64,
+    /// Largest change of direction, rad: 0 straight on, π back.
+    pub turn: f64,
+    /// Largest turn of the tool on the way to it or from it, rad.
+    pub turned: f64,
+    /// How far the ways lie along the tool's axis, 0 across it to 1 along it: the larger of both.
+    pub along: f64,
+    /// Whether the tool comes in along its axis and goes on across it, as where a bead begins.
+    pub goes_in: bool,
+    /// Whether it comes across its axis and goes out along it, as where a bead ends.
+    pub comes_out: bool,
+}
+
+/// Movements for each wait or output of a program that works.
+const MOST_MOVES: usize = 12;
+/// Share of a way along the tool's axis up to which it is one across it: tools may lean by 30°.
+const ACROSS: f64 = 0.5;
+/// Share from which on it goes in or out.
+const ALONG: f64 = 0.3;
+
+impl Corner {
+    /// The shorter way, m.
+    pub fn room(&self) -> f64 {
+        self.before.min(self.after)
+    }
+}
+
+impl<'c> Context<'c> {
+    /// Looks at a program.
+    #[expect(clippy::too_many_arguments, reason = "the parts of one value, named by it")]
+    pub fn new(
+        files: &'c [SourceFile],
+        program: &'c Program,
+        entry: Option<RoutineId>,
+        model: Option<&'c Model>,
+        cycle: Option<&'c Cycle>,
+        trace: Vec<Done<'c>>,
+        unresolved: &'c [Note],
+        system: Option<&'c System>,
+    ) -> Context<'c> {
+        let flow = Flow::new(program, entry);
+        let quiet = Quiet::new(program);
+        let executed = executions(&trace);
+        let mut sites = Vec::new();
+        for (routine, graph, reachable) in flow.graphs() {
+            let alone = compact(program.routine(routine));
+            for (node, content) in graph.nodes.iter().enumerate() {
+                let GraphStep::Statement(stmt) = content.step else { continue };
+                let StmtKind::Call(call) = &stmt.kind else { continue };
+                let found = site(program, &quiet, (routine, node), stmt, call);
+                let Some(mut found) = found else { continue };
+                found.reachable = reachable[node];
+                found.compact = alone.contains(&stmt.span);
+                found.executions = executed.get(&stmt.span).cloned().unwrap_or_default();
+                complete(&mut found, &trace);
+                sites.push(found);
+            }
+        }
+        sites.sort_by_key(|site| site.stmt.span);
+        let by_place: BTreeMap<Place, usize> =
+            sites.iter().enumerate().map(|(index, site)| (site.place, index)).collect();
+        let mut before = vec![Vec::new(); sites.len()];
+        for (index, site) in sites.iter().enumerate() {
+            for next in flow.following(site.place, Through::All) {
+                if let Next::Move(place) = next
+                    && let Some(next) = by_place.get(&place)
+                {
+                    before[*next].push(index);
+                }
+            }
+        }
+        let starts = starts(&flow, &by_place);
+        Context {
+            files,
+            program,
+            entry,
+            model,
+            cycle,
+            trace,
+            unresolved,
+            flow,
+            quiet,
+            sites,
+            system,
+            by_place,
+            before,
+            starts,
+        }
+    }
+
+    /// Whether the robot may be anywhere before a movement: at the start of the program or of a
+    /// routine that nothing calls, behind a call of something unknown, in a handler.
+    pub fn may_start(&self, site: usize) -> bool {
+        self.starts.contains(&site)
+    }
+
+    /// Whether a movement stands in a handler and not in the body of its routine.
+    pub fn in_handler(&self, site: &Site<'_>) -> bool {
+        let routine = self.program.routine(site.place.0);
+        let body = routine.body.first().zip(routine.body.last());
+        body.is_none_or(|(first, last)| {
+            site.stmt.span.start < first.span.start || site.stmt.span.end > last.span.end
+        })
+    }
+
+    /// The constant that an expression of a routine has.
+    pub fn constant(&self, routine: RoutineId, expr: &Expr) -> Option<Datum> {
+        constant(self.program, &self.quiet, routine, expr)
+    }
+
+    /// Whether the routines of some movements, or what they call, have a purpose besides moving:
+    /// a wait, an output, or something else that a robot may do where it stands. A cycle with many
+    /// movements for each wait or output is shown for its movements.
+    pub fn works(&self, sites: &[usize]) -> bool {
+        let is_move = |done: &&Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+        let moves = self.trace.iter().filter(is_move).count();
+        let rest = self.trace.len() - moves;
+        if moves > MOST_MOVES * rest.max(1) {
+            return false;
+        }
+        let mut open: Vec<RoutineId> = sites.iter().map(|site| self.sites[*site].place.0).collect();
+        let mut seen: BTreeSet<RoutineId> = BTreeSet::new();
+        while let Some(routine) = open.pop() {
+            if !seen.insert(routine) {
+                continue;
+            }
+            for node in &self.flow.graph(routine).nodes {
+                let GraphStep::Statement(stmt) = node.step else { continue };
+                match self.flow.class(routine, stmt) {
+                    Class::Output | Class::Wait => return true,
+                    Class::Call(callee) => open.push(callee),
+                    Class::Other if self.flow.is_unknown(stmt) => return true,
+                    _ => {}
+                }
+            }
+        }
+        false
+    }
+
+    /// The calls of instructions with this name (lower case), where control can get.
+    pub fn calls(&self, key: &'static str) -> Vec<(Place, &'c Stmt, &'c Call)> {
+        let mut found = Vec::new();
+        for (routine, graph, reachable) in self.flow.graphs() {
+            for (node, content) in graph.nodes.iter().enumerate() {
+                if let GraphStep::Statement(stmt) = content.step
+                    && let StmtKind::Call(call) = &stmt.kind
+                    && let Callee::Name(name) = &call.callee
+                    && name.key == key
+                    && (reachable[node] || !self.program.routine(routine).error.is_empty())
+                {
+                    found.push(((routine, node), stmt, call));
+                }
+            }
+        }
+        found.sort_by_key(|(_, stmt, _)| stmt.span);
+        found
+    }
+
+    /// What comes behind a movement on every way.
+    pub fn next(&self, site: usize, through: Through) -> BTreeSet<Next> {
+        self.flow.following(self.sites[site].place, through)
+    }
+
+    /// The movements behind a movement, if nothing else can come first.
+    pub fn next_moves(&self, site: usize, through: Through) -> Option<Vec<usize>> {
+        let next = self.next(site, through);
+        let moves = next.iter().map(|next| match next {
+            Next::Move(place) => self.by_place.get(place).copied(),
+            _ => None,
+        });
+        moves.collect::<Option<Vec<usize>>>().filter(|moves| !moves.is_empty())
+    }
+
+    /// The movement statement at a place.
+    pub fn site_at(&self, place: Place) -> Option<usize> {
+        self.by_place.get(&place).copied()
+    }
+
+    /// The movement statement of a span.
+    pub fn site_of(&self, span: Span) -> Option<usize> {
+        self.sites.binary_search_by_key(&span, |site| site.stmt.span).ok()
+    }
+
+    /// The movements before a movement, whatever stands between.
+    pub fn before(&self, site: usize) -> &[usize] {
+        &self.before[site]
+    }
+
+    /// The text of a span.
+    pub fn text(&self, span: Span) -> std::borrow::Cow<'c, str> {
+        self.files[span.file.0 as usize].text(span)
+    }
+
+    /// The line that a span begins in, from 1.
+    pub fn line(&self, span: Span) -> u32 {
+        self.files[span.file.0 as usize].position(span.start).line
+    }
+
+    /// Name of the file of a span.
+    pub fn path(&self, span: Span) -> &'c str {
+        &self.files[span.file.0 as usize].path
+    }
+
+    /// The simulated movement of a step of the trace.
+    pub fn record(&self, step: usize) -> Option<(&'c Run, &'c MoveRecord, &'c Leg)> {
+        let (event, index) = self.trace[step].event?;
+        match &self.cycle?.simulation.events[event].what {
+            What::Run(run) => Some((run, &run.moves[index], &run.legs[index])),
+            _ => None,
+        }
+    }
+
+    /// Where a step of the trace moves the tool, in one frame for all steps, if that is known.
+    pub fn pose(&self, step: usize) -> Option<Isometry3<f64>> {
+        if let Some((_, _, leg)) = self.record(step) {
+            return Some(leg.target);
+        }
+        match &self.trace[step].what {
+            Deed::Move(movement) => match &movement.target {
+                Target::Pose(target) if movement.wobj.fixed && movement.tool.robhold => {
+                    let shift = movement.settings.displacement.unwrap_or_else(Isometry3::identity);
+                    Some(movement.wobj.frame * shift * target.pose)
+                }
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// The movement steps next to a step of the trace.
+    pub fn neighbours(&self, step: usize) -> Option<(usize, usize)> {
+        let is_move = |done: &Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+        let before = self.trace[..step].iter().rposition(is_move)?;
+        let after = step + 1 + self.trace[step + 1..].iter().position(is_move)?;
+        let moves = |step: usize| matches!(self.trace[step].what, Deed::Move(_));
+        (moves(before) && moves(after)).then_some((before, after))
+    }
+
+    /// The way through a movement's goal, at its worst over all executions, or over all ways
+    /// that the text shows.
+    pub fn corner(&self, site: usize) -> Option<Corner> {
+        let executed = &self.sites[site].executions;
+        if executed.is_empty() {
+            return self.corner_of_text(site);
+        }
+        let corners = executed.iter().filter_map(|step| {
+            let (before, after) = self.neighbours(*step)?;
+            let [a, b, c] = [before, *step, after].map(|step| self.pose(step));
+            Some(corner(&a?, &b?, &c?))
+        });
+        let corners: Vec<Corner> = corners.collect();
+        // The last movement of the trace has none behind it.
+        if corners.is_empty() || corners.len() + 1 < executed.len() {
+            return None;
+        }
+        worst(corners)
+    }
+
+    fn corner_of_text(&self, site: usize) -> Option<Corner> {
+        let pose = |other: usize| -> Option<Isometry3<f64>> {
+            let (a, b) = (&self.sites[site], &self.sites[other]);
+            let same = a.wobj_key() == b.wobj_key() && a.tool_key() == b.tool_key();
+            if same { b.facts.goal.as_ref()?.pose().copied() } else { None }
+        };
+        let here = pose(site)?;
+        let mut corners = Vec::new();
+        for before in self.before(site) {
+            for after in self.next_moves(site, Through::All)? {
+                corners.push(corner(&pose(*before)?, &here, &pose(after)?));
+            }
+        }
+        worst(corners)
+    }
+
+    /// What a change of movements or waits does to the cycle, if that can be told.
+    pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference> {
+        difference(self.model?, self.cycle?, spans, change)
+    }
+
+    /// What a change of movements or waits would save in a cycle.
+    pub fn weigh(&self, spans: &[Span], change: &Change<'_>) -> Weighed {
+        match (self.model, self.cycle) {
+            (Some(model), Some(cycle)) => weigh(model, cycle, spans, change),
+            _ => Weighed::Unknown,
+        }
+    }
+}
+
+fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize> {
+    let mut sources: Vec<Place> = Vec::new();
+    let mut starts = BTreeSet::new();
+    for (routine, graph, reachable) in flow.graphs() {
+        if flow.callers(routine).is_empty() || flow.is_entry(routine) || flow.has_late_calls() {
+            sources.push((routine, 0));
+        }
+        for (node, content) in graph.nodes.iter().enumerate().skip(2) {
+            let unknown = match content.step {
+                GraphStep::Statement(stmt) => flow.is_loose(routine, stmt),
+                _ => false,
+            };
+            if unknown {
+                sources.push((routine, node));
+            }
+            if !reachable[node] {
+                starts.extend(by_place.get(&(routine, node)).copied());
+            }
+        }
+    }
+    for source in sources {
+        for next in flow.following(source, Through::All) {
+            if let Next::Move(place) = next {
+                starts.extend(by_place.get(&place).copied());
+            }
+        }
+    }
+    starts
+}
+
+/// What the text leaves open of a movement, its executions may tell, if they agree.
+fn complete(site: &mut Site<'_>, trace: &[Done<'_>]) {
+    let mut executions = site.executions.iter().filter_map(|step| match &trace[*step].what {
+        Deed::Move(movement) => Some(facts_of(movement)),
+        _ => None,
+    });
+    let Some(mut first) = executions.next() else { return };
+    for other in executions {
+        first.zone = first.zone.filter(|zone| Some(*zone) == other.zone);
+        first.speed = first.speed.filter(|speed| Some(*speed) == other.speed);
+        let same = |goal: &super::site::Goal| other.goal.as_ref().is_some_and(|o| goal.is_same(o));
+        first.goal = first.goal.filter(same);
+    }
+    let facts = &mut site.facts;
+    facts.zone = facts.zone.or(first.zone);
+    facts.speed = facts.speed.or(first.speed);
+    facts.goal = facts.goal.take().or(first.goal);
+}
+
+fn corner(a: &Isometry3<f64>, b: &Isometry3<f64>, c: &Isometry3<f64>) -> Corner {
+    let [a_at, b_at, c_at]: [Vector3<f64>; 3] = [a, b, c].map(|pose| pose.translation.vector);
+    let (to, from) = (b_at - a_at, c_at - b_at);
+    let turned = a.rotation.angle_to(&b.rotation).max(b.rotation.angle_to(&c.rotation));
+    let axis = b.rotation * Vector3::z();
+    let [into, out] = [to, from].map(|way| axis.dot(&way) / way.norm().max(f64::MIN_POSITIVE));
+    Corner {
+        before: to.norm(),
+        after: from.norm(),
+        turn: to.angle(&from),
+        turned,
+        along: into.abs().max(out.abs()),
+        goes_in: into > ALONG && out.abs() < ACROSS,
+        comes_out: into.abs() < ACROSS && out < -ALONG,
+    }
+}
+
+fn worst(corners: Vec<Corner>) -> Option<Corner> {
+    corners.into_iter().reduce(|a, b| Corner {
+        before: a.before.min(b.before),
+        after: a.after.min(b.after),
+        turn: a.turn.max(b.turn),
+        turned: a.turned.max(b.turned),
+        along: a.along.min(b.along),
+        goes_in: a.goes_in || b.goes_in,
+        comes_out: a.comes_out || b.comes_out,
+    })
+}

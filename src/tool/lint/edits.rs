@@ -1,0 +1,91 @@
+//! Changes of the text that rules propose.
+
+use super::context::Context;
+use super::finding::{Applicability, Fix};
+use super::site::Site;
+use crate::rapid::text::{Edit, Span};
+
+/// Zones that every controller knows, m.
+const ZONES: [(&str, f64, f64); 6] = [
+    ("z1", 1.0, 1.0),
+    ("z5", 5.0, 8.0),
+    ("z10", 10.0, 15.0),
+    ("z20", 20.0, 30.0),
+    ("z50", 50.0, 75.0),
+    ("z100", 100.0, 150.0),
+];
+/// Speeds that every controller knows, mm/s.
+const SPEEDS: [u32; 20] = [
+    50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500, 3000, 4000, 5000,
+    6000, 7000,
+];
+
+/// A zone by its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NamedZone {
+    /// `z10` …
+    pub(super) name: &'static str,
+    /// What it is.
+    pub(super) zone: crate::rapid::ir::movement::Zone,
+}
+
+/// The largest predefined zone that needs no more than this, m.
+pub(super) fn zone_within(most: f64) -> Option<NamedZone> {
+    let fits = |(_, _, orientation): &&(&str, f64, f64)| *orientation * 1e-3 <= most + 1e-9;
+    let (name, tcp, orientation) = ZONES.iter().rev().find(fits)?;
+    let zone = crate::rapid::ir::movement::Zone {
+        fine: false,
+        tcp: tcp * 1e-3,
+        orientation: orientation * 1e-3,
+        // The predefined zones have a tenth of their size in degrees.
+        angle: (orientation * 0.1_f64).to_radians(),
+    };
+    Some(NamedZone { name, zone })
+}
+
+/// Predefined speeds below one, the fastest first, m/s.
+pub(super) fn slower(than: f64) -> impl Iterator<Item = (String, f64)> {
+    let below = SPEEDS.iter().rev().map(|speed| (*speed, f64::from(*speed) * 1e-3));
+    below.filter(move |(_, speed)| *speed < than - 1e-9).map(|(v, speed)| (format!("v{v}"), speed))
+}
+
+/// Other text in place of a span.
+pub(super) fn replace(span: Span, text: &str) -> Edit {
+    Edit { span, text: text.as_bytes().to_vec() }
+}
+
+/// A fix of one edit.
+pub(super) fn fix(applicability: Applicability, edit: Edit) -> Fix {
+    Fix { applicability, edits: vec![edit] }
+}
+
+/// Takes a statement out, with its line if nothing else stands on it. `None` where the statement
+/// can't be missing.
+pub(super) fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
+    if site.compact {
+        return None;
+    }
+    Some(Edit { span: with_line(context, site.stmt.span), text: Vec::new() })
+}
+
+/// A span with its line if only white space stands around it.
+pub(super) fn with_line(context: &Context<'_>, span: Span) -> Span {
+    let bytes = &context.files[span.file.0 as usize].bytes;
+    let blank = |byte: &u8| matches!(byte, b' ' | b'\t');
+    let before = &bytes[..span.start as usize];
+    let start = before.len() - before.iter().rev().take_while(|byte| blank(byte)).count();
+    let after = &bytes[span.end as usize..];
+    let end = after.iter().take_while(|byte| blank(byte)).count();
+    let starts_line = start == 0 || matches!(bytes[start - 1], b'\n' | b'\r');
+    let line_end = match &after[end..] {
+        [b'\r', b'\n', ..] => 2,
+        [b'\r' | b'\n', ..] => 1,
+        _ => 0,
+    };
+    if starts_line && line_end > 0 {
+        let end = span.end + (end + line_end) as u32;
+        Span { start: start as u32, end, ..span }
+    } else {
+        span
+    }
+}

@@ -1,0 +1,304 @@
+//! All rules on all programs.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::context::Context;
+use super::finding::Finding;
+use super::register::ALL;
+use super::rules::unused_suppression;
+use super::settings::Settings;
+use super::suppress::{Suppression, suppressions};
+use super::system::System;
+use super::trace;
+use super::weigh::Cycle;
+use crate::arm::robot::Model;
+use crate::rapid::ir::exec::Note;
+use crate::rapid::ir::hir::Module;
+use crate::rapid::ir::lower;
+use crate::rapid::ir::program::{Program, RoutineId};
+use crate::rapid::syntax;
+use crate::rapid::text::{SourceFile, Span};
+use crate::retime::energy::account;
+use crate::retime::motion::{Options, simulate};
+
+/// Files that may belong together, and how they run.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Ids of the files.
+    pub files: Vec<usize>,
+    /// The routine that starts the program.
+    pub entry: String,
+    /// The configuration of their controller.
+    pub system: Option<System>,
+}
+
+/// What is linted.
+pub struct Job<'j> {
+    /// The files; their ids count from 0.
+    pub files: &'j [SourceFile],
+    /// Which belong together.
+    pub groups: Vec<Group>,
+    /// The robot.
+    pub model: Option<&'j Model>,
+    /// How programs are simulated.
+    pub options: Options,
+    /// What the user asks.
+    pub settings: &'j Settings,
+}
+
+/// What was found.
+#[derive(Debug, Default)]
+pub struct Report {
+    /// In the order of the files.
+    pub findings: Vec<Finding>,
+    /// Energy of the cycles that were simulated, J; `None` where nothing was, or without dynamics.
+    pub cycle_energy_j: Option<f64>,
+    /// Places that could not be worked out.
+    pub unresolved: usize,
+}
+
+impl Report {
+    /// What all findings with a saving save, J. Findings at one place are alternatives: the
+    /// largest of them counts.
+    #[must_use]
+    pub fn saving_j(&self) -> f64 {
+        let mut best: BTreeMap<_, f64> = BTreeMap::new();
+        for finding in &self.findings {
+            if let Some(saving) = &finding.saving {
+                let most = best.entry(finding.span).or_insert(0.0);
+                *most = most.max(saving.energy_j);
+            }
+        }
+        best.values().fold(0.0, |sum, saving| sum + saving)
+    }
+}
+
+/// A file that was read.
+struct Read {
+    modules: Vec<Module>,
+    suppressions: Vec<Suppression>,
+}
+
+/// What was read of files, kept from one look at them to the next.
+#[derive(Default)]
+pub struct Kept {
+    files: Vec<(Vec<u8>, Arc<Read>)>,
+}
+
+/// What was found, and the simulated cycle of each program, in the order of the programs; none
+/// without a robot or an entry.
+pub struct Examined {
+    /// What was found.
+    pub report: Report,
+    /// The cycles.
+    pub cycles: Vec<Option<Cycle>>,
+    /// The files of each program.
+    pub programs: Vec<Vec<usize>>,
+}
+
+/// Looks at all programs.
+#[must_use]
+pub fn lint(job: &Job<'_>) -> Report {
+    let read = read(job, &Kept::default());
+    // No cycle is kept: those of a plant's programs would fill the memory.
+    let report = |unit: &Group| one(job, unit, &read).0;
+    merged(units(job, &read).par_iter().map(report).collect())
+}
+
+/// Looks at all programs, and gives their cycles too.
+#[must_use]
+pub fn examine(job: &Job<'_>) -> Examined {
+    let read = read(job, &Kept::default());
+    let units = units(job, &read);
+    examine_units(job, &units, &read)
+}
+
+/// Looks at the programs that hold a file; reads files anew only where they have changed.
+#[must_use]
+pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut Kept) -> Examined {
+    let read = read(job, kept);
+    let bytes = job.files.iter().map(|file| file.bytes.clone());
+    kept.files = bytes.zip(read.iter().cloned()).collect();
+    let mut units = units(job, &read);
+    units.retain(|unit| unit.files.contains(&file));
+    examine_units(job, &units, &read)
+}
+
+fn examine_units(job: &Job<'_>, units: &[Group], read: &[Arc<Read>]) -> Examined {
+    let (reports, cycles) = units.par_iter().map(|unit| one(job, unit, read)).unzip();
+    let programs = units.iter().map(|unit| unit.files.clone()).collect();
+    Examined { report: merged(reports), cycles, programs }
+}
+
+/// The reports of all programs as one.
+fn merged(reports: Vec<Report>) -> Report {
+    let mut all = Report::default();
+    for report in reports {
+        all.findings.extend(report.findings);
+        all.unresolved += report.unresolved;
+        if let Some(energy) = report.cycle_energy_j {
+            *all.cycle_energy_j.get_or_insert(0.0) += energy;
+        }
+    }
+    all.findings.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.rule.code));
+    all.findings.dedup_by(|a, b| a.span == b.span && a.rule.code == b.rule.code);
+    all
+}
+
+fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
+    job.files
+        .par_iter()
+        .enumerate()
+        .map(|(index, file)| {
+            if let Some((bytes, read)) = kept.files.get(index)
+                && *bytes == file.bytes
+            {
+                return read.clone();
+            }
+            let parse = syntax::parse(&file.bytes);
+            let modules = lower(file.id, &parse, &file.bytes);
+            Arc::new(Read { modules, suppressions: suppressions(file, &parse) })
+        })
+        .collect()
+}
+
+/// The simulated cycle of each program, in the order of the programs; none without a robot or
+/// an entry.
+#[must_use]
+pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
+    let read = read(job, &Kept::default());
+    let cycle = |unit: &Group| {
+        let modules =
+            unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
+        let program = Program::new(modules);
+        program.entry(&unit.entry).and_then(|entry| self::cycle(job, &program, entry))
+    };
+    units(job, &read).par_iter().map(cycle).collect()
+}
+
+/// The programs of a job. Where the files of a group have several entries, each file with one
+/// is a program of its own, and so is each other file.
+fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
+    let mut units = Vec::new();
+    for group in &job.groups {
+        let entry = group.entry.to_lowercase();
+        let entries = |file: &usize| {
+            let modules = read[*file].modules.iter();
+            modules.flat_map(|m| &m.routines).filter(|r| r.name.key == entry).count()
+        };
+        if group.files.iter().map(entries).sum::<usize>() <= 1 {
+            units.push(group.clone());
+            continue;
+        }
+        let mut folders: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for file in &group.files {
+            let path = &job.files[*file].path;
+            let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+            folders.entry(folder).or_default().push(*file);
+        }
+        for files in folders.into_values() {
+            if files.iter().map(entries).sum::<usize>() <= 1 {
+                units.push(Group { files, ..group.clone() });
+            } else {
+                let alone = |file| Group { files: vec![file], ..group.clone() };
+                units.extend(files.into_iter().map(alone));
+            }
+        }
+    }
+    units
+}
+
+/// One program.
+fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle>) {
+    let modules = unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
+    let program = Program::new(modules);
+    let entry = program.entry(&unit.entry);
+    let cycle = entry.and_then(|entry| cycle(job, &program, entry));
+    let recording = match (&cycle, entry) {
+        (None, Some(entry)) => Some(trace::record(&program, entry)),
+        _ => None,
+    };
+    let notes: Vec<Note> = recording.iter().flat_map(|it| it.notes.iter().cloned()).collect();
+    let unresolved = cycle.as_ref().map_or(&notes, |cycle| &cycle.simulation.unresolved);
+    let trace = match (&cycle, &recording) {
+        (Some(cycle), _) => trace::of_simulation(&cycle.simulation),
+        (None, Some(recording)) => recording.trace(),
+        (None, None) => Vec::new(),
+    };
+    let context = Context::new(
+        job.files,
+        &program,
+        entry,
+        job.model,
+        cycle.as_ref(),
+        trace,
+        unresolved,
+        unit.system.as_ref(),
+    );
+    let mut findings = Vec::new();
+    for rule in ALL.iter().filter(|rule| job.settings.selects(rule)) {
+        (rule.check)(&context, &mut findings);
+    }
+    suppress(job, unit, read, &mut findings);
+    let settings = job.settings;
+    findings.retain(|finding| {
+        let path = &job.files[finding.span.file.0 as usize].path;
+        let worth = finding
+            .saving
+            .is_none_or(|saving| saving.energy_j >= settings.threshold_j(finding.rule));
+        worth && !settings.ignores_in(finding.rule, path)
+    });
+    let dynamics = job.model.is_some_and(Model::has_dynamics);
+    // A wait without an end has no energy that others could be added to.
+    let energy = cycle
+        .as_ref()
+        .filter(|_| dynamics)
+        .map(|cycle| cycle.account.total.energy_j())
+        .filter(|energy| energy.is_finite());
+    let report = Report { findings, cycle_energy_j: energy, unresolved: unresolved.len() };
+    (report, cycle)
+}
+
+fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
+    let model = job.model?;
+    let simulation = simulate(program, entry, model, &job.options);
+    let account = account(model, &simulation);
+    Some(Cycle::new(model, simulation, account, job.options.clone()))
+}
+
+/// Drops what comments take back, and adds what comments take back in vain.
+fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
+    // By file, comment and code of the comment.
+    let mut used: BTreeSet<(usize, usize, usize)> = BTreeSet::new();
+    findings.retain(|finding| {
+        let file = finding.span.file.0 as usize;
+        let Some(read) = read.get(file) else { return true };
+        let line = |at: u32| job.files[file].position(at).line;
+        let Span { start, end, .. } = finding.span;
+        let lines = line(start)..=line(end.saturating_sub(1).max(start));
+        let mut kept = true;
+        for (index, suppression) in read.suppressions.iter().enumerate() {
+            if lines.contains(&suppression.line) {
+                for code in suppression.naming(finding.rule) {
+                    used.insert((file, index, code));
+                    kept = false;
+                }
+            }
+        }
+        kept
+    });
+    if !job.settings.selects(&unused_suppression::RULE) {
+        return;
+    }
+    for file in &unit.files {
+        for (index, suppression) in read[*file].suppressions.iter().enumerate() {
+            let codes = suppression.codes.iter().enumerate();
+            let unused = codes.filter(|(code, _)| !used.contains(&(*file, index, *code)));
+            let unused: Vec<&str> = unused.map(|(_, code)| code.as_str()).collect();
+            unused_suppression::judge(job, suppression, &unused, findings);
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Applies fixes, and takes them back where the cycle does not get better by them.
+
+use super::engine::{Examined, Job, cycles, examine, lint};
+use super::finding::{Applicability, Finding};
+use super::rule::Family;
+use super::weigh::Cycle;
+use super::{Report, trace};
+use crate::rapid::syntax;
+use crate::rapid::text::{Edit, FileId, SourceFile, apply};
+use crate::retime::motion::timeline::What;
+use crate::retime::path::joint_path::{DOF, Joints};
+use crate::tool::lint::trace::Deed;
+
+/// Rounds of fixing what was found after the last one.
+const MOST_ROUNDS: usize = 40;
+/// Distance of two places that count as one, rad.
+const SAME: f64 = 1e-4;
+/// Rounding of an energy, J.
+const ROUNDING: f64 = 1e-6;
+
+/// What became of the files.
+#[derive(Debug)]
+pub struct Fixed {
+    /// All files, as they are now.
+    pub files: Vec<SourceFile>,
+    /// Fixes that stayed.
+    pub applied: usize,
+    /// Fixes that were taken back.
+    pub withdrawn: usize,
+    /// What is left to find.
+    pub report: Report,
+}
+
+/// Applies the fixes up to an applicability until nothing is left that holds. Each is simulated
+/// before and after, and stays only where the cycle takes less energy with the same waits and
+/// outputs in the same order at the same places.
+#[must_use]
+pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
+    let mut files = job.files.to_vec();
+    let (mut applied, mut withdrawn) = (0, 0);
+    for _ in 0..MOST_ROUNDS {
+        let now = with_files(job, &files);
+        let Examined { report, cycles: mut before, .. } = examine(&now);
+        let chosen = candidates(&report, most);
+        // All at once if they go together, else one after the other.
+        let mut kept: Vec<&Finding> = Vec::new();
+        let mut result = attempt(job, &files, &before, &chosen).map(|(after, _)| after);
+        if result.is_some() {
+            kept.clone_from(&chosen);
+        } else {
+            for finding in &chosen {
+                kept.push(finding);
+                match attempt(job, &files, &before, &kept) {
+                    Some((after, cycles)) => {
+                        before = cycles;
+                        result = Some(after);
+                    }
+                    None => {
+                        kept.pop();
+                    }
+                }
+            }
+        }
+        applied += kept.len();
+        withdrawn = chosen.len() - kept.len();
+        let Some(after) = result else { break };
+        files = after;
+    }
+    let report = lint(&with_files(job, &files));
+    Fixed { files, applied, withdrawn, report }
+}
+
+fn with_files<'j>(job: &Job<'j>, files: &'j [SourceFile]) -> Job<'j> {
+    Job { files, groups: job.groups.clone(), options: job.options.clone(), ..*job }
+}
+
+/// Fixes that can be tried together: the largest savings first, none of them about a statement
+/// or a text that another one changes.
+fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
+    let simulated = |finding: &&Finding| {
+        let comment = finding.rule.family == Family::Comments;
+        let fix = finding.fix.as_ref();
+        (finding.saving.is_some() || comment) && fix.is_some_and(|fix| fix.applicability <= most)
+    };
+    let mut list: Vec<&Finding> = report.findings.iter().filter(simulated).collect();
+    let joules = |finding: &Finding| finding.saving.map_or(0.0, |saving| saving.energy_j);
+    list.sort_by(|a, b| joules(b).total_cmp(&joules(a)));
+    let mut taken: Vec<(FileId, u32, u32)> = Vec::new();
+    list.retain(|finding| {
+        let mut places = vec![(finding.span.file, finding.span.start, finding.span.end)];
+        let edits = finding.fix.iter().flat_map(|fix| &fix.edits);
+        places.extend(edits.map(|edit| (edit.span.file, edit.span.start, edit.span.end)));
+        let free = places.iter().all(|(file, start, end)| {
+            !taken.iter().any(|(f, s, e)| f == file && start < e && s < end)
+        });
+        if free {
+            taken.extend(places);
+        }
+        free
+    });
+    list
+}
+
+/// The files with the fixes and their cycles, if they hold: the energy is compared with that of
+/// the cycles before, the process too.
+fn attempt(
+    job: &Job<'_>,
+    files: &[SourceFile],
+    before: &[Option<Cycle>],
+    findings: &[&Finding],
+) -> Option<(Vec<SourceFile>, Vec<Option<Cycle>>)> {
+    if findings.is_empty() {
+        return None;
+    }
+    let mut changed = files.to_vec();
+    for (index, file) in files.iter().enumerate() {
+        let edits: Vec<Edit> = findings
+            .iter()
+            .filter_map(|finding| finding.fix.as_ref())
+            .flat_map(|fix| fix.edits.iter().filter(|edit| edit.span.file == file.id).cloned())
+            .collect();
+        if edits.is_empty() {
+            continue;
+        }
+        let bytes = apply(&file.bytes, &edits).ok()?;
+        let errors = |bytes: &[u8]| syntax::parse(bytes).errors.len();
+        if errors(&bytes) > errors(&file.bytes) {
+            return None;
+        }
+        let stored = file.stored(&bytes).into_owned();
+        changed[index] = SourceFile::new(file.id, file.path.clone(), stored);
+    }
+    let comments = findings.iter().all(|finding| finding.rule.family == Family::Comments);
+    let after = cycles(&with_files(job, &changed));
+    let mut better = comments;
+    for (before, after) in before.iter().zip(&after) {
+        match (before, after) {
+            (Some(before), Some(after)) => {
+                let spared = before.account.total.energy_j() - after.account.total.energy_j();
+                if spared < -ROUNDING || !same_process(before, after) {
+                    return None;
+                }
+                better |= spared > ROUNDING;
+            }
+            (None, None) => {}
+            _ => return None,
+        }
+    }
+    (better && before.len() == after.len()).then_some((changed, after))
+}
+
+/// Whether two cycles wait for the same and set the same outputs, in the same order and at the
+/// same places, and end at the same place.
+fn same_process(before: &Cycle, after: &Cycle) -> bool {
+    let deeds = |cycle: &Cycle| -> Vec<String> {
+        let trace = trace::of_simulation(&cycle.simulation);
+        let deeds = trace.iter().filter_map(|done| match &done.what {
+            Deed::Output(output) => Some(format!("{} {}", output.signal, output.value)),
+            Deed::Wait(wait, basis) => {
+                let length = wait.duration.unwrap_or_default();
+                Some(format!("{} {:?} {basis:?} {length}", wait.instruction, wait.signal))
+            }
+            Deed::Left(_) => Some("elsewhere".to_owned()),
+            Deed::Move(_) => None,
+        });
+        deeds.collect()
+    };
+    let places = |cycle: &Cycle| -> Vec<Joints> {
+        let events = &cycle.simulation.events;
+        let waits = events.iter().filter_map(|event| match &event.what {
+            What::Wait(wait) => Some(wait.q),
+            _ => None,
+        });
+        let last = events.iter().rev().find_map(|event| match &event.what {
+            What::Run(run) => Some(run.end),
+            _ => None,
+        });
+        waits.chain(last).collect()
+    };
+    let sound = |cycle: &Cycle| {
+        cycle
+            .simulation
+            .events
+            .iter()
+            .filter(|event| match &event.what {
+                What::Run(run) => run.problem.is_some(),
+                _ => false,
+            })
+            .count()
+    };
+    let (a, b) = (places(before), places(after));
+    let near = |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= SAME);
+    deeds(before) == deeds(after)
+        && a.len() == b.len()
+        && a.iter().zip(&b).all(near)
+        && sound(after) <= sound(before)
+}

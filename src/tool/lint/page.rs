@@ -1,0 +1,79 @@
+//! The page about all rules.
+
+use std::fmt::Write as _;
+
+use super::register::ALL;
+use super::rule::{Family, Needs};
+
+/// What the page begins with.
+const HEAD: &str = "# Lints
+
+What `joulepath lint` finds, from the rules' own files (`src/tool/lint/rules`); `joulepath rule CODE`
+shows one of them. A test keeps this page fresh.
+
+**Savings** are the difference of two simulated cycles, with and without the change that the
+message names. They are told per simulated cycle. The interval holds what the change saves in 90 % of
+the robots that are as plausible as the one given (docs/energy.md): it is wide for an estimated
+robot, narrow for an identified or a calibrated one. Without a robot, without dynamics, and where the
+cycle does not come by, nothing is told: `saving_j` is null. Findings whose saving is below the
+threshold (1 J, `--threshold`, or `[lint]` of the configuration) are not told, and neither is a
+change that saves nothing or whose interval reaches below zero.
+
+**Fixes** are *safe* where path, order and end points provably stay, else *unsafe*. `--fix` applies
+safe ones, `--unsafe-fixes` both, `--diff` shows what they would do. Each is simulated before and
+after; it is taken back where the cycle does not take less energy, or waits and outputs are not the
+same in the same order at the same places. So fixes need a robot. Where only the person who knows
+the cell can tell waste from a need of the process, a rule offers none.
+
+**Comments** take findings back: `! joulepath: ignore EW101 reason`, at the end of the statement's
+first line or on a line of its own above it.
+
+**Configuration**, in `joulepath.toml`:
+
+```toml
+[lint]
+select = [\"ALL\"]              # codes, starts of codes (EW1), names, families
+ignore = [\"EW703\"]
+threshold-j = 1.0
+max-waste = \"3%\"              # or \"500J\": exit code 1 where more is wasted
+baseline = \"baseline.json\"    # made by --write-baseline
+[lint.per-file-ignores]
+\"*.sys\" = [\"stops\"]
+[lint.thresholds-j]
+EW101 = 5.0
+```
+";
+
+/// `docs/lints.md`.
+#[must_use]
+pub fn page() -> String {
+    let mut out = String::from(HEAD);
+    for family in Family::ALL {
+        let _ = write!(
+            out,
+            "\n## {}\n\n| code | name | finds | needs |\n|---|---|---|---|\n",
+            family.name()
+        );
+        for rule in ALL.iter().filter(|rule| rule.family == family) {
+            let needs = match rule.needs {
+                Needs::Text => "–",
+                Needs::Robot => "a robot",
+                Needs::Backup => "a backup",
+            };
+            let _ = writeln!(
+                out,
+                "| [{code}](#{anchor}-{name}) | {name} | {summary} | {needs} |",
+                code = rule.code,
+                anchor = rule.code.to_lowercase(),
+                name = rule.name,
+                summary = rule.summary(),
+            );
+        }
+        for rule in ALL.iter().filter(|rule| rule.family == family) {
+            // Chapters of a manual stand two levels below the family.
+            let manual = rule.manual().replace("\n## ", "\n#### ");
+            let _ = write!(out, "\n### {} {}\n\n{manual}", rule.code, rule.name);
+        }
+    }
+    out
+}

@@ -1,0 +1,131 @@
+//! A procedure with movements is called by nothing.
+//!
+//! ## What it does
+//! Finds procedures with movements that neither the program nor an interrupt calls, in modules
+//! that the program uses, where every procedure that is called is among the files and none is
+//! called by a text. What an operator starts is left alone: procedures without a parameter that
+//! only go to joint positions, stop for somebody or ask somebody.
+//!
+//! ## Why it wastes energy
+//! It does not by itself; but nobody knows what it costs when somebody starts it by hand, and
+//! changes are made in it that have no effect.
+//!
+//! ## How the saving is computed
+//! There is none: what never runs costs nothing in either of two simulated cycles.
+//!
+//! ## Example
+//! ```text
+//! PROC main()
+//!     rWork;
+//! ENDPROC
+//! PROC rWorkOld()
+//!     MoveJ pHome, v1000, fine, tGrip;
+//! ENDPROC
+//! ```
+//!
+//! ## Use instead
+//! Take it out, or say with a comment that an operator starts it
+//! (`! joulepath: ignore EW702 started by hand`).
+//!
+//! ## Safety
+//! Without a fix: an operator may start it by hand.
+//!
+//! ## Assumptions
+//! A module none of whose procedures the program uses is another program or a tool box. A program
+//! that moves nothing by itself is started procedure by procedure.
+
+use std::collections::BTreeSet;
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use super::super::flow::Class;
+use crate::rapid::ir::graph::Step;
+use crate::rapid::ir::hir::{Callee, RoutineKind, Scope, Stmt, StmtKind};
+use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::ir::program::{RoutineId, Symbol};
+
+rule!("EW702", "dead-procedure", Program, Text, Info, "dead_procedure.rs");
+
+/// Instructions that wait for somebody at the robot.
+const ASKING: &[&str] = &["stop", "break", "tpreadfk", "tpreadnum", "tpreaddnum", "uimsgbox"];
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let Some(entry) = context.entry.filter(|_| !context.flow.has_late_calls()) else { return };
+    let running = running(context, entry);
+    let moving: BTreeSet<RoutineId> = context.sites.iter().map(|site| site.place.0).collect();
+    if moving.is_disjoint(&running) {
+        return;
+    }
+    let used: BTreeSet<usize> = running.iter().map(|id| id.module).collect();
+    let open = calls_others(context);
+    for id in moving.difference(&running).copied() {
+        let routine = context.program.routine(id);
+        let may_be_called = open && routine.scope != Scope::Local;
+        if !matches!(routine.kind, RoutineKind::Proc)
+            || !used.contains(&id.module)
+            || may_be_called
+            || !context.flow.callers(id).is_empty()
+            || is_for_operators(context, id)
+        {
+            continue;
+        }
+        let message = format!("nothing calls {}, which moves the robot", routine.name.text);
+        findings.push(Finding::new(&RULE, routine.name.span, message));
+    }
+}
+
+/// The statements of a routine.
+fn statements<'c>(context: &Context<'c>, id: RoutineId) -> Vec<&'c Stmt> {
+    let nodes = context.flow.graph(id).nodes.iter();
+    let statement = |step: &Step<'c>| match step {
+        Step::Statement(stmt) => Some(*stmt),
+        _ => None,
+    };
+    nodes.filter_map(|node| statement(&node.step)).collect()
+}
+
+/// Routines that the program or an interrupt gets to.
+fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![entry];
+    while let Some(id) = open.pop() {
+        if !found.insert(id) {
+            continue;
+        }
+        for stmt in statements(context, id) {
+            if let Class::Call(callee) = context.flow.class(id, stmt) {
+                open.push(callee);
+            }
+            if let StmtKind::Connect { trap, .. } = &stmt.kind
+                && let Some(Symbol::Routine(trap)) = context.program.resolve(id.module, &trap.key)
+            {
+                open.push(trap);
+            }
+        }
+    }
+    found
+}
+
+/// Whether something is called that is not among the files: it may call what is.
+fn calls_others(context: &Context<'_>) -> bool {
+    let mut graphs = context.flow.graphs();
+    graphs.any(|(id, ..)| {
+        statements(context, id).into_iter().any(|stmt| context.flow.is_loose(id, stmt))
+    })
+}
+
+/// Whether an operator can start a procedure, and has a reason to.
+fn is_for_operators(context: &Context<'_>, id: RoutineId) -> bool {
+    if context.program.routine(id).params.iter().any(|param| !param.optional) {
+        return false;
+    }
+    let asks = statements(context, id).into_iter().any(|stmt| match &stmt.kind {
+        StmtKind::Call(call) => match &call.callee {
+            Callee::Name(name) => ASKING.contains(&name.key.as_str()),
+            Callee::Late(_) => false,
+        },
+        _ => false,
+    });
+    let mut own = context.sites.iter().filter(|site| site.place.0 == id);
+    asks || own.all(|site| site.signature.form == MoveForm::AbsJ)
+}

@@ -1,0 +1,82 @@
+//! The robot travels round in a loop and comes back to where it was, having done nothing.
+//!
+//! ## What it does
+//! Finds chains of joint movements with nothing between them, of which the last goes where the
+//! first went, over two to six other points.
+//!
+//! ## Why it wastes energy
+//! The whole loop is for nothing.
+//!
+//! ## How the saving is computed
+//! The cycle is laid on a time line with the last movement of the loop alone.
+//!
+//! ## Example
+//! ```text
+//! MoveJ pWait, v1000, z50, tGrip;
+//! MoveJ pLeft, v1000, z50, tGrip;
+//! MoveJ pRight, v1000, z50, tGrip;
+//! MoveJ pWait, v1000, fine, tGrip;
+//! WaitTime 1;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveJ pWait, v1000, fine, tGrip;
+//! WaitTime 1;
+//! ```
+//!
+//! ## Safety
+//! Without a fix: somebody has to say what the loop was for.
+//!
+//! ## Assumptions
+//! Joint movements alone have no purpose, unless the procedure does nothing else, or hardly anything
+//! else.
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use super::move_to_same_place::same_goal;
+use super::there_and_back::only_next;
+use crate::rapid::text::Span;
+
+rule!("EW403", "detour", Path, Text, Info, "detour.rs");
+
+/// Points of a loop.
+const MOST_POINTS: usize = 6;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    for first in 0..context.sites.len() {
+        let mut chain = vec![first];
+        while chain.len() <= MOST_POINTS + 1 {
+            let Some(next) = only_next(context, chain[chain.len() - 1]) else { break };
+            let site = &context.sites[next];
+            if site.is_linear() || !site.is_plain() || chain.contains(&next) {
+                break;
+            }
+            if same_goal(context, first, next) {
+                // Where all that is done is to move, that is the purpose.
+                let works = context.works(&[chain.as_slice(), &[next]].concat());
+                if chain.len() > 2 && chain.len() + 1 < context.sites.len() && works {
+                    findings.extend(told(context, &chain, next));
+                }
+                break;
+            }
+            chain.push(next);
+        }
+    }
+}
+
+fn told(context: &Context<'_>, chain: &[usize], last: usize) -> Option<Finding> {
+    let spans: Vec<Span> = chain.iter().map(|site| context.sites[*site].stmt.span).collect();
+    let saving = context.weigh(&spans, &|_| Vec::new()).saving().ok()?;
+    // Nothing can be said of a way over points that are not known.
+    if chain.iter().any(|site| context.sites[*site].facts.goal.is_none()) {
+        return None;
+    }
+    let points = chain.len() - 1;
+    let message = format!("a loop over {points} points leads back to where it began, for nothing");
+    let mut finding = Finding::new(&RULE, context.sites[last].stmt.span, message);
+    finding.related.push((spans[0], "it begins here".to_owned()));
+    finding.change = format!("leaving out the {} movements before this one", chain.len());
+    finding.saving = saving;
+    Some(finding)
+}

@@ -1,0 +1,99 @@
+//! A line is kept where nothing asks for one.
+//!
+//! ## What it does
+//! Finds long, fast `MoveL` that begin and end in the zones of other movements: the robot passes
+//! both of their ends, so nothing happens there.
+//!
+//! ## Why it wastes energy
+//! On a line the joints have to follow the TCP; in a joint movement each axis goes the shortest
+//! way and the slowest one sets the time.
+//!
+//! ## How the saving is computed
+//! The movement is laid on a time line as a line and as a joint movement.
+//!
+//! ## Example
+//! ```text
+//! MoveJ pOver, v1000, z50, tGrip;
+//! MoveL pBeyond, v1000, z50, tGrip;
+//! MoveJ pMachine, v1000, fine, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveJ pOver, v1000, z50, tGrip;
+//! MoveJ pBeyond, v1000, z50, tGrip;
+//! MoveJ pMachine, v1000, fine, tGrip;
+//! ```
+//!
+//! ## Safety
+//! Unsafe: the way between the points is another one. Check that it is free.
+//!
+//! ## Assumptions
+//! There is room between the two points; ways below 200 mm and speeds below 500 mm/s are left
+//! alone, and so are lines before or behind another line.
+
+use super::super::context::Context;
+use super::super::edits::{fix, replace};
+use super::super::finding::{Applicability, Finding};
+use super::super::flow::Through;
+use super::super::weigh::Weighed;
+use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::ir::movement::Movement;
+use crate::retime::motion::Step;
+
+rule!("EW205", "line-in-free-air", Speed, Robot, Info, "line_in_free_air.rs");
+
+/// Shortest way, m.
+const WAY: f64 = 0.2;
+/// Least speed, m/s.
+const SPEED: f64 = 0.5;
+/// Smallest zone that is passed in free air, m.
+const ZONE: f64 = 0.005;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    for (index, site) in context.sites.iter().enumerate() {
+        let passes = |site: usize| {
+            let site = &context.sites[site];
+            site.is_plain() && site.facts.zone.is_some_and(|zone| !zone.fine && zone.tcp >= ZONE)
+        };
+        let is_joint = |site: &usize| !context.sites[*site].is_linear();
+        let fast = site.facts.speed.is_some_and(|speed| speed.tcp >= SPEED);
+        let before = context.before(index);
+        if site.signature.form != MoveForm::Linear
+            || !passes(index)
+            || !fast
+            || before.is_empty()
+            || context.may_start(index)
+            || !before.iter().all(|before| passes(*before) && is_joint(before))
+            || context
+                .next_moves(index, Through::Quiet)
+                .is_none_or(|next| !next.iter().all(is_joint))
+            || context.corner(index).is_none_or(|corner| corner.before < WAY)
+        {
+            continue;
+        }
+        let Weighed::Saves(saving) = context.weigh(&[site.stmt.span], &as_joint) else { continue };
+        let message = format!("{} keeps a line between two points that are only passed", site.name);
+        let mut finding = Finding::new(&RULE, site.stmt.span, message);
+        finding.change = format!("MoveJ in place of {}", site.name);
+        finding.saving = Some(saving);
+        finding.assumptions.push("the way of a joint movement is free".to_owned());
+        finding.fix = Some(fix(Applicability::Unsafe, replace(site.name_span, "MoveJ")));
+        findings.push(finding);
+    }
+}
+
+/// A line as a joint movement.
+pub(super) fn as_joint(step: &Step) -> Vec<Step> {
+    match step {
+        Step::Move(movement) => {
+            let movement = Movement {
+                form: MoveForm::Joint,
+                instruction: "MoveJ".into(),
+                ..(**movement).clone()
+            };
+            vec![Step::Move(Box::new(movement))]
+        }
+        other => vec![other.clone()],
+    }
+}

@@ -1,0 +1,69 @@
+//! A payload is set and never taken off again.
+//!
+//! ## What it does
+//! Finds `GripLoad` with a load in programs that have no `GripLoad` without one.
+//!
+//! ## Why it wastes energy
+//! From the first part on the controller takes the empty arm for a loaded one: it accelerates
+//! less than it could, and every figure about energy is wrong.
+//!
+//! ## How the saving is computed
+//! There is none to tell: where the part is let go is not in the program, so there is no second
+//! text to simulate, and with a wrong payload no figure is right.
+//!
+//! ## Example
+//! ```text
+//! SetDO doGripClose, 1;
+//! GripLoad loadPart;
+//! MoveJ pPlace, v1000, fine, tGrip;
+//! SetDO doGripClose, 0;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! SetDO doGripClose, 1;
+//! GripLoad loadPart;
+//! MoveJ pPlace, v1000, fine, tGrip;
+//! SetDO doGripClose, 0;
+//! GripLoad load0;
+//! ```
+//!
+//! ## Safety
+//! Without a fix: the place at which the part is let go is the process's.
+//!
+//! ## Assumptions
+//! The program is complete: it has its entry.
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use crate::rapid::ir::hir::ArgKind;
+use crate::rapid::ir::value::Datum;
+
+rule!("EW503", "payload-never-reset", Load, Text, Warning, "payload_never_reset.rs");
+
+/// Loads up to this are none, kg.
+const NONE: f64 = 0.01;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    if context.entry.is_none() || context.flow.has_late_calls() {
+        return;
+    }
+    let calls = context.calls("gripload");
+    let masses: Option<Vec<f64>> = calls
+        .iter()
+        .map(|(place, _, call)| {
+            let ArgKind::Positional(expr) = &call.args.first()?.kind else { return None };
+            match context.constant(place.0, expr)? {
+                Datum::List(parts) => parts.first()?.num(),
+                _ => None,
+            }
+        })
+        .collect();
+    // A load that is not known may be none.
+    let Some(masses) = masses else { return };
+    if masses.is_empty() || masses.iter().any(|mass| *mass <= NONE) {
+        return;
+    }
+    let message = "a payload is set here, and no GripLoad load0 takes it off again";
+    findings.push(Finding::new(&RULE, calls[0].1.span, message));
+}

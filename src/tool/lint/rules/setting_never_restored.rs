@@ -1,0 +1,85 @@
+//! A motion setting is lowered in the middle of the program and never restored.
+//!
+//! ## What it does
+//! Finds `AccSet` and `VelSet` below 100 % behind the first movements of a program that never
+//! sets them back.
+//!
+//! ## Why it wastes energy
+//! From then on everything is slower, in the next cycle also what was at full speed in the first:
+//! the base load runs for longer, and no cycle is as it was tried.
+//!
+//! ## How the saving is computed
+//! None is told: what is lost, the next cycle loses, and one simulated cycle does not show it.
+//! EW602 and EW603 weigh the setting itself.
+//!
+//! ## Example
+//! ```text
+//! MoveJ pOver, v1000, z50, tGrip;
+//! AccSet 40, 40;
+//! MoveL pInsert, v100, fine, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveJ pOver, v1000, z50, tGrip;
+//! AccSet 40, 40;
+//! MoveL pInsert, v100, fine, tGrip;
+//! AccSet 100, 100;
+//! ```
+//!
+//! ## Safety
+//! Without a fix: where the setting ends is the process's.
+//!
+//! ## Assumptions
+//! The program is complete: it has its entry.
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use super::super::trace::Deed;
+use crate::rapid::ir::hir::{ArgKind, Call};
+use crate::rapid::ir::movement::{Movement, Settings};
+use crate::rapid::ir::program::RoutineId;
+
+rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never_restored.rs");
+
+/// What a setting is, 1 = 100 %.
+type Share = fn(&Settings) -> f64;
+
+/// Instructions with what they change.
+const LOWERED: [(&str, Share); 2] =
+    [("accset", |settings| settings.acceleration), ("velset", |settings| settings.speed_override)];
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let moves: Vec<&Movement> = context
+        .trace
+        .iter()
+        .filter_map(|done| match &done.what {
+            Deed::Move(movement) => Some(*movement),
+            _ => None,
+        })
+        .collect();
+    let (Some(first), Some(last)) = (moves.first(), moves.last()) else { return };
+    for (key, of) in LOWERED {
+        if of(&first.settings) < 1.0 || of(&last.settings) >= 1.0 {
+            continue;
+        }
+        let calls = context.calls(key);
+        let values: Option<Vec<f64>> =
+            calls.iter().map(|(place, _, call)| percent(context, place.0, call)).collect();
+        // A value that is not known may be 100 %.
+        if values.is_none_or(|values| values.iter().any(|value| *value >= 100.0)) {
+            continue;
+        }
+        for (_, stmt, _) in calls {
+            let message = "lowered here for all that follows, and in the next cycle for all: \
+                           nothing sets it back to 100 %";
+            findings.push(Finding::new(&RULE, stmt.span, message));
+        }
+    }
+}
+
+/// The first argument of a call, if it is known.
+pub(super) fn percent(context: &Context<'_>, routine: RoutineId, call: &Call) -> Option<f64> {
+    let ArgKind::Positional(expr) = &call.args.first()?.kind else { return None };
+    context.constant(routine, expr)?.num()
+}

@@ -1,0 +1,84 @@
+//! A movement stops although the next one goes on in the same line.
+//!
+//! ## What it does
+//! Finds stop points between two lines in the same direction, with the same orientation and tool,
+//! behind which nothing needs a robot that stands.
+//!
+//! ## Why it wastes energy
+//! The arm is braked and accelerated anew on a way that it could pass without a change of speed.
+//!
+//! ## How the saving is computed
+//! As of EW101: both movements are laid on a time line with `fine` and with a zone.
+//!
+//! ## Example
+//! ```text
+//! MoveL Offs(p, 0, 0, 200), v1000, fine, tGrip;
+//! MoveL Offs(p, 0, 0, 100), v1000, fine, tGrip;
+//! MoveL p, v1000, fine, tGrip;
+//! WaitTime 1;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveL Offs(p, 0, 0, 200), v1000, fine, tGrip;
+//! MoveL Offs(p, 0, 0, 100), v1000, z10, tGrip;
+//! MoveL p, v1000, fine, tGrip;
+//! WaitTime 1;
+//! ```
+//!
+//! ## Safety
+//! Without a fix: the stop may belong to a process, as where a hole is drilled in steps.
+//! Somebody has to say that nothing needs it.
+//!
+//! ## Assumptions
+//! Directions that differ by less than 0.3° are one line.
+
+use super::super::context::{Context, Corner};
+use super::super::edits::zone_within;
+use super::super::finding::Finding;
+use super::unneeded_stop_point::{stops_for_movements, with_zone};
+use crate::rapid::ir::instructions::MoveForm;
+
+rule!("EW102", "stop-in-line", Stops, Text, Warning, "stop_in_line.rs");
+
+/// Directions that differ by less are one, rad.
+const STRAIGHT: f64 = 0.005;
+/// Orientations that differ by less are one, rad.
+const UNTURNED: f64 = 0.002;
+/// Share of the shorter way that a zone may take.
+const SHARE: f64 = 0.3;
+/// Largest zone that is proposed, m.
+const MOST: f64 = 0.075;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    for (index, site) in context.sites.iter().enumerate() {
+        let Some(next) = stops_for_movements(context, index) else { continue };
+        let (Some(argument), Some(corner)) = (site.zone, context.corner(index)) else { continue };
+        if !is_in_line(context, index, &next, &corner) {
+            continue;
+        }
+        let Some(zone) = zone_within((SHARE * corner.room()).min(MOST)) else { continue };
+        let weighed = context.weigh(&[site.stmt.span], &|step| with_zone(step, zone));
+        let Ok(saving) = weighed.saving() else { continue };
+        let message = format!("{} stops in the middle of a line", site.name);
+        let mut finding = Finding::new(&RULE, site.stmt.span, message);
+        finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
+        finding.saving = saving;
+        findings.push(finding);
+    }
+}
+
+/// Whether a movement and all behind it are one line.
+pub(super) fn is_in_line(
+    context: &Context<'_>,
+    index: usize,
+    next: &[usize],
+    corner: &Corner,
+) -> bool {
+    let is_line = |site: &usize| context.sites[*site].signature.form == MoveForm::Linear;
+    is_line(&index)
+        && next.iter().all(is_line)
+        && corner.turn < STRAIGHT
+        && corner.turned < UNTURNED
+        && corner.room() > 0.0
+}

@@ -1,0 +1,99 @@
+//! A movement goes where the robot cannot get.
+//!
+//! ## What it does
+//! Finds movements whose target the robot has no joint angles for, whatever the configuration, in
+//! programs most of whose movements it can make.
+//!
+//! ## Why it wastes energy
+//! The robot stops there with an error, and stands with its drives on until somebody comes; what
+//! stands behind it is in no figure.
+//!
+//! ## How the saving is computed
+//! There is none: a movement that cannot be made is in neither of two simulated cycles.
+//!
+//! ## Example
+//! ```text
+//! MoveL Offs(pPick, 0, 0, 2000), v500, z10, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveL Offs(pPick, 0, 0, 200), v500, z10, tGrip;
+//! ```
+//!
+//! ## Safety
+//! Without a fix: where it should go, the program does not say.
+//!
+//! ## Assumptions
+//! Robot, tool and work object are those that `--robot` and the program name. Where more than one
+//! movement in four cannot be made as it stands, the robot is taken for another one and nothing is
+//! told.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use super::super::trace::{Deed, record};
+use crate::arm::kinematics::{IkError, ik_near, limits_ok};
+use crate::arm::robot::Model;
+use crate::rapid::ir::movement::{Movement, Target};
+use crate::rapid::text::Span;
+
+rule!("EW705", "target-out-of-reach", Program, Robot, Warning, "target_out_of_reach.rs");
+
+/// Of so many movements one may be impossible, if the robot is the right one.
+const ONE_IN: usize = 4;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let (Some(model), Some(entry)) = (context.model, context.entry) else { return };
+    let mut moves: BTreeSet<Span> = BTreeSet::new();
+    let mut left: BTreeSet<Span> = BTreeSet::new();
+    for done in &context.trace {
+        match done.what {
+            Deed::Move(movement) => moves.insert(movement.span),
+            Deed::Left(span) => left.insert(span),
+            _ => false,
+        };
+    }
+    if left.is_empty() || left.len() * ONE_IN > moves.union(&left).count() {
+        return;
+    }
+    let recording = record(context.program, entry);
+    let mut reasons: BTreeMap<Span, Option<String>> = BTreeMap::new();
+    for done in recording.trace() {
+        if let Deed::Move(movement) = done.what {
+            let reason = reasons.entry(movement.span).or_default();
+            if reason.is_none() {
+                *reason = out_of_reach(model, movement);
+            }
+        }
+    }
+    for (span, reason) in reasons {
+        let Some(reason) = reason.filter(|_| left.contains(&span)) else { continue };
+        let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else {
+            continue;
+        };
+        let message = format!("{} cannot get where it goes: {reason}", site.name);
+        findings.push(Finding::new(&RULE, span, message));
+    }
+}
+
+/// Why the robot cannot get to a movement's target, if it cannot.
+fn out_of_reach(model: &Model, movement: &Movement) -> Option<String> {
+    match &movement.target {
+        Target::Joints(q) => limits_ok(model, q).err().map(|error| error.to_string()),
+        Target::Pose(target) if movement.wobj.fixed && movement.tool.robhold => {
+            let world = model.kinematics.base.inverse();
+            let shift = movement.settings.displacement.unwrap_or_default();
+            let pose = world * movement.wobj.frame * shift * target.pose;
+            let flange = pose * movement.tool.frame.inverse();
+            match ik_near(model, &flange, &[0.0; 6]).err()? {
+                error @ (IkError::Unreachable { .. }
+                | IkError::OutsideLimits(_)
+                | IkError::NotFound { .. }) => Some(error.to_string()),
+                _ => None,
+            }
+        }
+        Target::Pose(_) => None,
+    }
+}

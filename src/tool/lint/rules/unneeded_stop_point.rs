@@ -1,0 +1,172 @@
+//! A movement stops although on every way another movement follows at once.
+//!
+//! ## What it does
+//! Finds stop points (`fine`) of plain movements behind which, on every way through the program,
+//! the next thing that concerns the robot is another plain movement with the same tool.
+//!
+//! ## Why it wastes energy
+//! The arm is braked, its kinetic energy is lost in the drives, and it is accelerated anew; the
+//! base load runs on for the time that braking, settling and starting take.
+//!
+//! ## How the saving is computed
+//! The movements before and after the point are laid on a time line once with `fine` and once with
+//! the largest predefined zone that has room; the difference in joules and seconds is told.
+//!
+//! ## Example
+//! ```text
+//! MoveJ pAbove, v1000, fine, tGrip;
+//! MoveL pPick, v300, fine, tGrip;
+//! WaitTime 0.2;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveJ pAbove, v1000, z50, tGrip;
+//! MoveL pPick, v300, fine, tGrip;
+//! WaitTime 0.2;
+//! ```
+//!
+//! ## Safety
+//! Unsafe: the corner is cut, and data that are written behind the movement are written earlier.
+//! Check that there is room.
+//!
+//! ## Assumptions
+//! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
+//! the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
+//! than 150 mm across the tool's axis, next to an arc, or four and more in a row) and their ends (the
+//! tool goes in, or comes out, next to a line across its axis), interrupt routines, first movements.
+
+use std::collections::BTreeSet;
+
+use super::super::context::{Context, Corner};
+use super::super::edits::{NamedZone, fix, replace, zone_within};
+use super::super::finding::{Applicability, Finding};
+use super::super::flow::Through;
+use crate::rapid::ir::hir::RoutineKind;
+use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::ir::movement::Movement;
+use crate::retime::motion::Step;
+
+rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point.rs");
+
+/// Slower movements are taken for a process, m/s.
+const PROCESS: f64 = 0.2;
+/// A larger change of direction is a way back, rad.
+const BACK: f64 = 2.36;
+/// Points nearer than this to the next one are left alone, m.
+const NEAR: f64 = 0.02;
+/// Longest way on a contour, m.
+const CONTOUR: f64 = 0.15;
+/// Share of a way across the tool's axis that lies along it.
+const ACROSS: f64 = 0.3;
+/// Lines in a row that are many: with a part the robot goes up, over and down.
+const MANY: usize = 4;
+/// Share of the shorter way that a zone may take.
+const SHARE: f64 = 0.3;
+/// Largest zone between two lines, m: their corner is meant to be near.
+const BETWEEN_LINES: f64 = 0.015;
+/// Largest zone elsewhere, m.
+const MOST: f64 = 0.075;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    for index in 0..context.sites.len() {
+        let Some((zone, _)) = could_pass(context, index) else { continue };
+        let site = &context.sites[index];
+        let Some(argument) = site.zone else { continue };
+        let weighed = context.weigh(&[site.stmt.span], &|step| with_zone(step, zone));
+        let Ok(saving) = weighed.saving() else { continue };
+        let mut finding = Finding::new(
+            &RULE,
+            site.stmt.span,
+            format!("{} stops, but nothing behind it needs a robot that stands", site.name),
+        );
+        finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
+        finding.saving = saving;
+        finding.assumptions.push(format!("there is room to cut the corner ({})", zone.name));
+        finding.fix = Some(fix(Applicability::Unsafe, replace(argument.span, zone.name)));
+        findings.push(finding);
+    }
+}
+
+/// The zone with which a stop point could be passed, and whether the way is a straight line.
+pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZone, bool)> {
+    let site = &context.sites[index];
+    let next = stops_for_movements(context, index)?;
+    if site.facts.speed.is_none_or(|speed| speed.tcp < PROCESS) {
+        return None;
+    }
+    let corner = context.corner(index)?;
+    if corner.turn > BACK || corner.room() < NEAR {
+        return None;
+    }
+    let line_behind = next.iter().any(|next| context.sites[*next].is_linear());
+    // What is drawn, cut or welded begins and ends where it is meant to.
+    if corner.goes_in && line_behind || corner.comes_out && site.is_linear() {
+        return None;
+    }
+    let lines = site.is_linear() && line_behind;
+    if site.is_linear() && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
+        return None;
+    }
+    let most = if lines { BETWEEN_LINES } else { MOST };
+    let zone = zone_within((SHARE * corner.room()).min(most))?;
+    Some((zone, super::stop_in_line::is_in_line(context, index, &next, &corner)))
+        .filter(|(_, in_line)| !in_line)
+}
+
+/// Whether a stop point lies on or ends a contour that the tool draws, cuts or glues: there is an
+/// arc, the lines are across the tool's axis, or many in a row.
+fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corner) -> bool {
+    let is_arc = |site: &usize| context.sites[*site].signature.form == MoveForm::Circular;
+    let across = corner.along < ACROSS && next.iter().any(|it| context.sites[*it].is_linear());
+    if across || is_arc(&index) || next.iter().any(is_arc) || next.contains(&index) {
+        return true;
+    }
+    let mut row = BTreeSet::from([index]);
+    let mut open = vec![index];
+    while let Some(site) = open.pop().filter(|_| row.len() < MANY) {
+        let behind = context.next_moves(site, Through::Quiet).unwrap_or_default();
+        let before = context.before(site).iter().copied();
+        let before = before.filter(|it| context.next_moves(*it, Through::Quiet).is_some());
+        for other in behind.into_iter().chain(before) {
+            if context.sites[other].is_linear() && row.insert(other) {
+                open.push(other);
+            }
+        }
+    }
+    row.len() >= MANY
+}
+
+/// The movements behind a stop point that stops for nothing else.
+pub(super) fn stops_for_movements(context: &Context<'_>, index: usize) -> Option<Vec<usize>> {
+    let site = &context.sites[index];
+    let routine = context.program.routine(site.place.0);
+    let handlers = !routine.error.is_empty() || routine.undo.is_some();
+    let first = site.executions.first().is_some_and(|step| context.neighbours(*step).is_none());
+    if !site.is_stop()
+        || !site.is_plain()
+        || !site.reachable
+        || matches!(routine.kind, RoutineKind::Trap)
+        || first
+        || handlers && context.in_handler(site)
+    {
+        return None;
+    }
+    let next = context.next_moves(index, Through::Quiet)?;
+    let fits = |other: &usize| {
+        let other = &context.sites[*other];
+        other.is_plain() && other.tool_key() == site.tool_key() && site.tool_key().is_some()
+    };
+    next.iter().all(fits).then_some(next)
+}
+
+/// A movement with another zone.
+pub(super) fn with_zone(step: &Step, zone: NamedZone) -> Vec<Step> {
+    match step {
+        Step::Move(movement) => {
+            let movement = Movement { zone: zone.zone, ..(**movement).clone() };
+            vec![Step::Move(Box::new(movement))]
+        }
+        other => vec![other.clone()],
+    }
+}

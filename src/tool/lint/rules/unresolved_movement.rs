@@ -1,0 +1,83 @@
+//! A movement can't be worked out from the program, and hides what it costs.
+//!
+//! ## What it does
+//! Finds movements that run, but whose target, speed or zone is not in the files or not known.
+//! Where many names are missing, the first of them is told. A place that the robot reads of itself
+//! (`CRobT`) nobody can state: it is left alone.
+//!
+//! ## Why it wastes energy
+//! What can't be worked out is in no figure, and whatever it wastes is not found.
+//!
+//! ## How the saving is computed
+//! There is none: the movement is in no simulated cycle.
+//!
+//! ## Example
+//! ```text
+//! MoveL pNotDeclared, v500, fine, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! Give the module that declares the target, or state the value of the data that it depends on.
+//!
+//! ## Safety
+//! Without a fix.
+//!
+//! ## Assumptions
+//! Out of reach is another matter: the robot may be another one.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use super::super::context::Context;
+use super::super::finding::Finding;
+use super::super::trace::{Deed, record};
+use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::text::Span;
+
+rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.rs");
+
+/// End of the reason why a name says nothing.
+const MISSING: &str = "is not declared in the files given";
+/// End of the reason why a place that the robot reads of itself is not known.
+const OWN: &str = "depends on where the robot is";
+/// Names that may be missing without a whole module being it.
+const FEW: usize = 3;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let left = || context.trace.iter().any(|done| matches!(done.what, Deed::Left(_)));
+    let Some(entry) = context.entry.filter(|_| left()) else { return };
+    // What another robot could do the program says well enough.
+    let recording = record(context.program, entry);
+    let resolved: BTreeSet<Span> = recording
+        .trace()
+        .iter()
+        .filter(|done| matches!(done.what, Deed::Move(_)))
+        .map(|done| done.what.span())
+        .collect();
+    let mut told: BTreeSet<&str> = BTreeSet::new();
+    let mut missing: Vec<Finding> = Vec::new();
+    for done in &context.trace {
+        let Deed::Left(span) = done.what else { continue };
+        let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else { continue };
+        let facts = &site.facts;
+        let open = facts.goal.is_none() || facts.speed.is_none() || facts.zone.is_none();
+        if !open || resolved.contains(&span) || site.signature.form == MoveForm::ExternalJoint {
+            continue;
+        }
+        let Some(note) = context.unresolved.iter().find(|note| note.span == span) else { continue };
+        // One remark for one cause.
+        if !note.reason.ends_with(OWN) && told.insert(&note.reason) {
+            let message = format!("{} can't be worked out: {}", site.name, note.reason);
+            let finding = Finding::new(&RULE, span, message);
+            let list = if note.reason.ends_with(MISSING) { &mut missing } else { &mut *findings };
+            list.push(finding);
+        }
+    }
+    if missing.len() > FEW {
+        // A module is missing, and that is one cause too.
+        let others = missing.split_off(1);
+        let _ = write!(missing[0].message, " (and {} other names are not)", others.len());
+        missing[0].related = others.into_iter().map(|it| (it.span, it.message)).collect();
+    }
+    findings.extend(missing);
+}

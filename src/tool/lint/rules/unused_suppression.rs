@@ -1,0 +1,93 @@
+//! A comment takes back a finding that is not there.
+//!
+//! ## What it does
+//! Finds `! joulepath: ignore CODE reason` where no such finding is in the statement it is about.
+//! Of several codes each is judged.
+//!
+//! ## Why it wastes energy
+//! It does not, but it hides the next finding of that kind.
+//!
+//! ## How the saving is computed
+//! There is none.
+//!
+//! ## Example
+//! ```text
+//! ! joulepath: ignore EW999 no such rule
+//! WaitTime 1;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! WaitTime 1;
+//! ```
+//!
+//! ## Safety
+//! Taking the comment out changes no statement.
+//!
+//! ## Assumptions
+//! A rule that needs a backup is not judged without one, and without a robot no rule about where
+//! and how the robot moves: with one it may find what it does not find without.
+
+use super::super::edits::{fix, replace};
+use super::super::engine::Job;
+use super::super::finding::{Applicability, Finding};
+use super::super::register::ALL;
+use super::super::rule::{Family, Needs, Rule};
+use super::super::suppress::Suppression;
+use crate::rapid::diagnostics::Severity;
+
+/// A comment takes back a finding that is not there.
+pub(in crate::tool::lint) static RULE: Rule = Rule {
+    code: "EW001",
+    name: "unused-suppression",
+    family: Family::Comments,
+    needs: Needs::Text,
+    severity: Severity::Warning,
+    source: include_str!("unused_suppression.rs"),
+    // The engine knows what was suppressed, and asks `judge`.
+    check: |_, _| {},
+};
+
+/// Adds a finding for the codes of a comment that took nothing back, as far as their rules ran.
+pub(in crate::tool::lint) fn judge(
+    job: &Job<'_>,
+    suppression: &Suppression,
+    unused: &[&str],
+    findings: &mut Vec<Finding>,
+) {
+    let meant = |code: &str| ALL.iter().filter(|rule| rule.is_meant(code)).collect::<Vec<_>>();
+    let idle = |rule: &Rule| {
+        !job.settings.selects(rule)
+            || rule.needs == Needs::Backup
+            || job.model.is_none() && depends_on_robot(rule)
+    };
+    let judged =
+        unused.iter().copied().filter(|code| !meant(code).into_iter().any(|rule| idle(rule)));
+    let (vain, unknown): (Vec<&str>, Vec<&str>) = judged.partition(|code| !meant(code).is_empty());
+    let whole = vain.len() + unknown.len() == suppression.codes.len();
+    let mut told = Vec::new();
+    if suppression.codes.is_empty() {
+        told.push("the comment names no rule: write ! joulepath: ignore CODE reason".to_owned());
+    }
+    if !unknown.is_empty() {
+        told.push(format!("there is no rule {}: joulepath rule lists them", unknown.join(", ")));
+    }
+    if !vain.is_empty() {
+        let so = if whole { "the comment takes nothing back" } else { "leave it out" };
+        told.push(format!("nothing here is found by {}: {so}", vain.join(", ")));
+    }
+    if told.is_empty() {
+        return;
+    }
+    let mut finding = Finding::new(&RULE, suppression.span, told.join("; "));
+    if whole {
+        finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
+    }
+    findings.push(finding);
+}
+
+/// Whether a robot may find more: where it goes, what it gets to, whether a change saves.
+fn depends_on_robot(rule: &Rule) -> bool {
+    let moves = [Family::Stops, Family::Speed, Family::Dwell, Family::Path];
+    rule.needs == Needs::Robot || moves.contains(&rule.family)
+}

@@ -1,0 +1,313 @@
+//! Movement statements with what the text alone says of them.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+
+use super::flow::Place;
+use super::quiet::Quiet;
+use crate::rapid::ir::exec::evaluate;
+use crate::rapid::ir::hir::{
+    ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
+};
+use crate::rapid::ir::instructions::{MoveForm, MoveSignature, movement};
+use crate::rapid::ir::movement::{Movement, Speed, Target, Zone};
+use crate::rapid::ir::program::{Program, RoutineId};
+use crate::rapid::ir::value::Datum;
+use crate::rapid::text::Span;
+
+/// A movement statement.
+#[derive(Debug)]
+pub struct Site<'p> {
+    /// Where it stands.
+    pub place: Place,
+    /// It.
+    pub stmt: &'p Stmt,
+    /// The instruction as written.
+    pub name: &'p str,
+    /// Where it stands.
+    pub name_span: Span,
+    /// Its form.
+    pub signature: MoveSignature,
+    /// The argument with the target.
+    pub target: &'p Expr,
+    /// The argument with the speed.
+    pub speed: &'p Expr,
+    /// The argument with the zone.
+    pub zone: Option<&'p Expr>,
+    /// The argument with the tool.
+    pub tool: Option<&'p Expr>,
+    /// The work object.
+    pub wobj: Option<&'p Expr>,
+    /// Names of the options, in lower case.
+    pub options: Vec<&'p str>,
+    /// True where control can get.
+    pub reachable: bool,
+    /// True if it is the one statement of a compact `IF`.
+    pub compact: bool,
+    /// What is known of it.
+    pub facts: Facts,
+    /// Its executions: events of the trace.
+    pub executions: Vec<usize>,
+}
+
+/// What is known of a movement whenever it runs, without a robot.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// Its zone.
+    pub zone: Option<Zone>,
+    /// Its speed.
+    pub speed: Option<Speed>,
+    /// Where it goes.
+    pub goal: Option<Goal>,
+}
+
+/// Where a movement goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Goal {
+    /// Joints, rad.
+    Joints([f64; 6]),
+    /// A pose in a work object, m.
+    Pose(Isometry3<f64>, [i32; 4]),
+}
+
+impl Goal {
+    /// The pose, if it is one.
+    pub fn pose(&self) -> Option<&Isometry3<f64>> {
+        match self {
+            Goal::Pose(pose, _) => Some(pose),
+            Goal::Joints(_) => None,
+        }
+    }
+
+    /// Whether two goals are the same place.
+    pub fn is_same(&self, other: &Goal) -> bool {
+        /// m, and as a length of quaternion differences.
+        const SAME: f64 = 1e-5;
+        match (self, other) {
+            (Goal::Joints(a), Goal::Joints(b)) => {
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME)
+            }
+            (Goal::Pose(a, conf), Goal::Pose(b, other)) => {
+                conf == other
+                    && (a.translation.vector - b.translation.vector).norm() < SAME
+                    && a.rotation.angle_to(&b.rotation) < SAME
+            }
+            _ => false,
+        }
+    }
+}
+
+impl Site<'_> {
+    /// A movement that does nothing but move, without options that tie it to anything.
+    pub fn is_plain(&self) -> bool {
+        self.signature.plain
+            && self.signature.form != MoveForm::ExternalJoint
+            && self.options.iter().all(|key| {
+                matches!(*key, "wobj" | "tool" | "speed" | "zone" | "topoint" | "tojointpos")
+                    || matches!(*key, "noeoffs" | "v" | "cirpoint")
+            })
+    }
+
+    /// A line or an arc.
+    pub fn is_linear(&self) -> bool {
+        matches!(self.signature.form, MoveForm::Linear | MoveForm::Circular)
+    }
+
+    /// True if it stops.
+    pub fn is_stop(&self) -> bool {
+        self.facts.zone.is_some_and(|zone| zone.fine)
+    }
+
+    /// The name of the tool, in lower case, if it is a name.
+    pub fn tool_key(&self) -> Option<&str> {
+        named(self.tool?)
+    }
+
+    /// The name of the work object, in lower case; `wobj0` where none is given.
+    pub fn wobj_key(&self) -> Option<&str> {
+        self.wobj.map_or(Some("wobj0"), named)
+    }
+}
+
+fn named(expr: &Expr) -> Option<&str> {
+    match &expr.kind {
+        ExprKind::Ref(name) => Some(&name.key),
+        _ => None,
+    }
+}
+
+/// The movement statement of a call, its arguments by their meaning.
+pub fn site<'p>(
+    program: &Program,
+    quiet: &Quiet<'_>,
+    place: Place,
+    stmt: &'p Stmt,
+    call: &'p Call,
+) -> Option<Site<'p>> {
+    let Callee::Name(name) = &call.callee else { return None };
+    let signature = movement(&name.key)?;
+    let mut positional = Vec::new();
+    let mut options: Vec<(&str, Option<&Expr>)> = Vec::new();
+    for arg in &call.args {
+        match &arg.kind {
+            ArgKind::Positional(expr) => positional.push(expr),
+            ArgKind::Named(name, expr) => options.push((&name.key, Some(expr))),
+            ArgKind::Optional(name, expr) => options.push((&name.key, expr.as_ref())),
+            ArgKind::Conditional(name, _) => options.push((&name.key, None)),
+        }
+    }
+    let option = |key: &str| options.iter().find(|(k, _)| *k == key).and_then(|(_, expr)| *expr);
+    let mut positional = positional.into_iter().skip(signature.before);
+    let mut take = |key: &str| option(key).or_else(|| positional.next());
+    if signature.form == MoveForm::Circular {
+        take("cirpoint")?;
+    }
+    let target =
+        if signature.form == MoveForm::AbsJ { take("tojointpos")? } else { take("topoint")? };
+    let speed = take("speed")?;
+    for _ in 0..signature.between {
+        take("")?;
+    }
+    let zone = if signature.zone { Some(take("zone")?) } else { None };
+    let tool = take("tool");
+    let wobj = option("wobj");
+    let value = |expr: &Expr| constant(program, quiet, place.0, expr);
+    let stops = options.iter().any(|(key, _)| *key == "inpos");
+    let own = options.iter().any(|(key, _)| *key == "z" || *key == "v" || *key == "t");
+    let facts = Facts {
+        zone: zone
+            .and_then(value)
+            .and_then(|datum| zone_of(&datum))
+            .filter(|_| !own)
+            .map(|zone| Zone { fine: zone.fine || stops, ..zone }),
+        speed: value(speed).and_then(|datum| speed_of(&datum)).filter(|_| !own),
+        goal: value(target).and_then(|datum| goal_of(&datum)),
+    };
+    Some(Site {
+        place,
+        stmt,
+        name: &name.text,
+        name_span: name.span,
+        signature,
+        target,
+        speed,
+        zone,
+        tool,
+        wobj,
+        options: options.iter().map(|(key, _)| *key).collect(),
+        reachable: true,
+        compact: false,
+        facts,
+        executions: Vec::new(),
+    })
+}
+
+/// The value of an expression that is the same whenever its routine runs.
+pub fn constant(
+    program: &Program,
+    quiet: &Quiet<'_>,
+    routine: RoutineId,
+    expr: &Expr,
+) -> Option<Datum> {
+    if names_local(quiet, routine, expr) {
+        return None;
+    }
+    let value = evaluate(program, routine.module, expr);
+    value.datum.first_unknown().is_none().then_some(value.datum)
+}
+
+fn names_local(quiet: &Quiet<'_>, routine: RoutineId, expr: &Expr) -> bool {
+    let inner = |expr: &Expr| names_local(quiet, routine, expr);
+    match &expr.kind {
+        ExprKind::Ref(name) => quiet.is_local(routine, &name.key),
+        ExprKind::Field(base, _) => inner(base),
+        ExprKind::Index(base, indices) => inner(base) || indices.iter().any(inner),
+        ExprKind::Call(_, args) => args.iter().any(|arg| match &arg.kind {
+            ArgKind::Positional(expr)
+            | ArgKind::Named(_, expr)
+            | ArgKind::Optional(_, Some(expr)) => inner(expr),
+            ArgKind::Optional(_, None) => false,
+            ArgKind::Conditional(..) => true,
+        }),
+        ExprKind::Aggregate(items) => items.iter().any(inner),
+        ExprKind::Unary(_, operand) => inner(operand),
+        ExprKind::Binary(_, left, right) => inner(left) || inner(right),
+        _ => false,
+    }
+}
+
+/// What an execution says of a movement.
+pub fn facts_of(movement: &Movement) -> Facts {
+    let goal = match &movement.target {
+        Target::Joints(q) => Goal::Joints(*q),
+        Target::Pose(target) => Goal::Pose(target.pose, target.conf),
+    };
+    Facts { zone: Some(movement.zone), speed: Some(movement.speed), goal: Some(goal) }
+}
+
+/// The statements that are all that a compact `IF` has, by their spans.
+pub fn compact(routine: &Routine) -> BTreeSet<Span> {
+    let mut found = BTreeSet::new();
+    for block in routine.blocks() {
+        collect_compact(block, &mut found);
+    }
+    found
+}
+
+fn collect_compact(block: &Block, found: &mut BTreeSet<Span>) {
+    for stmt in block {
+        if let StmtKind::If { branches, .. } = &stmt.kind
+            && let [(_, inner)] = branches.as_slice()
+            && let [only] = inner.as_slice()
+            && only.span.end == stmt.span.end
+        {
+            found.insert(only.span);
+        }
+        for inner in stmt.kind.blocks() {
+            collect_compact(inner, found);
+        }
+    }
+}
+
+fn numbers(datum: &Datum) -> Option<Vec<f64>> {
+    let Datum::List(items) = datum else { return None };
+    items.iter().map(Datum::num).collect()
+}
+
+fn zone_of(datum: &Datum) -> Option<Zone> {
+    let Datum::List(items) = datum else { return None };
+    let (Datum::Bool(fine), rest) = items.split_first()? else { return None };
+    let sizes = rest.iter().map(Datum::num).collect::<Option<Vec<f64>>>()?;
+    let [tcp, orientation, _, angle, ..] = sizes.as_slice() else { return None };
+    Some(Zone {
+        fine: *fine,
+        tcp: tcp.max(0.0) * 1e-3,
+        orientation: orientation.max(*tcp) * 1e-3,
+        angle: angle.to_radians(),
+    })
+}
+
+fn speed_of(datum: &Datum) -> Option<Speed> {
+    let [tcp, orientation, ..] = *numbers(datum)?.as_slice() else { return None };
+    Some(Speed { tcp: tcp * 1e-3, orientation: orientation.to_radians() })
+}
+
+fn goal_of(datum: &Datum) -> Option<Goal> {
+    let Datum::List(items) = datum else { return None };
+    match items.as_slice() {
+        [joints, _] => {
+            let joints: [f64; 6] = numbers(joints)?.try_into().ok()?;
+            Some(Goal::Joints(joints.map(f64::to_radians)))
+        }
+        [position, turn, conf, _] => {
+            let [x, y, z] = *numbers(position)?.as_slice() else { return None };
+            let [w, i, j, k] = *numbers(turn)?.as_slice() else { return None };
+            let conf: [f64; 4] = numbers(conf)?.try_into().ok()?;
+            let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 0.5)?;
+            let place = Translation3::from(Vector3::new(x, y, z) * 1e-3);
+            Some(Goal::Pose(Isometry3::from_parts(place, turn), conf.map(|c| c.round() as i32)))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,176 @@
+//! What a program does, in order: from its simulation, or without a robot as far as it goes.
+
+use std::collections::BTreeMap;
+
+use crate::rapid::ir::exec::{Machine, Note, Waited, execute};
+use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
+use crate::rapid::ir::program::{Program, RoutineId};
+use crate::rapid::text::Span;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::{WaitBasis, What};
+
+/// Steps that are kept of a program.
+const MOST_STEPS: usize = 50_000;
+
+/// One thing that a program does.
+#[derive(Debug)]
+pub struct Done<'c> {
+    /// The event of the simulation, and the movement in it.
+    pub event: Option<(usize, usize)>,
+    /// s; 0 where it is not known.
+    pub duration: f64,
+    /// What.
+    pub what: Deed<'c>,
+}
+
+/// What a program does.
+#[derive(Debug)]
+pub enum Deed<'c> {
+    /// It moves.
+    Move(&'c Movement),
+    /// It waits.
+    Wait(&'c Wait, WaitBasis),
+    /// It sets an output.
+    Output(&'c Output),
+    /// It moves somewhere that is not known.
+    Left(Span),
+}
+
+impl Deed<'_> {
+    /// The statement.
+    pub fn span(&self) -> Span {
+        match self {
+            Deed::Move(movement) => movement.span,
+            Deed::Wait(wait, _) => wait.span,
+            Deed::Output(output) => output.span,
+            Deed::Left(span) => *span,
+        }
+    }
+}
+
+/// The trace of a simulation.
+pub fn of_simulation(simulation: &Simulation) -> Vec<Done<'_>> {
+    let mut trace = Vec::new();
+    // Outputs between fly-by movements stand before the run that they belong into.
+    let mut held: Vec<(usize, usize, &Output)> = Vec::new();
+    for (event, it) in simulation.events.iter().enumerate() {
+        let output = |(event, _, output)| Done {
+            event: Some((event, 0)),
+            duration: 0.0,
+            what: Deed::Output(output),
+        };
+        match &it.what {
+            What::Output(output, position) => {
+                held.push((event, *position, output));
+            }
+            What::Run(run) => {
+                for (index, record) in run.moves.iter().enumerate() {
+                    let due = held.iter().take_while(|(_, position, _)| *position <= index).count();
+                    trace.extend(held.drain(..due).map(output));
+                    trace.push(Done {
+                        event: Some((event, index)),
+                        duration: record.duration,
+                        what: Deed::Move(&record.movement),
+                    });
+                }
+            }
+            What::Wait(wait) => {
+                trace.extend(held.drain(..).map(output));
+                trace.push(Done {
+                    event: Some((event, 0)),
+                    duration: it.duration,
+                    what: Deed::Wait(&wait.wait, wait.basis),
+                });
+            }
+            What::Left(left) => {
+                trace.extend(held.drain(..).map(output));
+                trace.push(Done { event: None, duration: 0.0, what: Deed::Left(left.span) });
+            }
+        }
+    }
+    trace.extend(held.into_iter().map(|(event, _, output)| Done {
+        event: Some((event, 0)),
+        duration: 0.0,
+        what: Deed::Output(output),
+    }));
+    trace
+}
+
+/// What a program was seen to do without a robot.
+#[derive(Debug, Default)]
+pub struct Recording {
+    steps: Vec<Recorded>,
+    /// What could not be followed.
+    pub notes: Vec<Note>,
+}
+
+#[derive(Debug)]
+enum Recorded {
+    Move(Box<Movement>),
+    Wait(Box<Wait>),
+    Output(Output),
+    Left(Span),
+}
+
+/// Runs a program without a robot.
+pub fn record(program: &Program, entry: RoutineId) -> Recording {
+    let mut recording = Recording::default();
+    recording.notes = execute(program, entry, &mut recording).unresolved;
+    recording
+}
+
+impl Recording {
+    /// The trace.
+    pub fn trace(&self) -> Vec<Done<'_>> {
+        let done = |step| {
+            let (duration, what) = match step {
+                &Recorded::Left(span) => (0.0, Deed::Left(span)),
+                Recorded::Move(movement) => (0.0, Deed::Move(movement)),
+                Recorded::Output(output) => (0.0, Deed::Output(output)),
+                Recorded::Wait(wait) => {
+                    let stated = wait.duration.map_or(WaitBasis::Unknown, |_| WaitBasis::Stated);
+                    (wait.duration.unwrap_or(0.0), Deed::Wait(wait, stated))
+                }
+            };
+            Done { event: None, duration, what }
+        };
+        self.steps.iter().map(done).collect()
+    }
+}
+
+impl Machine for Recording {
+    fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+        match movement {
+            Ok(movement) => self.steps.push(Recorded::Move(Box::new(movement))),
+            Err(unresolved) => {
+                self.steps.push(Recorded::Left(unresolved.span));
+            }
+        }
+    }
+
+    fn waits(&mut self, wait: Wait) -> Waited {
+        self.steps.push(Recorded::Wait(Box::new(wait)));
+        Waited::Ended
+    }
+
+    fn sets(&mut self, output: Output) {
+        self.steps.push(Recorded::Output(output));
+    }
+
+    fn joints(&mut self) -> Option<[f64; 6]> {
+        None
+    }
+
+    fn is_full(&self) -> bool {
+        self.steps.len() > MOST_STEPS
+    }
+}
+
+/// The executions of each statement, as indices of the trace.
+pub fn executions(trace: &[Done<'_>]) -> BTreeMap<Span, Vec<usize>> {
+    let mut found: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
+    for (index, done) in trace.iter().enumerate() {
+        found.entry(done.what.span()).or_default().push(index);
+    }
+    found
+}

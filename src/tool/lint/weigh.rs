@@ -1,0 +1,473 @@
+//! What a change of some movements or waits would save: the part of the cycle around them is
+//! laid on a time line again, and the difference is taken.
+
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use super::finding::{Per, Saving};
+use crate::arm::dynamics::Load;
+use crate::arm::robot::Model;
+use crate::rapid::ir::movement::{Movement, Output, Wait};
+use crate::rapid::text::Span;
+use crate::retime::energy::account::at_rest;
+use crate::retime::energy::moments::Moments;
+use crate::retime::energy::plausible::{Interval, Robots};
+use crate::retime::energy::{Account, EnergyParts, account};
+use crate::retime::motion::timeline::{Event, Run, Simulation, WaitBasis, What};
+use crate::retime::motion::{Options, Step, replay};
+use crate::retime::path::joint_path::{DOF, Joints};
+
+/// Largest distance between two places that count as one, rad.
+const SAME: f64 = 1e-4;
+/// Runs behind a change that may begin elsewhere because of it.
+const MOST_BEHIND: usize = 3;
+/// Executions of one statement beyond which no saving is told.
+const MOST_EXECUTIONS: usize = 2_000;
+
+/// One simulated cycle of a program.
+pub struct Cycle {
+    /// What happened.
+    pub simulation: Simulation,
+    /// The joules of it.
+    pub account: Account,
+    /// Robots as plausible as the one it was simulated with.
+    robots: Option<Robots>,
+    /// How it was simulated.
+    pub options: Options,
+    /// The events that hold each statement, in order.
+    events: BTreeMap<Span, Vec<usize>>,
+    /// Whether the program goes on beside a movement.
+    concurrent: bool,
+}
+
+impl Cycle {
+    /// Of a simulation and its energy.
+    pub fn new(model: &Model, simulation: Simulation, account: Account, options: Options) -> Cycle {
+        let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
+        let mut concurrent = false;
+        for (index, event) in simulation.events.iter().enumerate() {
+            let mut add = |span: Span| {
+                let places = events.entry(span).or_default();
+                if places.last() != Some(&index) {
+                    places.push(index);
+                }
+            };
+            match &event.what {
+                What::Run(run) => {
+                    for record in &run.moves {
+                        add(record.movement.span);
+                        concurrent |= record.movement.concurrent;
+                    }
+                }
+                What::Wait(wait) => add(wait.wait.span),
+                What::Output(..) | What::Left(_) => {}
+            }
+        }
+        let robots = Robots::of(model);
+        Cycle { simulation, account, robots, options, events, concurrent }
+    }
+
+    /// Events that hold one of some statements, in order.
+    fn touched(&self, spans: &[Span]) -> Vec<usize> {
+        let places = spans.iter().filter_map(|span| self.events.get(span));
+        let mut touched: Vec<usize> = places.flatten().copied().collect();
+        touched.sort_unstable();
+        touched.dedup();
+        touched
+    }
+}
+
+/// A change saves nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it saves nothing; leave it as it is")]
+pub struct Worthless;
+
+/// What came out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Weighed {
+    /// Nothing can be said.
+    Unknown,
+    /// It saves nothing, or may as well cost.
+    Nothing,
+    /// It saves this.
+    Saves(Saving),
+}
+
+impl Weighed {
+    /// The saving, if there is one.
+    ///
+    /// # Errors
+    /// The change saves nothing.
+    pub fn saving(self) -> Result<Option<Saving>, Worthless> {
+        match self {
+            Weighed::Unknown => Ok(None),
+            Weighed::Nothing => Err(Worthless),
+            Weighed::Saves(saving) => Ok(Some(saving)),
+        }
+    }
+}
+
+/// What becomes of a step whose statement was asked for.
+pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
+
+/// What a change does to the cycle.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// Energy that it saves.
+    pub saved: EnergyParts,
+    /// The same of all parts with plausible robots \[J\]; empty where nothing of the robot is uncertain.
+    pub plausible_j: Vec<f64>,
+    /// Time that it saves, s.
+    pub time_s: f64,
+    /// Time that it would take more without any wait that takes it up, s.
+    pub longer_s: f64,
+}
+
+impl Difference {
+    /// What it is worth.
+    pub fn weighed(&self) -> Weighed {
+        let energy_j = self.saved.energy_j();
+        let (low_j, high_j) = if self.plausible_j.is_empty() {
+            (energy_j, energy_j)
+        } else {
+            let Interval { low, high, .. } = Interval::of(&self.plausible_j);
+            (low, high)
+        };
+        if low_j <= 0.0 {
+            return Weighed::Nothing;
+        }
+        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s, per: Per::Cycle })
+    }
+}
+
+/// Weighs a change of every execution of the statements at `spans`.
+pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Weighed {
+    difference(model, cycle, spans, change).map_or(Weighed::Unknown, |it| it.weighed())
+}
+
+/// What a change of every execution of the statements at `spans` does; `None` where it can't be
+/// told.
+pub fn difference(
+    model: &Model,
+    cycle: &Cycle,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<Difference> {
+    if !model.has_dynamics() {
+        return None;
+    }
+    let (parts, mut rests) = replayed(model, cycle, spans, change)?;
+    let (more, time_s) = laid_out(cycle, &cycle.options.inputs, &parts);
+    let (_, alone_s) = laid_out(cycle, &BTreeMap::new(), &parts);
+    rests.extend(more);
+    let mut saved = EnergyParts::default();
+    for Replayed { range, after, .. } in &parts {
+        for part in cycle.account.events[range.clone()].iter().flatten() {
+            saved += *part;
+        }
+        saved += account(model, after).total * -1.0;
+    }
+    for rest in &rests {
+        let lasts = rest.longer_s.abs();
+        saved += at_rest(model, &rest.load, &rest.q, lasts) * -rest.longer_s.signum();
+    }
+    let plausible_j = match &cycle.robots {
+        // What costs with the robot itself is not told.
+        Some(robots) if saved.energy_j() > 0.0 => {
+            let sums = sums(model, cycle, &parts, &rests);
+            let changes = robots.changes(model, &sums);
+            changes.iter().map(|change| saved.energy_j() + change.energy_j()).collect()
+        }
+        _ => Vec::new(),
+    };
+    Some(Difference { saved, plausible_j, time_s, longer_s: -alone_s })
+}
+
+/// Sums of what is saved, over the parts that are replayed.
+fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
+    let mut sums = Moments::none(model);
+    for Replayed { range, after, .. } in parts {
+        for event in &cycle.simulation.events[range.clone()] {
+            sums.add(&Moments::of(model, event), 1.0);
+        }
+        for event in &after.events {
+            sums.add(&Moments::of(model, event), -1.0);
+        }
+    }
+    for rest in rests {
+        let mut of = Moments::none(model);
+        of.rest(model, &rest.load, &rest.q, rest.longer_s.abs());
+        sums.add(&of, -rest.longer_s.signum());
+    }
+    sums
+}
+
+/// A part of the cycle, as events, with what it is after a change.
+struct Replayed {
+    range: RangeInclusive<usize>,
+    after: Simulation,
+    /// The rest behind it, s.
+    longer_s: f64,
+}
+
+/// Standing still for longer, or shorter.
+struct Rest {
+    load: Load,
+    q: Joints,
+    longer_s: f64,
+}
+
+/// The parts of the cycle that a change touches, and the rests behind them.
+fn replayed(
+    model: &Model,
+    cycle: &Cycle,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(Vec<Replayed>, Vec<Rest>)> {
+    let simulation = &cycle.simulation;
+    let touched = cycle.touched(spans);
+    if touched.is_empty() || touched.len() > MOST_EXECUTIONS || cycle.concurrent {
+        return None;
+    }
+    let (mut replayed, mut rests) = (Vec::new(), Vec::new());
+    let mut next = 0;
+    while next < touched.len() {
+        let mut window = window(simulation, touched[next], spans, change);
+        next += 1;
+        while next < touched.len() && touched[next] <= *window.end() {
+            let further = self::window(simulation, touched[next], spans, change);
+            window = *window.start()..=*further.end();
+            next += 1;
+        }
+        let (range, after, rest) = settle_window(model, cycle, window, spans, change)?;
+        while next < touched.len() && touched[next] <= *range.end() {
+            next += 1;
+        }
+        let behind = rest_behind(simulation, &range, &after, rest);
+        let longer_s = behind.as_ref().map_or(0.0, |rest| rest.longer_s);
+        rests.extend(behind);
+        replayed.push(Replayed { range, after, longer_s });
+    }
+    Some((replayed, rests))
+}
+
+/// From the run at or before an event to the next run; to the event alone if it is a run that
+/// stops at its end after the change as before: the next run begins as it did.
+fn window(
+    simulation: &Simulation,
+    event: usize,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> RangeInclusive<usize> {
+    if let What::Run(run) = &simulation.events[event].what
+        && stops(run, spans, change)
+    {
+        return event..=event;
+    }
+    let is_run = |index: &usize| matches!(simulation.events[*index].what, What::Run(_));
+    let first = (0..=event).rev().find(is_run).unwrap_or(event);
+    first..=next_run(simulation, event)
+}
+
+/// Whether the last movement of a run is a stop point after a change.
+fn stops(run: &Run, spans: &[Span], change: &Change<'_>) -> bool {
+    let Some(last) = run.moves.last() else { return false };
+    if !spans.contains(&last.movement.span) {
+        return last.movement.zone.fine;
+    }
+    let changed = change(&Step::Move(Box::new(last.movement.clone())));
+    matches!(changed.last(), Some(Step::Move(movement)) if movement.zone.fine)
+}
+
+/// The last movement before an event.
+fn movement_before(simulation: &Simulation, event: usize) -> Option<&Movement> {
+    simulation.events[..event].iter().rev().find_map(|event| match &event.what {
+        What::Run(run) => run.moves.last().map(|record| &record.movement),
+        _ => None,
+    })
+}
+
+/// The next run behind an event, or the last event.
+fn next_run(simulation: &Simulation, event: usize) -> usize {
+    let last = simulation.events.len() - 1;
+    let mut behind = event + 1..=last;
+    behind.find(|i| matches!(simulation.events[*i].what, What::Run(_))).unwrap_or(last)
+}
+
+/// The window with its replay, made longer until the robot stands where it stood, and the rest
+/// that a movement right behind would add, s.
+fn settle_window(
+    model: &Model,
+    cycle: &Cycle,
+    window: RangeInclusive<usize>,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(RangeInclusive<usize>, Simulation, f64)> {
+    let simulation = &cycle.simulation;
+    let (first, mut last) = window.into_inner();
+    let before = movement_before(simulation, first);
+    for _ in 0..=MOST_BEHIND {
+        let (start, steps) = steps(cycle, first..=last, spans, change)?;
+        let (after, rest) = replay(model, &cycle.options, start, before, steps);
+        let sound = after.events.iter().all(|event| match &event.what {
+            What::Run(run) => run.problem.is_none(),
+            What::Left(_) => false,
+            _ => true,
+        });
+        if !sound {
+            return None;
+        }
+        let ends = |simulation: &Simulation, upto: usize| {
+            simulation.events[..upto].iter().rev().find_map(|event| match &event.what {
+                What::Run(run) => Some(run.end),
+                _ => None,
+            })
+        };
+        let was = ends(simulation, last + 1)?;
+        let is = ends(&after, after.events.len()).unwrap_or(start);
+        if apart(&was, &is) <= SAME || last + 1 == simulation.events.len() {
+            return Some((first..=last, after, rest));
+        }
+        last = next_run(simulation, last);
+    }
+    None
+}
+
+fn apart(a: &Joints, b: &Joints) -> f64 {
+    (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
+}
+
+/// What was done in a window, with the change, and where the robot stood at first.
+fn steps(
+    cycle: &Cycle,
+    window: RangeInclusive<usize>,
+    spans: &[Span],
+    change: &Change<'_>,
+) -> Option<(Joints, Vec<Step>)> {
+    let mut start = None;
+    let mut steps = Vec::new();
+    // Outputs between fly-by movements stand before the run that they belong into.
+    let mut held: Vec<(usize, &Output)> = Vec::new();
+    let output = |(_, output): (usize, &Output)| Step::Output(Box::new(output.clone()));
+    for event in &cycle.simulation.events[window] {
+        match &event.what {
+            What::Run(run) => {
+                if !run.start_known || run.problem.is_some() {
+                    return None;
+                }
+                start.get_or_insert(run.start);
+                for (index, record) in run.moves.iter().enumerate() {
+                    let due = held.iter().take_while(|(position, _)| *position <= index).count();
+                    steps.extend(held.drain(..due).map(output));
+                    let step = Step::Move(Box::new(record.movement.clone()));
+                    if spans.contains(&record.movement.span) {
+                        steps.extend(change(&step));
+                    } else {
+                        steps.push(step);
+                    }
+                }
+            }
+            What::Wait(wait) => {
+                start.get_or_insert(wait.q);
+                steps.extend(held.drain(..).map(output));
+                let comes = wait.basis == WaitBasis::Input;
+                let wait = Wait {
+                    duration: Some(event.duration),
+                    max_time: None,
+                    // Only a wait for an input whose time is stated gets shorter or longer.
+                    signal: wait.wait.signal.clone().filter(|_| comes),
+                    ..wait.wait.clone()
+                };
+                let span = wait.span;
+                let step = Step::Wait(Box::new(wait));
+                if spans.contains(&span) {
+                    steps.extend(change(&step));
+                } else {
+                    steps.push(step);
+                }
+            }
+            What::Output(output, position) => held.push((*position, output)),
+            What::Left(_) => return None,
+        }
+    }
+    steps.extend(held.into_iter().map(output));
+    Some((start?, steps))
+}
+
+/// The rest between the last run of a window and a run right behind it, which a replay does not
+/// know.
+fn rest_behind(
+    simulation: &Simulation,
+    window: &RangeInclusive<usize>,
+    after: &Simulation,
+    longer_s: f64,
+) -> Option<Rest> {
+    let next = simulation.events[window.end() + 1..].iter().find(|it| !it.is_within_next_run());
+    let moves_on = next.is_some_and(|it| it.duration > 0.0 && matches!(it.what, What::Run(_)));
+    let last = after.events.last().filter(|event| moves_on && event.duration > 0.0);
+    match last.map(|event| &event.what) {
+        Some(What::Run(run)) => Some(Rest { load: run.load.clone(), q: run.end, longer_s }),
+        _ => None,
+    }
+}
+
+/// The time that the whole cycle saves; waits for inputs whose time is stated take up what
+/// comes before them. Also what these waits take more.
+fn laid_out(
+    cycle: &Cycle,
+    inputs: &BTreeMap<String, f64>,
+    replayed: &[Replayed],
+) -> (Vec<Rest>, f64) {
+    let simulation = &cycle.simulation;
+    if inputs.is_empty() {
+        // No wait takes anything up: what is laid out again is all that changes.
+        let saved = replayed.iter().map(|Replayed { range, after, longer_s }| {
+            let before: f64 = simulation.events[range.clone()].iter().map(|it| it.duration).sum();
+            before - after.events.iter().map(|it| it.duration).sum::<f64>() - longer_s
+        });
+        return (Vec::new(), saved.sum());
+    }
+    let mut clock = Clock { inputs, waited: BTreeMap::new(), time: 0.0 };
+    let mut more = Vec::new();
+    let mut index = 0;
+    let mut windows = replayed.iter().peekable();
+    while index < simulation.events.len() {
+        if let Some(part) = windows.next_if(|part| *part.range.start() == index) {
+            more.extend(part.after.events.iter().filter_map(|event| clock.passes(event, true)));
+            clock.time += part.longer_s;
+            index = part.range.end() + 1;
+        } else {
+            more.extend(clock.passes(&simulation.events[index], false));
+            index += 1;
+        }
+    }
+    (more, simulation.cycle_s - clock.time)
+}
+
+struct Clock<'c> {
+    inputs: &'c BTreeMap<String, f64>,
+    waited: BTreeMap<String, f64>,
+    time: f64,
+}
+
+impl Clock<'_> {
+    /// Lets an event pass; what a wait takes more than its own time says.
+    fn passes(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
+        let mut duration = event.duration;
+        let mut more = None;
+        if let What::Wait(wait) = &event.what
+            && (replayed || wait.basis == WaitBasis::Input)
+            && let Some(signal) = &wait.wait.signal
+            && let Some(delay) = self.inputs.get(&signal.to_lowercase())
+        {
+            let key = signal.to_lowercase();
+            let at = self.waited.get(&key).copied().unwrap_or(0.0) + delay;
+            duration = (at - self.time).max(0.0);
+            let longer_s = duration - event.duration;
+            more = Some(Rest { load: wait.load.clone(), q: wait.q, longer_s });
+            self.waited.insert(key, self.time + duration);
+        }
+        self.time += duration;
+        more
+    }
+}

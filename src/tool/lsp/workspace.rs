@@ -1,0 +1,221 @@
+//! Open documents over the files of their folders, and what is found in them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use serde_json::Value;
+
+use super::Options;
+use super::position::offset_of;
+use crate::rapid::text::{FileId, SourceFile, Span};
+use crate::retime::energy::EnergyParts;
+use crate::retime::motion::timeline::What;
+use crate::tool::cli::common::CellArgs;
+use crate::tool::cli::lint::{LintArgs, Setup};
+use crate::tool::lint::Finding;
+use crate::tool::lint::engine::{Examined, Kept, examine_file};
+
+/// Open documents, by their names, and the folders they lie in.
+pub(super) struct Workspace {
+    options: Options,
+    open: BTreeMap<String, SourceFile>,
+    folders: BTreeMap<PathBuf, Folder>,
+}
+
+/// A folder as it was read from disk when a document of it was last opened, saved or closed.
+struct Folder {
+    setup: Setup,
+    kept: Kept,
+}
+
+/// What was found in a document.
+pub(super) struct Analysis {
+    file: SourceFile,
+    examined: Rc<Examined>,
+    dynamics: bool,
+}
+
+/// What a statement costs in a cycle.
+pub(super) struct Costs {
+    pub(super) span: Span,
+    pub(super) what: String,
+    pub(super) times: usize,
+    pub(super) time_s: f64,
+    /// `None` for robots without dynamics.
+    pub(super) energy_j: Option<f64>,
+}
+
+impl Workspace {
+    pub(super) fn new(options: Options) -> Workspace {
+        Workspace { options, open: BTreeMap::new(), folders: BTreeMap::new() }
+    }
+
+    pub(super) fn open(&mut self, uri: &str, text: String) {
+        let file = SourceFile::new(FileId(0), shown(&path_of(uri)), text.into_bytes());
+        self.open.insert(uri.to_owned(), file);
+        self.forget(uri);
+    }
+
+    /// The folder of a document is read from disk at the next look.
+    pub(super) fn forget(&mut self, uri: &str) {
+        self.folders.remove(&folder_of(uri));
+    }
+
+    /// A change of a range, or of the whole text.
+    pub(super) fn change(&mut self, uri: &str, change: &Value) {
+        let Some(file) = self.open.get(uri) else { return };
+        let text = change["text"].as_str().unwrap_or_default();
+        let range = &change["range"];
+        let bytes = match (offset_of(file, &range["start"]), offset_of(file, &range["end"])) {
+            (Some(start), Some(end)) if start <= end => {
+                let (before, after) = (&file.bytes[..start as usize], &file.bytes[end as usize..]);
+                [before, text.as_bytes(), after].concat()
+            }
+            _ => text.as_bytes().to_vec(),
+        };
+        let file = SourceFile::new(FileId(0), file.path.clone(), bytes);
+        self.open.insert(uri.to_owned(), file);
+    }
+
+    pub(super) fn close(&mut self, uri: &str) {
+        self.open.remove(uri);
+        self.forget(uri);
+    }
+
+    /// The open documents of the folder of a document.
+    pub(super) fn beside(&self, uri: &str) -> BTreeSet<String> {
+        let folder = folder_of(uri);
+        self.open.keys().filter(|other| folder_of(other) == folder).cloned().collect()
+    }
+
+    /// Looks at the programs that a document belongs to. What was found in it, and in the other
+    /// open documents of the same programs.
+    pub(super) fn analyse(&mut self, uri: &str) -> Vec<(String, Analysis)> {
+        let folder = folder_of(uri);
+        let options = &self.options;
+        let read = || Folder::read(options, &folder);
+        let Folder { setup, kept } = self.folders.entry(folder.clone()).or_insert_with(read);
+        let mut places: BTreeMap<usize, &str> = BTreeMap::new();
+        for (name, file) in
+            self.open.iter().filter(|(name, _)| *name == uri || folder_of(name) == folder)
+        {
+            let known = setup.files.iter().position(|known| known.path == file.path);
+            let index = known.unwrap_or_else(|| setup.add(file.clone()));
+            setup.files[index] = SourceFile { id: FileId(index as u32), ..file.clone() };
+            places.insert(index, name);
+        }
+        let Some(own) = places.iter().find(|(_, name)| **name == uri).map(|(index, _)| *index)
+        else {
+            return Vec::new();
+        };
+        let dynamics = setup.model.as_ref().is_some_and(crate::arm::robot::Model::has_dynamics);
+        let examined = Rc::new(examine_file(&setup.job(), own, kept));
+        let together = |index: &usize| examined.programs.iter().all(|files| files.contains(index));
+        let shown = places.into_iter().filter(|(index, _)| *index == own || together(index));
+        let analysis = |(index, name): (usize, &str)| {
+            let file = setup.files[index].clone();
+            (name.to_owned(), Analysis { file, examined: Rc::clone(&examined), dynamics })
+        };
+        shown.map(analysis).collect()
+    }
+}
+
+impl Folder {
+    fn read(options: &Options, folder: &Path) -> Folder {
+        let folder = Some(folder.to_path_buf()).filter(|folder| folder.is_dir());
+        let cell = CellArgs {
+            paths: folder.into_iter().collect(),
+            robot: options.robot.clone(),
+            entry: options.entry.clone(),
+            inputs: options.inputs.clone(),
+            quiet: true,
+            ..CellArgs::default()
+        };
+        let args = LintArgs { cell, ..LintArgs::default() };
+        // A folder that can't be read, or a robot that is not known: the documents stand alone.
+        Folder { setup: Setup::new(&args).unwrap_or_default(), kept: Kept::default() }
+    }
+}
+
+impl Analysis {
+    /// The document.
+    pub(super) fn file(&self) -> &SourceFile {
+        &self.file
+    }
+
+    /// What was found in the document itself.
+    pub(super) fn own(&self) -> impl Iterator<Item = &Finding> {
+        self.examined.report.findings.iter().filter(|finding| finding.span.file == self.file.id)
+    }
+
+    /// What the movement or wait at a byte costs.
+    pub(super) fn costs_at(&self, at: u32) -> Option<Costs> {
+        let mut found: Option<Costs> = None;
+        for cycle in self.examined.cycles.iter().flatten() {
+            for (event, parts) in cycle.simulation.events.iter().zip(&cycle.account.events) {
+                let mut add = |span: Span, what: &str, time_s: f64, joules: f64| {
+                    let here = span.file == self.file.id && span.start <= at && at <= span.end;
+                    if !here {
+                        return;
+                    }
+                    let energy_j = self.dynamics.then_some(0.0);
+                    let what = what.to_owned();
+                    let costs =
+                        found.get_or_insert(Costs { span, what, times: 0, time_s: 0.0, energy_j });
+                    costs.times += 1;
+                    costs.time_s += time_s;
+                    costs.energy_j = costs.energy_j.map(|sum| sum + joules);
+                };
+                match &event.what {
+                    What::Run(run) => {
+                        for (record, part) in run.moves.iter().zip(parts) {
+                            let movement = &record.movement;
+                            let joules = part.energy_j();
+                            add(movement.span, &movement.instruction, record.duration, joules);
+                        }
+                    }
+                    What::Wait(wait) => {
+                        let joules = parts.iter().map(EnergyParts::energy_j).sum();
+                        add(wait.wait.span, &wait.wait.instruction, event.duration, joules);
+                    }
+                    What::Output(..) | What::Left(_) => {}
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The folder that a document lies in.
+fn folder_of(uri: &str) -> PathBuf {
+    path_of(uri).parent().map(Path::to_path_buf).unwrap_or_default()
+}
+
+/// The path of a `file:` URI, `%XX` decoded.
+fn path_of(uri: &str) -> PathBuf {
+    let rest = uri.strip_prefix("file://").unwrap_or(uri);
+    let mut bytes = Vec::with_capacity(rest.len());
+    let mut signs = rest.bytes();
+    while let Some(byte) = signs.next() {
+        let digits = || {
+            let text: String = signs.clone().take(2).map(char::from).collect();
+            u8::from_str_radix(&text, 16).ok()
+        };
+        match (byte, digits()) {
+            (b'%', Some(decoded)) => {
+                bytes.push(decoded);
+                signs.nth(1);
+            }
+            _ => bytes.push(byte),
+        }
+    }
+    let path = String::from_utf8_lossy(&bytes).into_owned();
+    // A drive's letter has a slash before it.
+    let drive = path.get(2..3) == Some(":");
+    PathBuf::from(if drive { path[1..].to_owned() } else { path })
+}
+
+fn shown(path: &Path) -> String {
+    path.to_string_lossy().replace('\\', "/")
+}

@@ -1,0 +1,83 @@
+//! Grades of an examination as a page: confusion, rates, and what stated probabilities are worth.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+use super::ReportError;
+use super::format::{fixed, percent};
+use super::reliability::reliability;
+use crate::examine::blind::{Asked, Grades, Rate};
+
+#[derive(Serialize)]
+struct Confused {
+    truth: String,
+    counts: Vec<usize>,
+}
+
+#[derive(Serialize)]
+struct RateRow {
+    name: &'static str,
+    hits: usize,
+    of: usize,
+    rate: String,
+    interval: String,
+    asked: String,
+    met: Option<bool>,
+}
+
+#[derive(Serialize)]
+struct WrongRow<'a> {
+    case: &'a str,
+    truth: &'a str,
+    said: &'a str,
+}
+
+/// The page of an examination.
+///
+/// # Errors
+/// A template that does not fit its data.
+pub fn grades_report(grades: &Grades) -> Result<String, ReportError> {
+    let outcomes: BTreeSet<&str> =
+        grades.confusion.values().flat_map(|row| row.keys().copied()).collect();
+    let confused = grades.confusion.iter().map(|(truth, row)| Confused {
+        truth: truth.clone(),
+        counts: outcomes.iter().map(|name| row.get(name).copied().unwrap_or(0)).collect(),
+    });
+    let wrong =
+        grades.wrong.iter().map(|of| WrongRow { case: &of.case, truth: &of.truth, said: &of.said });
+    let mut context = Context::new();
+    context.insert("version", env!("CARGO_PKG_VERSION"));
+    context.insert("cases", &grades.cases);
+    context.insert("left_out", &grades.left_out);
+    context.insert("outcomes", &outcomes);
+    context.insert("confused", &confused.collect::<Vec<_>>());
+    context.insert("rates", &grades.rates.iter().map(rate).collect::<Vec<_>>());
+    context.insert("reliability", &reliability(&grades.reliability));
+    context.insert("shrink", &grades.shrink_of_oracle.map(|share| fixed(share, 2)));
+    context.insert("wrong", &wrong.collect::<Vec<_>>());
+    let mut tera = Tera::default();
+    tera.add_raw_templates(vec![
+        ("report.css", include_str!("../../../../templates/report.css")),
+        ("reliability.html", include_str!("../../../../templates/reliability.html.tera")),
+        ("grades.html", include_str!("../../../../templates/grades.html.tera")),
+    ])?;
+    Ok(tera.render("grades.html", &context)?)
+}
+
+fn rate(of: &Rate) -> RateRow {
+    let asked = match of.asked {
+        Asked::AtMost(most) => format!("\u{2264} {}", percent(most)),
+        Asked::AtLeast(least) => format!("\u{2265} {}", percent(least)),
+    };
+    RateRow {
+        name: of.name,
+        hits: of.hits,
+        of: of.of,
+        rate: percent(of.rate.unwrap_or(f64::NAN)),
+        interval: format!("{} to {}", percent(of.low), percent(of.high)),
+        asked,
+        met: of.met(),
+    }
+}

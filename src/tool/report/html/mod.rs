@@ -1,0 +1,80 @@
+//! Results as one self-contained page: HTML with its style sheet and its plots inside, without
+//! scripts and without anything that is loaded.
+
+mod diagnose;
+mod energy_time;
+mod format;
+mod grades;
+mod identify;
+mod movements;
+mod proof;
+mod reliability;
+mod samples;
+mod segments;
+mod simulation;
+mod source;
+mod standstill;
+mod summary;
+mod ways;
+
+pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
+pub use grades::grades_report;
+pub use identify::{Traces, identify_report};
+pub use simulation::simulate_report;
+
+use tera::{Context, Tera};
+
+use super::place::Places;
+use super::plausible::saving;
+use crate::arm::robot::Model;
+use crate::rapid::text::SourceFile;
+use crate::tool::retrofit::{Retrofit, Source};
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A template failed.
+    #[error("a template of the report failed: {0}")]
+    Template(#[from] tera::Error),
+}
+
+/// The report of a retrofit as one HTML file: figures of the cycle, a table of the segments,
+/// plots of what was rewritten, dwells, the source with its joules, verification and assumptions.
+/// `files` are the program's, indexed by their ids; `entry` is the routine that starts it.
+///
+/// # Errors
+/// A template that does not fit its data.
+pub fn optimize_report(
+    retrofit: &Retrofit,
+    files: &[Source],
+    model: &Model,
+    entry: &str,
+) -> Result<String, ReportError> {
+    // Paths below the input are short, and the same wherever the program lies.
+    let originals: Vec<SourceFile> = files
+        .iter()
+        .map(|source| SourceFile { path: source.relative.clone(), ..source.file.clone() })
+        .collect();
+    let places = Places::new(&originals);
+    let mut context = Context::new();
+    context.insert("version", env!("CARGO_PKG_VERSION"));
+    context.insert("robot", &model.name);
+    context.insert("entry", entry);
+    context.insert("plausible", &saving(retrofit));
+    context.insert("notes", &retrofit.notes);
+    context.insert("summary", &summary::summary(retrofit));
+    context.insert("segments", &segments::segments(retrofit, places));
+    context.insert("energy_time", &energy_time::energy_time(retrofit, places));
+    context.insert("movements", &movements::movements(retrofit, model, places));
+    context.insert("dwells", &standstill::standstill(retrofit, model, places));
+    context.insert("joints", &(1..=model.dof).collect::<Vec<usize>>());
+    context.insert("sources", &source::sources(retrofit, &originals));
+    context.insert("verification", &proof::verification(retrofit));
+    context.insert("basis", &proof::basis(retrofit, model, places));
+    let mut tera = Tera::default();
+    tera.add_raw_templates(vec![
+        ("report.css", include_str!("../../../../templates/report.css")),
+        ("report.html", include_str!("../../../../templates/report.html.tera")),
+    ])?;
+    Ok(tera.render("report.html", &context)?)
+}

@@ -1,0 +1,151 @@
+//! The table of segments. With what lies between them it adds up to the cycle.
+
+use serde::Serialize;
+
+use super::format::{fixed, joules, saved_percent, seconds};
+use crate::retime::optimize::reason::Reason;
+use crate::tool::report::place::Places;
+use crate::tool::retrofit::{Retrofit, Segment, SegmentKind};
+
+/// A row of the table.
+#[derive(Serialize)]
+pub(super) struct Row {
+    number: usize,
+    place: String,
+    kind: &'static str,
+    rewritten: bool,
+    executions: usize,
+    rewritten_executions: usize,
+    costs: Costs,
+    bound: Option<String>,
+    points: Option<usize>,
+    reason: Option<ReasonText>,
+    potential: Option<String>,
+}
+
+/// Time and energy before and after.
+#[derive(Serialize)]
+pub(super) struct Costs {
+    time_before: String,
+    time_after: String,
+    energy_before: String,
+    energy_after: String,
+    saved: String,
+    saved_percent: String,
+}
+
+/// Why something stays.
+#[derive(Serialize)]
+pub(super) struct ReasonText {
+    code: &'static str,
+    words: String,
+}
+
+/// The table.
+#[derive(Serialize)]
+pub(super) struct Table {
+    rows: Vec<Row>,
+    /// The wait that the original is counted with, so that both sides take the same time.
+    padding: Option<Costs>,
+    /// What no segment has: short waits.
+    rest: Costs,
+    total: Costs,
+    /// Places of movements that do not run in the cycle.
+    not_reached: Vec<String>,
+}
+
+/// Seconds and joules before and after.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    time: [f64; 2],
+    energy: [f64; 2],
+}
+
+impl Sums {
+    fn of(segment: &Segment) -> Sums {
+        Sums {
+            time: [segment.time_before_s, segment.time_after_s],
+            energy: [segment.energy_before_j, segment.energy_after_j],
+        }
+    }
+
+    fn with(self, other: Sums, sign: f64) -> Sums {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + sign * b[0], a[1] + sign * b[1]];
+        Sums { time: sum(self.time, other.time), energy: sum(self.energy, other.energy) }
+    }
+
+    fn text(&self) -> Costs {
+        let [before, after] = self.energy;
+        Costs {
+            time_before: seconds(self.time[0]),
+            time_after: seconds(self.time[1]),
+            energy_before: joules(before),
+            energy_after: joules(after),
+            saved: joules(before - after),
+            saved_percent: fixed(saved_percent(before, after), 1),
+        }
+    }
+}
+
+/// The table of a retrofit.
+pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
+    let total = Sums {
+        time: [retrofit.original.cycle_s, retrofit.optimized.cycle_s],
+        energy: [retrofit.original.energy_j, retrofit.optimized.energy_j],
+    };
+    let padding = retrofit.padding.as_ref().map(|padding| Sums {
+        time: [padding.duration_s, 0.0],
+        energy: [padding.energy.energy_j(), 0.0],
+    });
+    let listed = retrofit.segments.iter().map(Sums::of).chain(padding);
+    let listed = listed.fold(Sums::default(), |sum, costs| sum.with(costs, 1.0));
+    Table {
+        rows: numbered(retrofit).map(|(number, segment)| row(number, segment, places)).collect(),
+        padding: padding.map(|sums| sums.text()),
+        rest: total.with(listed, -1.0).text(),
+        total: total.text(),
+        not_reached: retrofit
+            .segments
+            .iter()
+            .filter(|segment| segment.executions == 0)
+            .map(|segment| places.of(segment.span).to_string())
+            .collect(),
+    }
+}
+
+/// The segments that run, with the numbers that the report gives them.
+pub(super) fn numbered(retrofit: &Retrofit) -> impl Iterator<Item = (usize, &Segment)> {
+    retrofit
+        .segments
+        .iter()
+        .filter(|segment| segment.executions > 0)
+        .enumerate()
+        .map(|(i, segment)| (i + 1, segment))
+}
+
+fn row(number: usize, segment: &Segment, places: Places<'_>) -> Row {
+    Row {
+        number,
+        place: places.of(segment.span).to_string(),
+        kind: match segment.kind {
+            SegmentKind::Timing => "movement",
+            SegmentKind::Path => "free movement",
+            SegmentKind::Idle => "dwell",
+        },
+        rewritten: segment.rewritten,
+        executions: segment.executions,
+        rewritten_executions: segment.rewritten_executions,
+        costs: Sums::of(segment).text(),
+        bound: segment.lower_bound_j.map(joules),
+        points: segment.rewritten.then_some(segment.points),
+        reason: segment.reason.as_ref().map(reason),
+        potential: (segment.potential_j > 0.0).then(|| joules(segment.potential_j)),
+    }
+}
+
+fn reason(reason: &Reason) -> ReasonText {
+    let code = reason.code();
+    let text = reason.to_string();
+    let words = text.strip_prefix(code).map_or(&*text, |rest| rest.trim_start_matches(": "));
+    ReasonText { code, words: words.to_owned() }
+}

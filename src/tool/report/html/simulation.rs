@@ -1,0 +1,382 @@
+//! The report of a simulation: the cycle as bars over time, power, joints beside their limits, and
+//! the source with seconds and joules.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+use super::ReportError;
+use super::format::{joules, seconds};
+use super::source::text;
+use crate::arm::robot::Model;
+use crate::rapid::text::{SourceFile, Span};
+use crate::retime::energy::Account;
+use crate::retime::energy::plausible::Plausibility;
+use crate::retime::energy::trajectory::Sample;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::{WaitBasis, What};
+use crate::retime::path::joint_path::DOF;
+use crate::tool::report::place::Places;
+use crate::tool::report::plausible::energies;
+use crate::tool::report::svg::{Curve, Plot, Rule, Scale, Size, escape};
+
+const SIZE: Size = Size { width: 1260.0, height: 280.0 };
+/// Points of a curve at most.
+const MAX_POINTS: usize = 6000;
+/// Rows of the bars at most: beyond, each row is a routine.
+const MAX_ROWS: usize = 60;
+/// Height of a row, width of its name, and room for the axis below, px.
+const ROW: f64 = 20.0;
+const NAMES: f64 = 300.0;
+const AXIS: f64 = 34.0;
+/// Width of the mark of a wait that counts 0 s because its length is not known, px.
+const UNKNOWN_WIDTH: f64 = 3.0;
+/// Ticks of the time.
+const TICKS: usize = 10;
+/// Lines shown before and after those that cost something.
+const CONTEXT: u32 = 2;
+
+/// A movement or a wait of the cycle.
+struct Step<'a> {
+    span: Span,
+    instruction: &'a str,
+    routine: &'a str,
+    begin: f64,
+    duration: f64,
+    energy: f64,
+    waits: bool,
+    /// True for a wait of a length that is not known, which counts 0 s.
+    unknown: bool,
+}
+
+#[derive(Serialize)]
+struct Figure {
+    caption: &'static str,
+    svg: String,
+}
+
+#[derive(Serialize)]
+struct Annotated {
+    path: String,
+    energy: String,
+    lines: Vec<Line>,
+}
+
+#[derive(Serialize)]
+struct Line {
+    number: u32,
+    /// Lines left out before it.
+    gap: u32,
+    text: String,
+    time: Option<String>,
+    energy: Option<String>,
+    /// Share of the most expensive line, %.
+    heat: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Noted {
+    place: String,
+    reason: String,
+}
+
+/// The report of a simulation as one HTML file. `samples` is its planned motion; `files` are the
+/// program's, indexed by their ids.
+///
+/// # Errors
+/// A template that does not fit its data.
+pub fn simulate_report(
+    simulation: &Simulation,
+    (account, plausible): (&Account, Option<&Plausibility>),
+    samples: &[Sample],
+    files: &[SourceFile],
+    model: &Model,
+    entry: &str,
+) -> Result<String, ReportError> {
+    let places = Places::new(files);
+    let steps = steps(simulation, account);
+    let known = model.has_dynamics();
+    let mut context = Context::new();
+    context.insert("version", env!("CARGO_PKG_VERSION"));
+    context.insert("robot", &model.name);
+    context.insert("entry", entry);
+    context.insert("cycle", &seconds(simulation.cycle_s));
+    context.insert("energy", &known.then(|| joules(account.total.energy_j())));
+    context.insert("motion_energy", &known.then(|| joules(account.total.motion_energy_j())));
+    context.insert("plausible", &plausible.map(energies).unwrap_or_default());
+    context.insert("movements", &steps.iter().filter(|step| !step.waits).count());
+    context.insert("waits", &steps.iter().filter(|step| step.waits).count());
+    context.insert("unknown", &steps.iter().filter(|step| step.unknown).count());
+    context.insert("bars", &bars(&steps, simulation.cycle_s, places));
+    context.insert("figures", &figures(model, samples));
+    context.insert("joints", &(1..=DOF).collect::<Vec<usize>>());
+    context.insert("sources", &sources(&steps, files, known));
+    let notes = simulation
+        .unresolved
+        .iter()
+        .map(|note| Noted { place: places.of(note.span).to_string(), reason: note.reason.clone() });
+    context.insert("unresolved", &notes.collect::<Vec<_>>());
+    let mut assumed = simulation.assumed.clone();
+    assumed.extend(model.assumed());
+    context.insert("assumed", &assumed);
+    let mut tera = Tera::default();
+    tera.add_raw_templates(vec![
+        ("report.css", include_str!("../../../../templates/report.css")),
+        ("simulation.html", include_str!("../../../../templates/simulation.html.tera")),
+    ])?;
+    Ok(tera.render("simulation.html", &context)?)
+}
+
+fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {
+    let mut steps = Vec::new();
+    for (event, parts) in simulation.events.iter().zip(&account.events) {
+        let energy =
+            |i: usize| parts.get(i).map_or(0.0, crate::retime::energy::EnergyParts::energy_j);
+        match &event.what {
+            What::Run(run) => {
+                for (i, record) in run.moves.iter().enumerate() {
+                    steps.push(Step {
+                        span: record.movement.span,
+                        instruction: &record.movement.instruction,
+                        routine: &record.movement.routine,
+                        begin: event.t_start + record.t_start,
+                        duration: record.duration,
+                        energy: energy(i),
+                        waits: false,
+                        unknown: false,
+                    });
+                }
+            }
+            What::Wait(record) => steps.push(Step {
+                span: record.wait.span,
+                instruction: &record.wait.instruction,
+                routine: &record.wait.routine,
+                begin: event.t_start,
+                duration: event.duration,
+                energy: energy(0),
+                waits: true,
+                unknown: record.basis == WaitBasis::Unknown,
+            }),
+            What::Output(..) | What::Left(_) => {}
+        }
+    }
+    steps
+}
+
+/// The cycle as bars over time: a row for each statement in the order of their first run, or for
+/// each routine where there are many.
+fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
+    let shared = shared_folder(steps.iter().map(|step| places.of(step.span).file));
+    let statement = |step: &Step<'_>| {
+        let place = places.of(step.span).to_string();
+        format!("{} {}", place.get(shared..).unwrap_or(&place), step.instruction)
+    };
+    let routine = |step: &Step<'_>| step.routine.to_owned();
+    let mut rows = rows(steps, statement);
+    if rows.len() > MAX_ROWS {
+        rows = self::rows(steps, routine);
+        rows.truncate(MAX_ROWS);
+    }
+    let scale = Scale::exact(0.0, cycle, TICKS);
+    let height = ROW * rows.len() as f64 + AXIS;
+    let (left, right) = (NAMES, SIZE.width - 14.0);
+    let at = |t: f64| left + scale.share(t) * (right - left);
+    let mut out = format!(
+        "<svg viewBox=\"0 0 {:.0} {height:.0}\" role=\"img\" aria-label=\"the cycle by \
+         instruction\">",
+        SIZE.width
+    );
+    let bottom = height - AXIS;
+    for (value, label) in scale.ticks() {
+        let x = at(value);
+        let _ = write!(
+            out,
+            "<line class=\"grid\" x1=\"{x:.1}\" y1=\"0\" x2=\"{x:.1}\" y2=\"{bottom:.1}\"/>\
+             <text class=\"tick middle\" x=\"{x:.1}\" y=\"{:.1}\">{label}</text>",
+            bottom + 15.0
+        );
+    }
+    for (i, (name, members)) in rows.iter().enumerate() {
+        let y = ROW * i as f64;
+        let _ = write!(
+            out,
+            "<text class=\"tick end\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            left - 8.0,
+            y + 0.7 * ROW,
+            escape(&shortened(name))
+        );
+        for step in members {
+            let (a, b) = (at(step.begin), at(step.begin + step.duration));
+            let (class, least) = match (step.unknown, step.waits) {
+                (true, _) => ("friction", UNKNOWN_WIDTH),
+                (false, true) => ("idle", 0.5),
+                (false, false) => ("mechanical", 0.5),
+            };
+            let _ = write!(
+                out,
+                "<rect class=\"part {class}\" x=\"{a:.1}\" y=\"{:.1}\" width=\"{:.1}\" \
+                 height=\"{:.1}\"><title>{} {}: {} s from {} s, {} J</title></rect>",
+                y + 3.0,
+                (b - a).max(least),
+                ROW - 6.0,
+                escape(&places.of(step.span).to_string()),
+                escape(step.instruction),
+                seconds(step.duration),
+                seconds(step.begin),
+                joules(step.energy),
+            );
+        }
+    }
+    let _ = write!(
+        out,
+        "<text class=\"title end\" x=\"{right:.1}\" y=\"{:.1}\">time (s)</text></svg>",
+        height - 5.0
+    );
+    out
+}
+
+/// Length of the folder, with its separator, that all paths begin with.
+fn shared_folder(paths: impl Iterator<Item = String>) -> usize {
+    let folder = |path: &str| path.rfind('/').map_or(0, |at| at + 1);
+    let mut shared: Option<String> = None;
+    for path in paths {
+        let mut prefix = shared.unwrap_or_else(|| path[..folder(&path)].to_owned());
+        while !path.starts_with(&prefix) {
+            prefix.truncate(folder(prefix.trim_end_matches('/')));
+        }
+        shared = Some(prefix);
+    }
+    shared.map_or(0, |prefix| prefix.len())
+}
+
+/// Steps of the same name together, in the order of the first of them.
+fn rows<'s, 'a>(
+    steps: &'s [Step<'a>],
+    name: impl Fn(&Step<'a>) -> String,
+) -> Vec<(String, Vec<&'s Step<'a>>)> {
+    let mut place: BTreeMap<String, usize> = BTreeMap::new();
+    let mut rows: Vec<(String, Vec<&Step<'a>>)> = Vec::new();
+    for step in steps {
+        let name = name(step);
+        let index = *place.entry(name.clone()).or_insert(rows.len());
+        if index == rows.len() {
+            rows.push((name, Vec::new()));
+        }
+        rows[index].1.push(step);
+    }
+    rows
+}
+
+/// The end of a long name.
+fn shortened(name: &str) -> String {
+    const CHARACTERS: usize = 46;
+    let count = name.chars().count();
+    if count <= CHARACTERS {
+        return name.to_owned();
+    }
+    let rest: String = name.chars().skip(count - CHARACTERS).collect();
+    format!("\u{2026}{rest}")
+}
+
+fn figures(model: &Model, samples: &[Sample]) -> Vec<Figure> {
+    let stride = samples.len().div_ceil(MAX_POINTS).max(1);
+    let chosen: Vec<&Sample> = samples.iter().step_by(stride).collect();
+    let one = |value: &dyn Fn(&Sample) -> f64| {
+        let points = chosen.iter().map(|s| [s.t, value(s)]).collect();
+        vec![Curve { class: "one".into(), points }]
+    };
+    let joints = |value: &dyn Fn(&Sample, usize) -> f64| -> Vec<Curve> {
+        (0..DOF)
+            .map(|j| Curve {
+                class: format!("j{}", j + 1),
+                points: chosen.iter().map(|s| [s.t, value(s, j)]).collect(),
+            })
+            .collect()
+    };
+    let both = || [100.0, -100.0].map(|value| Rule { value, label: "limit" }).to_vec();
+    let limits = &model.limits;
+    let share = "share of the limit (%)";
+    let mut figures = Vec::new();
+    if model.has_dynamics() {
+        let curves = one(&|s| s.electrical_w.unwrap_or(f64::NAN));
+        figures.push(figure("Electrical power", "power (W)", curves, Vec::new()));
+    }
+    figures.push(figure("TCP speed", "speed (m/s)", one(&|s| s.tcp_speed), Vec::new()));
+    // From −100 % at the lower end of the range to 100 % at the upper one.
+    let place = joints(&|s, j| {
+        let [low, high] = limits.position_at(&s.state.q, j);
+        100.0 * (2.0 * s.state.q[j] - low - high) / (high - low)
+    });
+    figures.push(figure("Joint positions in their ranges", share, place, both()));
+    if let Some(limit) = &limits.velocity {
+        let curves = joints(&|s, j| 100.0 * s.state.qd[j] / limit[j]);
+        figures.push(figure("Joint speeds", share, curves, both()));
+    }
+    if let Some(limit) = &limits.acceleration {
+        let curves = joints(&|s, j| 100.0 * s.state.qdd[j] / limit[j]);
+        figures.push(figure("Joint accelerations", share, curves, both()));
+    }
+    if let Some(limit) = &limits.torque {
+        let tau = |s: &Sample, j: usize| s.power.as_ref().map_or(f64::NAN, |p| p.tau[j]);
+        let curves = joints(&|s, j| 100.0 * tau(s, j) / limit[j]);
+        figures.push(figure("Joint torques", share, curves, both()));
+    }
+    figures
+}
+
+fn figure(
+    caption: &'static str,
+    y_title: &'static str,
+    curves: Vec<Curve>,
+    rules: Vec<Rule>,
+) -> Figure {
+    let plot = Plot { name: caption, x_title: "time (s)", y_title, curves, rules };
+    Figure { caption, svg: plot.svg(SIZE) }
+}
+
+/// The files that take time, with seconds and joules by line.
+fn sources(steps: &[Step<'_>], files: &[SourceFile], known: bool) -> Vec<Annotated> {
+    let mut costs: Vec<BTreeMap<u32, [f64; 2]>> = vec![BTreeMap::new(); files.len()];
+    for step in steps {
+        let index = step.span.file.0 as usize;
+        if let (Some(file), Some(costs)) = (files.get(index), costs.get_mut(index)) {
+            let line = costs.entry(file.position(step.span.start).line).or_default();
+            line[0] += step.duration;
+            line[1] += step.energy;
+        }
+    }
+    let hottest = costs.iter().flat_map(BTreeMap::values).map(|cost| cost[1]).fold(0.0, f64::max);
+    let used = files.iter().zip(&costs).filter(|(_, costs)| !costs.is_empty());
+    used.map(|(file, costs)| annotated(file, costs, hottest, known)).collect()
+}
+
+/// `hottest` is the energy of the most expensive line of all files, J.
+fn annotated(
+    file: &SourceFile,
+    costs: &BTreeMap<u32, [f64; 2]>,
+    hottest: f64,
+    known: bool,
+) -> Annotated {
+    let mut lines = Vec::new();
+    let mut last = 0;
+    for line in costs.keys() {
+        let from = line.saturating_sub(CONTEXT).max(last + 1);
+        for number in from..=(line + CONTEXT).min(file.lines.count()) {
+            let cost = costs.get(&number);
+            let hot = cost.filter(|cost| cost[1] > 0.0 && known);
+            lines.push(Line {
+                number,
+                gap: number - last - 1,
+                text: text(file, number),
+                time: cost.map(|cost| seconds(cost[0])),
+                energy: cost.filter(|_| known).map(|cost| joules(cost[1])),
+                heat: hot.map(|cost| format!("{:.0}", 100.0 * cost[1] / hottest)),
+            });
+            last = number;
+        }
+    }
+    let energy = joules(costs.values().map(|cost| cost[1]).sum());
+    Annotated { path: file.path.clone(), energy, lines }
+}

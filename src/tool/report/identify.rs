@@ -1,0 +1,346 @@
+//! The result of an identification as JSON, text and the record in its Robot TOML.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use crate::arm::dynamics::{JOINT, RIGID};
+use crate::arm::robot::to_toml;
+use crate::learn::identify::{
+    Descent, Grade, Identified, Misses, Source, Whiteness, collinear, essential,
+};
+
+/// What a result rests on, beside the result itself.
+#[derive(Clone, Debug, Default)]
+pub struct Basis {
+    /// Logs: path as given, SHA-256, usable rows, rows left out.
+    pub logs: Vec<(String, String, usize, usize)>,
+    /// The same that were only predicted.
+    pub validation: Vec<(String, String, usize, usize)>,
+    /// When the logs were recorded, where that is known.
+    pub date: Option<String>,
+    /// Where the torques come from, in words.
+    pub torque: String,
+    /// What else a reader has to know.
+    pub notes: Vec<String>,
+    /// The paper's fit, for comparison.
+    pub descent: Option<Descent>,
+}
+
+/// Names of the parameters of a joint with their units, as the model keeps them.
+const JOINT_KEYS: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"];
+const JOINT_UNITS: [&str; JOINT] = ["kg m2", "Nm s/rad", "Nm", "Nm"];
+
+/// The contract's JSON.
+pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
+    let fit = &found.fit;
+    let parameters: Vec<Value> = fit
+        .solution
+        .determined
+        .iter()
+        .enumerate()
+        .map(|(k, row)| {
+            json!({
+                "name": found.name(*row),
+                "value": fit.solution.beta[*row],
+                "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
+            })
+        })
+        .collect();
+    let held_out = found.validation.as_ref();
+    let names = |rows: &[usize]| rows.iter().map(|row| found.name(*row)).collect::<Vec<_>>();
+    let logs = |logs: &[(String, String, usize, usize)]| -> Vec<Value> {
+        let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| json!({"path": path, "sha256": hash, "rows": rows, "left_out": left_out});
+        logs.iter().map(log).collect()
+    };
+    json!({
+        "robot": found.model.name,
+        "base_parameters": parameters,
+        "rank": fit.solution.determined.len(),
+        "not_determined": undetermined(found),
+        "rms": {
+            "train": found.training.rms,
+            "validation": held_out.map_or(&found.cross_rms, |misses| &misses.rms),
+        },
+        "relative_rms": {
+            "train": found.training.relative,
+            "validation": held_out.map(|misses| &misses.relative),
+        },
+        "validation_basis": if held_out.is_some() {
+            "logs"
+        } else if fit.over_repetitions {
+            "repetitions"
+        } else {
+            "cross-validation"
+        },
+        "unconstrained_rms": {
+            "train": fit.rms,
+            "validation":
+                found.unconstrained_validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms),
+        },
+        "residual_memory": fit.memory,
+        "whiteness": whiteness(found),
+        "quality": {
+            "grade": grade(found.quality.grade), "statement": found.quality.sentence(),
+            "explained": found.quality.explained, "predicted": found.quality.predicted,
+            "friction_gives_power": found.quality.giving_power.iter().map(|j| j + 1)
+                .collect::<Vec<_>>(),
+            "torques_late_s": found.quality.late,
+        },
+        "apparent_torque": {
+            "inertia": found.model.sensors.apparent_inertia,
+            "viscous": found.model.sensors.apparent_viscous,
+        },
+        "physically_consistent": found.physically_consistent,
+        "condition": {"scaled": fit.condition.scaled, "raw": fit.condition.raw},
+        "joints": joints(found),
+        "wrist_coupling": {
+            "coupling": found.model.wrist.coupling,
+            "found_in_data": found.coupling.is_some(),
+        },
+        "payload": found.payload.as_ref().map(|load| json!({
+            "mass": load.mass, "com": load.com.as_slice(),
+        })),
+        "essential": names(&essential(fit)),
+        "collinear": collinear(fit).iter().map(|group| json!({
+            "condition_index": group.index, "parameters": names(&group.parameters),
+        })).collect::<Vec<_>>(),
+        "samples": source(&found.source),
+        "torque": basis.torque,
+        "logs": logs(&basis.logs),
+        "validation_logs": logs(&basis.validation),
+        "notes": basis.notes,
+        "descent": basis.descent.as_ref().map(|of| json!({
+            "first_rms": of.misses[0], "rms": of.misses[1], "steps": of.steps,
+            "rms_by_joint": of.rms,
+            "mass": of.links.iter().map(|link| link.mass).collect::<Vec<_>>(),
+            "com": of.links.iter().map(|link| link.com.as_slice().to_vec()).collect::<Vec<_>>(),
+            "moments": of.links.iter()
+                .map(|link| link.inertia.diagonal().as_slice().to_vec()).collect::<Vec<_>>(),
+        })),
+        "model": path,
+    })
+}
+
+fn grade(grade: Grade) -> &'static str {
+    match grade {
+        Grade::Good => "good",
+        Grade::Fair => "fair",
+        Grade::Poor => "poor",
+        Grade::None => "none",
+    }
+}
+
+/// What the residuals of each joint remember.
+fn whiteness(found: &Identified) -> Vec<Value> {
+    let joint = |(joint, of): (usize, &Option<Whiteness>)| match of {
+        Some(of) => json!({
+            "joint": joint + 1, "autocorrelation": of.autocorrelation, "band": of.band,
+            "outside": of.outside, "ljung_box": of.ljung_box, "p_value": of.p_value,
+        }),
+        None => json!({"joint": joint + 1, "autocorrelation": null}),
+    };
+    found.fit.whiteness.iter().enumerate().map(joint).collect()
+}
+
+/// What the data do not determine, in words.
+pub fn undetermined(found: &Identified) -> Vec<Value> {
+    let resting = |joint: usize| found.resting.contains(&joint);
+    let fit = &found.fit;
+    fit.solution
+        .dependent
+        .iter()
+        .map(|(row, parts)| {
+            let index = found.base.independent[*row];
+            let rigid = RIGID * found.base.dof;
+            let joint = if index < rigid { index / RIGID } else { (index - rigid) / JOINT };
+            let why = if resting(joint) {
+                format!("joint {} was not excited", joint + 1)
+            } else if parts.is_empty() {
+                "the motion has no torque of it".to_owned()
+            } else {
+                let with: Vec<String> = parts
+                    .iter()
+                    .map(|(of, _)| found.base.of.name(found.base.dof, found.base.independent[*of]))
+                    .collect();
+                format!("the motion does not tell it from {}", with.join(", "))
+            };
+            json!({"name": found.base.name(*row), "joint": joint + 1, "why": why})
+        })
+        .collect()
+}
+
+/// Rotor inertia, friction and offset of each joint with their intervals.
+fn joints(found: &Identified) -> Vec<Value> {
+    let fit = &found.fit;
+    let rigid = RIGID * found.base.dof;
+    (0..found.base.dof)
+        .map(|joint| {
+            let mut entry = Map::new();
+            entry.insert("joint".into(), json!(joint + 1));
+            entry.insert("excited".into(), json!(!found.resting.contains(&joint)));
+            for (kind, key) in JOINT_KEYS.iter().enumerate() {
+                let index = rigid + JOINT * joint + kind;
+                let row = found
+                    .base
+                    .independent
+                    .iter()
+                    .position(|known| *known == index)
+                    .filter(|row| found.name(*row) == found.base.name(*row));
+                let place = row.and_then(|row| {
+                    let k = fit.solution.determined.iter().position(|known| *known == row)?;
+                    Some((row, k))
+                });
+                let value = place.map(|(row, k)| {
+                    json!({
+                        "value": fit.solution.beta[row],
+                        "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
+                        "unit": JOINT_UNITS[kind],
+                    })
+                });
+                entry.insert((*key).into(), value.unwrap_or(Value::Null));
+            }
+            Value::Object(entry)
+        })
+        .collect()
+}
+
+fn source(source: &Source) -> Value {
+    match source {
+        Source::Logged => json!({"derivatives": "logged"}),
+        Source::Filtered { cutoff } => json!({"derivatives": "filtered", "cutoff_hz": cutoff}),
+        Source::Periodic { period, periods, harmonics } => json!({
+            "derivatives": "fourier", "period_s": period, "periods": periods,
+            "harmonics": harmonics,
+        }),
+    }
+}
+
+/// The model as Robot TOML, with the record of how it was found.
+pub fn toml(found: &Identified, basis: &Basis) -> String {
+    let mut text = to_toml(&found.model);
+    let quoted = |text: &str| Value::from(text).to_string();
+    text.push_str("\n[identification]\n");
+    if let Some(date) = &basis.date {
+        let _ = writeln!(text, "date = {}", quoted(date));
+    }
+    let _ = writeln!(text, "torque = {}", quoted(&basis.torque));
+    let _ = writeln!(text, "quality = {}", quoted(&found.quality.sentence()));
+    let _ = writeln!(text, "rank = {}", found.fit.solution.determined.len());
+    let list = |values: &[f64]| -> String {
+        // TOML's not a number is in small letters.
+        values.iter().map(|x| format!("{x:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
+    };
+    let _ = writeln!(text, "rms = [{}]", list(&found.training.rms));
+    if let Some(Misses { rms, .. }) = &found.validation {
+        let _ = writeln!(text, "validation_rms = [{}]", list(rms));
+    }
+    for entry in undetermined(found) {
+        let _ = write!(
+            text,
+            "\n[[identification.not_determined]]\nname = {}\nwhy = {}\n",
+            entry["name"], entry["why"]
+        );
+    }
+    for (path, hash, rows, left_out) in &basis.logs {
+        let _ = write!(
+            text,
+            "\n[[identification.log]]\npath = {}\nsha256 = \"{hash}\"\nrows = {rows}\n\
+             left_out = {left_out}\n",
+            quoted(path)
+        );
+    }
+    for (k, row) in found.fit.solution.determined.iter().enumerate() {
+        let _ = write!(
+            text,
+            "\n[[identification.base_parameter]]\nname = {}\nvalue = {:?}\nsd = {:?}\n",
+            quoted(&found.name(*row)),
+            found.fit.solution.beta[*row],
+            found.fit.covariance[(k, k)].max(0.0).sqrt()
+        );
+    }
+    text
+}
+
+/// A number, or a dash where there is none.
+fn shown(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
+}
+
+/// How many of the lags of a joint's residuals look like white noise.
+pub(super) fn white(whiteness: Option<&Whiteness>) -> String {
+    whiteness.map_or_else(
+        || "-".into(),
+        |of| format!("{} (p = {:.2})", of.autocorrelation.len() - of.outside, of.p_value),
+    )
+}
+
+/// For people.
+pub fn text(found: &Identified, basis: &Basis) -> String {
+    let fit = &found.fit;
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{}: {} base parameters determined, condition {:.1} scaled, {:.0} raw",
+        found.model.name,
+        fit.solution.determined.len(),
+        fit.condition.scaled,
+        fit.condition.raw
+    );
+    let _ = writeln!(text, "torque: {}", basis.torque);
+    let consistent = if found.physically_consistent { "yes" } else { "no" };
+    let _ = writeln!(text, "physically consistent: {consistent}");
+    let _ = writeln!(text, "quality: {}", found.quality.sentence());
+    let held_out = match &found.validation {
+        Some(misses) => ("held-out logs", &misses.rms),
+        None if fit.over_repetitions => ("held-out cycles", &found.cross_rms),
+        None => ("cross-validated", &found.cross_rms),
+    };
+    let _ = writeln!(
+        text,
+        "\njoint  RMS [Nm]  {:>15}  relative [%]  white [lags out of 20]",
+        held_out.0
+    );
+    for joint in 0..found.base.dof {
+        let _ = writeln!(
+            text,
+            "{:>5}  {:>8}  {:>15}  {:>12}  {}",
+            joint + 1,
+            shown(found.training.rms[joint], 3),
+            shown(held_out.1[joint], 3),
+            shown(100.0 * found.training.relative[joint], 1),
+            white(fit.whiteness[joint].as_ref())
+        );
+    }
+    text.push_str("RMS over the instants at which the joint moves; standing still tells nothing of friction\n");
+    if let Some(of) = &basis.descent {
+        let each: Vec<String> = of.rms.iter().map(|rms| shown(*rms, 3)).collect();
+        let _ = writeln!(
+            text,
+            "\nby descent: RMS of all {:.3} Nm after {} steps from {:.3} Nm; by joint {}",
+            of.misses[1],
+            of.steps,
+            of.misses[0],
+            each.join(" ")
+        );
+    }
+    let _ = writeln!(text, "\n{:>12} {:>12}  parameter", "value", "sd");
+    for (k, row) in fit.solution.determined.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "{:>12.5} {:>12.5}  {}",
+            fit.solution.beta[*row],
+            fit.covariance[(k, k)].max(0.0).sqrt(),
+            found.name(*row)
+        );
+    }
+    let missing = undetermined(found);
+    if !missing.is_empty() {
+        text.push_str("\nnot determined:\n");
+        for entry in missing {
+            let part = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
+            let _ = writeln!(text, "  {}: {}", part("name"), part("why"));
+        }
+    }
+    text
+}

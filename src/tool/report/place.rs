@@ -1,0 +1,49 @@
+//! Spans as file and lines.
+
+use crate::rapid::text::{SourceFile, Span};
+
+/// Finds the places of spans.
+#[derive(Clone, Copy)]
+pub struct Places<'a> {
+    files: &'a [SourceFile],
+}
+
+/// A place in the source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Path as given.
+    pub file: String,
+    /// From 1.
+    pub first: u32,
+    /// From 1.
+    pub last: u32,
+}
+
+impl<'a> Places<'a> {
+    /// Of these files, indexed by their ids.
+    pub fn new(files: &'a [SourceFile]) -> Places<'a> {
+        Places { files }
+    }
+
+    /// Where a span lies.
+    pub fn of(&self, span: Span) -> Place {
+        match self.files.get(span.file.0 as usize) {
+            Some(file) => Place {
+                file: file.path.clone(),
+                first: file.position(span.start).line,
+                last: file.position(span.end.max(span.start + 1) - 1).line,
+            },
+            None => Place { file: String::new(), first: 0, last: 0 },
+        }
+    }
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.first == self.last {
+            write!(f, "{}:{}", self.file, self.first)
+        } else {
+            write!(f, "{}:{}-{}", self.file, self.first, self.last)
+        }
+    }
+}

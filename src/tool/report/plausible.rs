@@ -1,0 +1,45 @@
+//! What plausible robots say of a result, in sentences.
+
+use crate::retime::energy::plausible::{Contribution, Interval, LEAST, Plausibility};
+use crate::tool::retrofit::Retrofit;
+
+/// Energies of a cycle, and what their intervals come from.
+pub(super) fn energies(plausible: &Plausibility) -> Vec<String> {
+    let range =
+        |of: &Interval| format!("{:.0} to {:.0} J (median {:.0} J)", of.low, of.high, of.median);
+    let energies = format!(
+        "in 90 % of the plausible robots {}, of which motions take {}",
+        range(&plausible.energy_j),
+        range(&plausible.motion_energy_j),
+    );
+    std::iter::once(energies).chain(contributions(&plausible.contributions)).collect()
+}
+
+/// What a retrofit saves, and what that interval comes from; nothing of a known robot, or where
+/// nothing was rewritten.
+pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
+    let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
+    let Some(uncertainty) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten) else {
+        return Vec::new();
+    };
+    let range =
+        |of: &Interval| format!("{:.1} to {:.1} % (median {:.1} %)", of.low, of.high, of.median);
+    let [all, motion] = &uncertainty.saving_percent;
+    let saving = format!(
+        "in 90 % of the plausible robots it saves {} of the motion energy, {} of all",
+        range(motion),
+        range(all),
+    );
+    std::iter::once(saving).chain(contributions(&uncertainty.contributions)).collect()
+}
+
+/// What an interval comes from, and what would narrow it.
+pub(super) fn contributions(parts: &[Contribution]) -> Option<String> {
+    let first = parts.first()?;
+    let rest = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
+    let rest = (rest >= LEAST).then_some(("the others together", rest));
+    let named = parts.iter().map(|part| (part.group.as_str(), part.share));
+    let groups: Vec<String> =
+        named.chain(rest).map(|(group, share)| format!("{group} {:.0} %", 100.0 * share)).collect();
+    Some(format!("of the variance: {}; most would tell {}", groups.join(", "), first.narrowed_by))
+}

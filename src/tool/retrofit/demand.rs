@@ -1,0 +1,160 @@
+//! Streams ask no more of a joint than the original motion, where nobody says what it can do.
+//!
+//! That a robot can do what it does already is known. Accelerations of streams stay below those of the
+//! original cycle anyway (`optimize::allowed::Loads`); where limits of torque are
+//! estimated, so does the largest torque of each joint in 95 % of the plausible robots.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::goals::Planning;
+use super::work::{Outcome, Way};
+use crate::arm::robot::{Model, Provenance};
+use crate::retime::energy::along::{Along, Instant};
+use crate::retime::energy::plausible::{Robots, moments};
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::{Event, What};
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::retime::{Goal, retime};
+use crate::retime::path::joint_path::DOF;
+
+/// Share of the plausible robots in which the torque stays below.
+const ENOUGH: f64 = 0.95;
+/// Time between two instants that are looked at \[s\], and what a peak between them may add.
+const STEP: f64 = 0.01;
+const BETWEEN: f64 = 1.01;
+
+/// How often a stream is planned anew with less torque, and what it is planned with less than the
+/// plausible robots ask for: what is at its bound with one robot is above it with others.
+const MOST_PLANS: usize = 4;
+const LESS: f64 = 0.99;
+
+/// Whether nothing is known of the torques that a robot can do.
+fn is_estimated(model: &Model) -> bool {
+    model.provenance_of("limits", "torque") == Some(Provenance::Estimated)
+}
+
+/// The robot whose energy is minimised: the mean over the plausible robots where nothing is known of the
+/// limits, so that the dynamics are estimated, too.
+pub(super) fn mean_robot(
+    model: &Model,
+    robots: Option<&Robots>,
+    simulation: &Simulation,
+) -> Option<Model> {
+    robots.filter(|_| is_estimated(model))?.mean(model, &moments(model, simulation))
+}
+
+/// Largest torque of each joint in a motion \[Nm\], robot by robot.
+pub(super) struct Demand(Vec<[f64; DOF]>);
+
+impl Demand {
+    /// Of the runs among some events.
+    pub(super) fn of<'e>(
+        model: &Model,
+        robots: &Robots,
+        events: impl Iterator<Item = &'e Event>,
+    ) -> Demand {
+        let mut instants = Vec::new();
+        for event in events {
+            let What::Run(run) = &event.what else { continue };
+            let count = (event.duration / STEP).ceil();
+            instants.extend((0..=count as usize).map(|i| {
+                let state = run.at(event.duration * i as f64 / count.max(1.0));
+                Instant { load: run.load.clone(), state: [state.q, state.qd, state.qdd] }
+            }));
+        }
+        let along = Along::of(model, &instants, Vec::new());
+        let torques = along.torques(robots.drawn());
+        let count = torques.first().map_or(0, nalgebra::Matrix::ncols);
+        let largest = |robot| std::array::from_fn(|j| torques[j].column(robot).amax());
+        Demand((0..count).map(largest).collect())
+    }
+
+    /// What is asked of each joint over what `original` asks, in 95 % of the robots; and of the first
+    /// joint of which more is asked, its number from 1 and the share in which no more is asked.
+    fn over(&self, original: &Demand) -> ([f64; DOF], Option<(usize, f64)>) {
+        let mut exceeds = None;
+        let ratios = std::array::from_fn(|j| {
+            let pairs = self.0.iter().zip(&original.0);
+            let mut ratios: Vec<f64> =
+                pairs.map(|(new, old)| new[j] / old[j].max(f64::MIN_POSITIVE)).collect();
+            let within = ratios.iter().filter(|ratio| **ratio <= BETWEEN).count();
+            let share = within as f64 / ratios.len().max(1) as f64;
+            if share < ENOUGH && exceeds.is_none() {
+                exceeds = Some((j + 1, share));
+            }
+            ratios.sort_by(f64::total_cmp);
+            let place = (ENOUGH * ratios.len() as f64).ceil() as usize;
+            ratios.get(place.saturating_sub(1)).copied().unwrap_or(1.0)
+        });
+        (ratios, exceeds)
+    }
+}
+
+/// Streams that are planned anew until they ask no more.
+pub(super) struct Frugal<'a> {
+    model: &'a Model,
+    robots: &'a Robots,
+    original: Demand,
+    /// Of each way that asked for more: plans so far, torques to plan with over those of the original.
+    planned: BTreeMap<usize, (usize, [f64; DOF])>,
+}
+
+impl<'a> Frugal<'a> {
+    /// Of a program as it is; `None` where something is known of the torques that the robot can do.
+    pub(super) fn of(
+        model: &'a Model,
+        robots: Option<&'a Robots>,
+        simulation: &Simulation,
+    ) -> Option<Frugal<'a>> {
+        let robots = robots.filter(|_| is_estimated(model))?;
+        let original = Demand::of(model, robots, simulation.events.iter());
+        Some(Frugal { model, robots, original, planned: BTreeMap::new() })
+    }
+
+    /// Plans the streams anew that ask more of a joint in the simulation `after` than the original cycle
+    /// does. Those without such a plan get their reason. Whether all of them can stay.
+    pub(super) fn hold(
+        &mut self,
+        after: &Simulation,
+        ways: &mut [Way],
+        planning: &Planning<'_>,
+    ) -> bool {
+        let mut asking = Vec::new();
+        for (index, way) in ways.iter().enumerate() {
+            let Ok(stream) = &way.outcome else { continue };
+            let variant = &planning.sites[way.site].variants[way.variant];
+            let Some(event) = variant.events.first() else { continue };
+            let own = Demand::of(self.model, self.robots, after.events.get(*event).into_iter());
+            let (ratios, exceeds) = own.over(&self.original);
+            if let Some((joint, share)) = exceeds {
+                let (plans, torques) = self.planned.entry(index).or_insert((1, [1.0; DOF]));
+                *plans += 1;
+                for (torque, ratio) in torques.iter_mut().zip(ratios) {
+                    if ratio > 1.0 {
+                        *torque *= LESS / ratio;
+                    }
+                }
+                let again = (*plans <= MOST_PLANS).then_some((*torques, stream.duration_s));
+                asking.push((index, again, Reason::AsksMore(joint, share)));
+            }
+        }
+        let outcomes = asking.par_iter().map(|(index, again, reason)| {
+            let stream = again.and_then(|(torques, within)| {
+                let mut freedom = planning.settings.freedom.clone();
+                let loads = freedom.loads.as_mut()?;
+                loads.torque.iter_mut().zip(torques).for_each(|(torque, share)| *torque *= share);
+                let task = planning.task(&ways[*index], &freedom)?;
+                retime(&task, Goal::Within(within)).ok()
+            });
+            (*index, stream.ok_or_else(|| reason.clone()))
+        });
+        let outcomes: Vec<(usize, Outcome)> = outcomes.collect();
+        let all_stay = outcomes.is_empty();
+        for (index, outcome) in outcomes {
+            ways[index].outcome = outcome;
+        }
+        all_stay
+    }
+}

@@ -1,0 +1,223 @@
+//! The result of a retrofit as plain data.
+
+use super::signals::SignalShift;
+use crate::rapid::text::Span;
+use crate::retime::energy::{Account, EnergyParts};
+use crate::retime::motion::Simulation;
+use crate::retime::optimize::check::Check;
+use crate::retime::optimize::energy_curve::TimeEnergy;
+use crate::retime::optimize::reason::Reason;
+
+/// Time and energy of one cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// s.
+    pub cycle_s: f64,
+    /// All six parts, J.
+    pub energy_j: f64,
+    /// The four parts of the motion, J.
+    pub motion_energy_j: f64,
+}
+
+/// Time of a RAPID instruction, ms. Assumed: ABB publishes none, and a cycle of a PLC program is of
+/// this order; it is to be replaced by a measurement on a controller.
+pub(super) const INSTRUCTION_MS: f64 = 0.05;
+
+/// The cycles where the assumed limits of acceleration and torque are too high.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowerLimits {
+    /// The true limits over the assumed ones.
+    pub share: f64,
+    /// s.
+    pub original_s: f64,
+    /// s.
+    pub optimized_s: f64,
+}
+
+/// A wait at the end of the original cycle that the comparison adds, so that both sides take the
+/// same time.
+#[derive(Clone, Debug)]
+pub struct Padding {
+    /// s.
+    pub duration_s: f64,
+    /// What it costs: base load, holding and open brakes.
+    pub energy: EnergyParts,
+}
+
+impl Figures {
+    /// The figures with a wait at the end.
+    pub(super) fn padded(self, padding: Option<&Padding>) -> Figures {
+        padding.map_or(self, |padding| Figures {
+            cycle_s: self.cycle_s + padding.duration_s,
+            energy_j: self.energy_j + padding.energy.energy_j(),
+            ..self
+        })
+    }
+}
+
+/// What a segment is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SegmentKind {
+    /// Movements, to be timed anew on their path.
+    Timing,
+    /// Movements that leave their path.
+    Path,
+    /// A dwell.
+    Idle,
+}
+
+/// A piece of the program with its costs in one cycle.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// The statements.
+    pub span: Span,
+    /// What it is.
+    pub kind: SegmentKind,
+    /// True if the RAPID that runs has changed.
+    pub rewritten: bool,
+    /// Why not, or why not in all of its executions.
+    pub reason: Option<Reason>,
+    /// Executions in the cycle.
+    pub executions: usize,
+    /// Executions that are rewritten.
+    pub rewritten_executions: usize,
+    /// s, all executions.
+    pub time_before_s: f64,
+    /// s, all executions.
+    pub time_after_s: f64,
+    /// J, all executions.
+    pub energy_before_j: f64,
+    /// J, all executions.
+    pub energy_after_j: f64,
+    /// No timing on the same path and in the same time takes less, J; `None` where it is not
+    /// rewritten.
+    pub lower_bound_j: Option<f64>,
+    /// Emitted points.
+    pub points: usize,
+    /// What the brake would save there by a setting of the controller, J.
+    pub potential_j: f64,
+    /// Events of the simulations in which it runs, for plots.
+    pub events: Vec<usize>,
+    /// Least energy over time of one execution, in its first way; empty where not asked for.
+    pub pareto: Vec<TimeEnergy>,
+}
+
+impl Segment {
+    /// A piece without costs yet.
+    pub(super) fn new(span: Span, kind: SegmentKind, reason: Option<Reason>) -> Segment {
+        Segment {
+            span,
+            kind,
+            rewritten: false,
+            reason,
+            executions: 0,
+            rewritten_executions: 0,
+            time_before_s: 0.0,
+            time_after_s: 0.0,
+            energy_before_j: 0.0,
+            energy_after_j: 0.0,
+            lower_bound_j: None,
+            points: 0,
+            potential_j: 0.0,
+            events: Vec::new(),
+            pareto: Vec::new(),
+        }
+    }
+}
+
+/// What the verifier saw.
+#[derive(Clone, Debug)]
+pub struct Verification {
+    /// True if nothing is exceeded and the program runs as before.
+    pub passed: bool,
+    /// Worst figures of all streams.
+    pub worst: Check,
+    /// Largest distance of a joint of a simulated stream from the intended one at any time, rad.
+    pub intended_error_rad: f64,
+    /// What was compared, in words, and whether it held.
+    pub checks: Vec<(String, bool)>,
+}
+
+/// What an output file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputKind {
+    /// A file of the input, as it was.
+    Unchanged,
+    /// A file of the input with insertions.
+    Changed,
+    /// A new file.
+    New,
+}
+
+/// A file of the complete program.
+#[derive(Clone, Debug)]
+pub struct OutputFile {
+    /// Path below the output folder, with `/`.
+    pub path: String,
+    /// What it is.
+    pub kind: OutputKind,
+    /// Its content.
+    pub bytes: Vec<u8>,
+    /// For a changed file, which of the input's it is.
+    pub input: Option<usize>,
+}
+
+/// A retrofit.
+#[derive(Debug)]
+pub struct Retrofit {
+    /// Before, with the padding.
+    pub original: Figures,
+    /// The wait that the figures before have besides the original program's own.
+    pub padding: Option<Padding>,
+    /// After.
+    pub optimized: Figures,
+    /// What settings of the controller could save besides, J.
+    pub potential_j: f64,
+    /// In the order of the source.
+    pub segments: Vec<Segment>,
+    /// What the verifier saw.
+    pub verification: Verification,
+    /// The signals of the program before and after.
+    pub signals: Vec<SignalShift>,
+    /// The complete program.
+    pub outputs: Vec<OutputFile>,
+    /// What else is to be known.
+    pub notes: Vec<String>,
+    /// Both cycles if the robot can do less than its file assumes; empty where nothing is assumed.
+    pub lower_limits: Vec<LowerLimits>,
+    /// Energies and savings over plausible robots; `None` for a point estimate.
+    pub uncertainty: Option<super::uncertainty::Uncertainty>,
+    /// RAPID instructions that guards run in a cycle, at most.
+    pub guard_instructions: usize,
+    /// The original cycle.
+    pub before: (Simulation, Account),
+    /// The cycle of the emitted program.
+    pub after: (Simulation, Account),
+}
+
+impl Retrofit {
+    /// Time that the guards take in a cycle, ms.
+    #[must_use]
+    pub fn guards_ms(&self) -> f64 {
+        INSTRUCTION_MS * self.guard_instructions as f64
+    }
+
+    /// Saved share of the energy, %.
+    pub fn saving_percent(&self) -> f64 {
+        percent(self.original.energy_j, self.optimized.energy_j)
+    }
+
+    /// Saved share of the motion energy, %.
+    pub fn motion_saving_percent(&self) -> f64 {
+        percent(self.original.motion_energy_j, self.optimized.motion_energy_j)
+    }
+
+    /// True if some piece that could have been rewritten was refused.
+    pub fn refused(&self) -> bool {
+        self.segments.iter().any(|s| s.reason.as_ref().is_some_and(Reason::is_refusal))
+    }
+}
+
+fn percent(before: f64, after: f64) -> f64 {
+    if before > 0.0 { 100.0 * (before - after) / before } else { 0.0 }
+}

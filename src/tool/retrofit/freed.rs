@@ -1,0 +1,51 @@
+//! Lines, arcs and waits that the user made free by a comment.
+
+use crate::rapid::ir::instructions::is_movement;
+use crate::rapid::syntax::{self, NodeKind, TokenKind, ast};
+use crate::rapid::text::{SourceFile, Span};
+
+/// What the comment says, besides its `!` and white space.
+const MARK: &[u8] = b"joulepath: free";
+
+/// The statements of movements and waits with the comment on the line on which they end.
+pub fn freed(file: &SourceFile) -> Vec<Span> {
+    if memchr::memmem::find(&file.bytes, MARK).is_none() {
+        return Vec::new();
+    }
+    let parse = syntax::parse(&file.bytes);
+    let marks: Vec<u32> = parse
+        .tree
+        .root()
+        .all_tokens()
+        .filter(|token| token.kind() == TokenKind::Comment)
+        .filter(|token| token.text(&file.bytes).get(1..).unwrap_or_default().trim_ascii() == MARK)
+        .map(|token| file.position(token.range().start).line)
+        .collect();
+    let calls = parse.tree.nodes().filter(|node| node.kind() == NodeKind::CallStatement);
+    let free = calls.filter(|node| {
+        let name = ast::Call::cast(*node).and_then(ast::Call::name);
+        let name = name.map(|name| String::from_utf8_lossy(name.text(&file.bytes)));
+        name.is_some_and(|name| is_movement(&name) || name.eq_ignore_ascii_case("WaitTime"))
+    });
+    free.map(|node| Span { file: file.id, start: node.range().start, end: node.range().end })
+        .filter(|span| marks.contains(&file.position(span.end).line))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rapid::text::FileId;
+
+    #[test]
+    fn only_movements_and_waits_on_a_line_with_the_comment_are_free() {
+        let text = "MODULE m\nPROC a()\nMoveL p,v1,fine,t; ! joulepath: free\n\
+                    MoveL p,v1,fine,t;\nStop; ! joulepath: free\n\
+                    MoveC p,\n  q,v1,fine,t; !joulepath: free\n\
+                    TPWrite \"! joulepath: free\"; WaitTime 2; ! joulepath: free\nENDPROC\nENDMODULE\n";
+        let file = SourceFile::new(FileId(0), "m.mod".into(), text.into());
+        let spans = freed(&file);
+        let found: Vec<_> = spans.iter().map(|span| file.text(*span)).collect();
+        assert_eq!(found, ["MoveL p,v1,fine,t;", "MoveC p,\n  q,v1,fine,t;", "WaitTime 2;"]);
+    }
+}

@@ -1,0 +1,86 @@
+//! What guards take: at the stop point before a stream they run a few dozen instructions of RAPID.
+
+use super::figures::INSTRUCTION_MS;
+use super::settings::{Budget, Objective, Settings};
+use super::work::{Way, run_of};
+use crate::arm::robot::Model;
+use crate::rapid::text::Span;
+use crate::retime::energy::power::holding_w;
+use crate::retime::motion::Simulation;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::site::Site;
+
+/// Share of the cycle that all guards may take.
+const MOST: f64 = 0.005;
+
+/// The ways of sites whose guards take more than their streams save, and of those that save least
+/// for their time where all guards take too much of the cycle. `guards`: places and instructions in
+/// a cycle.
+pub(super) fn costly(
+    model: &Model,
+    settings: &Settings,
+    simulation: &Simulation,
+    (sites, ways): (&[Site], &[Way]),
+    guards: &[(Span, usize)],
+) -> Vec<(usize, Reason)> {
+    // Place, time of its guards in a cycle, s, and what a second of them saves: J, or s.
+    let mut worth: Vec<(usize, f64, f64)> = Vec::new();
+    let mut costly = Vec::new();
+    for (site, own) in sites.iter().enumerate() {
+        let Some((_, count)) = guards.iter().find(|(span, _)| *span == own.span) else { continue };
+        let time = 1e-3 * INSTRUCTION_MS * *count as f64;
+        let gains = ways.iter().filter(|way| way.site == site).filter_map(|way| {
+            let retiming = way.outcome.as_ref().ok()?;
+            let run = run_of(simulation, sites, way)?;
+            let coils = model.brakes.as_ref().map_or(0.0, |brakes| brakes.power_released_w);
+            let holding: f64 = holding_w(model, &run.load, &run.start).iter().sum();
+            let standing = model.drive.base_w + coils + holding;
+            let saved_s = run.duration() - retiming.duration_s;
+            // A slower stream spends a wait: standing would have taken that.
+            let saved_j =
+                retiming.energy_before_j - retiming.energy.energy_j() - standing * saved_s;
+            let executions = own.variants[way.variant].events.len() as f64;
+            Some((executions * saved_j, executions * saved_s, standing))
+        });
+        let (saved_j, saved_s, standing) = gains
+            .fold((0.0, 0.0, 0.0_f64), |(j, s, w), gain| (j + gain.0, s + gain.1, w.max(gain.2)));
+        let (saved, cost) = match settings.objective {
+            Objective::Energy => (saved_j, standing * time),
+            Objective::Time => (saved_s, time),
+        };
+        // Where more or less time is asked for, runs may take more energy so that others save it.
+        let own = settings.budget == Budget::AsBefore || settings.objective == Objective::Time;
+        if own && saved < cost {
+            let unit = if settings.objective == Objective::Energy { "J" } else { "s" };
+            let why = format!(
+                "its guards take {cost:.2} {unit} in a cycle ({:.1} ms), its streams save {saved:.2} {unit}",
+                1e3 * time
+            );
+            costly.push((site, why));
+        } else {
+            worth.push((site, time, saved / time));
+        }
+    }
+    if costly.is_empty() {
+        worth.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let mut all = 0.0;
+        for (site, time, _) in worth {
+            all += time;
+            if all > MOST * simulation.cycle_s {
+                all -= time;
+                let why = format!(
+                    "its guards take {:.1} ms in a cycle, and all guards may take {:.1} % of it",
+                    1e3 * time,
+                    100.0 * MOST
+                );
+                costly.push((site, why));
+            }
+        }
+    }
+    let ways = ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok());
+    ways.filter_map(|(index, way)| {
+        let (_, why) = costly.iter().find(|(site, _)| *site == way.site)?;
+        Some((index, Reason::NoStream(why.clone())))
+    })
+    .collect()
+}

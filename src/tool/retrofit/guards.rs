@@ -1,0 +1,207 @@
+//! What a guard compares: the arguments of the movements that a stream stands for, evaluated as
+//! the movements would evaluate them, when the robot stands where the stream starts.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::settings::{Form, Settings};
+use super::work::Source;
+use crate::rapid::ir::hir::{
+    ArgKind, Block, Callee, DataKind, Expr, ExprKind, Scope, StmtKind, UnaryOp,
+};
+use crate::rapid::ir::instructions::is_movement;
+use crate::rapid::ir::movement::Argument;
+use crate::rapid::ir::program::{DataId, Program, RoutineId};
+use crate::rapid::ir::reads::{Reads, reads};
+use crate::rapid::ir::value::Datum;
+use crate::rapid::syntax::tokenize;
+use crate::rapid::text::Span;
+use crate::retime::motion::timeline::Run;
+use crate::retime::optimize::reason::Reason;
+use crate::tool::emit::Parameter;
+
+/// The arguments of all movements and waits of a program.
+pub(super) struct Guards<'p> {
+    program: &'p Program,
+    files: &'p [Source],
+    arguments: BTreeMap<Span, (RoutineId, &'p Expr)>,
+    /// Data that interrupt routines or other tasks may write at any moment.
+    meanwhile: BTreeSet<DataId>,
+    /// Whether targets may be rewritten that stand in the movement itself.
+    inline_targets: bool,
+    known: RefCell<BTreeMap<Span, Reads>>,
+}
+
+impl<'p> Guards<'p> {
+    /// `by_interrupts`: data that interrupt routines may write.
+    pub(super) fn new(
+        program: &'p Program,
+        files: &'p [Source],
+        by_interrupts: BTreeSet<DataId>,
+        settings: &Settings,
+    ) -> Guards<'p> {
+        let elsewhere = &settings.written_elsewhere;
+        let inline_targets = settings.inline_targets || settings.form == Form::Speeds;
+        let mut arguments = BTreeMap::new();
+        let mut meanwhile = by_interrupts;
+        for (m, module) in program.modules.iter().enumerate() {
+            for (index, routine) in module.routines.iter().enumerate() {
+                let id = RoutineId { module: m, index };
+                for block in routine.blocks() {
+                    collect(block, id, &mut arguments);
+                }
+            }
+            for (index, data) in module.data.iter().enumerate() {
+                let is_shared = data.kind == DataKind::Pers && data.scope == Scope::Global;
+                if is_shared && elsewhere.contains(&data.name.key) {
+                    meanwhile.insert(DataId { module: m, index });
+                }
+            }
+        }
+        let known = RefCell::default();
+        Guards { program, files, arguments, meanwhile, inline_targets, known }
+    }
+
+    /// Why no guard can make sure that a run moves as it did.
+    pub(super) fn refusal(&self, run: &Run) -> Option<Reason> {
+        run.moves.iter().enumerate().find_map(|(index, record)| {
+            let mut arguments = record.movement.arguments.iter();
+            arguments.find_map(|argument| self.objection(argument, index > 0))
+        })
+    }
+
+    /// Whether an argument of several movements may end in an error, which then would leave out all of
+    /// them.
+    pub(super) fn may_raise(&self, run: &Run) -> bool {
+        let arguments = run.moves.iter().flat_map(|record| &record.movement.arguments);
+        let may_raise =
+            |argument: &Argument| self.reads(argument.span).is_some_and(|reads| reads.may_raise);
+        run.moves.len() > 1 && arguments.into_iter().any(may_raise)
+    }
+
+    /// What speaks against an argument that is evaluated when the run begins, or, `later`, while it
+    /// is under way: then it may be another one than the guard saw.
+    fn objection(&self, argument: &Argument, later: bool) -> Option<Reason> {
+        let Some(reads) = self.reads(argument.span) else {
+            return Some(Reason::NotConstant("an argument of it stands in no routine".into()));
+        };
+        let is_target = matches!(argument.type_name, "robtarget" | "jointtarget");
+        if is_target && reads.fixed && !self.inline_targets {
+            return Some(Reason::InlineTarget);
+        }
+        if let Some(effect) = reads.effect {
+            return Some(Reason::NotConstant(format!("an argument of it {effect}")));
+        }
+        if !later {
+            return None;
+        }
+        let meanwhile = |what: &str| {
+            Some(Reason::Meanwhile(format!("it depends on {what}, while the robot moves already")))
+        };
+        if let Some(signal) = reads.signals.iter().next() {
+            return meanwhile(&format!("the signal {signal}"));
+        }
+        if let Some(id) = reads.data.intersection(&self.meanwhile).next() {
+            let name = &self.program.data(*id).name.text;
+            return meanwhile(&format!("{name}, which an interrupt or another task may write"));
+        }
+        if reads.by_reference && !self.meanwhile.is_empty() {
+            return meanwhile("data of its caller, which an interrupt or another task may write");
+        }
+        None
+    }
+
+    /// What the guard of a variant compares, with the values that it had; the same parameters for
+    /// all variants of a site.
+    pub(super) fn parameters(&self, arguments: &[Argument]) -> Vec<(Parameter, Datum)> {
+        let mut parameters: Vec<(Parameter, Datum)> = Vec::new();
+        for argument in arguments {
+            let Some((_, expr)) = self.arguments.get(&argument.span) else { continue };
+            if differs_by_controller(expr) {
+                continue;
+            }
+            let text = one_line(self.files, argument.span);
+            let parameter = Parameter {
+                label: text.clone(),
+                text: Some(text),
+                type_name: argument.type_name,
+                is_computed: is_computed(expr),
+            };
+            if !parameters.iter().any(|(known, _)| *known == parameter) {
+                parameters.push((parameter, argument.datum.clone()));
+            }
+        }
+        parameters
+    }
+
+    fn reads(&self, span: Span) -> Option<Reads> {
+        if let Some(known) = self.known.borrow().get(&span) {
+            return Some(known.clone());
+        }
+        let (routine, expr) = self.arguments.get(&span)?;
+        let found = reads(self.program, *routine, expr);
+        self.known.borrow_mut().insert(span, found.clone());
+        Some(found)
+    }
+}
+
+/// Whether a name has another value on another controller: that of `vmax` is the robot's own, and
+/// versions differ in what `tool0`, `wobj0` and `load0` hold.
+fn differs_by_controller(expr: &Expr) -> bool {
+    let ExprKind::Ref(name) = &expr.kind else { return false };
+    matches!(name.key.as_str(), "vmax" | "tool0" | "wobj0" | "load0")
+}
+
+/// Whether the controller works a value out instead of reading it.
+fn is_computed(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Ref(_) | ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) => false,
+        ExprKind::Field(base, _) | ExprKind::Index(base, _) => is_computed(base),
+        ExprKind::Unary(UnaryOp::Minus, number) => !matches!(number.kind, ExprKind::Num(_)),
+        ExprKind::Aggregate(items) => items.iter().any(is_computed),
+        _ => true,
+    }
+}
+
+/// The arguments of the movements and waits of a block.
+fn collect<'p>(
+    block: &'p Block,
+    routine: RoutineId,
+    found: &mut BTreeMap<Span, (RoutineId, &'p Expr)>,
+) {
+    for stmt in block {
+        if let StmtKind::Call(call) = &stmt.kind
+            && let Callee::Name(name) = &call.callee
+            && (is_movement(&name.key) || name.key == "waittime")
+        {
+            for arg in &call.args {
+                if let ArgKind::Positional(expr)
+                | ArgKind::Named(_, expr)
+                | ArgKind::Optional(_, Some(expr)) = &arg.kind
+                {
+                    found.insert(expr.span, (routine, expr));
+                }
+            }
+        }
+        for inner in stmt.kind.blocks() {
+            collect(inner, routine, found);
+        }
+    }
+}
+
+/// An expression without comments and line ends.
+pub(super) fn one_line(files: &[Source], span: Span) -> String {
+    let text = files[span.file.0 as usize].file.text(span);
+    let tokens = tokenize(text.as_bytes());
+    let mut line = String::new();
+    for index in (0..tokens.len()).filter(|i| !tokens.kind(*i).is_trivia()) {
+        let range = tokens.range(index);
+        let word = &text[range.start as usize..range.end as usize];
+        let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+        if is_word(line.chars().next_back()) && is_word(word.chars().next()) {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    line
+}

@@ -1,0 +1,172 @@
+//! What a user should know of a retrofit besides its figures.
+
+use std::fmt::Write;
+
+use super::figures::{Figures, Padding, Segment, SegmentKind};
+use super::settings::{Budget, Objective, Settings};
+use super::work::Source;
+use crate::arm::dynamics::Load;
+use crate::arm::robot::Model;
+use crate::retime::energy::account::at_rest;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::What;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::path::joint_path::Joints;
+
+/// Differences of energy below this are rounding, J.
+const ROUNDING_J: f64 = 1e-3;
+/// Rest of a takt that is worth a note, share of it.
+const UNUSED: f64 = 0.01;
+
+/// The notes on the time that was asked for.
+pub(super) fn notes(
+    files: &[Source],
+    model: &Model,
+    settings: &Settings,
+    simulation: &Simulation,
+    segments: &[Segment],
+    (original, optimized, padding): (&Figures, &Figures, Option<&Padding>),
+) -> Vec<String> {
+    let mut notes: Vec<String> = unchanged(segments).into_iter().collect();
+    notes.extend(padding.map(|padding| padded(original, padding)));
+    if settings.objective == Objective::Time {
+        return notes;
+    }
+    if settings.budget == Budget::AsBefore {
+        notes.extend(shared(segments));
+        return notes;
+    }
+    if let Budget::Takt(takt) = settings.budget
+        && takt - optimized.cycle_s > UNUSED * takt
+    {
+        notes.push(format!(
+            "the cycle takes {:.3} s of the takt of {takt} s: slower travel would save nothing \
+             more, or is not possible, and the rest of the takt is waited for",
+            optimized.cycle_s
+        ));
+    }
+    let dearer: Vec<String> = segments
+        .iter()
+        .filter(|segment| segment.kind != SegmentKind::Idle && segment.rewritten)
+        .filter(|segment| {
+            let waited = segment.time_after_s - segment.time_before_s;
+            let before = segment.energy_before_j + resting_j(model, simulation, waited);
+            segment.energy_after_j > before + ROUNDING_J
+        })
+        .map(|segment| {
+            let file = &files[segment.span.file.0 as usize].file;
+            format!("{}:{}", file.path, file.position(segment.span.start).line)
+        })
+        .collect();
+    if dearer.is_empty() {
+        return notes;
+    }
+    let mut note = format!(
+        "in the time asked for, {} of the rewritten runs take more energy than before and than \
+         waiting for the rest of their time ({}); the cycle takes {:.1} J instead of {:.1} J",
+        dearer.len(),
+        dearer.join(", "),
+        optimized.energy_j,
+        original.energy_j,
+    );
+    if let Budget::Takt(takt) = settings.budget
+        && takt >= original.cycle_s
+    {
+        let rest = |cycle_s: f64| resting_j(model, simulation, takt - cycle_s);
+        let _ = write!(
+            note,
+            "; with the rest of the takt waited for, {:.1} J instead of {:.1} J",
+            optimized.energy_j + rest(optimized.cycle_s),
+            original.energy_j + rest(original.cycle_s),
+        );
+    }
+    notes.push(note);
+    notes
+}
+
+/// Says what is minimised, and what joints are asked, where torque limits are not known.
+pub(super) fn of_mean(model: &Model) -> String {
+    format!(
+        "the torque limits of {} are estimated: streams minimise the mean energy over plausible robots \
+         (--pareto shows that mean, too), and ask no more torque of any joint than the original cycle \
+         does in 95 % of them",
+        model.name
+    )
+}
+
+/// Says how far streams leave the programmed path where nothing is known of the cell.
+pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
+    settings.freedom.keep_out.is_empty().then(|| {
+        format!(
+            "warning: streams leave the programmed path by up to {:.1} mm, and no keep-out is \
+             configured: nothing tells what stands there; state the cell's boxes and planes as \
+             keep_out in joulepath.toml, or leave out --free-path",
+            1e3 * farthest_m
+        )
+    })
+}
+
+/// Says that the original is counted with a wait that it does not have.
+fn padded(original: &Figures, padding: &Padding) -> String {
+    format!(
+        "the original is padded: by itself it takes {:.3} s, and it is counted with {:.3} s more in \
+         which the robot waits where its cycle ends ({:.1} J of base load, holding and open brakes), \
+         so that both sides take {:.3} s",
+        original.cycle_s - padding.duration_s,
+        padding.duration_s,
+        padding.energy.energy_j(),
+        original.cycle_s,
+    )
+}
+
+/// A run that is quicker than before by more than this is worth a note.
+const QUICK: f64 = 0.5;
+
+/// What the sharing of the cycle's time does to single runs.
+fn shared(segments: &[Segment]) -> Vec<String> {
+    let rewritten = || segments.iter().filter(|s| s.kind != SegmentKind::Idle && s.rewritten);
+    let dearer = rewritten().filter(|s| s.energy_after_j > s.energy_before_j + ROUNDING_J).count();
+    let quick = rewritten().filter(|s| s.time_after_s < QUICK * s.time_before_s).count();
+    let mut notes = Vec::new();
+    if dearer > 0 {
+        notes.push(format!(
+            "{dearer} of the rewritten runs take more energy than before, base load included: the \
+             time of the cycle is shared so that all together take less"
+        ));
+    }
+    if quick > 0 {
+        notes.push(format!(
+            "{quick} of the rewritten runs take less than half of their time: the speed of a joint \
+             movement is no limit for its stream; a line keeps its programmed speed"
+        ));
+    }
+    notes
+}
+
+/// Says so where no file changes.
+fn unchanged(segments: &[Segment]) -> Option<String> {
+    if segments.iter().any(|segment| segment.rewritten) {
+        return None;
+    }
+    let timed = segments.iter().filter(|s| matches!(s.reason, Some(Reason::Timed))).count();
+    let already = if timed > 0 {
+        format!(": {timed} of its runs are streams or timed already")
+    } else {
+        String::new()
+    };
+    Some(format!("no movement was rewritten, every file stays as it was{already}"))
+}
+
+/// Energy of standing at the end of the cycle for some time, J.
+fn resting_j(model: &Model, simulation: &Simulation, duration: f64) -> f64 {
+    end(simulation).map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
+}
+
+/// Load and place of the robot at the end of the cycle.
+pub(super) fn end(simulation: &Simulation) -> Option<(&Load, &Joints)> {
+    simulation.events.iter().rev().find_map(|event| match &event.what {
+        What::Run(run) => Some((&run.load, &run.end)),
+        What::Wait(wait) => Some((&wait.load, &wait.q)),
+        What::Output(..) | What::Left(_) => None,
+    })
+}

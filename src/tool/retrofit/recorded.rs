@@ -1,0 +1,146 @@
+//! What nothing in RAPID can read back (the load, some settings) is written down by the program
+//! itself, behind each statement that changes it.
+
+use super::guards::one_line;
+use super::work::Source;
+use crate::rapid::ir::hir::{
+    Arg, ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
+};
+use crate::rapid::ir::program::Program;
+use crate::rapid::text::{Charset, Edit, Span, charset};
+use crate::tool::emit::{Names, Recorded};
+
+/// What a statement changes.
+enum Change {
+    /// A setting is on or off from here on.
+    Switch(&'static str, bool),
+    /// The load is this one from here on.
+    Load(Span),
+}
+
+/// The insertions that write down what the statements of a program change.
+pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Recorded {
+    let mut found = Found { program, module: 0, changes: Vec::new() };
+    for (m, module) in program.modules.iter().enumerate() {
+        found.module = m;
+        for block in module.routines.iter().flat_map(Routine::blocks) {
+            found.block(block);
+        }
+    }
+    let is_on = |change: &(Place, Change)| matches!(change.1, Change::Switch(_, true));
+    let mut switches: Vec<&'static str> = Vec::new();
+    for (_, change) in found.changes.iter().filter(|change| is_on(change)) {
+        if let Change::Switch(name, _) = change
+            && !switches.contains(name)
+        {
+            switches.push(name);
+        }
+    }
+    let charsets: Vec<Charset> = files.iter().map(|file| charset(&file.file.bytes)).collect();
+    let mut recorded = Recorded { switches, load: false, edits: Vec::new() };
+    for (place, change) in &found.changes {
+        let text = match change {
+            Change::Load(load) => {
+                recorded.load = true;
+                format!(" {}Load:={};", names.prefix, one_line(files, *load))
+            }
+            Change::Switch(name, on) if recorded.switches.contains(name) => {
+                format!(" {}{name}:={};", names.prefix, if *on { "TRUE" } else { "FALSE" })
+            }
+            // A setting that is never on needs no note that it is off.
+            Change::Switch(..) => continue,
+        };
+        let charset = charsets[place.end.file.0 as usize];
+        let insertion = |at: u32, text: String| Edit {
+            span: Span { start: at, end: at, ..place.end },
+            text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
+        };
+        if let Some(condition) = place.compact {
+            recorded.edits.push(insertion(condition.end, " THEN".to_owned()));
+            recorded.edits.push(insertion(place.end.end, format!("{text} ENDIF")));
+        } else {
+            recorded.edits.push(insertion(place.end.end, text));
+        }
+    }
+    recorded
+}
+
+/// Where something is written down.
+struct Place {
+    /// The statement.
+    end: Span,
+    /// The condition of the compact IF that it stands in: such an IF holds one statement only.
+    compact: Option<Span>,
+}
+
+struct Found<'p> {
+    program: &'p Program,
+    module: usize,
+    changes: Vec<(Place, Change)>,
+}
+
+impl Found<'_> {
+    fn block(&mut self, block: &Block) {
+        for stmt in block {
+            self.statement(stmt, None);
+            match &stmt.kind {
+                // A compact IF ends with its statement, the long form with ENDIF after it.
+                StmtKind::If { branches, otherwise: None }
+                    if branches.len() == 1
+                        && branches[0].1.last().is_some_and(|l| l.span.end == stmt.span.end) =>
+                {
+                    for inner in &branches[0].1 {
+                        self.statement(inner, Some(branches[0].0.span));
+                    }
+                }
+                other => {
+                    for inner in other.blocks() {
+                        self.block(inner);
+                    }
+                }
+            }
+        }
+    }
+
+    fn statement(&mut self, stmt: &Stmt, compact: Option<Span>) {
+        if let StmtKind::Call(call) = &stmt.kind
+            && let Callee::Name(name) = &call.callee
+            && self.program.resolve(self.module, &name.key).is_none()
+            && let Some(change) = change(&name.key, call)
+        {
+            self.changes.push((Place { end: stmt.span, compact }, change));
+        }
+    }
+}
+
+/// What an instruction changes.
+fn change(key: &str, call: &Call) -> Option<Change> {
+    let first = call.args.first();
+    let names = |word: &str| {
+        first
+            .and_then(value)
+            .is_some_and(|expr| matches!(&expr.kind, ExprKind::Ref(name) if name.key == word))
+    };
+    Some(match key {
+        "gripload" => Change::Load(first.and_then(value)?.span),
+        "softact" => Change::Switch("SoftAct", true),
+        "softdeact" => Change::Switch("SoftAct", false),
+        "tuneservo" => Change::Switch("TuneServo", true),
+        "tunereset" => Change::Switch("TuneServo", false),
+        "corrcon" => Change::Switch("CorrCon", true),
+        "corrdiscon" | "corrclear" => Change::Switch("CorrCon", false),
+        "pathrecstart" => Change::Switch("PathRecStart", true),
+        "pathrecstop" => Change::Switch("PathRecStart", false),
+        "motionprocessmodeset" => {
+            Change::Switch("MotionProcessModeSet", !names("optimal_cycle_time_mode"))
+        }
+        _ => return None,
+    })
+}
+
+fn value(arg: &Arg) -> Option<&Expr> {
+    match &arg.kind {
+        ArgKind::Positional(expr) | ArgKind::Named(_, expr) => Some(expr),
+        _ => None,
+    }
+}

@@ -1,0 +1,96 @@
+//! The arguments of movements that say how fast they are.
+
+use std::collections::BTreeMap;
+
+use super::work::Source;
+use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use crate::rapid::ir::instructions::{MoveForm, movement};
+use crate::rapid::ir::program::Program;
+use crate::rapid::text::Span;
+
+/// The speed argument of a movement.
+#[derive(Clone)]
+pub(super) struct Argument {
+    pub(super) span: Span,
+    /// The text of a datum; none of numbers that the text itself has.
+    pub(super) datum: Option<String>,
+}
+
+/// The speed argument of each movement that has nothing else that says how fast it is.
+pub(super) fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<Span, Argument> {
+    let mut found = BTreeMap::new();
+    let routines = program.modules.iter().flat_map(|module| &module.routines);
+    for block in routines.flat_map(Routine::blocks) {
+        of_block(block, &|speed| argument(program, files, speed), &mut found);
+    }
+    found
+}
+
+/// How a speed argument is written; `None` for what a statement may not say twice.
+fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argument> {
+    let span = speed.span;
+    let is_number = |part: &Expr| matches!(part.kind, ExprKind::Num(_));
+    let datum = match &speed.kind {
+        ExprKind::Aggregate(parts) if parts.iter().all(is_number) => None,
+        // Its value is that of the controller.
+        ExprKind::Ref(name) if name.key == "vmax" && program.resolve_global("vmax").is_none() => {
+            None
+        }
+        _ if is_datum(speed) => {
+            let bytes = &files[span.file.0 as usize].file.bytes;
+            let text = std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).ok()?;
+            if text.contains(['\r', '\n']) {
+                return None;
+            }
+            Some(text.to_owned())
+        }
+        _ => return None,
+    };
+    Some(Argument { span, datum })
+}
+
+/// A name with components and elements, without calls.
+fn is_datum(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Ref(_) => true,
+        ExprKind::Field(base, _) => is_datum(base),
+        ExprKind::Index(base, indices) => {
+            let is_index = |index: &Expr| matches!(index.kind, ExprKind::Num(_)) || is_datum(index);
+            is_datum(base) && indices.iter().all(is_index)
+        }
+        _ => false,
+    }
+}
+
+fn of_block(
+    block: &Block,
+    argument: &dyn Fn(&Expr) -> Option<Argument>,
+    found: &mut BTreeMap<Span, Argument>,
+) {
+    for stmt in block {
+        if let StmtKind::Call(call) = &stmt.kind
+            && let Callee::Name(name) = &call.callee
+            && let Some(signature) = movement(&name.key)
+        {
+            let via = usize::from(signature.form == MoveForm::Circular);
+            let mut positional =
+                call.args.iter().filter(|arg| matches!(arg.kind, ArgKind::Positional(_)));
+            let speed = positional.nth(signature.before + via + 1);
+            let plain = call.args.iter().all(|arg| match &arg.kind {
+                ArgKind::Positional(_) => true,
+                ArgKind::Optional(name, _) => name.key != "v" && name.key != "t",
+                ArgKind::Named(name, _) => name.key == "wobj" || name.key == "z",
+                ArgKind::Conditional(..) => false,
+            });
+            if let Some(Arg { kind: ArgKind::Positional(speed), .. }) = speed
+                && plain
+                && let Some(argument) = argument(speed)
+            {
+                found.insert(stmt.span, argument);
+            }
+        }
+        for inner in stmt.kind.blocks() {
+            of_block(inner, argument, found);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! A retrofitted program without its streams: the original's text with the data of today.
+//!
+//! A retrofit only inserts. What it inserted is found again by the names of its module.
+
+use crate::rapid::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
+use crate::rapid::ir::lower;
+use crate::rapid::syntax;
+use crate::rapid::text::{Edit, SourceFile, Span, apply};
+use crate::tool::emit::EDIT_REMARK;
+
+/// What the head of each module of streams says.
+const HEAD: &[u8] = b"! Joint streams, written by joulepath";
+/// What follows the prefix of its names in one place.
+const COUNTERS: &[u8] = b"ByStream{";
+
+/// Whether a file is a module of streams.
+pub fn is_streams(bytes: &[u8]) -> bool {
+    find(bytes, HEAD).is_some()
+}
+
+/// The prefix of the names of a module of streams; none of one that only goes on with another.
+pub fn prefix(bytes: &[u8]) -> Option<String> {
+    let end = find(bytes, COUNTERS)?;
+    let is_word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_';
+    let length = bytes[..end].iter().rev().take_while(|b| is_word(b)).count();
+    String::from_utf8(bytes[end - length..end].to_vec()).ok()
+}
+
+/// The bytes of a file of a program without the guards and notes of the module of streams with this
+/// prefix.
+pub fn without_streams(file: &SourceFile, prefix: &str) -> Vec<u8> {
+    let parse = syntax::parse(&file.bytes);
+    let mut found = Found { bytes: &file.bytes, prefix: prefix.to_lowercase(), edits: Vec::new() };
+    for module in lower(file.id, &parse, &file.bytes) {
+        for block in module.routines.iter().flat_map(Routine::blocks) {
+            found.block(block);
+        }
+    }
+    apply(&file.bytes, &found.edits).unwrap_or_else(|_| file.bytes.clone())
+}
+
+struct Found<'a> {
+    bytes: &'a [u8],
+    prefix: String,
+    edits: Vec<Edit>,
+}
+
+impl Found<'_> {
+    fn block(&mut self, block: &Block) {
+        for stmt in block {
+            match &stmt.kind {
+                StmtKind::If { branches, otherwise } => match (branches.as_slice(), otherwise) {
+                    ([(condition, _)], Some(original)) if self.is_guard(condition) => {
+                        self.guard(stmt, original);
+                        continue;
+                    }
+                    ([(condition, body)], None) => self.compact(stmt, condition, body),
+                    _ => {}
+                },
+                StmtKind::Assign { target, .. } if self.is_own(target) => self.note(stmt.span),
+                _ => {}
+            }
+            for inner in stmt.kind.blocks() {
+                self.block(inner);
+            }
+        }
+    }
+
+    /// Whether an expression names something of the module of streams.
+    fn is_own(&self, expr: &Expr) -> bool {
+        matches!(&expr.kind, ExprKind::Ref(name) if name.key.starts_with(&self.prefix))
+    }
+
+    fn is_guard(&self, condition: &Expr) -> bool {
+        let ExprKind::Call(name, _) = &condition.kind else { return false };
+        let rest = name.key.strip_prefix(&self.prefix).and_then(|rest| rest.strip_prefix("fits"));
+        rest.is_some_and(|number| number.parse::<usize>().is_ok())
+    }
+
+    /// Takes a guard away: all up to the line behind its ELSE, and its ENDIF with the line of that.
+    fn guard(&mut self, stmt: &Stmt, original: &Block) {
+        let (Some(first), Some(last)) = (original.first(), original.last()) else { return };
+        let head = &self.bytes[stmt.span.start as usize..first.span.start as usize];
+        let Some(at) = head.windows(4).rposition(|word| word.eq_ignore_ascii_case(b"else")) else {
+            return;
+        };
+        let mut end = stmt.span.start as usize + at + 4;
+        if self.bytes[end..].starts_with(EDIT_REMARK.as_bytes()) {
+            end += EDIT_REMARK.len();
+        }
+        let is_end = |b: &u8| matches!(b, b'\r' | b'\n');
+        let is_blank = |b: &u8| matches!(b, b' ' | b'\t');
+        let eol = match &self.bytes[end..] {
+            [b'\r', b'\n', ..] => 2,
+            rest => rest.iter().take(1).filter(|b| is_end(b)).count(),
+        };
+        end += eol;
+        end += self.bytes[end..].iter().take_while(|b| is_blank(b)).count();
+        self.delete(stmt.span, stmt.span.start as usize, end);
+        let endif = stmt.span.end as usize - b"ENDIF".len();
+        let tail = &self.bytes[last.span.end as usize..endif];
+        let space = tail.iter().rev().take_while(|b| is_blank(b)).count();
+        let eol = match &tail[..tail.len() - space] {
+            [.., b'\r', b'\n'] => 2,
+            rest => rest.iter().rev().take(1).filter(|b| is_end(b)).count(),
+        };
+        self.delete(stmt.span, endif - space - eol, stmt.span.end as usize);
+        self.block(original);
+    }
+
+    /// Takes away what writes a load or a setting down, with the space before it.
+    fn note(&mut self, span: Span) {
+        let start = span.start as usize;
+        let space = usize::from(start > 0 && self.bytes[start - 1] == b' ');
+        self.delete(span, start - space, span.end as usize);
+    }
+
+    /// Makes an IF compact again that had to hold a second statement.
+    fn compact(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) {
+        let [_, Stmt { kind: StmtKind::Assign { target, .. }, span }] = body.as_slice() else {
+            return;
+        };
+        let (begin, end) = (condition.span.end as usize, stmt.span.end as usize);
+        let (then, endif) = (b" THEN", b" ENDIF");
+        let is_inserted = self.bytes[begin..].starts_with(then)
+            && self.bytes[span.end as usize..end] == endif[..]
+            && !self.bytes[begin..end].iter().any(|b| matches!(b, b'\r' | b'\n'));
+        if self.is_own(target) && is_inserted {
+            self.delete(stmt.span, begin, begin + then.len());
+            self.delete(stmt.span, end - endif.len(), end);
+        }
+    }
+
+    fn delete(&mut self, of: Span, start: usize, end: usize) {
+        let span = Span { start: start as u32, end: end as u32, ..of };
+        self.edits.push(Edit { span, text: Vec::new() });
+    }
+}
+
+fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
+    bytes.windows(part.len()).position(|window| window == part)
+}
