@@ -2,11 +2,19 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod rust_source;
+
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use rust_source::tokens;
+
+/// Terms that the glossary has at least.
+const MIN_TERMS: usize = 40;
+
 /// Pages that people are sent to.
-const PAGES: [&str; 15] = [
+const PAGES: [&str; 16] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -15,6 +23,7 @@ const PAGES: [&str; 15] = [
     "docs/effects.md",
     "docs/energy.md",
     "docs/gap.md",
+    "docs/glossary.md",
     "docs/identification.md",
     "docs/lints.md",
     "docs/reasons.md",
@@ -88,6 +97,26 @@ fn every_folder_has_its_place_on_the_map() {
         if entry.file_type().unwrap().is_dir() {
             let name = format!("`src/{}`", entry.file_name().to_str().unwrap());
             assert!(map.contains(&name), "docs/architecture.md says nothing of {name}");
+        }
+    }
+}
+
+/// The third column of the glossary names items of the sources.
+#[test]
+fn terms_of_the_glossary_are_used() {
+    let sources = rust_source::files(&["src"]);
+    let names: BTreeSet<&str> =
+        sources.iter().flat_map(|file| tokens(&file.text)).map(|token| token.text).collect();
+    let text = page("docs/glossary.md");
+    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| ")).collect();
+    let terms: Vec<&str> = rows.into_iter().filter(|row| !row.starts_with("| term")).collect();
+    assert!(terms.len() >= MIN_TERMS, "{} terms", terms.len());
+    for row in terms {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let [_, meaning, code, source] = cells[..] else { panic!("not four cells: {row}") };
+        assert!(!meaning.is_empty() && !source.is_empty(), "an empty cell: {row}");
+        for name in code.split('`').skip(1).step_by(2) {
+            assert!(names.contains(name), "no source has the name {name}: {row}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Who may import whom: the layers of `docs/architecture.md`, checked against the sources.
+//! Who may import whom: the wings and rooms of `docs/architecture.md`, checked against the sources.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -7,49 +7,93 @@ mod rust_source;
 
 use std::collections::BTreeSet;
 
+use layer_paths::circles::circles;
 use layer_paths::{Named, named};
+use rust_source::SourceFile;
 
-/// A folder of `src`.
-struct Layer {
+/// A folder of a wing, and what it may import besides itself: rooms, or wings for all of their rooms.
+struct Room {
     name: &'static str,
-    /// Layers that it may import, besides those that they may import themselves.
     imports: &'static [&'static str],
 }
 
-const fn layer(name: &'static str, imports: &'static [&'static str]) -> Layer {
-    Layer { name, imports }
+/// A folder of `src`. A wing that is one room has that room's name.
+struct Wing {
+    name: &'static str,
+    rooms: &'static [Room],
 }
 
-/// Lowest first. A layer may be planned and not exist yet.
-const LAYERS: [Layer; 24] = [
-    layer("text", &[]),
-    layer("syntax", &["text"]),
-    layer("diagnostics", &["text"]),
-    layer("robot", &[]),
-    layer("log", &[]),
-    layer("ir", &["text", "syntax", "diagnostics"]),
-    layer("kinematics", &["robot"]),
-    layer("dynamics", &["robot"]),
-    layer("effects", &["robot", "dynamics"]),
-    layer("path", &["ir", "kinematics"]),
-    layer("motion", &["path", "ir", "kinematics", "dynamics", "effects"]),
-    layer("energy", &["motion", "dynamics", "effects"]),
-    layer("optimize", &["energy"]),
-    layer("excite", &["kinematics", "dynamics", "motion"]),
-    layer("identify", &["log", "effects", "dynamics"]),
-    layer("lint", &["energy"]),
-    layer("emit", &["ir"]),
-    layer("retrofit", &["optimize", "emit"]),
-    layer("generate", &["retrofit"]),
-    layer("gap", &["log", "effects", "identify", "motion", "energy"]),
-    layer("blind", &["robot"]),
-    layer("calibrate", &["log", "energy"]),
-    layer("report", &["calibrate", "retrofit", "excite", "identify", "lint", "gap", "blind"]),
-    layer("config", &["retrofit", "lint"]),
-];
+const fn room(name: &'static str, imports: &'static [&'static str]) -> Room {
+    Room { name, imports }
+}
 
-/// Above all layers: they may import each of them, and each other.
-const EDGES: [&str; 2] = ["cli", "lsp"];
+const fn wing(name: &'static str, rooms: &'static [Room]) -> Wing {
+    Wing { name, rooms }
+}
+
+/// Lowest first, the rooms of a wing too.
+const WINGS: [Wing; 7] = [
+    wing(
+        "rapid",
+        &[
+            room("text", &[]),
+            room("syntax", &["text"]),
+            room("diagnostics", &["text"]),
+            room("ir", &["text", "syntax"]),
+        ],
+    ),
+    wing(
+        "arm",
+        &[
+            room("robot", &[]),
+            room("kinematics", &["robot"]),
+            room("dynamics", &["robot"]),
+            room("effects", &["robot", "dynamics"]),
+        ],
+    ),
+    wing(
+        "retime",
+        &[
+            room("path", &["ir", "robot", "kinematics"]),
+            room("motion", &["text", "ir", "robot", "kinematics", "dynamics", "path"]),
+            room("energy", &["text", "arm", "path", "motion"]),
+            room("optimize", &["text", "ir", "arm", "path", "motion", "energy"]),
+        ],
+    ),
+    wing(
+        "learn",
+        &[
+            room("log", &[]),
+            room("excite", &["robot", "kinematics", "dynamics", "motion"]),
+            room("identify", &["robot", "dynamics", "log"]),
+            room("calibrate", &["robot", "dynamics", "effects", "motion", "energy", "log"]),
+        ],
+    ),
+    wing("gap", &[room("gap", &["robot", "dynamics", "effects", "log", "identify"])]),
+    wing("examine", &[room("blind", &["robot"])]),
+    wing(
+        "tool",
+        &[
+            room("emit", &["text", "syntax", "ir"]),
+            room("retrofit", &["rapid", "arm", "retime", "emit"]),
+            room("generate", &["rapid", "arm", "retime", "emit", "retrofit"]),
+            room("lint", &["rapid", "arm", "path", "motion", "energy"]),
+            room("config", &["lint"]),
+            room(
+                "report",
+                &["rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint"],
+            ),
+            room("lsp", &["rapid", "arm", "retime", "lint"]),
+            room(
+                "cli",
+                &[
+                    "rapid", "arm", "retime", "learn", "gap", "examine", "emit", "retrofit",
+                    "generate", "lint", "config", "report", "lsp",
+                ],
+            ),
+        ],
+    ),
+];
 
 /// Something that only some files may name.
 struct Reserved {
@@ -106,27 +150,34 @@ const RESERVED: [Reserved; 14] = [
     Reserved { path: &["std", "net"], places: FILES_AND_TERMINALS, why: PURE },
 ];
 
-/// Everything that a layer may import, itself included.
-fn reach(name: &str) -> BTreeSet<&'static str> {
-    let mut reached = BTreeSet::new();
-    let mut open: Vec<&str> = vec![name];
-    while let Some(name) = open.pop() {
-        if let Some(layer) = LAYERS.iter().find(|layer| layer.name == name)
-            && reached.insert(layer.name)
-        {
-            open.extend(layer.imports);
-        }
-    }
-    reached
+/// The rooms in their order, each with the name of its wing.
+fn rooms() -> impl Iterator<Item = (&'static str, &'static Room)> {
+    WINGS.iter().flat_map(|wing| wing.rooms.iter().map(|room| (wing.name, room)))
 }
 
-/// The layer of a path below the crate's root; `None` for the root itself.
-fn layer_of(path: &str) -> Option<&str> {
-    let inner = path.strip_prefix("src/")?;
-    match inner.split_once('/') {
-        Some((folder, _)) => Some(folder),
-        None => inner.strip_suffix(".rs").filter(|name| !matches!(*name, "lib" | "main")),
+fn wing_named(name: &str) -> Option<&'static Wing> {
+    WINGS.iter().find(|wing| wing.name == name)
+}
+
+/// The room of a path of names below the crate's root; `None` for the root and a wing's `mod.rs`.
+fn room_of(wing: &str, next: Option<&str>) -> Option<&'static Room> {
+    let wing = wing_named(wing)?;
+    match wing.rooms {
+        [only] if only.name == wing.name => Some(only),
+        rooms => rooms.iter().find(|room| Some(room.name) == next),
     }
+}
+
+/// The room of a file.
+fn room_of_file(path: &str) -> Option<&'static Room> {
+    let mut parts = path.strip_prefix("src/")?.split('/');
+    room_of(parts.next()?, parts.next())
+}
+
+/// The entry of a room's table that allows it to import `to`.
+fn entry(from: &Room, to: &Room) -> Option<&'static str> {
+    let wing = rooms().find(|(_, room)| room.name == to.name).map(|(wing, _)| wing);
+    from.imports.iter().copied().find(|entry| *entry == to.name || Some(*entry) == wing)
 }
 
 /// What a file does that the tables forbid, one line each.
@@ -135,7 +186,9 @@ fn violations(path: &str, text: &str) -> Vec<String> {
     for Named { line, path: names } in named(path, text) {
         let shown = names.join("::");
         let forbidden = match names.as_slice() {
-            [root, to, ..] if root == "crate" => import(path, to),
+            [root, wing, next @ ..] if root == "crate" => {
+                import(path, wing, next.first().map(String::as_str))
+            }
             _ => None,
         };
         let reserved = RESERVED.iter().find(|reserved| {
@@ -153,23 +206,21 @@ fn violations(path: &str, text: &str) -> Vec<String> {
     found
 }
 
-/// Why a file may not name something of the layer `to`.
-fn import(path: &str, to: &str) -> Option<String> {
-    let from = layer_of(path)?;
-    if from == to || EDGES.contains(&from) {
+/// Why a file may not name `crate::wing::next`.
+fn import(path: &str, wing: &str, next: Option<&str>) -> Option<String> {
+    let from = room_of_file(path)?;
+    if wing_named(wing).is_none() {
+        return Some(format!("'{wing}' is no wing: write the path from the wing's name on"));
+    }
+    let Some(to) = room_of(wing, next) else {
+        return Some(format!("'{wing}' has no such room: write the path from the room's name on"));
+    };
+    if to.name == from.name || entry(from, to).is_some() {
         return None;
     }
-    let known = LAYERS.iter().any(|layer| layer.name == to);
-    if !known && !EDGES.contains(&to) {
-        return Some(format!("'{to}' is no layer: write the path from the layer's name on"));
-    }
-    let allowed = reach(from);
-    (!allowed.contains(to)).then(|| {
-        let below: Vec<&str> = allowed.into_iter().filter(|name| *name != from).collect();
-        match below.as_slice() {
-            [] => format!("{from} imports no other layer"),
-            below => format!("{from} may import only {}", below.join(", ")),
-        }
+    Some(match from.imports {
+        [] => format!("{} imports no other room", from.name),
+        allowed => format!("{} may import only {}", from.name, allowed.join(", ")),
     })
 }
 
@@ -181,43 +232,90 @@ fn every_import_goes_down() {
         sources.iter().flat_map(|file| violations(&file.path, &file.text)).collect();
     assert!(
         found.is_empty(),
-        "{} imports break the layers (docs/architecture.md):\n{}",
+        "{} imports break the table (docs/architecture.md):\n{}",
         found.len(),
         found.join("\n")
     );
 }
 
 #[test]
-fn every_folder_is_a_layer() {
+fn every_folder_is_a_room() {
     for file in rust_source::files(&["src"]) {
-        let Some(name) = layer_of(&file.path) else { continue };
-        let known = EDGES.contains(&name) || LAYERS.iter().any(|layer| layer.name == name);
-        assert!(known, "{} is in no layer: add '{name}' to LAYERS", file.path);
+        let parts: Vec<&str> = file.path.split('/').skip(1).collect();
+        let at_the_top = matches!(parts.as_slice(), ["lib.rs" | "main.rs"] | [_, "mod.rs"]);
+        let known = at_the_top || room_of_file(&file.path).is_some();
+        assert!(known, "{} is in no room: add its folder to WINGS", file.path);
     }
 }
 
 #[test]
-fn layers_are_in_order() {
-    for (i, layer) in LAYERS.iter().enumerate() {
-        for import in layer.imports {
-            let below = LAYERS[..i].iter().any(|other| other.name == *import);
-            assert!(below, "{} imports {import}, which does not stand below it", layer.name);
+fn rooms_are_in_order() {
+    let mut below = BTreeSet::new();
+    for wing in &WINGS {
+        for room in wing.rooms {
+            for import in room.imports {
+                assert!(
+                    below.contains(import),
+                    "{} imports {import}, which does not stand below it",
+                    room.name
+                );
+            }
+            below.insert(room.name);
+        }
+        below.insert(wing.name);
+    }
+}
+
+/// Entries of the table that no `use` needs, one line each.
+fn unused_entries(sources: &[SourceFile]) -> Vec<String> {
+    let mut used = BTreeSet::new();
+    for file in sources {
+        let Some(from) = room_of_file(&file.path) else { continue };
+        for Named { path, .. } in named(&file.path, &file.text) {
+            let [root, wing, next @ ..] = path.as_slice() else { continue };
+            if root == "crate"
+                && let Some(to) = room_of(wing, next.first().map(String::as_str))
+                && let Some(entry) = entry(from, to)
+            {
+                used.insert((from.name, entry));
+            }
         }
     }
+    rooms()
+        .flat_map(|(_, room)| room.imports.iter().map(|entry| (room.name, *entry)))
+        .filter(|edge| !used.contains(edge))
+        .map(|(room, entry)| format!("{room} does not import {entry}: take it out of WINGS"))
+        .collect()
+}
+
+#[test]
+fn every_entry_of_the_table_is_used() {
+    let unused = unused_entries(&rust_source::files(&["src"]));
+    assert!(unused.is_empty(), "{}", unused.join("\n"));
+}
+
+#[test]
+fn files_import_each_other_in_no_circle() {
+    let sources = rust_source::files(&["src"]);
+    let circles = circles(&sources);
+    let shown: Vec<String> = circles.iter().map(|files| files.join("\n    ")).collect();
+    assert!(circles.is_empty(), "files that import each other:\n    {}", shown.join("\n\n    "));
 }
 
 /// The table in the documentation is the one above.
 #[test]
-fn documentation_shows_the_layers() {
-    let table: String = LAYERS
+fn documentation_shows_the_rooms() {
+    let shown = |room: &Room| match room.imports {
+        [] => room.name.to_owned(),
+        imports => format!("{}({})", room.name, imports.join(", ")),
+    };
+    let table: String = WINGS
         .iter()
-        .map(|layer| match layer.imports {
-            [] => format!("{}\n", layer.name),
-            imports => format!("{}({})\n", layer.name, imports.join(", ")),
+        .map(|wing| {
+            let rooms: Vec<String> = wing.rooms.iter().map(shown).collect();
+            format!("{}/\n    {}\n", wing.name, rooms.join("\n    "))
         })
-        .collect::<String>()
-        + &EDGES.join(", ")
-        + "\n";
+        .collect();
     let text = include_str!("../docs/architecture.md");
     assert!(text.contains(&format!("```\n{table}```")), "docs/architecture.md lacks:\n{table}");
 }
@@ -227,13 +325,13 @@ fn documentation_shows_the_layers() {
 fn forbidden_imports_are_found() {
     let cases = [
         ("src/rapid/syntax/a.rs", "use crate::tool::emit::Names;", "may import only text"),
-        ("src/arm/robot/a.rs", "use crate::rapid::text::Span;", "imports no other layer"),
-        ("src/rapid/ir/a.rs", "use crate::{\n  text::Span,\n  robot::{self, Model},\n};", "robot"),
+        ("src/arm/robot/a.rs", "use crate::rapid::text::Span;", "imports no other room"),
+        ("src/rapid/ir/a.rs", "use crate::{\n  rapid::text::Span,\n  arm::robot::{self, Model},\n};", "robot"),
         ("src/retime/motion/a/b.rs", "fn f() -> crate::retime::optimize::Site {}", "optimize"),
         ("src/retime/path/a.rs", "use super::super::energy::Account;", "energy"),
-        ("src/retime/path/mod.rs", "mod tests { use super::super::cli; }", "cli"),
-        ("src/retime/energy/a.rs", "use crate::nowhere::X;", "is no layer"),
-        ("src/retime/energy/a.rs", "use crate::*;", "is no layer"),
+        ("src/retime/path/mod.rs", "mod tests { use super::super::cli; }", "no such room"),
+        ("src/retime/energy/a.rs", "use crate::nowhere::X;", "is no wing"),
+        ("src/retime/energy/a.rs", "use crate::*;", "is no wing"),
         ("src/rapid/ir/a.rs", "use nom::IResult;", "lexer"),
         ("src/retime/optimize/a.rs", "let x = clarabel::solver::Settings::default();", "solver"),
         ("src/retime/motion/a.rs", "use tera::Tera;", "templates"),
@@ -281,4 +379,35 @@ fn allowed_imports_are_left_alone() {
     for (path, text) in cases {
         assert_eq!(violations(path, text), [""; 0], "{path}: {text}");
     }
+}
+
+/// Sources with a circle and without.
+#[test]
+fn circles_are_found() {
+    let file = |path: &str, text: &str| SourceFile { path: path.into(), text: text.into() };
+    let parent = file("src/rapid/ir/mod.rs", "mod a; mod b; pub use a::A; fn f() { b::g() }");
+    let a = file("src/rapid/ir/a.rs", "use super::b::B; pub struct A;");
+    let b = file("src/rapid/ir/b.rs", "#[cfg(test)] mod tests { use super::*; }");
+    assert_eq!(circles(&[parent.clone(), a.clone(), b]), [[""; 0]; 0]);
+    // Through the name that the parent exports, and through the one that it calls.
+    let to_sibling = file("src/rapid/ir/b.rs", "use super::a;");
+    assert_eq!(circles(&[a.clone(), to_sibling]), [["src/rapid/ir/a.rs", "src/rapid/ir/b.rs"]]);
+    let to_parent = file("src/rapid/ir/b.rs", "use super::A;");
+    assert_eq!(
+        circles(&[a, to_parent, parent]),
+        [["src/rapid/ir/a.rs", "src/rapid/ir/b.rs", "src/rapid/ir/mod.rs"]]
+    );
+}
+
+/// An entry counts as used only if a file names what it allows.
+#[test]
+fn unused_entries_are_found() {
+    let source =
+        |text: &str| SourceFile { path: "src/rapid/syntax/a.rs".into(), text: text.into() };
+    let unused = |text: &str| {
+        let found = unused_entries(&[source(text)]);
+        found.iter().any(|line| line.starts_with("syntax does not import text"))
+    };
+    assert!(unused("pub struct Nothing;"));
+    assert!(!unused("use crate::rapid::text::Span;"));
 }

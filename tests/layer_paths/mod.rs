@@ -1,5 +1,7 @@
 //! The paths that a source names, from the crate's root on.
 
+pub(crate) mod circles;
+
 use crate::rust_source::{Token, tokens};
 
 /// A path with `use` groups written out and `self` and `super` resolved.

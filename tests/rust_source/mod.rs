@@ -8,6 +8,7 @@ use std::path::Path;
 pub(crate) use tokens::{Token, tokens};
 
 /// A file of the crate.
+#[derive(Clone)]
 pub(crate) struct SourceFile {
     /// Below the crate's root, with `/`.
     pub(crate) path: String,
