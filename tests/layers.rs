@@ -326,7 +326,11 @@ fn forbidden_imports_are_found() {
     let cases = [
         ("src/rapid/syntax/a.rs", "use crate::tool::emit::Names;", "may import only text"),
         ("src/arm/robot/a.rs", "use crate::rapid::text::Span;", "imports no other room"),
-        ("src/rapid/ir/a.rs", "use crate::{\n  rapid::text::Span,\n  arm::robot::{self, Model},\n};", "robot"),
+        (
+            "src/rapid/ir/a.rs",
+            "use crate::{\n  rapid::text::Span,\n  arm::robot::{self, Model},\n};",
+            "robot",
+        ),
         ("src/retime/motion/a/b.rs", "fn f() -> crate::retime::optimize::Site {}", "optimize"),
         ("src/retime/path/a.rs", "use super::super::energy::Account;", "energy"),
         ("src/retime/path/mod.rs", "mod tests { use super::super::cli; }", "no such room"),
