@@ -2,8 +2,9 @@
 
 use crate::arm::effects::Response;
 
+use super::chosen::Found;
 use super::late::{Kind, Late};
-use super::search::{Found, Search};
+use super::search::Search;
 
 /// Delays that are tried at first \[s\].
 const DELAYS: [f64; 18] = [

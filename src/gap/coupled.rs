@@ -4,16 +4,10 @@
 //! as there are rows at which it may do so: low frequencies, which see no single row, lead to the
 //! coupling that the high ones tell exactly.
 
+use super::chosen::{Chosen, Found};
 use super::column::Owner;
-use super::search::{Chosen, Found, Search};
-
-/// An effect whose shape is a coupling.
-pub(super) const COUPLING: &str = "wrist_coupling";
-/// Joints that it couples.
-pub(super) const OF_WRIST: [usize; 2] = [4, 5];
-
-/// Laws of what is there where a joint turns back.
-pub(super) const OF_TURNS: [&str; 2] = ["stribeck", "presliding"];
+use super::effect_ids::{COUPLING, OF_TURNS, OF_WRIST};
+use super::search::Search;
 
 /// Frequencies that are looked at first; twice as many each time.
 const LOWEST: usize = 20;

@@ -3,8 +3,6 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::table::Products;
-
 /// Marginal likelihoods at one size of the model's own error.
 pub struct Evidence {
     /// `ΦᵀWΦ` with the parameters marginalised.
@@ -28,6 +26,17 @@ struct OfParameters {
     /// `YᵀWy` and `YᵀWΦ`.
     y: DVector<f64>,
     c: DMatrix<f64>,
+}
+
+/// Products of the difference, the parameters and columns with some of the columns.
+pub(super) struct Products {
+    /// Places of these among the columns.
+    pub(super) of: Vec<usize>,
+    /// By row, then by column.
+    pub(super) with: DMatrix<f64>,
+    /// Expected factors of these, and their deviations.
+    pub(super) means: Vec<f64>,
+    pub(super) sds: Vec<f64>,
 }
 
 /// Evidence when some columns are there.
@@ -244,7 +253,7 @@ impl Evidence {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chance::normal;
+    use super::super::normal::normal;
     use super::*;
 
     /// Rounding.

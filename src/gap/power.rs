@@ -11,8 +11,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::arm::effects::{Effect, find};
 use crate::arm::robot::Model;
 
-use super::diagnosis::Estimated;
 use super::evidence::Evidence;
+use super::findings::Estimated;
 
 /// What an effect has to bring \[nats\].
 const LEAST_NATS: f64 = 25.0;

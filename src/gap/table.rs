@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use crate::arm::effects::{self, Effect, Form, Of, Response};
 
 use super::column::{Column, Owner, Piece, pieces};
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Products};
 use super::generic::generic;
+use super::normal::normal;
 use super::nuisance::{Common, Nuisance, Trust, nuisance, smooth_error};
 use super::record::{Record, RecordKind};
 use super::ripples::ripples;
@@ -49,17 +50,6 @@ pub struct Table {
     /// Columns that others have replaced since all was weighed.
     pub(super) changed: BTreeSet<usize>,
     joints: Vec<Rows>,
-}
-
-/// Products of the difference, the parameters and columns with some of the columns.
-pub(super) struct Products {
-    /// Places of these among the columns.
-    pub(super) of: Vec<usize>,
-    /// By row, then by column.
-    pub(super) with: DMatrix<f64>,
-    /// Expected factors of these, and their deviations.
-    pub(super) means: Vec<f64>,
-    pub(super) sds: Vec<f64>,
 }
 
 impl Table {
