@@ -42,6 +42,4 @@ pub struct Polished {
     pub parameters: DVector<f64>,
     /// Joints whose friction came out below nothing and was held there.
     pub bounded: Vec<usize>,
-    /// What is left, 1 where it is noise.
-    pub misfit: f64,
 }

@@ -54,6 +54,9 @@ impl Judged {
 
 #[cfg(test)]
 mod tests {
+    use crate::arm::effects::find;
+
+    use super::super::late::Kind;
     use super::*;
 
     /// Names that are asserted beside lateness of 100 nats, of one joint or of all.

@@ -174,14 +174,12 @@ impl Search<'_, '_> {
                 }
                 effects.push(fitted);
             }
-            let gained = evidence.gain(&all);
             let bounded =
                 polished.as_mut().map_or_else(Vec::new, |of| std::mem::take(&mut of.bounded));
             let of = polished.insert(Polished {
                 effects,
                 bounded,
                 parameters: evidence.parameters(&all, &estimate.mean),
-                misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
             });
             let is_load_held = !bodies.is_empty();
             for (number, body) in bodies {

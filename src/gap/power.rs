@@ -290,7 +290,7 @@ impl Weighing<'_> {
         let sds = sizes.iter().map(|size| if *size > 0.0 { PRIOR * power / size } else { 0.0 });
         let sds = DVector::from_iterator(causes.len(), sds);
         let means = DVector::zeros(causes.len());
-        let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0, count);
+        let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0);
         (count > 0).then_some(Weighing { causes, evidence, variance, power, sizes })
     }
 

@@ -225,7 +225,7 @@ impl Table {
         }
         self.scale(&mut gram, error);
         let none = || DVector::zeros(0);
-        Evidence::new(&gram, parameters, none(), none(), log_weights, 1)
+        Evidence::new(&gram, parameters, none(), none(), log_weights)
     }
 
     /// Frequencies beyond a bin count no more.
@@ -358,11 +358,10 @@ impl Table {
     /// The same of some columns alone, which count in their order.
     pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
         let (gram, log_weights) = self.gram_of(error, columns);
-        let rows = self.joints.iter().map(Rows::len).sum();
         let of =
             |x: &DVector<f64>| DVector::from_iterator(columns.len(), columns.iter().map(|k| x[*k]));
         let count = self.parameters.len();
-        Evidence::new(&gram, count, of(&self.means), of(&self.sds), log_weights, rows)
+        Evidence::new(&gram, count, of(&self.means), of(&self.sds), log_weights)
     }
 }
 

@@ -83,6 +83,7 @@ pub(super) struct Bench<'a> {
     /// Drawn before what is wrong, so that nothing in the folder hints at it.
     pub(super) with_program: bool,
     with_baseline: bool,
+    #[cfg(feature = "internals")]
     pub(super) heldout_works: bool,
     variation: f64,
     /// Two to learn from, one held out, one from before.
@@ -152,6 +153,7 @@ impl<'a> Bench<'a> {
             trust,
             with_program,
             with_baseline,
+            #[cfg(feature = "internals")]
             heldout_works,
             variation,
             motions,

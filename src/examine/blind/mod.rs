@@ -25,12 +25,15 @@ mod robots;
 mod seal;
 mod simulate;
 mod trust;
+#[cfg(feature = "internals")]
 mod unlogged;
 mod workspace;
 
 pub use case::{Case, Settings, case};
 pub use grade::{Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Wrong, grade, is_of};
 pub use label::{HeldOut, Kind, Label, TrueParameter, Truth};
+#[cfg(feature = "internals")]
 pub use plant::torque;
 pub use seal::{KEY, SEALS, SealError, Sealed, open, seal};
+#[cfg(feature = "internals")]
 pub use unlogged::{Unlogged, unlogged};

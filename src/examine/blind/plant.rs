@@ -141,6 +141,7 @@ impl Plant {
 /// The torques of a model's bodies, rotors, Coulomb and viscous friction \[Nm\] at the motion
 /// `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] (entries beyond the robot's joints are not used).
 /// Sign of friction as of the velocity, 0 at rest.
+#[cfg(feature = "internals")]
 #[must_use]
 pub fn torque(
     model: &Model,

@@ -45,6 +45,7 @@ const GOOD: f64 = 12.0;
 const ROOM: f64 = 0.01;
 /// Interval of the final check \[s\].
 const FINE: f64 = 0.001;
+#[cfg(feature = "internals")]
 /// States that one stands for, in the comparison with random motions.
 const EVERY: f64 = 10.0;
 /// Share by which a motion that breaks a limit between the states is made smaller.
@@ -95,8 +96,6 @@ pub struct Designed {
     pub information: Information,
     /// Its extremes, every millisecond.
     pub checked: Checked,
-    /// The base parameters it was designed for.
-    pub base: BaseParameters,
 }
 
 /// What a design needs again and again.
@@ -173,6 +172,7 @@ pub fn design(
 ///
 /// # Errors
 /// The robot lacks limits, or none of them keeps them.
+#[cfg(feature = "internals")]
 pub fn random_feasible(model: &Model, settings: &Design, count: usize) -> Result<f64, ExciteError> {
     let problem = Problem::new(model, settings)?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
@@ -359,7 +359,7 @@ impl<'a> Problem<'a> {
             let checked = check(self.model, &work.body, &self.settings.load, &states);
             if checked.excess(&self.shares) == 0.0 {
                 let information = information(&work.normal.of(&states));
-                return Some(Designed { series, information, checked, base: self.base.clone() });
+                return Some(Designed { series, information, checked });
             }
             series = series.scaled(SMALLER);
         }

@@ -15,7 +15,9 @@ mod stream_log;
 mod stream_test;
 
 pub use blend::{Blend, blends};
-pub use design::{Design, Designed, Focus, design, random_feasible};
+#[cfg(feature = "internals")]
+pub use design::random_feasible;
+pub use design::{Design, Designed, Focus, design};
 pub use error::ExciteError;
 pub use feasible::{Checked, Ratios, check};
 pub use information::{Information, information};

@@ -17,7 +17,7 @@ use crate::arm::robot::{Link, Model};
 
 use super::fit::root_mean;
 use super::guess::first_guess;
-use super::work::Identified;
+use super::identified::Identified;
 
 /// Numbers of a link: mass, centre of mass, moments about it.
 const LINK: usize = 7;

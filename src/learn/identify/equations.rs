@@ -107,7 +107,7 @@ impl Equations<'_> {
                 self.filtered(samples, layout, block, cutoff, visit);
                 continue;
             }
-            for index in 0..of.len() {
+            for index in 0..of.instants() {
                 self.instant(&mut rows, of, layout, index, &mut x, &mut y);
                 let qd = Block::at(&of.qd, index);
                 visit(&Instant {
@@ -145,7 +145,7 @@ impl Equations<'_> {
         let weights = filter.weights(0);
         let mut kept = 0;
         let reach = filter.half as f64 * samples.step;
-        for index in 0..of.len() {
+        for index in 0..of.instants() {
             let place = index % width;
             let row = &mut ring[place * span..(place + 1) * span];
             let (x, y) = row.split_at_mut(layout.width());

@@ -42,8 +42,6 @@ pub struct Fit {
     pub solution: Solution,
     /// Covariance of the determined parameters.
     pub covariance: DMatrix<f64>,
-    /// Standard deviation of each joint's equations \[Nm\].
-    pub sigma: Vec<f64>,
     /// Condition of the weighted equations.
     pub condition: Condition,
     /// Usable equations of each joint.
@@ -136,7 +134,6 @@ pub fn fit(
         covariance,
         memory,
         whiteness,
-        sigma,
         rows,
         solution,
         factors,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::work::Identified;
+use super::identified::Identified;
 
 /// Share of a column from which on it counts as a part of another one.
 const PART: f64 = 1e-4;

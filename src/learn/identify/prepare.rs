@@ -97,7 +97,7 @@ fn changes(x: &[f64], step: f64) -> Vec<f64> {
 fn still(samples: &mut Samples) {
     for block in &mut samples.blocks {
         for joint in &samples.resting {
-            let mean = block.q[*joint].iter().sum::<f64>() / block.len().max(1) as f64;
+            let mean = block.q[*joint].iter().sum::<f64>() / block.instants().max(1) as f64;
             block.q[*joint].fill(mean);
             block.qd[*joint].fill(0.0);
             block.qdd[*joint].fill(0.0);
@@ -122,7 +122,7 @@ fn differentiated(
         thinning(section).map_or(0.0, |every| SMEARED * every as f64 * section.step / PASSED)
     });
     let sections: Vec<Section> = sections.iter().map(thinned).collect();
-    let Some(longest) = sections.iter().max_by_key(|section| section.len()) else {
+    let Some(longest) = sections.iter().max_by_key(|section| section.samples()) else {
         return Err(IdentifyError::Short { seconds: 0.0 });
     };
     let step = longest.step;
@@ -158,7 +158,7 @@ fn differentiated(
     let blocks: Vec<Block> = sections
         .iter()
         // Twice the kernel, and some instants to use.
-        .filter(|section| section.len() > 3 * filter.width())
+        .filter(|section| section.samples() > 3 * filter.width())
         .map(|section| block(section, joints, &filter, clipped))
         .collect();
     if blocks.is_empty() {
@@ -187,7 +187,7 @@ fn thinned(section: &Section) -> Section {
     let Some(every) = thinning(section) else { return section.clone() };
     let step = section.step * every as f64;
     let filter = LowPass::new(PASSED / step, section.step);
-    if section.len() < 2 * filter.width() {
+    if section.samples() < 2 * filter.width() {
         return section.clone();
     }
     let of = |x: &Vec<f64>| -> Vec<f64> {
@@ -292,7 +292,7 @@ fn block(section: &Section, joints: usize, filter: &LowPass, clipped: &Spans) ->
         .collect();
     let t: Vec<f64> = (0..count).map(|i| section.time(i + filter.half)).collect();
     let here =
-        |span: &&[f64; 2]| span[1] >= section.start && span[0] <= section.time(section.len());
+        |span: &&[f64; 2]| span[1] >= section.start && span[0] <= section.time(section.samples());
     let clipped = clipped.iter().map(|of| of.iter().filter(here).copied().collect()).collect();
     Block { t, q, qd, qdd, tau, clipped }
 }

@@ -216,7 +216,7 @@ fn mean(shares: &[f64]) -> f64 {
 /// not a number where a joint rests.
 #[must_use]
 pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
-    let count: usize = samples.iter().map(Samples::len).sum();
+    let count: usize = samples.iter().map(Samples::instants).sum();
     let share = |(joint, (rms, relative)): (usize, (&f64, &f64))| {
         if samples.iter().all(|of| of.resting.contains(&joint)) {
             return f64::NAN;
@@ -234,7 +234,7 @@ pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
 
 /// The shift in time with which torques fit the motion best, where that is far better \[s\].
 fn late(equations: &Equations<'_>, samples: &Samples) -> Option<f64> {
-    let block = samples.blocks.iter().max_by_key(|block| block.len())?;
+    let block = samples.blocks.iter().max_by_key(|block| block.instants())?;
     let miss = |shift: f64| missed(equations, samples, block, shift);
     let mut best = (0.0, miss(0.0)?);
     let none = best.1;
@@ -255,7 +255,7 @@ fn late(equations: &Equations<'_>, samples: &Samples) -> Option<f64> {
 /// A short shift: downhill from none, by whole samples, as noise between two is smaller than
 /// theirs; then between them by a parabola. Joints count by their residuals `rms` \[Nm\].
 fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> Option<f64> {
-    let block = samples.blocks.iter().max_by_key(|block| block.len())?;
+    let block = samples.blocks.iter().max_by_key(|block| block.instants())?;
     let weights: Vec<f64> =
         rms.iter().map(|rms| if *rms > 0.0 { 1.0 / rms } else { 0.0 }).collect();
     let width = (SHORT / samples.step).round().max(1.0) as isize;
@@ -328,7 +328,7 @@ fn missed_by(
 fn shifted(samples: &Samples, block: &Block, moved: isize) -> Option<Samples> {
     let step = samples.step;
     let margin = (SHIFT / step).ceil() as usize + (STEPS[0] / step).ceil() as usize;
-    let last = block.len().checked_sub(margin).filter(|last| *last > 2 * margin)?;
+    let last = block.instants().checked_sub(margin).filter(|last| *last > 2 * margin)?;
     let kept = margin..last.min(margin + INSTANTS.max(2 * margin));
     let of = |series: &Vec<Vec<f64>>| -> Vec<Vec<f64>> {
         series.iter().map(|x| x[kept.clone()].to_vec()).collect()

@@ -45,14 +45,8 @@ pub struct Block {
 impl Block {
     /// Number of instants.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn instants(&self) -> usize {
         self.t.len()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.t.is_empty()
     }
 
     /// One row of a series by joint; entries beyond the robot's joints are 0.
@@ -89,14 +83,8 @@ pub struct Samples {
 impl Samples {
     /// Number of instants.
     #[must_use]
-    pub fn len(&self) -> usize {
-        self.blocks.iter().map(Block::len).sum()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
+    pub fn instants(&self) -> usize {
+        self.blocks.iter().map(Block::instants).sum()
     }
 
     /// Of each joint, instants at which its torque stands at a limit, as a share of all.
@@ -111,6 +99,6 @@ impl Samples {
                 }
             }
         }
-        counts.iter().map(|count| *count as f64 / self.len().max(1) as f64).collect()
+        counts.iter().map(|count| *count as f64 / self.instants().max(1) as f64).collect()
     }
 }

@@ -68,10 +68,10 @@ pub(super) fn wrist_coupling(
 
 /// As many samples as are needed, from the middle.
 fn shortened(samples: &Samples) -> Samples {
-    let Some(longest) = samples.blocks.iter().max_by_key(|block| block.len()) else {
+    let Some(longest) = samples.blocks.iter().max_by_key(|block| block.instants()) else {
         return samples.clone();
     };
-    let count = longest.len();
+    let count = longest.instants();
     // What was filtered has to stay in one piece; rows of their own need not.
     let kept: Vec<usize> = match samples.source {
         Source::Filtered { .. } => {

@@ -4,10 +4,10 @@
 //! the other as a voltage beside the currents. Its changes tell how one clock goes by the
 //! other.
 
-use super::channel::Family;
+use super::channel::{Channel, Family};
+use super::data::Log;
 use super::error::LogError;
 use super::uniform::{interpolated, median_step};
-use super::{Channel, Log};
 
 /// Fewer changes than this fit anything.
 const MARKS: usize = 3;
@@ -155,8 +155,9 @@ fn changes(log: &Log) -> Vec<Change> {
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+    use super::super::columns::ColumnMap;
+    use super::super::csv::read_csv;
     use super::*;
-    use crate::learn::log::{ColumnMap, read_csv};
 
     fn log(header: &str, step: f64, count: usize, row: impl Fn(f64) -> String) -> Log {
         let mut text = format!("{header}\n");

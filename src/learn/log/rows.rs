@@ -2,8 +2,8 @@
 
 use super::channel::Channel;
 use super::columns::Column;
+use super::data::{Log, MIN_ROWS, Rejected};
 use super::error::LogError;
-use super::{Log, MIN_ROWS, Rejected};
 
 /// No clock shows a time as large as this \[s\].
 const NO_CLOCK: f64 = 1e12;

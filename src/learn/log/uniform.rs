@@ -25,14 +25,8 @@ pub struct Section {
 impl Section {
     /// Number of samples.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn samples(&self) -> usize {
         self.series.first().map_or(0, Vec::len)
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Time of a sample \[s\].
@@ -199,7 +193,7 @@ mod tests {
             (0..60).map(|i| 0.5 * f64::from(i) + if i < 40 { 0.0 } else { 7.0 }).collect();
         let x: Vec<f64> = t.iter().map(|t| (13.0 * t).sin()).collect();
         let found = sections(&t, &[&x]);
-        assert_eq!(found.iter().map(Section::len).collect::<Vec<_>>(), [40, 20]);
+        assert_eq!(found.iter().map(Section::samples).collect::<Vec<_>>(), [40, 20]);
         assert_eq!(found[0].series[0], x[..40]);
     }
 }
