@@ -3,6 +3,9 @@
 //! Where motor 6 turns back its friction jumps, so that the evidence is as rugged in the coupling
 //! as there are rows at which it may do so: low frequencies, which see no single row, lead to the
 //! coupling that the high ones tell exactly.
+//!
+//! `learn::identify` finds a coupling with all parameters free; here it is a change against a known
+//! model, beside other effects.
 
 use super::chosen::{Chosen, Found};
 use super::column::Owner;

@@ -1,7 +1,5 @@
 //! What a diagnosis says.
 
-use crate::arm::effects::Effect;
-
 use super::calibration::asserted;
 use super::findings::{Anything, Place, Said, Verdict};
 use super::heldout::Shrink;

@@ -2,7 +2,6 @@
 
 use crate::arm::effects::Effect;
 
-use super::attribution::regime;
 use super::effect_ids::OF_CLOCKS;
 
 /// What was found.

@@ -2,7 +2,6 @@
 
 use crate::arm::effects::Parameter;
 
-use super::bins::piece;
 use super::chosen::{Chosen, Found};
 use super::column::Owner;
 use super::effect_ids::STRIBECK;

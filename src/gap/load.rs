@@ -1,10 +1,6 @@
 //! What hangs on the flange is a body, and other laws go by it.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3};
-
-use crate::arm::dynamics::{RIGID, link_of, link_parameters, pseudo_inertia};
-use crate::arm::robot::{Link, Model};
-use crate::learn::identify::{Piece, Target, consistent};
+use crate::arm::robot::Model;
 
 use super::chosen::{Chosen, Found};
 use super::effect_ids::LOAD;

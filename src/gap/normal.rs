@@ -1,4 +1,4 @@
-//! Draws of the normal distribution.
+//! Draws of the normal distribution; those of a crate would move the thresholds that are drawn.
 
 /// A standard normal deviate (G. E. P. Box, M. E. Muller 1958).
 pub(super) fn normal(random: &mut fastrand::Rng) -> f64 {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use crate::arm::effects::{Parameter, Response};
+use crate::arm::effects::Response;
 
 use super::chosen::{Chosen, Found};
 use super::column::Owner;

@@ -11,7 +11,6 @@ use crate::arm::effects::{self, Effect, Form, Of, Response};
 use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::{Evidence, Products};
 use super::generic::generic;
-use super::normal::normal;
 use super::nuisance::{Common, Nuisance, Trust, nuisance, smooth_error};
 use super::record::{Record, RecordKind};
 use super::ripples::ripples;

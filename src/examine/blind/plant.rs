@@ -29,7 +29,7 @@ pub(super) struct Plant {
 
 impl Plant {
     /// The robot of a model.
-    pub(super) fn of(model: &Model) -> Plant {
+    pub(super) fn new(model: &Model) -> Plant {
         let per_joint = |values: &[f64]| {
             let mut joints = [0.0; MAX_DOF];
             for (to, from) in joints.iter_mut().zip(values) {
@@ -149,5 +149,5 @@ pub fn torque(
     qd: &[f64; MAX_DOF],
     qdd: &[f64; MAX_DOF],
 ) -> [f64; MAX_DOF] {
-    Plant::of(model).torque(q, qd, qdd)
+    Plant::new(model).torque(q, qd, qdd)
 }

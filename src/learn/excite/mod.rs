@@ -1,4 +1,4 @@
-//! Motions that let a robot's parameters be told from its torques.
+//! Motions that excite a robot's dynamic parameters.
 //!
 //! [`design()`] optimises Fourier series for the information that they give, within all
 //! limits; the friction plateaus and the settings of [`Design`] make the smaller experiments.

@@ -1,7 +1,7 @@
-//! From measured logs to a robot's dynamic model, with standard errors.
+//! A robot's dynamic model from measured logs, with standard errors.
 //!
-//! [`prepare`] makes instants of a log, [`Equations`] the rows of the equations of motion,
-//! [`fit`] the base parameters, [`identify`] a model that can be.
+//! [`prepare`] turns a log into instants, [`Equations`] writes the equations of motion at these,
+//! [`fit`] solves them for the base parameters, [`identify`] makes a physically consistent model.
 
 mod clean;
 mod clipped;

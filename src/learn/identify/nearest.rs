@@ -16,13 +16,13 @@ use super::settings::Free;
 
 /// Rounds in which bounds are lifted.
 const FREED: usize = 3;
-/// A positive number this much below its prior is one that the data want below 0.
+/// A positive parameter below this share of its prior is one that the data want below 0.
 const BOUND: f64 = 0.3;
-/// Share of the residuals' power that lifting bounds has to take away.
+/// Share of the residuals' power that lifting bounds has to remove.
 const WORTH: f64 = 0.005;
 /// Residuals smaller than this share of the torque are as good as none.
 const DIGITS: f64 = 1e-4;
-/// Size of a parameter of which nothing is known, in its SI unit.
+/// Size of an unknown parameter, in its SI unit.
 const SMALL: f64 = 1e-3;
 
 /// Finds physically consistent values of the free parameters, with the priors and scales of the fit
@@ -77,14 +77,14 @@ impl Nearest<'_> {
         DVector::from_vec(base_values(self.base, self.among, free))
     }
 
-    /// Where a rotor or a viscous friction that can't be below 0 costs the fit much, both as the log
-    /// shows them: a delay, a filter or elasticity looks like less than nothing.
+    /// Lifts the bound of rotor inertias and viscous frictions where it costs the fit much: a delay, a
+    /// filter or elasticity makes them appear negative in the log.
     fn with_apparent(&self, target: &Target<'_>, mut found: DVector<f64>) -> DVector<f64> {
         let Nearest { pieces, fit, base, among } = self;
         let rigid = RIGID * base.dof;
         let kind = |index: usize| index.checked_sub(rigid).map(|k| k % JOINT);
         let free = |index: usize| matches!(kind(index), Some(0 | 1));
-        // What deviations the parameters of this kind have.
+        // Largest standard deviation of the parameters of this kind.
         let size = |of: usize| -> f64 {
             let all = fit.solution.determined.iter().enumerate();
             all.filter(|(_, row)| kind(base.independent[**row]) == kind(of))
@@ -131,8 +131,8 @@ pub(super) fn base_values(base: &BaseParameters, among: &[usize], free: &[f64]) 
     base.of_parameters(&all)
 }
 
-/// The determined base parameters as combinations of the free ones. What the data do not
-/// tell apart goes together.
+/// The determined base parameters as combinations of the free ones; base parameters that the data
+/// cannot separate are merged.
 fn combination(base: &BaseParameters, solution: &Solution, among: &[usize]) -> DMatrix<f64> {
     let place = |index: usize| among.iter().position(|known| *known == index);
     let row_of = |row: usize| {
@@ -181,18 +181,18 @@ fn pieces(
     }
     let nominal = parameters(model, &Load::none(), Parameters::WithJoints);
     for index in among.iter().filter(|index| **index >= rigid) {
-        // What the fit says where it says something of this parameter alone.
-        let said = base.independent.iter().position(|known| known == index).and_then(|row| {
+        // Value and standard deviation, where this parameter is determined by itself.
+        let estimate = base.independent.iter().position(|known| known == index).and_then(|row| {
             let k = fit.solution.determined.iter().position(|known| *known == row)?;
             Some((fit.solution.beta[row], fit.covariance[(k, k)].sqrt()))
         });
         let kind = (index - rigid) % JOINT;
         if kind == JOINT - 1 {
-            let size = said.map_or(1.0, |(value, sd)| value.abs().max(sd));
+            let size = estimate.map_or(1.0, |(value, sd)| value.abs().max(sd));
             pieces.push(Piece::Any(size.max(SMALL)));
         } else {
             let nominal = nominal.get(*index).copied().unwrap_or(0.0);
-            let known = said.map_or(0.0, |(value, sd)| value.max(sd));
+            let known = estimate.map_or(0.0, |(value, sd)| value.max(sd));
             pieces.push(Piece::Positive(if nominal > 0.0 { nominal } else { known.max(SMALL) }));
         }
     }

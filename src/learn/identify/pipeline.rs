@@ -54,20 +54,16 @@ pub fn identify(
 
     let beta = nearest.base_values(&parameters);
     let held_out: Vec<Factors> =
-        validation.iter().map(|samples| Factors::of(&equations, samples, 1)).collect();
+        validation.iter().map(|samples| Factors::new(&equations, samples, 1)).collect();
     let on_held_out =
-        |beta: &DVector<f64>| (!held_out.is_empty()).then(|| Misses::of(beta, &held_out));
-    let training_misses = Misses::of(&beta, std::slice::from_ref(&fit.factors));
+        |beta: &DVector<f64>| (!held_out.is_empty()).then(|| Misses::new(beta, &held_out));
+    let training_misses = Misses::new(&beta, std::slice::from_ref(&fit.factors));
     let validation_misses = on_held_out(&beta);
 
     let fitted = explained(std::slice::from_ref(training), &training_misses);
     let predicted = match &validation_misses {
         Some(misses) => Some(explained(validation, misses)),
-        None if fit.over_repetitions => None,
-        None => {
-            let misses = training_misses.with_rms(&cross_rms);
-            Some(explained(std::slice::from_ref(training), &misses))
-        }
+        None => cross_explained(training, &fit, &training_misses.with_rms(&cross_rms)),
     };
     let quality = quality(
         &equations,
@@ -105,6 +101,12 @@ pub fn identify(
         base,
         fit,
     })
+}
+
+/// Shares of the torques' variance that are explained in cross-validation with such residuals; `None`
+/// over repetitions, of which a single one is mostly noise.
+fn cross_explained(training: &Samples, fit: &Fit, misses: &Misses) -> Option<Vec<f64>> {
+    (!fit.over_repetitions).then(|| explained(std::slice::from_ref(training), misses))
 }
 
 /// The indices of the free parameters among all standard parameters, and what is taken as the model

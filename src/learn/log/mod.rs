@@ -1,6 +1,8 @@
-//! Measured logs: what a robot did, as columns of numbers. Knows no robot.
+//! Measured logs as columns of numbers: reading, repetitions, derivatives, synchronisation. Independent
+//! of any robot model.
 
 mod arrays;
+mod averaged;
 mod bandwidth;
 mod channel;
 mod columns;
@@ -17,9 +19,11 @@ mod periods;
 mod read;
 mod rows;
 mod three_phase;
+mod time_shift;
 mod uniform;
 mod utf16;
 
+pub use averaged::{Averaged, averaged};
 pub use bandwidth::bandwidth;
 pub use channel::Channel;
 pub use columns::ColumnMap;
@@ -30,7 +34,8 @@ pub use error::LogError;
 pub use low_pass::LowPass;
 pub use marks::{Aligned, aligned, are_halves};
 pub use motion::Motion;
-pub use periods::{Averaged, Periods, averaged, find_periods};
+pub use periods::{Periods, find_periods};
 pub use read::{read, read_from};
 pub use three_phase::{Signed, Vectors, coherence, signed, vectors};
-pub use uniform::{Section, interpolated, median_step, sections};
+pub use time_shift::{Delay, Shift, between_grid, downhill, golden_section, on_grid, vertex};
+pub use uniform::{Section, interpolated, median_step, range, sections};
