@@ -3,13 +3,14 @@
 use crate::arm::effects::find;
 use crate::arm::robot::Model;
 
-use super::diagnosis::{Said, Verdict};
-use super::gated::GATED;
+use super::chosen::{Chosen, Found};
+use super::effect_ids::GATED;
+use super::findings::{Said, Verdict};
+use super::fitted::Fitted;
 use super::heldout::{JointGap, Shrink};
 use super::improved::Improved;
 use super::judged::Judged;
-use super::polish::Fitted;
-use super::search::{Chosen, Found, Search};
+use super::search::Search;
 
 /// Changes of parameters, which a model has whether they are asserted or not.
 const OF_PARAMETERS: [&str; 4] = ["link_parameters", "friction_level", "rotor_inertia", "payload"];

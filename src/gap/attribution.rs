@@ -3,8 +3,9 @@
 use crate::arm::robot::Model;
 
 use super::bins::{QUANTITIES, Quantity};
+use super::effect_ids::OF_LOG;
 use super::heldout::predicted;
-use super::improved::{Improved, OF_LOG};
+use super::improved::Improved;
 use super::pieces::{Pieces, difference};
 use super::record::{Record, RecordKind};
 

@@ -3,7 +3,7 @@
 //! The evidence knows the laws of its library alone, so that it is surer than it may be. How far it
 //! can be trusted was counted on development cases of `blind generate` (docs/gap.md).
 
-use super::diagnosis::Said;
+use super::findings::Said;
 
 /// Share of the effects that were asserted without a doubt which were there.
 const ASSERTED: f64 = 0.95;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::evidence::Given;
+use super::normal::normal;
 use super::search::Search;
 
 /// Measurements that are drawn.
@@ -45,12 +46,6 @@ fn exceeded_by_few(maxima: &[f64]) -> f64 {
     let variance = maxima.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
     let scale = (6.0 * variance).sqrt() / std::f64::consts::PI;
     mean - scale * (EULER + (-CONFIDENT.ln()).ln())
-}
-
-/// A standard normal deviate (G. E. P. Box, M. E. Muller 1958).
-pub(super) fn normal(random: &mut fastrand::Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - random.f64()).ln()).sqrt();
-    radius * (std::f64::consts::TAU * random.f64()).cos()
 }
 
 #[cfg(test)]

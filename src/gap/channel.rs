@@ -1,9 +1,11 @@
 //! What torques go through on their way into a log.
 
 use crate::arm::effects::Response;
+use crate::learn::log::vertex;
 
+use super::chosen::Found;
 use super::late::{Kind, Late};
-use super::search::{Found, Search};
+use super::search::Search;
 
 /// Delays that are tried at first \[s\].
 const DELAYS: [f64; 18] = [
@@ -188,16 +190,16 @@ impl Search<'_, '_> {
         for _ in 0..ROUNDS {
             let [low, high] = [value - step, value + step].map(&mut total);
             let before = value;
-            let bend = 2.0 * most - low - high;
+            let around = [-low, -most, -high];
+            let curvature = 2.0 * most - low - high;
             if low.max(high) > most {
                 let beside = if low > high { value - step } else { value + step };
                 (value, most) = (beside, low.max(high));
             }
-            if bend > 0.0 && bend.is_finite() {
-                // Parabola through the three.
-                sd = step / bend.sqrt();
-                let top =
-                    before + (0.5 * step * (high - low) / bend).clamp(-REACH * step, REACH * step);
+            if let Some(place) = vertex(around).filter(|_| curvature > 0.0 && curvature.is_finite())
+            {
+                sd = step / curvature.sqrt();
+                let top = before + step * place.clamp(-REACH, REACH);
                 if (top - before).abs() > NEAR * sd {
                     let at_top = total(top);
                     if at_top > most {

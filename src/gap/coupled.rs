@@ -3,17 +3,14 @@
 //! Where motor 6 turns back its friction jumps, so that the evidence is as rugged in the coupling
 //! as there are rows at which it may do so: low frequencies, which see no single row, lead to the
 //! coupling that the high ones tell exactly.
+//!
+//! `learn::identify` finds a coupling with all parameters free; here it is a change against a known
+//! model, beside other effects.
 
+use super::chosen::{Chosen, Found};
 use super::column::Owner;
-use super::search::{Chosen, Found, Search};
-
-/// An effect whose shape is a coupling.
-pub(super) const COUPLING: &str = "wrist_coupling";
-/// Joints that it couples.
-pub(super) const OF_WRIST: [usize; 2] = [4, 5];
-
-/// Laws of what is there where a joint turns back.
-pub(super) const OF_TURNS: [&str; 2] = ["stribeck", "presliding"];
+use super::effect_ids::{COUPLING, OF_TURNS, OF_WRIST};
+use super::search::Search;
 
 /// Frequencies that are looked at first; twice as many each time.
 const LOWEST: usize = 20;

@@ -1,9 +1,10 @@
 //! Effects that others account for.
 
-use super::diagnosis::Said;
-use super::gated::GATED;
+use super::chosen::Found;
+use super::effect_ids::GATED;
+use super::findings::Said;
 use super::judged::Judged;
-use super::search::{Found, Search};
+use super::search::Search;
 
 /// Effects at once, and what each has to bring of what the first one does where there are more.
 const AT_ONCE: usize = 2;

@@ -6,25 +6,25 @@ use crate::arm::effects::Effect;
 use crate::arm::robot::Model;
 
 use super::calibration::calibrate;
+use super::chosen::{Chosen, Found};
 use super::column::{Owner, pieces};
-use super::coupled::OF_TURNS;
-use super::diagnosis::{Anything, Diagnosis, Said, Verdict};
-use super::gated::{OF_TIME, gated};
+use super::diagnosis::Diagnosis;
+use super::effect_ids::{OF_TIME, OF_TURNS};
+use super::findings::{Anything, Said, Verdict};
+use super::gated::gated;
 use super::generic::OF_DRIFT;
 use super::heldout::{JointGap, Shrink, predicted, shrink};
 use super::improved::Improved;
-use super::judged::{Judged, LEAST_NATS, judged};
+use super::judged::{CLASS, FLIP, Judged, LEAST_NATS, judged};
 use super::nuisance::Trust;
 use super::phase::Phase;
 use super::places::{places, places_missed};
 use super::record::{Record, RecordKind};
-use super::search::{Chosen, Found, Search};
+use super::search::Search;
 use super::table::{Table, nuisances};
 
 /// Errors of the model that are tried.
 const ERRORS: [f64; 4] = [0.0015, 0.005, 0.015, 0.045];
-/// Odds below which two explanations cannot be told apart: 1 to 100.
-pub(super) const CLASS: f64 = 4.6;
 /// Share of a joint's torque below which functions of no law are the model's own error.
 const SMALL: f64 = 0.005;
 /// Share of the torques below which a model without a gap is right.
@@ -32,8 +32,6 @@ const RIGHT: f64 = 0.02;
 /// What effects may leave of the logs that they were fitted to, to be there whatever they take off
 /// of other logs.
 const EXPLAINS: f64 = 0.35;
-/// What another sign has to bring.
-pub(super) const FLIP: f64 = 50.0;
 /// Correlation of a torque with the model's below which its sign may be the other one.
 const OPPOSITE: f64 = -0.3;
 

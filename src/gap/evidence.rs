@@ -3,8 +3,6 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::table::Products;
-
 /// Marginal likelihoods at one size of the model's own error.
 pub struct Evidence {
     /// `ΦᵀWΦ` with the parameters marginalised.
@@ -16,10 +14,6 @@ pub struct Evidence {
     parameters: Option<OfParameters>,
     /// Logarithm of the probability of the measurement without any column, up to a constant.
     pub null: f64,
-    /// yᵀWy with the parameters marginalised, over the number of rows: 1 where nothing is missed.
-    pub misfit: f64,
-    /// Number of rows.
-    pub rows: usize,
 }
 
 /// What tells the model's parameters, in deviations.
@@ -28,6 +22,17 @@ struct OfParameters {
     /// `YᵀWy` and `YᵀWΦ`.
     y: DVector<f64>,
     c: DMatrix<f64>,
+}
+
+/// Products of the difference, the parameters and columns with some of the columns.
+pub(super) struct Products {
+    /// Places of these among the columns.
+    pub(super) of: Vec<usize>,
+    /// By row, then by column.
+    pub(super) with: DMatrix<f64>,
+    /// Expected factors of these, and their deviations.
+    pub(super) means: Vec<f64>,
+    pub(super) sds: Vec<f64>,
 }
 
 /// Evidence when some columns are there.
@@ -69,7 +74,6 @@ impl Evidence {
         means: DVector<f64>,
         sds: DVector<f64>,
         log_weights: f64,
-        rows: usize,
     ) -> Evidence {
         let count = means.len();
         let first = 1 + parameters;
@@ -82,8 +86,7 @@ impl Evidence {
         let yc = gram.view((first, 0), (count, 1)).column(0).into_owned();
         let Some(factor) = Cholesky::new(pp) else {
             let null = f64::NEG_INFINITY;
-            let (parameters, misfit) = (None, f64::INFINITY);
-            return Evidence { a: cc, b: yc, means, sds, parameters, null, misfit, rows };
+            return Evidence { a: cc, b: yc, means, sds, parameters: None, null };
         };
         let lower = factor.l();
         let solved_c = lower.solve_lower_triangular(&pc).unwrap_or_else(|| pc.clone());
@@ -97,8 +100,6 @@ impl Evidence {
             sds,
             parameters: Some(OfParameters { factor, y: yp.column(0).into_owned(), c: pc }),
             null: log_weights - 0.5 * left - log_det,
-            misfit: left / rows.max(1) as f64,
-            rows,
         }
     }
 
@@ -190,8 +191,6 @@ impl Evidence {
             sds: self.sds.clone(),
             parameters: None,
             null: self.null,
-            misfit: self.misfit,
-            rows: self.rows,
         };
         Given { base, columns: columns.to_vec(), evidence }
     }
@@ -244,7 +243,7 @@ impl Evidence {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chance::normal;
+    use super::super::normal::normal;
     use super::*;
 
     /// Rounding.
@@ -260,7 +259,7 @@ mod tests {
         let gram = columns.transpose() * columns;
         let [means, sds] =
             [[0.0, 1.0, 0.0], [2.0, 0.5, 1.0]].map(|of| DVector::from_row_slice(&of));
-        Evidence::new(&gram, 2, means, sds, 0.0, columns.nrows())
+        Evidence::new(&gram, 2, means, sds, 0.0)
     }
 
     #[test]

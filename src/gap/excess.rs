@@ -7,8 +7,9 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+use super::chosen::Chosen;
 use super::rows::{Posterior, Rows};
-use super::search::{Chosen, Search};
+use super::search::Search;
 use super::table::Table;
 
 /// Rounds of expectation and maximisation at most, and the change at which they end.

@@ -1,10 +1,11 @@
 //! Laws in the place of smooth functions: what rubs, gives way or saturates does so in forms that
 //! no library has all of, and a function that follows the form exactly wins against the law.
 
+use super::chosen::{Chosen, Found};
 use super::column::Owner;
-use super::improved::LOAD;
+use super::effect_ids::LOAD;
 use super::load::OF_BODIES;
-use super::search::{Chosen, Found, Search};
+use super::search::Search;
 
 /// Share of what functions at a joint explain that a law has to explain by itself.
 const FORM: f64 = 0.65;

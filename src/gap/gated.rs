@@ -2,9 +2,11 @@
 
 use crate::arm::effects::{Effect, find};
 
+use super::chosen::{Chosen, Found};
 use super::column::{Owner, Piece, columns_at};
+use super::effect_ids::GATED;
 use super::record::Record;
-use super::search::{Chosen, Found, Search};
+use super::search::Search;
 
 /// Parts of a repetition at which windows begin and end.
 const PARTS: usize = 20;
@@ -25,14 +27,8 @@ const CONTACT: &str = "contact";
 const MOST_RISE: f64 = 0.5;
 const OF_RISE: f64 = 0.4;
 
-/// Functions of time that were found, whose windows may be gated effects.
-pub(super) const OF_TIME: [&str; 2] = ["time", "time_and_sense"];
-
 /// Windows from which others are looked for.
 const STARTS: usize = 4;
-
-/// Effects with windows.
-pub(super) const GATED: [&str; 2] = ["brake_drag", "contact"];
 
 /// Pieces with windows of a brake's drag at some joints and of a contact.
 pub(super) fn gated(

@@ -6,15 +6,9 @@ use crate::arm::dynamics::{JOINT, RIGID, link_of, link_parameters};
 use crate::arm::effects::{Effect, Of, applied};
 use crate::arm::robot::{EffectParameters, Friction, Given, Model};
 
-use super::polish::Fitted;
+use super::effect_ids::{LOAD, OF_LOG};
+use super::fitted::Fitted;
 use super::possible::{possible, possible_load};
-
-/// Effects of the log, which robot files keep as numbers of their own.
-pub(super) const OF_LOG: [&str; 4] =
-    ["apparent_torque", "encoder_offset", "torque_offset", "torque_constant"];
-
-/// An effect that is a body.
-pub(super) const LOAD: &str = "payload";
 
 /// A model as it is written, and as it predicts.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use crate::arm::robot::Model;
 
 use super::attribution::{MOST, PARAMETERS, Subsets, brought, regime};
 use super::bins::Quantity;
-use super::diagnosis::Place;
+use super::findings::Place;
 use super::heldout::predicted;
 use super::improved::Improved;
 use super::pieces::{Pieces, difference};

@@ -4,13 +4,14 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::arm::effects::{Effect, Role};
 
+use super::body_near::body_near;
+use super::chosen::Chosen;
 use super::column::{Owner, Piece, columns_at};
+use super::effect_ids::{GATED, LOAD};
 use super::evidence::Estimate;
-use super::gated::GATED;
-use super::improved::LOAD;
-use super::load::body_near;
+use super::fitted::{Fitted, Polished};
 use super::record::Record;
-use super::search::{Chosen, Search};
+use super::search::Search;
 use super::table::Placed;
 
 /// Rounds of new tangents.
@@ -25,48 +26,6 @@ const BEYOND: f64 = 2.0;
 const BOUNDED: usize = 3;
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
-
-/// An effect at a joint, with its parameters.
-#[derive(Clone)]
-pub struct Fitted {
-    /// The effect.
-    pub effect: &'static Effect,
-    /// Joint, from 0; `None` of the robot.
-    pub joint: Option<usize>,
-    /// Its coordinates.
-    pub coordinates: Vec<f64>,
-    /// Its parameters, as they are written.
-    pub parameters: Vec<f64>,
-    /// Their standard deviations.
-    pub deviations: Vec<f64>,
-    /// The largest of its linear coordinates over their deviation; infinite where the effect
-    /// acts without them.
-    pub significance: f64,
-}
-
-impl Fitted {
-    /// Whether a parameter is so many deviations beyond what can be.
-    #[must_use]
-    pub fn is_impossible(&self, deviations: f64) -> bool {
-        let values = self.parameters.iter().zip(&self.deviations);
-        self.effect.parameters.iter().zip(values).any(|(parameter, (value, sd))| {
-            let [low, high] = parameter.bounds;
-            *value < low - deviations * sd || *value > high + deviations * sd
-        })
-    }
-}
-
-/// All effects that were found, and the parameters of the model with them.
-pub struct Polished {
-    /// Effects joint by joint.
-    pub effects: Vec<Fitted>,
-    /// Changes of the model's parameters, in deviations.
-    pub parameters: DVector<f64>,
-    /// Joints whose friction came out below nothing and was held there.
-    pub bounded: Vec<usize>,
-    /// What is left, 1 where it is noise.
-    pub misfit: f64,
-}
 
 /// Bins of the frequencies that tell what a window holds.
 const SLOW: usize = 80;
@@ -215,14 +174,12 @@ impl Search<'_, '_> {
                 }
                 effects.push(fitted);
             }
-            let gained = evidence.gain(&all);
             let bounded =
                 polished.as_mut().map_or_else(Vec::new, |of| std::mem::take(&mut of.bounded));
             let of = polished.insert(Polished {
                 effects,
                 bounded,
                 parameters: evidence.parameters(&all, &estimate.mean),
-                misfit: evidence.misfit - 2.0 * gained / evidence.rows.max(1) as f64,
             });
             let is_load_held = !bodies.is_empty();
             for (number, body) in bodies {

@@ -3,6 +3,9 @@
 //! Bodies whose pseudo-inertia is positive semidefinite are a convex cone, parameters with the
 //! same base parameters an affine space: projections on one and the other in turn lead to what
 //! both have in common (J. von Neumann, Functional Operators II, 1950).
+//!
+//! Nothing here weighs data against a prior, as `learn::identify` does where it fits: what is
+//! possible already stays as it is, and so does what a prior deviation of 0 holds.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, SymmetricEigen};
 

@@ -11,8 +11,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::arm::effects::{Effect, find};
 use crate::arm::robot::Model;
 
-use super::diagnosis::Estimated;
 use super::evidence::Evidence;
+use super::findings::Estimated;
 
 /// What an effect has to bring \[nats\].
 const LEAST_NATS: f64 = 25.0;
@@ -290,7 +290,7 @@ impl Weighing<'_> {
         let sds = sizes.iter().map(|size| if *size > 0.0 { PRIOR * power / size } else { 0.0 });
         let sds = DVector::from_iterator(causes.len(), sds);
         let means = DVector::zeros(causes.len());
-        let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0, count);
+        let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0);
         (count > 0).then_some(Weighing { causes, evidence, variance, power, sizes })
     }
 

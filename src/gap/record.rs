@@ -272,7 +272,7 @@ impl Windows {
 fn thinned(block: &Block, step: f64, cutoff: f64) -> Option<Block> {
     let every = (1.0 / (step * THINNED.max(BANDS * cutoff))) as usize;
     let filter = LowPass::new(PASSED / (step * every as f64), step);
-    if every < 2 || block.len() < 2 * filter.width() {
+    if every < 2 || block.instants() < 2 * filter.width() {
         return None;
     }
     let tau: Vec<Vec<f64>> = block.tau.iter().map(|x| filter.filtered(x, 0)).collect();

@@ -3,9 +3,9 @@
 
 use crate::arm::effects::{Effect, find};
 use crate::arm::robot::Model;
-use crate::learn::log::median_step;
+use crate::learn::log::{Delay, median_step};
 
-use super::diagnosis::Estimated;
+use super::findings::Estimated;
 
 /// Deviations by which a duration has to differ, and by how much at least \[s\].
 const BEYOND: f64 = 5.0;
@@ -275,18 +275,14 @@ fn lag(baseline: &[Run], train: &[Run], pairs: &[(&Movement, &Movement)]) -> Opt
             of.rows.iter().map(at).sum::<f64>() / of.rows.len() as f64
         };
         let step = baseline.first().map(|run| run.t[1] - run.t[0])?;
-        let (mut xx, mut xy) = (0.0, 0.0);
+        let mut delay = Delay::default();
         for joint in 0..n {
-            let usual: Vec<f64> = (0..rows).map(|k| average(baseline, before, joint, k)).collect();
-            for k in 1..rows.saturating_sub(1) {
-                let rate = (usual[k + 1] - usual[k - 1]) / (2.0 * step);
-                xx += rate * rate;
-                xy -= rate * (average(train, now, joint, k) - usual[k]);
-            }
+            let [usual, now] = [(baseline, *before), (train, *now)].map(|(runs, of)| {
+                (0..rows).map(|k| average(runs, of, joint, k)).collect::<Vec<f64>>()
+            });
+            delay.add(&usual, &now, step);
         }
-        if xx > 0.0 {
-            lags.push(xy / xx);
-        }
+        lags.extend(delay.seconds());
     }
     let n = lags.len() as f64;
     if n < 2.0 {

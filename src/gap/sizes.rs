@@ -3,7 +3,7 @@
 use crate::arm::effects::Effect;
 use crate::arm::robot::MAX_DOF;
 
-use super::polish::Fitted;
+use super::fitted::Fitted;
 use super::record::{Record, RecordKind};
 use super::search::Search;
 

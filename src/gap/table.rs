@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::arm::effects::{self, Effect, Form, Of, Response};
 
 use super::column::{Column, Owner, Piece, pieces};
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Products};
 use super::generic::generic;
 use super::nuisance::{Common, Nuisance, Trust, nuisance, smooth_error};
 use super::record::{Record, RecordKind};
@@ -49,17 +49,6 @@ pub struct Table {
     /// Columns that others have replaced since all was weighed.
     pub(super) changed: BTreeSet<usize>,
     joints: Vec<Rows>,
-}
-
-/// Products of the difference, the parameters and columns with some of the columns.
-pub(super) struct Products {
-    /// Places of these among the columns.
-    pub(super) of: Vec<usize>,
-    /// By row, then by column.
-    pub(super) with: DMatrix<f64>,
-    /// Expected factors of these, and their deviations.
-    pub(super) means: Vec<f64>,
-    pub(super) sds: Vec<f64>,
 }
 
 impl Table {
@@ -235,7 +224,7 @@ impl Table {
         }
         self.scale(&mut gram, error);
         let none = || DVector::zeros(0);
-        Evidence::new(&gram, parameters, none(), none(), log_weights, 1)
+        Evidence::new(&gram, parameters, none(), none(), log_weights)
     }
 
     /// Frequencies beyond a bin count no more.
@@ -368,11 +357,10 @@ impl Table {
     /// The same of some columns alone, which count in their order.
     pub(super) fn evidence_of(&self, error: f64, columns: &[usize]) -> Evidence {
         let (gram, log_weights) = self.gram_of(error, columns);
-        let rows = self.joints.iter().map(Rows::len).sum();
         let of =
             |x: &DVector<f64>| DVector::from_iterator(columns.len(), columns.iter().map(|k| x[*k]));
         let count = self.parameters.len();
-        Evidence::new(&gram, count, of(&self.means), of(&self.sds), log_weights, rows)
+        Evidence::new(&gram, count, of(&self.means), of(&self.sds), log_weights)
     }
 }
 

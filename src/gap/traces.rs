@@ -3,7 +3,7 @@
 use crate::arm::robot::{Given, Model};
 
 use super::bins::{QUANTITIES, Quantity, ends, piece};
-use super::diagnosis::{Estimated, Said};
+use super::findings::{Estimated, Said};
 use super::heldout::predicted;
 use super::improved::Improved;
 use super::pieces::difference;

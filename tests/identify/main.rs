@@ -190,7 +190,8 @@ fn a_joint_that_rests_is_not_determined() {
     let samples = samples(&log, &model);
     assert_eq!(samples.resting, [3]);
     let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
-    let names: Vec<String> = found.undetermined.iter().map(|row| found.base.name(*row)).collect();
+    let undetermined = found.fit.solution.dependent.iter();
+    let names: Vec<String> = undetermined.map(|(row, _)| found.base.name(*row)).collect();
     for name in ["fv4", "fc4", "offset4"] {
         assert!(names.contains(&name.to_owned()), "{names:?}");
     }

@@ -64,7 +64,7 @@ pub(crate) fn noiseless(motions: &[Unlogged], settings: &Settings) -> Vec<Sample
             source: Source::Periodic {
                 period: settings.period_s,
                 periods: 1,
-                harmonics: block.len() / 2,
+                harmonics: block.instants() / 2,
             },
             blocks: vec![block],
             rest: vec![0.0; n],

@@ -1,4 +1,4 @@
-//! Effects of the motion: what a controller does that its program does not say.
+//! Faults of the motion: the controller deviates from its program.
 
 use super::label::{TrueParameter, Truth};
 use super::program::{Conduct, JITTER_S, Program};

@@ -1,7 +1,7 @@
-//! How well a disturbance can be seen at all.
+//! Detectability of a fault in the logs.
 //!
-//! The log-likelihood ratio in nats, expected for somebody who knows its shape and size but
-//! has to allow for the spread of the nominal parameters and for smooth model errors:
+//! The expected log-likelihood ratio in nats for known shape and size, with the nominal parameters and
+//! smooth model errors as nuisances:
 //!
 //! ```text
 //! ½ Δᵀ (Σ + B Bᵀ)⁻¹ Δ
@@ -251,11 +251,11 @@ mod tests {
     /// A change of one nuisance by one standard deviation is worth half a nat at most, an offset
     /// of the same size far more.
     #[test]
-    fn what_the_parameters_may_be_is_no_evidence() {
+    fn nuisances_are_not_detectable() {
         let mut random = Random::new(4, 1, "test");
         let model = robots::robot(&mut random).unwrap();
-        let nominal = Plant::of(&model);
-        let motion = fourier(&Workspace::of(&model), 4.0, &mut random);
+        let nominal = Plant::new(&model);
+        let motion = fourier(&Workspace::new(&model), 4.0, &mut random);
         let samples: Vec<Sample> = motion.samples.iter().step_by(PER_ROW).copied().collect();
         let row = |plant: &Plant, sample: &Sample, offset: f64| {
             let mut tau = plant.torque(&sample.q, &sample.qd, &sample.qdd);

@@ -6,10 +6,14 @@
 //! from textbook forms, noise is coloured, healthy robots have model errors as well. `docs/blind.md`
 //! tells what is in a case.
 
+mod action;
+mod bench;
 mod case;
+mod compliance;
 mod conduct;
 mod detect;
 mod disturbance;
+mod fault;
 mod fourier;
 mod grade;
 mod label;
@@ -22,15 +26,21 @@ mod plant;
 mod program;
 mod random;
 mod robots;
+mod scale;
 mod seal;
 mod simulate;
+mod sizes;
 mod trust;
+#[cfg(feature = "internals")]
 mod unlogged;
 mod workspace;
 
-pub use case::{Case, Settings, case};
+pub use bench::Settings;
+pub use case::{Case, case};
 pub use grade::{Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Wrong, grade, is_of};
 pub use label::{HeldOut, Kind, Label, TrueParameter, Truth};
+#[cfg(feature = "internals")]
 pub use plant::torque;
 pub use seal::{KEY, SEALS, SealError, Sealed, open, seal};
+#[cfg(feature = "internals")]
 pub use unlogged::{Unlogged, unlogged};

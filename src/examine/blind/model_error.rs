@@ -1,9 +1,9 @@
-//! What no model has, of healthy robots too: small smooth torques of position and speed,
-//! ripple below the noise, a little more friction at low speed.
+//! Model errors of healthy robots: small smooth torques of position and speed, ripple below the noise,
+//! slightly more friction at low speed.
 
 use std::f64::consts::TAU;
 
-use super::disturbance::Moment;
+use super::action::Moment;
 use super::mechanics::Joints;
 use super::random::Random;
 use crate::arm::robot::MAX_DOF;

@@ -1,4 +1,4 @@
-//! A cycle as programs have them: moves between poses with stops, and waits.
+//! A pick-and-place cycle: moves between poses with stops, and waits.
 
 use super::mechanics::Joints;
 use super::motion::{Motion, STEP_S, Sample};

@@ -29,7 +29,7 @@ pub(super) struct Plant {
 
 impl Plant {
     /// The robot of a model.
-    pub(super) fn of(model: &Model) -> Plant {
+    pub(super) fn new(model: &Model) -> Plant {
         let per_joint = |values: &[f64]| {
             let mut joints = [0.0; MAX_DOF];
             for (to, from) in joints.iter_mut().zip(values) {
@@ -141,6 +141,7 @@ impl Plant {
 /// The torques of a model's bodies, rotors, Coulomb and viscous friction \[Nm\] at the motion
 /// `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] (entries beyond the robot's joints are not used).
 /// Sign of friction as of the velocity, 0 at rest.
+#[cfg(feature = "internals")]
 #[must_use]
 pub fn torque(
     model: &Model,
@@ -148,5 +149,5 @@ pub fn torque(
     qd: &[f64; MAX_DOF],
     qdd: &[f64; MAX_DOF],
 ) -> [f64; MAX_DOF] {
-    Plant::of(model).torque(q, qd, qdd)
+    Plant::new(model).torque(q, qd, qdd)
 }

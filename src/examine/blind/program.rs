@@ -1,7 +1,7 @@
 //! A RAPID program, and how a robot runs it.
 //!
-//! Each move says how long it takes (`\T`), so that what a healthy controller does is known
-//! without a model of one; the robot of the examination is a few milliseconds early or late.
+//! Each move states its duration (`\T`), so that the motion of a healthy controller is known without a
+//! model of one; the simulated robot is a few milliseconds early or late.
 
 use std::fmt::Write as _;
 
@@ -35,7 +35,7 @@ pub(super) struct Program {
     waits: Vec<f64>,
 }
 
-/// What the controller does differently.
+/// Deviations of the controller from the program.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conduct {
     /// Shares of the limits of speed and acceleration that it keeps; 1 as usual.
@@ -50,7 +50,7 @@ pub(super) struct Conduct {
 }
 
 impl Conduct {
-    /// As the program says.
+    /// No deviation.
     pub(super) fn plain() -> Conduct {
         Conduct { speed: 1.0, acceleration: 1.0, pause: None, lag: 0.0, poles: 1 }
     }

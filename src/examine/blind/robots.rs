@@ -1,5 +1,5 @@
-//! The robots of the examination: of the catalogue, with dynamics invented where the catalogue
-//! has none or only some.
+//! The robots of the examination: arms of the catalogue, with generated dynamics where the catalogue
+//! has none or incomplete ones.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -26,10 +26,10 @@ const ARMS: [&str; 10] = [
 /// Moving mass per squared reach \[kg/m²\], and the links' shares of it.
 const MASS_PER_REACH: [f64; 2] = [55.0, 110.0];
 const SHARES: [f64; 6] = [0.36, 0.28, 0.22, 0.09, 0.035, 0.015];
-/// Bearings and gears of a wrist turn with it: no link is lighter \[kg\].
+/// Least mass of a link: bearings and gears of a wrist move with it \[kg\].
 const LIGHTEST: f64 = 0.25;
 
-/// No motor is made for less at its joint \[Nm\].
+/// Least rated torque of a motor at its joint \[Nm\].
 const LEAST_TORQUE: f64 = 8.0;
 
 /// A robot with dynamics. `None` where the catalogue has none of the arms.
@@ -88,8 +88,8 @@ fn links(model: &Model, random: &mut Random) -> Vec<Link> {
 fn drives(model: &mut Model, random: &mut Random) {
     let n = model.dof;
     model.motors = None;
-    let plant = Plant::of(model);
-    let workspace = Workspace::of(model);
+    let plant = Plant::new(model);
+    let workspace = Workspace::new(model);
     let mut largest: Joints = [0.0; MAX_DOF];
     let mut inertia: Joints = [0.0; MAX_DOF];
     let still = [0.0; MAX_DOF];

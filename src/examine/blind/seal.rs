@@ -1,4 +1,4 @@
-//! Seals: a hash of each label in the open, the labels in a key.
+//! Seals: a public hash of each label; the labels themselves are in a key file.
 
 use std::fmt::Write as _;
 

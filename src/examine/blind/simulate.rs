@@ -1,6 +1,8 @@
-//! A robot with its disturbances moves, and is logged without noise.
+//! Simulation of a robot with its disturbances, logged without noise.
 
-use super::disturbance::{Action, Change, Disturbance, Moment, PowerChange};
+use super::action::{Action, Change, Moment, PowerChange};
+use super::compliance::Compliance;
+use super::fault::Disturbance;
 use super::mechanics::Joints;
 use super::model_error::ModelError;
 use super::motion::{Motion, PER_ROW, STEP_S, Sample};
@@ -12,7 +14,7 @@ const RESTS: f64 = 1e-6;
 /// Share of dry friction that stays in a gear at rest.
 const LEFT_AT_REST: f64 = 0.3;
 
-/// The electrical side.
+/// The electrical supply of the drives.
 #[derive(Clone, Debug)]
 pub(super) struct Supply {
     /// \[W\].
@@ -48,23 +50,7 @@ pub(super) fn simulate(
     variation: &[Joints],
 ) -> Vec<Row> {
     let mut plant = robot.plant.clone();
-    let mut gears: Vec<Change> = Vec::new();
-    let mut joints: Vec<Change> = Vec::new();
-    let mut torques: Vec<Change> = Vec::new();
-    let mut positions: Vec<Change> = Vec::new();
-    let mut powers: Vec<PowerChange> = Vec::new();
-    let mut compliances = Vec::new();
-    for action in robot.disturbances.iter().flat_map(|disturbance| &disturbance.actions) {
-        match action {
-            Action::Plant(change) => change(&mut plant),
-            Action::Gears(begin) => gears.push(begin()),
-            Action::Joints(begin) => joints.push(begin()),
-            Action::Torques(begin) => torques.push(begin()),
-            Action::Positions(begin) => positions.push(begin()),
-            Action::Power(begin) => powers.push(begin()),
-            Action::Compliance(compliance) => compliances.push(*compliance),
-        }
-    }
+    let (mut changes, compliances) = begun(&robot.disturbances, &mut plant);
     let mut links = motion.samples.clone();
     for compliance in compliances {
         links = deflected(&plant, &links, &compliance);
@@ -79,15 +65,6 @@ pub(super) fn simulate(
         let began = clock + cycle as f64 * motion.period_s();
         for (i, sample) in motion.samples.iter().enumerate() {
             let rate = plant.motor(&sample.qd);
-            let mut sign = [0.0; MAX_DOF];
-            for joint in 0..plant.dof {
-                if rate[joint].abs() > RESTS {
-                    held[joint] = rate[joint].signum();
-                    sign[joint] = held[joint];
-                } else {
-                    sign[joint] = LEFT_AT_REST * held[joint];
-                }
-            }
             let in_period = i as f64 * STEP_S;
             let moment = Moment {
                 t: began + in_period,
@@ -97,57 +74,108 @@ pub(super) fn simulate(
                 qd: sample.qd,
                 rate,
                 acceleration: plant.motor(&sample.qdd),
-                sign,
+                sign: dry_friction_signs(&rate, &mut held, plant.dof),
                 load: loads[i],
                 coulomb: plant.coulomb,
                 viscous: plant.viscous,
             };
-            let mut at_motors = [0.0; MAX_DOF];
-            for joint in 0..plant.dof {
-                let friction =
-                    plant.coulomb[joint] * sign[joint] + plant.viscous[joint] * rate[joint];
-                at_motors[joint] =
-                    plant.rotor[joint] * moment.acceleration[joint] + friction * factors[joint];
-            }
-            for change in &mut gears {
-                change(&moment, &mut at_motors);
-            }
-            let mut tau = rigid[i];
-            for (sum, part) in tau.iter_mut().zip(plant.at_joints(at_motors)) {
-                *sum += part;
-            }
-            for change in &mut joints {
-                change(&moment, &mut tau);
-            }
-            robot.error.add(&moment, &mut tau);
-            let mut watts: f64 = (0..plant.dof)
-                .map(|j| tau[j] * sample.qd[j] + robot.supply.loss[j] * tau[j] * tau[j])
-                .sum();
-            for change in &mut powers {
-                watts = change(&moment, &tau, watts);
-            }
-            let given_back = if watts < 0.0 { robot.supply.regeneration } else { 1.0 };
-            for change in &mut torques {
-                change(&moment, &mut tau);
-            }
+            let mut row = changes.row(robot, &plant, &moment, rigid[i], factors);
             if i % PER_ROW == 0 {
-                let mut q = sample.q;
-                for change in &mut positions {
-                    change(&moment, &mut q);
-                }
-                rows.push(Row { q, tau, power: robot.supply.base + given_back * watts });
+                apply(&mut changes.positions, &moment, &mut row.q);
+                rows.push(row);
             }
         }
     }
     rows
 }
 
+/// What disturbances change as time goes by.
+#[derive(Default)]
+struct Changes {
+    gears: Vec<Change>,
+    joints: Vec<Change>,
+    torques: Vec<Change>,
+    positions: Vec<Change>,
+    powers: Vec<PowerChange>,
+}
+
+/// Begins the changes of a log, and makes those of the plant.
+fn begun(disturbances: &[&Disturbance], plant: &mut Plant) -> (Changes, Vec<Compliance>) {
+    let mut changes = Changes::default();
+    let mut compliances = Vec::new();
+    for action in disturbances.iter().flat_map(|disturbance| &disturbance.actions) {
+        match action {
+            Action::Plant(change) => change(plant),
+            Action::Gears(begin) => changes.gears.push(begin()),
+            Action::Joints(begin) => changes.joints.push(begin()),
+            Action::Torques(begin) => changes.torques.push(begin()),
+            Action::Positions(begin) => changes.positions.push(begin()),
+            Action::Power(begin) => changes.powers.push(begin()),
+            Action::Compliance(compliance) => compliances.push(*compliance),
+        }
+    }
+    (changes, compliances)
+}
+
+impl Changes {
+    /// The row of a moment with true positions, the torques `rigid` of the bodies \[Nm\] and
+    /// `factors` of the friction.
+    fn row(
+        &mut self,
+        robot: &Robot<'_>,
+        plant: &Plant,
+        moment: &Moment,
+        rigid: Joints,
+        factors: &Joints,
+    ) -> Row {
+        let mut at_motors = [0.0; MAX_DOF];
+        for joint in 0..plant.dof {
+            let friction = plant.coulomb[joint] * moment.sign[joint]
+                + plant.viscous[joint] * moment.rate[joint];
+            at_motors[joint] =
+                plant.rotor[joint] * moment.acceleration[joint] + friction * factors[joint];
+        }
+        apply(&mut self.gears, moment, &mut at_motors);
+        let mut tau = rigid;
+        for (sum, part) in tau.iter_mut().zip(plant.at_joints(at_motors)) {
+            *sum += part;
+        }
+        apply(&mut self.joints, moment, &mut tau);
+        robot.error.add(moment, &mut tau);
+        let mut watts: f64 = (0..plant.dof)
+            .map(|j| tau[j] * moment.qd[j] + robot.supply.loss[j] * tau[j] * tau[j])
+            .sum();
+        for change in &mut self.powers {
+            watts = change(moment, &tau, watts);
+        }
+        let given_back = if watts < 0.0 { robot.supply.regeneration } else { 1.0 };
+        apply(&mut self.torques, moment, &mut tau);
+        Row { q: moment.q, tau, power: robot.supply.base + given_back * watts }
+    }
+}
+
+fn apply(changes: &mut [Change], moment: &Moment, values: &mut Joints) {
+    for change in changes {
+        change(moment, values);
+    }
+}
+
+/// Directions of dry friction; a gear at rest keeps a part of its last one, which `held` has.
+fn dry_friction_signs(rate: &Joints, held: &mut Joints, dof: usize) -> Joints {
+    let mut sign = [0.0; MAX_DOF];
+    for joint in 0..dof {
+        if rate[joint].abs() > RESTS {
+            held[joint] = rate[joint].signum();
+            sign[joint] = held[joint];
+        } else {
+            sign[joint] = LEFT_AT_REST * held[joint];
+        }
+    }
+    sign
+}
+
 /// How the links move when a gear gives way.
-fn deflected(
-    plant: &Plant,
-    motion: &[Sample],
-    compliance: &super::disturbance::Compliance,
-) -> Vec<Sample> {
+fn deflected(plant: &Plant, motion: &[Sample], compliance: &Compliance) -> Vec<Sample> {
     let joint = compliance.joint;
     let load = |sample: &Sample| {
         plant.through_gears(plant.rigid(&sample.q, &sample.qd, &sample.qdd))[joint]

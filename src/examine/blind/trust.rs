@@ -1,4 +1,4 @@
-//! How far a robot may be from its nominal model.
+//! Spread of real robots around their nominal model.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -6,7 +6,7 @@ use super::mechanics::Body;
 use super::plant::Plant;
 use super::random::Random;
 
-/// No parameter is farther from its nominal value \[standard deviations\].
+/// Largest distance of a parameter from its nominal value \[standard deviations\].
 const FARTHEST: f64 = 2.5;
 
 /// Where a nominal model is from.

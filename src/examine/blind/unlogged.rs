@@ -1,7 +1,6 @@
-//! More motions of a case's robot than its files have, without noise: what a claim is held
-//! against.
+//! Noiseless motions of a case's robot that are not in its files, as ground truth for claims.
 
-use super::case::{Bench, Settings};
+use super::bench::{Bench, Settings};
 use super::fourier::fourier;
 use super::motion::{Motion, PER_ROW, Sample};
 use super::noise::ROW_S;
@@ -9,7 +8,7 @@ use super::pick_place::pick_place;
 use super::simulate::{Row, simulate};
 use crate::arm::robot::MAX_DOF;
 
-/// Rounds until what a robot remembers of its motion has settled.
+/// Periods until the robot's states have settled.
 const ROUNDS: usize = 2;
 
 /// One period of a motion, by joint and row.
@@ -29,8 +28,8 @@ pub struct Unlogged {
     pub power: Vec<f64>,
 }
 
-/// So many other motions of the robot of a case, of the kind of its held-out log and at the same
-/// time. `None` for runs of a program, or where there is no such robot.
+/// `count` other motions of the robot of a case, of the kind of its held-out log and at the same
+/// time. `None` for runs of a program, or if the catalogue lacks the robot.
 #[must_use]
 pub fn unlogged(settings: &Settings, number: usize, count: usize) -> Option<Vec<Unlogged>> {
     let bench = Bench::drawn(settings, number).filter(|bench| !bench.with_program)?;

@@ -1,4 +1,4 @@
-//! Within which motions are drawn.
+//! The ranges in which motions are drawn.
 
 use super::mechanics::Joints;
 use crate::arm::robot::{MAX_DOF, Model};
@@ -23,7 +23,7 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    pub(super) fn of(model: &Model) -> Workspace {
+    pub(super) fn new(model: &Model) -> Workspace {
         let mut workspace = Workspace {
             dof: model.dof,
             range: [[0.0; 2]; MAX_DOF],

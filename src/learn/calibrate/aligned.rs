@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cycle::Cycle;
 use super::refusal::Refusal;
-use crate::learn::log::{Channel, Log, interpolated, median_step};
+use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step};
 
 /// Correlation of a pass with the simulated one, at least.
 const LEAST: f64 = 0.6;
@@ -18,9 +18,8 @@ const CYCLES: f64 = 200.0;
 /// Points of a cycle in the search, and in the refinement.
 const COARSE: f64 = 400.0;
 const FINE: usize = 3000;
-/// Steps of the golden section, and its ratio.
+/// Steps of the golden section.
 const SECTIONS: usize = 24;
-const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Where the simulated cycle is in a log.
 pub(super) struct Aligned {
@@ -281,11 +280,12 @@ impl Curve<'_> {
         let (mut begin, mut pace) = (begin, pace);
         for round in 0..3 {
             let reach = if round == 0 { 1.5 * step } else { 0.5 * step };
-            begin = highest(begin - reach, begin + reach, |x| fit(x, pace));
+            begin = golden_section([begin - reach, begin + reach], SECTIONS, |x| -fit(x, pace));
             let reach = PACE / PACES as f64;
             // Begin and end may change by themselves: the middle stays.
             let middle = begin + 0.5 * duration * pace;
-            pace = highest(pace - reach, pace + reach, |x| fit(middle - 0.5 * duration * x, x));
+            let from_middle = |x: f64| -fit(middle - 0.5 * duration * x, x);
+            pace = golden_section([pace - reach, pace + reach], SECTIONS, from_middle);
             begin = middle - 0.5 * duration * pace;
         }
         let segment = Segment { log: begin..begin + duration * pace, begin: 0.0, pace };
@@ -297,25 +297,6 @@ impl Curve<'_> {
         let to = self.t.partition_point(|t| *t < begin + self.cycle.duration * pace);
         from..to.max(from)
     }
-}
-
-/// Where a function with one maximum between two points has it.
-fn highest(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
-    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-    let [mut a, mut b] = inner(low, high);
-    let (mut at_a, mut at_b) = (value(a), value(b));
-    for _ in 0..SECTIONS {
-        if at_a > at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = inner(low, high)[0];
-            at_a = value(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = inner(low, high)[1];
-            at_b = value(b);
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// Correlation of two series; 0 where one does not change.

@@ -33,7 +33,7 @@ impl<'a> Cycle<'a> {
     ///
     /// # Errors
     /// It takes no time, or never ends.
-    pub(super) fn of(model: &Model, simulation: &'a Simulation) -> Result<Cycle<'a>, Refusal> {
+    pub(super) fn new(model: &Model, simulation: &'a Simulation) -> Result<Cycle<'a>, Refusal> {
         let first = simulation.repeats_from.unwrap_or(0);
         let events = simulation.events.get(first..).unwrap_or_default();
         let start = events.first().map_or(0.0, |event| event.t_start);

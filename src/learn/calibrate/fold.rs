@@ -1,4 +1,4 @@
-//! Rows of a log on the simulated cycle, in windows.
+//! Folding the rows of a log onto the simulated cycle, in windows.
 
 use std::ops::Range;
 
@@ -50,8 +50,8 @@ pub(super) fn fold(
     let power: Vec<f64> =
         log.column(Channel::Power).unwrap_or_default().iter().map(|w| w * unit).collect();
     let torques = torques.unwrap_or_default();
-    let noise = Noise::of(&power);
-    let torque_noise: Vec<Noise> = torques.iter().map(|tau| Noise::of(tau)).collect();
+    let noise = Noise::estimated(&power);
+    let torque_noise: Vec<Noise> = torques.iter().map(|tau| Noise::estimated(tau)).collect();
     let width = (cycle.duration / INSTANTS).max(median_step(t));
     let count = (cycle.duration / width).ceil() as usize + 1;
     let empty =
@@ -133,7 +133,7 @@ struct Noise {
 
 impl Noise {
     /// Of a series, from its second differences where it is small and where it is large.
-    fn of(values: &[f64]) -> Noise {
+    fn estimated(values: &[f64]) -> Noise {
         let mut sorted: Vec<f64> = values.iter().map(|x| x.abs()).collect();
         sorted.sort_by(f64::total_cmp);
         let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);

@@ -1,10 +1,10 @@
-//! What the measured power of a running program tells of its robot.
+//! Calibration of a robot by the measured power of a running program.
 //!
 //! Plausible robots ([`Spread`]) differ in the power that they take in a
-//! program. Of a log of the cabinet's power, cycles are found, folded onto the simulated cycle and
-//! averaged in windows. Then each of the plausible robots is moved to one that fits the log (randomised
+//! program. The cycles of a log of the cabinet's power are found, folded onto the simulated cycle and
+//! averaged in windows. Then each plausible robot is moved to one that fits the log (randomised
 //! maximum likelihood, D. Oliver, N. He, A. Reynolds, "Conditioning permeability fields to pressure
-//! data", ECMOR 1996): of a linear model these are exact draws of the posterior.
+//! data", ECMOR 1996): for a linear model these are exact draws of the posterior.
 
 mod aligned;
 mod cycle;
@@ -34,7 +34,7 @@ pub use refusal::Refusal;
 
 /// Robots that are moved to the log.
 const ROBOTS: usize = 128;
-/// Windows of the cycle with rows, at least.
+/// Least number of windows with rows.
 const LEAST_WINDOWS: usize = 10;
 /// Share of the variance of the power over the cycle that the fitted robot has to explain.
 const EXPLAINS: f64 = 0.75;
@@ -46,7 +46,7 @@ const AGAINST: f64 = -0.3;
 /// Deviations from the plausible robots' mean beyond which a log belongs to none of them.
 const FAR: f64 = 4.0;
 
-/// A robot as the log tells it.
+/// A calibrated robot.
 #[derive(Clone, Debug)]
 pub struct Calibrated {
     /// The robot, with its draws.
@@ -88,7 +88,7 @@ struct Folded<'a> {
 }
 
 impl<'a> Folded<'a> {
-    fn of(
+    fn new(
         model: &'a Model,
         cycle: &Cycle<'_>,
         log: &Log,
@@ -123,12 +123,12 @@ pub fn calibrate(
     let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
     let spread = Spread::of(model);
     let own = Changes::of_one(model, &Plausible::of(model));
-    let cycle = Cycle::of(model, simulation)?;
-    let rough = Folded::of(model, &cycle, log, torques)?;
-    let data = Data::of(&rough.along, &rough.windows);
+    let cycle = Cycle::new(model, simulation)?;
+    let rough = Folded::new(model, &cycle, log, torques)?;
+    let data = Data::new(&rough.along, &rough.windows);
     let likely = Fit { model, spread: &spread, along: &rough.along, data: &data }.most_likely();
     let explained = data.explained(&likely.means);
-    // The shape of the power tells the program, its size the robot.
+    // The shape of the power identifies the program, its size the robot.
     if explained < EXPLAINS && data.likeness(&rough.along.means(&own)) < ALIKE {
         return Err(Refusal::Program { explained, least: EXPLAINS });
     }
@@ -140,9 +140,9 @@ pub fn calibrate(
     // Once more, with the cycle of a robot that is near the log.
     let near = spread.robot(model, |k| likely.z[k]);
     let near = drawn(model, &near).map_err(|error| Refusal::Model { reason: error.to_string() })?;
-    let cycle = Cycle::of(&near, simulation)?;
-    let Folded { aligned, windows, along } = Folded::of(model, &cycle, log, torques)?;
-    let data = Data::of(&along, &windows);
+    let cycle = Cycle::new(&near, simulation)?;
+    let Folded { aligned, windows, along } = Folded::new(model, &cycle, log, torques)?;
+    let data = Data::new(&along, &windows);
     let fit = Fit { model, spread: &spread, along: &along, data: &data };
     let likely = fit.most_likely();
     let explained = data.explained(&likely.means);
@@ -244,7 +244,7 @@ fn centred(
         draws: names.map(|(k, latent)| (latent.name.clone(), of(k))).collect(),
         place: String::new(),
     });
-    // What the file will say is what is used.
+    // The rounded values of the file are used.
     let read = from_toml("the calibrated robot", &to_toml(&new)).and_then(with_estimates);
     read.map_err(|error| Refusal::Model { reason: error.to_string() })
 }

@@ -10,7 +10,7 @@ use crate::arm::robot::prior::{Spread, standard_normals};
 use crate::retime::energy::along::{Along, Means, Slopes};
 use crate::retime::energy::change::Changes;
 
-/// Draws start here.
+/// Seed of the draws.
 const SEED: u64 = 113;
 /// Steps of the search for a fit, and the gain below which it ends.
 const STEPS: usize = 30;
@@ -23,7 +23,7 @@ const MOST: f64 = 1e8;
 /// A draw fits if its misfit is within so many deviations of what is expected.
 const WITHIN: f64 = 4.0;
 
-/// What was measured: means of the windows, with the standard deviations of their noise.
+/// Measured window means with the standard deviations of their noise.
 pub(super) struct Data {
     power: DVector<f64>,
     power_sd: DVector<f64>,
@@ -33,7 +33,7 @@ pub(super) struct Data {
 
 impl Data {
     /// Of the windows of a log.
-    pub(super) fn of(along: &Along<'_>, windows: &Windows) -> Data {
+    pub(super) fn new(along: &Along<'_>, windows: &Windows) -> Data {
         let vector = |values: &Vec<f64>| DVector::from_column_slice(values);
         // Friction holds a joint at rest: its torque tells nothing.
         let moving = |(w, sd): (usize, &f64)| if along.moves(w) { *sd } else { f64::INFINITY };

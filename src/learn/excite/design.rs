@@ -1,6 +1,6 @@
-//! Fourier series with the most information within all limits (J. Swevers, C. Ganseman,
+//! Fourier series with the most information (D-optimal) within all limits (J. Swevers, C. Ganseman,
 //! D. Tükel, J. De Schutter, H. Van Brussel, "Optimal robot excitation and
-//! identification", IEEE T-RA 13, 1997; D-optimal).
+//! identification", IEEE T-RA 13, 1997).
 //!
 //! The variables are shapes: whatever they are, amplitudes are scaled and offsets moved so
 //! that the limits of position, speed and acceleration hold. Torque and room are held by a
@@ -45,6 +45,7 @@ const GOOD: f64 = 12.0;
 const ROOM: f64 = 0.01;
 /// Interval of the final check \[s\].
 const FINE: f64 = 0.001;
+#[cfg(feature = "internals")]
 /// States that one stands for, in the comparison with random motions.
 const EVERY: f64 = 10.0;
 /// Share by which a motion that breaks a limit between the states is made smaller.
@@ -91,15 +92,13 @@ pub struct Design {
 pub struct Designed {
     /// The motion.
     pub series: Series,
-    /// What it tells.
+    /// Its information on the base parameters.
     pub information: Information,
     /// Its extremes, every millisecond.
     pub checked: Checked,
-    /// The base parameters it was designed for.
-    pub base: BaseParameters,
 }
 
-/// What a design needs again and again.
+/// A design problem: the robot, its limits and the base parameters.
 struct Problem<'a> {
     model: &'a Model,
     settings: &'a Design,
@@ -120,7 +119,7 @@ pub fn design(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Designed, ExciteError> {
     let problem = Problem::new(model, settings)?;
-    // Where no pose has room no motion has, and the search would take long to say so.
+    // Without a pose that keeps clear there is no motion; the search would take long to find that out.
     pose(model, &problem.body())?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     let tried: Vec<DVector<f64>> = (0..TRIED).map(|_| problem.random(&mut random)).collect();
@@ -173,6 +172,7 @@ pub fn design(
 ///
 /// # Errors
 /// The robot lacks limits, or none of them keeps them.
+#[cfg(feature = "internals")]
 pub fn random_feasible(model: &Model, settings: &Design, count: usize) -> Result<f64, ExciteError> {
     let problem = Problem::new(model, settings)?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
@@ -189,7 +189,7 @@ pub fn random_feasible(model: &Model, settings: &Design, count: usize) -> Result
         }
         // As if there were one state a millisecond, as a design is judged.
         let states = series.sampled((series.period() / (EVERY * FINE)).round() as usize);
-        let value = log_det(&(work.normal.of(&states) * EVERY)).unwrap_or(f64::NEG_INFINITY);
+        let value = log_det(&(work.normal.matrix(&states) * EVERY)).unwrap_or(f64::NEG_INFINITY);
         best = Some(best.map_or(value, |best: f64| best.max(value)));
         found += 1;
         if found == count {
@@ -313,7 +313,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// By how much a motion breaks limits.
+    /// By how much a motion violates limits.
     fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>) -> f64 {
         self.excess_of(work, &self.series(x).sampled(FINER * self.states))
     }
@@ -358,8 +358,8 @@ impl<'a> Problem<'a> {
             let states: Vec<State> = series.sampled(fine);
             let checked = check(self.model, &work.body, &self.settings.load, &states);
             if checked.excess(&self.shares) == 0.0 {
-                let information = information(&work.normal.of(&states));
-                return Some(Designed { series, information, checked, base: self.base.clone() });
+                let information = information(&work.normal.matrix(&states));
+                return Some(Designed { series, information, checked });
             }
             series = series.scaled(SMALLER);
         }
@@ -369,7 +369,7 @@ impl<'a> Problem<'a> {
 
 /// log det without a poor condition.
 fn told(work: &mut Work<'_>, x: &DVector<f64>, states: &[State]) -> f64 {
-    let normal = work.normal.of(states);
+    let normal = work.normal.matrix(states);
     let told = log_det(&normal).unwrap_or(-1e4);
     let poor = (condition(&normal) / GOOD).ln().max(0.0);
     // Very large shapes are the same motion as smaller ones.

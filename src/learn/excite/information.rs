@@ -1,4 +1,4 @@
-//! What a motion tells of the base parameters.
+//! Information of a motion on the base parameters.
 
 use nalgebra::DMatrix;
 
@@ -7,13 +7,13 @@ use crate::arm::robot::{MAX_DOF, Model};
 
 use super::series::State;
 
-/// A condition that no motion has: some parameter is not told at all.
+/// Condition from which on some parameter counts as not excited.
 const BLIND: f64 = 1e12;
 
 /// Information of a motion on the base parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Information {
-    /// Number of base parameters that the motion tells.
+    /// Number of base parameters that the motion excites.
     pub rank: usize,
     /// Condition number of W with columns of one length.
     pub scaled: f64,
@@ -64,7 +64,7 @@ impl<'a> Normal<'a> {
 
     /// `WᵀW` of a motion.
     #[must_use]
-    pub(super) fn of(&mut self, states: &[State]) -> DMatrix<f64> {
+    pub(super) fn matrix(&mut self, states: &[State]) -> DMatrix<f64> {
         let rank = self.base.rank();
         let mut sum = DMatrix::zeros(rank, rank);
         let mut row = Vec::with_capacity(rank);

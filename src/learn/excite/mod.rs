@@ -1,4 +1,4 @@
-//! Motions that let a robot's parameters be told from its torques.
+//! Motions that excite a robot's dynamic parameters.
 //!
 //! [`design()`] optimises Fourier series for the information that they give, within all
 //! limits; the friction plateaus and the settings of [`Design`] make the smaller experiments.
@@ -15,7 +15,9 @@ mod stream_log;
 mod stream_test;
 
 pub use blend::{Blend, blends};
-pub use design::{Design, Designed, Focus, design, random_feasible};
+#[cfg(feature = "internals")]
+pub use design::random_feasible;
+pub use design::{Design, Designed, Focus, design};
 pub use error::ExciteError;
 pub use feasible::{Checked, Ratios, check};
 pub use information::{Information, information};

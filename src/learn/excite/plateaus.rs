@@ -1,4 +1,4 @@
-//! Joints at constant speeds, there and back: what friction does over speed.
+//! Joints at constant speeds, forward and back: friction over speed.
 
 use crate::arm::kinematics::Body;
 use crate::arm::robot::{MAX_DOF, Model};

@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_top_of_a_bent_ridge_is_found() {
+    fn the_maximum_of_a_curved_ridge_is_found() {
         let mut rosenbrock =
             |x: &DVector<f64>| -(1.0 - x[0]).powi(2) - 20.0 * (x[1] - x[0] * x[0]).powi(2);
         let start = DVector::from_vec(vec![-1.2, 1.0]);

@@ -33,12 +33,6 @@ impl Series {
         1.0 / self.base_frequency
     }
 
-    /// Number of joints.
-    #[must_use]
-    pub fn dof(&self) -> usize {
-        self.offset.len()
-    }
-
     /// The state at a time \[s\].
     #[must_use]
     pub fn at(&self, t: f64) -> State {

@@ -1,4 +1,4 @@
-//! What a log of the tests says of how the controller realises streams.
+//! How the controller realises streams, by a log of the tests.
 
 use super::stream_test::StreamTest;
 use crate::retime::motion::stream::{Joints, Stream};
@@ -8,16 +8,16 @@ use crate::retime::motion::stream::{Joints, Stream};
 const DEVIATION: f64 = 5e-3;
 /// A test lasts as stated within this share, and two rows of the log.
 const LATE: f64 = 0.02;
-/// Corners nearer to their points than this say nothing \[rad\]: a log has errors of this size.
+/// Corners nearer to their points than this are not resolved \[rad\]: a log has errors of this size.
 const CORNER: f64 = 2e-3;
 /// Share of the law's distance from the points that passes, and below which points are visited.
 const PASSES: [f64; 2] = [0.75, 1.25];
 const VISITED: f64 = 0.25;
-/// What counts as having left the start or reached the end \[rad\].
+/// Distance from the start or the end beyond which the robot moves \[rad\].
 const MOVED: f64 = 1e-3;
 /// Largest distance of a log's first position from the start of its test \[rad\].
 const START: f64 = 0.02;
-/// Largest mean distance of rows \[s\]: corners and times are not seen by fewer.
+/// Largest mean interval of rows \[s\]: a longer one does not resolve corners and times.
 const COARSEST: f64 = 0.02;
 /// Interval at which the law is compared \[s\].
 const STEP: f64 = 0.002;
@@ -36,7 +36,7 @@ pub struct Rows {
 /// What the controller does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finding {
-    /// What the law says.
+    /// As the law predicts.
     Law,
     /// It goes to the points themselves: corner zones fail.
     Visits,
@@ -54,7 +54,7 @@ pub struct Measured {
     /// How far the points are passed, as a share of what the law says; none where they are hardly
     /// missed by the law.
     pub corners: Option<f64>,
-    /// What follows.
+    /// The finding.
     pub finding: Finding,
 }
 

@@ -1,19 +1,19 @@
-//! Rows that no robot has written.
+//! Removal of rows that cannot be measurements of a robot.
 
 use crate::learn::log::{Channel, Log, Rejected};
 
-/// Largest angle, rate, acceleration, torque and current that a robot can have, in SI units.
+/// Bounds on angle, rate, acceleration, torque and current of any robot, in SI units.
 const LARGEST: [f64; 5] = [1e3, 1e3, 1e5, 1e6, 1e4];
-/// An angle off the line between its neighbours by more than this is a spike \[rad\] …
+/// Least distance of a spike from the line between its neighbours \[rad\] …
 const SPIKE: f64 = 0.1;
-/// … if it is this many times what is usual.
+/// … and least ratio of that distance to the usual one.
 const UNUSUAL: f64 = 30.0;
-/// The same of a torque, over the largest of its usual ones.
+/// Least ratio of a torque spike to the largest usual torque.
 const TORQUE: f64 = 5.0;
-/// The share of the torques that is usual.
+/// Share of the torques that counts as usual.
 const USUAL: f64 = 0.99;
 
-/// The log without rows that cannot be, and these.
+/// The log without implausible rows, and these.
 #[must_use]
 pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
     let n = log.rows.len();
@@ -56,7 +56,7 @@ pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
     (log.of_rows(&kept), rejected)
 }
 
-/// Single angles far off their neighbours.
+/// Rows of single angles far off their neighbours.
 fn spikes(q: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
     let off = |w: &[usize]| (q[w[1]] - 0.5 * (q[w[0]] + q[w[2]])).abs();
     let mut all: Vec<f64> = good.windows(3).map(off).collect();
@@ -64,7 +64,7 @@ fn spikes(q: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
     let usual = all.get(all.len() / 2).copied().unwrap_or(0.0);
     for w in good.windows(3) {
         let here = off(w);
-        // The neighbours of a spike are off by half of it.
+        // The neighbours of a spike seem to be off by half of it.
         let between = (q[w[2]] - q[w[0]]).abs();
         if here > SPIKE && here > UNUSUAL * usual && between < 0.5 * here {
             let value = q[w[1]];

@@ -1,15 +1,15 @@
-//! Torques that stand still at a limit of the drive or of the recorder while the joint goes
-//! on to change its speed: what was recorded there is the limit, not the torque.
+//! Clipped torques: constant at a limit of the drive or of the recorder while the speed of the joint
+//! goes on changing.
 
-/// Rows close together that stand at the limit, at least …
+/// Least number of nearby rows at the limit …
 const ROWS: usize = 4;
-/// … and how close: noise brings some below it.
+/// … and their largest distance, as noise brings some below it.
 const CLOSE: usize = 4;
-/// Rows at the limit for each row at the value next to it: a limit cuts off all that is
-/// beyond it, a coarse recorder does not.
+/// Least ratio of rows at the limit to rows at the value next to it: a limit collects all that is
+/// beyond it, a coarse resolution does not.
 const PILED: usize = 5;
-/// Change of the rate over such rows that shows that the joint goes on, of its largest: at
-/// constant speed a torque may stand still.
+/// Least change of the rate over such rows, over the largest rate: at constant speed a torque may
+/// be constant without clipping.
 const CHANGES: f64 = 0.02;
 
 /// Spans of time in which each joint's torque is a limit: first and last time \[s\].
@@ -30,13 +30,13 @@ pub(super) fn clipped(t: &[f64], q: &[Vec<f64>], tau: &[Vec<f64>]) -> Spans {
         .collect()
 }
 
-/// The same in one period from `start` on, where the times are those of repetitions.
+/// The spans folded into one period from `start` on.
 #[must_use]
 pub(super) fn folded(spans: &Spans, start: f64, period: f64) -> Spans {
     let fold = |[a, b]: &[f64; 2]| {
         let first = start + (a - start).rem_euclid(period);
         let last = first + (b - a).min(period);
-        // What goes beyond the end begins anew.
+        // A span that goes beyond the end continues at the beginning.
         [[first, last], [first - period, last - period]]
     };
     spans.iter().map(|of| of.iter().flat_map(fold).collect()).collect()

@@ -1,27 +1,29 @@
-//! Two recorders brought together more closely than their marks can.
+//! Fine synchronisation of two recorders, beyond the resolution of their marks.
 //!
-//! A logger sets its output after it has looked, and its marks stand between two samples: all of
-//! them can be late by the same part of an interval. The field of the motors tells the rest: the
-//! current vector stands still from a rotor only at the right time.
+//! A logger sets its output after it has sampled, so that all marks may be late by the same part of a
+//! sample interval. The motor currents give the rest: seen from the rotor, the current vector keeps
+//! its direction only at the right time shift.
 
 use crate::arm::robot::Model;
-use crate::learn::log::{Aligned, Channel, Log, Vectors, coherence, vectors};
+use crate::learn::log::{
+    Aligned, Channel, Log, Vectors, between_grid, coherence, on_grid, vectors,
+};
 
 use super::torque::motor_angle;
 
-/// Intervals of the slower recorder that are searched to each side, and steps in each.
+/// Sample intervals of the slower recorder that are searched to each side, and steps in each.
 const REACH: i32 = 2;
 const STEPS: i32 = 8;
-/// Rows that are looked at in the search, and in each piece of the time.
+/// Rows that are evaluated in the search, and in each piece of the time.
 const ROWS: usize = 2000;
-/// Pieces of the time that tell how the clocks go by each other.
+/// Pieces of the time with a shift each, from which the drift of the clocks follows.
 const PIECES: usize = 6;
-/// Steps to each side in a piece, each a sixteenth of one of the search.
+/// Steps to each side in a piece, each a sixteenth of a step of the search.
 const FINE: i32 = 32;
-/// Mean share of the vectors that has to stand still for their field to tell anything.
+/// Least mean coherence of the current vectors with the rotors.
 const TELLS: f64 = 0.6;
 
-/// The log at the time that the field tells, and what is said of it.
+/// The log with positions shifted to the times of the currents, and a sentence on how well.
 #[must_use]
 pub fn synchronised(model: &Model, aligned: Aligned) -> (Log, String) {
     let Aligned { log, marks, worst, step } = aligned;
@@ -30,20 +32,16 @@ pub fn synchronised(model: &Model, aligned: Aligned) -> (Log, String) {
         "{said}; nothing else tells the clocks: positions may be late by up to {:.1} ms",
         1e3 * step
     );
-    let Some(motors) = Motors::of(model, &log) else { return (log, alone) };
+    let Some(motors) = Motors::new(model, &log) else { return (log, alone) };
     let every = log.time().len().div_ceil(ROWS).max(1);
     let all: Vec<usize> = (0..log.time().len()).step_by(every).collect();
     let coarse = step / f64::from(STEPS);
-    let best = (-REACH * STEPS..=REACH * STEPS)
-        .map(|k| {
-            let shift = coarse * f64::from(k);
-            let (stands, pairs) = motors.stands(&all, shift, None);
-            (stands, shift, pairs)
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((stands, middle, pairs)) = best.filter(|best| best.0 > TELLS) else {
+    let turning = |shift: f64| Some(-motors.stands(&all, shift, None).0);
+    let best = on_grid(0.0, coarse, REACH * STEPS, turning);
+    let Some(middle) = best.filter(|best| -best.misfit > TELLS).map(|best| best.shift) else {
         return (log, alone);
     };
+    let (stands, pairs) = motors.stands(&all, middle, None);
     let found: Vec<[f64; 2]> = (0..PIECES)
         .filter_map(|piece| motors.of_piece(piece, middle, coarse / 16.0, &pairs))
         .collect();
@@ -67,7 +65,7 @@ struct Motors {
 }
 
 impl Motors {
-    fn of(model: &Model, log: &Log) -> Option<Motors> {
+    fn new(model: &Model, log: &Log) -> Option<Motors> {
         let motors = model.motors.as_ref()?;
         let phase = |joint: usize, phase: usize| log.column(Channel::PhaseCurrent(joint, phase));
         let vectors = (0..model.dof)
@@ -77,7 +75,7 @@ impl Motors {
         (log.time().len() > ROWS).then(|| Motors { t: log.time().to_vec(), vectors, angles })
     }
 
-    /// Mean share of the vectors that stands still, with the pole pairs of each motor.
+    /// Mean coherence of the vectors with the rotors, and the pole pairs of each motor.
     fn stands(&self, rows: &[usize], shift: f64, pairs: Option<&[i32]>) -> (f64, Vec<i32>) {
         let mut sum = 0.0;
         let mut found = Vec::with_capacity(self.vectors.len());
@@ -94,32 +92,24 @@ impl Motors {
         (sum / self.vectors.len().max(1) as f64, found)
     }
 
-    /// Time of a piece and the shift that is best there \[s\].
+    /// Time of a piece and its best shift \[s\].
     fn of_piece(&self, piece: usize, middle: f64, fine: f64, pairs: &[i32]) -> Option<[f64; 2]> {
         let count = self.t.len() / PIECES;
         let every = count.div_ceil(ROWS).max(1);
         let rows: Vec<usize> = (piece * count..(piece + 1) * count).step_by(every).collect();
-        let stands: Vec<f64> = (-FINE..=FINE)
-            .map(|k| self.stands(&rows, middle + fine * f64::from(k), Some(pairs)).0)
-            .collect();
-        let best = (1..stands.len() - 1).max_by(|a, b| stands[*a].total_cmp(&stands[*b]))?;
-        let [before, here, after] = [stands[best - 1], stands[best], stands[best + 1]];
-        // At an end there is no maximum.
-        let bend = before + after - 2.0 * here;
-        if here < TELLS || here < before || here < after || bend >= 0.0 {
-            return None;
-        }
-        let place = best as f64 - f64::from(FINE) + 0.5 * (before - after) / bend;
-        Some([self.t[rows[rows.len() / 2]], middle + fine * place])
+        let turning = |shift: f64| -self.stands(&rows, shift, Some(pairs)).0;
+        let best =
+            between_grid(middle, fine, FINE, turning).filter(|best| -best.misfit >= TELLS)?;
+        Some([self.t[rows[rows.len() / 2]], best.shift])
     }
 }
 
-/// A shift that changes with the time.
+/// A shift that is linear in time.
 struct Line {
     at_middle: f64,
     middle: f64,
     slope: f64,
-    /// Largest distance of a piece \[s\].
+    /// Largest residual of a piece \[s\].
     worst: f64,
 }
 
@@ -143,7 +133,7 @@ impl Line {
     }
 }
 
-/// The motion taken from later by `shift` of the time \[s\].
+/// The log with the motion taken from `shift` later, a function of the time \[s\].
 fn shifted(log: &Log, shift: &dyn Fn(f64) -> f64) -> Log {
     let t = log.time();
     let [first, last] = [t.first(), t.last()].map(|t| t.copied().unwrap_or_default());
@@ -166,7 +156,7 @@ fn shifted(log: &Log, shift: &dyn Fn(f64) -> f64) -> Log {
     }
 }
 
-/// The value of `x` at a time near row `from`, on the line between two rows.
+/// The value of `x` at a time near row `from`, by linear interpolation.
 fn between(t: &[f64], x: &[f64], at: f64, from: usize) -> f64 {
     let last = t.len() - 1;
     let mut i = from.min(last.saturating_sub(1));

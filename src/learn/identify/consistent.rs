@@ -1,7 +1,7 @@
-//! Parameters that a real robot can have, near those that the data determine.
+//! Physically consistent parameters near those that the data determine.
 //!
-//! A link is physically consistent where its [`pseudo_inertia`] P is positive definite. What is
-//! minimised is
+//! A link is physically consistent if its [`pseudo_inertia`] P is positive definite. The function
+//! that is minimised is
 //!
 //! ```text
 //! ½ |R (G π − β)|² + λ Σ [ tr(P₀⁻¹ P) − log det(P₀⁻¹ P) − 4 ] + λ Σ [ s/s₀ − log(s/s₀) − 1 ]
@@ -10,32 +10,33 @@
 //! with β the base parameters of the data and R their triangular factor, and the entropic
 //! divergence (T. Lee, P. Wensing, F. Park, "Geometric robot dynamic identification: a
 //! convex programming approach", T-RO 36, 2020) of each link from its prior P₀ and of each
-//! rotor and friction from its prior s₀. That is convex, and the divergence keeps every P
-//! positive definite by itself, so that Newton's method finds the one minimum.
+//! rotor and friction from its prior s₀. It is convex, and the divergence keeps every P
+//! positive definite, so that Newton's method finds the only minimum.
+//!
+//! `gap::possible` has no data but parameters of a fit, which it moves as little as it must.
 
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 
 use crate::arm::dynamics::{RIGID, body_parameters, pseudo_inertia};
 
-/// Weights of the divergence, largest first: from where anything converges to where data
-/// decide all that they can.
+/// Weights λ of the divergence, in the order of use: from one with which Newton's method converges
+/// from anywhere to one with which the data decide all that they determine.
 const WEIGHTS: [f64; 13] =
     [1e4, 1e3, 1e2, 1e1, 1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Steps of Newton's method for one weight.
+/// Largest number of Newton steps for one weight.
 const STEPS: usize = 60;
-/// Half the squared length of a step, in the measure of the function, that ends them.
+/// Newton decrement that ends them.
 const SETTLED: f64 = 1e-9;
-/// How much the root mean square of the residuals may grow for the sake of the prior, over the
-/// least of a model that can be.
+/// Largest ratio of the residuals' root mean square to the least of a consistent model.
 const GROWTH: f64 = 1.003;
-/// The same of the sum of squares in units of the noise, for each parameter: more than the data
-/// allow would make an estimate that its own intervals do not hold.
+/// Largest increase of the sum of squares, in units of the noise, for each parameter: with more the
+/// estimate would lie outside its own confidence intervals.
 const ALLOWED: f64 = 1.0;
 
-/// Least [`margin`] of a body: below it, it is flat or a point as far as numbers go.
+/// Least [`margin`] of a body: below it, the body is numerically flat or a point.
 pub(super) const BODY: f64 = 1e-9;
 
-/// What may be changed, each with its prior.
+/// A free parameter or body, with its prior.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Piece {
     /// Ten parameters of a rigid body, in the order of
@@ -56,7 +57,7 @@ impl Piece {
     }
 }
 
-/// The data: |factor (combination · π − beta)|² more than the least sum of squares.
+/// The data as a sum of squares: `least` + |factor (combination · π − beta)|².
 pub(crate) struct Target<'a> {
     /// G.
     pub combination: &'a DMatrix<f64>,
@@ -69,14 +70,13 @@ pub(crate) struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// The sum of squares of parameters.
+    /// The sum of squares at parameters π.
     pub(crate) fn squares(&self, point: &DVector<f64>) -> f64 {
         self.least + (self.factor * (self.combination * point - self.beta)).norm_squared()
     }
 }
 
-/// The parameters, piece after piece; `None` where no point was found, which takes a prior
-/// that is not positive definite.
+/// The parameters, piece after piece; `None` for a prior that is not positive definite.
 #[must_use]
 pub(crate) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVector<f64>> {
     let through = target.factor * target.combination;
@@ -91,8 +91,8 @@ pub(crate) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVecto
         let more = (&through * &point - &goal).norm_squared();
         found.push((target.least + more, point.clone()));
     }
-    // Where no robot that can be misses as little as the free fit, the least that one misses
-    // counts: with the prior off, what the data hardly tell would be anything.
+    // The reference is the least sum of squares of a consistent model, not of the unconstrained fit.
+    // Without the prior, parameters that the data hardly determine would be arbitrary.
     let least = found.iter().map(|(squares, _)| *squares).fold(f64::INFINITY, f64::min);
     let allowed = (GROWTH * GROWTH * least).min(least + ALLOWED * target.beta.len() as f64);
     found.into_iter().find(|(squares, _)| *squares <= allowed).map(|(_, point)| point)
@@ -118,7 +118,7 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// The function; `None` outside of its domain.
+    /// The value of the function; `None` outside its domain.
     fn value(&self, point: &DVector<f64>) -> Option<f64> {
         let mut sum = 0.0;
         let mut at = 0;
@@ -182,12 +182,12 @@ impl Problem<'_> {
         (gradient, hessian)
     }
 
-    /// Newton's method with steps that stay inside and go down.
+    /// Newton's method with backtracking inside the domain.
     fn minimise(&self, mut point: DVector<f64>) -> DVector<f64> {
         let Some(mut value) = self.value(&point) else { return point };
         for _ in 0..STEPS {
             let (gradient, mut hessian) = self.slope(&point);
-            // Columns of one size, or kilograms and milligrams meet in one factor.
+            // Columns are scaled to one size: units differ by orders of magnitude.
             let size: Vec<f64> =
                 hessian.diagonal().iter().map(|d| d.max(f64::MIN_POSITIVE).sqrt()).collect();
             for a in 0..size.len() {
@@ -225,7 +225,7 @@ impl Problem<'_> {
     }
 }
 
-/// Change of P with its parameter `k`.
+/// Derivative of P with respect to parameter `k`.
 fn direction(k: usize) -> Matrix4<f64> {
     let mut e = Matrix4::zeros();
     match k {
@@ -271,17 +271,17 @@ mod tests {
     }
 
     #[test]
-    fn directions_make_up_the_pseudo_inertia() {
+    fn directions_sum_to_the_pseudo_inertia() {
         let there = link_parameters(&body(3.0, [0.1, -0.2, 0.3], [0.02, 0.03, 0.04]));
         let sum: Matrix4<f64> = (0..RIGID).map(|k| direction(k) * there[k]).sum();
         assert!((sum - pseudo_inertia(&there)).norm() < 1e-14);
         assert!(margin(&there) > 0.0);
     }
 
-    /// The data ask for a moment of inertia that no body has; the answer is a body, and the
-    /// best one: a search over bodies around it finds no better.
+    /// The data ask for moments of inertia that no body has. The result is the best body: a grid
+    /// search finds none with less residuals.
     #[test]
-    fn impossible_moments_are_met_as_nearly_as_a_body_can() {
+    fn impossible_moments_give_the_nearest_body() {
         let prior = pseudo_inertia(&link_parameters(&body(2.0, [0.0; 3], [0.02, 0.02, 0.02])));
         let mut combination = DMatrix::zeros(3, RIGID);
         for (row, column) in [4, 5, 6].into_iter().enumerate() {

@@ -17,7 +17,7 @@ use crate::arm::robot::{Link, Model};
 
 use super::fit::root_mean;
 use super::guess::first_guess;
-use super::work::Identified;
+use super::identified::Identified;
 
 /// Numbers of a link: mass, centre of mass, moments about it.
 const LINK: usize = 7;
@@ -28,14 +28,14 @@ const SETTLED: f64 = 1e-9;
 /// Damping at first, its change with each step, and where no step helps any more.
 const DAMPING: [f64; 3] = [1e-3, 10.0, 1e12];
 
-/// What was found.
+/// The result of the descent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descent {
     /// Links with their axes as principal ones.
     pub links: Vec<Link>,
     /// Rotor inertia, viscous and Coulomb friction and offset of each joint.
     pub joints: Vec<f64>,
-    /// F of the guess and of what was found \[Nm\].
+    /// F of the guess and of the result \[Nm\].
     pub misses: [f64; 2],
     /// Root mean square of each joint's residuals \[Nm\].
     pub rms: Vec<f64>,
@@ -55,7 +55,7 @@ pub fn by_descent(guess: &Model, found: &Identified) -> Option<Descent> {
     let links: Vec<Link> = (0..n).map(|joint| first_guess(guess, joint)).collect();
     let all = parameters(guess, &Load::none(), Parameters::WithJoints);
     let joints = all.get(RIGID * n..).map_or_else(|| vec![0.0; JOINT * n], <[f64]>::to_vec);
-    // What every parameter does to the base parameters.
+    // The base parameters as a linear function of all parameters.
     let mut unit = vec![0.0; found.among.len()];
     let mut combination = DMatrix::zeros(base.rank(), unit.len());
     for k in 0..unit.len() {
@@ -201,7 +201,7 @@ mod tests {
     const STEP: f64 = 1e-5;
 
     #[test]
-    fn slopes_are_those_of_differences() {
+    fn the_jacobian_matches_finite_differences() {
         let x = DVector::from_fn(2 * LINK + 3, |k, _| 0.4 + (1.7 * k as f64).sin());
         let slopes = slopes(&x, 2);
         for column in 0..x.len() {

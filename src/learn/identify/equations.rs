@@ -50,12 +50,11 @@ pub struct Instant<'a> {
     pub y: &'a [f64],
     /// Torques \[Nm\].
     pub tau: &'a [f64],
-    /// Whether the equation of each joint can be used: its friction has a sense, and its
-    /// torque was recorded whole.
+    /// Whether the equation of each joint is usable: the joint moves and its torque is not clipped.
     pub usable: [bool; MAX_DOF],
 }
 
-/// What the equations are made of.
+/// The equations of motion of a robot, linear in its base parameters.
 pub struct Equations<'a> {
     /// The robot; of its numbers only the geometry and the wrist's coupling are used.
     pub model: &'a Model,
@@ -100,24 +99,24 @@ impl Equations<'_> {
     pub fn each(&self, samples: &Samples, layout: &Layout, visit: &mut dyn FnMut(&Instant<'_>)) {
         let n = self.model.dof;
         let mut rows = Rows::new(self);
-        let mut x = vec![0.0; layout.width()];
-        let mut y = vec![0.0; 2 * n];
+        let width = layout.width();
+        let mut row = vec![0.0; width + 2 * n];
         for (block, of) in samples.blocks.iter().enumerate() {
             if let Source::Filtered { cutoff } = samples.source {
                 self.filtered(samples, layout, block, cutoff, visit);
                 continue;
             }
-            for index in 0..of.len() {
-                self.instant(&mut rows, of, layout, index, &mut x, &mut y);
+            for index in 0..of.instants() {
+                self.instant(&mut rows, of, layout, index, &mut row);
                 let qd = Block::at(&of.qd, index);
                 visit(&Instant {
                     block,
                     index,
                     t: of.t[index],
                     qd,
-                    x: &x,
-                    y: &y[..n],
-                    tau: &y[n..],
+                    x: &row[..width],
+                    y: &row[width..width + n],
+                    tau: &row[width + n..],
                     usable: self.usable(samples, &qd, of, of.t[index], 0.5 * samples.step),
                 });
             }
@@ -145,11 +144,10 @@ impl Equations<'_> {
         let weights = filter.weights(0);
         let mut kept = 0;
         let reach = filter.half as f64 * samples.step;
-        for index in 0..of.len() {
+        for index in 0..of.instants() {
             let place = index % width;
             let row = &mut ring[place * span..(place + 1) * span];
-            let (x, y) = row.split_at_mut(layout.width());
-            self.instant(&mut rows, of, layout, index, x, y);
+            self.instant(&mut rows, of, layout, index, row);
             if index + 1 < width || !(index + 1 - width).is_multiple_of(every) {
                 continue;
             }
@@ -178,16 +176,17 @@ impl Equations<'_> {
         }
     }
 
+    /// Writes the coefficients, the torques less the known ones, and the torques into `row`.
     fn instant(
         &self,
         rows: &mut Rows<'_>,
         block: &Block,
         layout: &Layout,
         index: usize,
-        x: &mut [f64],
-        y: &mut [f64],
+        row: &mut [f64],
     ) {
         let n = self.model.dof;
+        let (x, y) = row.split_at_mut(layout.width());
         let [q, qd, qdd] = [&block.q, &block.qd, &block.qdd].map(|series| Block::at(series, index));
         rows.write(&q[..n], &qd[..n], &qdd[..n]);
         let known = self.known_torque(&mut rows.data, &q[..n], &qd[..n], &qdd[..n]);
@@ -218,10 +217,9 @@ impl Equations<'_> {
         }
     }
 
-    /// A joint at rest takes any friction up to the static one, so its equation says
-    /// nothing. With a coupled wrist the motor of axis 6 has to turn too.
-    ///
-    /// Nor does one whose torque stands at a limit within `reach` of the time \[s\].
+    /// A joint at rest may have any friction up to the static one, so that its equation is not usable.
+    /// With a coupled wrist the motor of axis 6 has to turn, too. An equation with a torque at a limit
+    /// within `reach` of the time \[s\] is not usable either.
     fn usable(
         &self,
         samples: &Samples,
@@ -248,7 +246,7 @@ impl Equations<'_> {
     }
 }
 
-/// Of so many samples one is kept behind the filter.
+/// One of this many samples is kept behind the filter.
 #[must_use]
 pub(super) fn thinning(step: f64, cutoff: f64) -> usize {
     (1.0 / (KEPT_PER_PERIOD * cutoff * step)).floor().max(1.0) as usize

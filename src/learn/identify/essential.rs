@@ -1,18 +1,18 @@
-//! Which parameters carry the fit, and which ones are hard to tell apart.
+//! Which parameters the fit needs, and which ones are collinear.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::fit::Fit;
 
-/// A parameter within so many standard deviations of 0 carries nothing.
+/// Standard deviations from 0 within which a parameter is not significant.
 const CARRIES: f64 = 2.0;
 /// A condition index from which on parameters count as hard to tell apart (D. Belsley,
 /// E. Kuh, R. Welsch, "Regression diagnostics", 1980).
 const INDEX: f64 = 30.0;
-/// Share of its variance that a parameter has to have in such a direction.
+/// Least share of a parameter's variance in a collinear direction.
 const SHARE: f64 = 0.5;
 
-/// Parameters that are hard to tell apart.
+/// Collinear parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collinear {
     /// Condition index of their direction.
@@ -27,7 +27,7 @@ pub struct Collinear {
 pub fn essential(fit: &Fit) -> Vec<usize> {
     let solution = &fit.solution;
     let white = solution.inverse_normal();
-    // What coloured noise adds to the variance of each parameter.
+    // Factor by which coloured noise increases the variance of each parameter.
     let count = solution.determined.len();
     let more: Vec<f64> = (0..count)
         .map(|k| (fit.covariance[(k, k)] / white[(k, k)]).max(f64::MIN_POSITIVE))
@@ -50,7 +50,7 @@ pub fn essential(fit: &Fit) -> Vec<usize> {
     kept.into_iter().map(|k| solution.determined[k]).collect()
 }
 
-/// Groups of parameters that the motion hardly tells apart.
+/// Groups of parameters that the motion hardly separates.
 #[must_use]
 pub fn collinear(fit: &Fit) -> Vec<Collinear> {
     let solution = &fit.solution;

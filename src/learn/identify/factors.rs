@@ -23,7 +23,7 @@ pub struct Factors {
 impl Factors {
     /// Of the samples, in `parts` parts of equal duration.
     #[must_use]
-    pub fn of(equations: &Equations<'_>, samples: &Samples, parts: usize) -> Factors {
+    pub fn new(equations: &Equations<'_>, samples: &Samples, parts: usize) -> Factors {
         let layout = equations.layout();
         let joints = layout.columns.len();
         let new = || layout.columns.iter().map(|of| Triangle::new(of.len())).collect();

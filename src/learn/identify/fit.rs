@@ -13,25 +13,25 @@ use super::whiteness::{Whiteness, whiteness};
 
 /// Parts of the time for cross-validation.
 const PARTS: usize = 5;
-/// Equations for each unknown at least.
+/// Least number of equations for each unknown.
 const LEAST: usize = 2;
-/// Rounds of reweighting at most.
+/// Largest number of reweighting rounds.
 const ROUNDS: usize = 20;
-/// Relative change of a weight that ends them.
+/// Relative change of the weights that ends them.
 const SETTLED: f64 = 1e-4;
-/// Instants from which the effect of coloured noise on the parameters is computed.
+/// Instants from which the effect of coloured noise on the covariance is computed.
 const INSTANTS: usize = 6000;
-/// Residuals with this many times the variance of the noise have more in them.
+/// Ratio of residual variance to noise variance from which the residuals hold model error.
 const MISSES: f64 = 1.5;
-/// Length of the pieces that they are taken in, in lags of the noise.
+/// Length of a piece of consecutive instants, in lags of the noise.
 const PIECE: usize = 12;
 
 /// How the joints are weighted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
-    /// All equations alike: ordinary least squares.
+    /// Equal weights: ordinary least squares.
     Ordinary,
-    /// Each joint by the deviation of its residuals, found by repetition.
+    /// Each joint by the standard deviation of its residuals, iteratively.
     Joint,
 }
 
@@ -42,35 +42,33 @@ pub struct Fit {
     pub solution: Solution,
     /// Covariance of the determined parameters.
     pub covariance: DMatrix<f64>,
-    /// Standard deviation of each joint's equations \[Nm\].
-    pub sigma: Vec<f64>,
     /// Condition of the weighted equations.
     pub condition: Condition,
     /// Usable equations of each joint.
     pub rows: Vec<usize>,
     /// Root mean square of each joint's residuals \[Nm\].
     pub rms: Vec<f64>,
-    /// The same over that of the torque \[1\].
+    /// `rms` over the root mean square of the torque \[1\].
     pub relative_rms: Vec<f64>,
-    /// The same as `rms` on parts that the fit did not see.
+    /// Root mean square of held-out residuals \[Nm\].
     pub cross_rms: Vec<f64>,
-    /// Whether `cross_rms` is of repetitions that the fit did not see, one instant of a
-    /// repetition each; else of fifths of the time.
+    /// Whether `cross_rms` is over held-out repetitions, one instant of a repetition each; else over
+    /// held-out fifths of the time.
     pub over_repetitions: bool,
-    /// Autocorrelation of each joint's residuals from one instant to the next.
+    /// Autocorrelation of each joint's residuals at lag 1.
     pub memory: Vec<f64>,
-    /// The same over several instants; `None` where a joint has too few.
+    /// Whiteness of each joint's residuals; `None` with too few instants.
     pub whiteness: Vec<Option<Whiteness>>,
     /// The equations.
     pub factors: Factors,
-    /// What each part of the data is predicted from.
+    /// The folds of cross-validation.
     pub(super) held_out: HeldOut,
 }
 
-/// The data in parts, each of which is predicted from the others.
+/// The folds of cross-validation.
 #[derive(Clone, Debug)]
 pub(super) struct HeldOut {
-    /// Groups of repetitions; without any the parts of the time.
+    /// Groups of repetitions; `None`: parts of the time.
     folds: Option<Vec<Fold>>,
 }
 
@@ -107,10 +105,10 @@ pub fn fit(
     weighting: Weighting,
 ) -> Result<Fit, IdentifyError> {
     let unknowns = equations.base.rank();
-    let factors = Factors::of(equations, samples, PARTS);
+    let factors = Factors::new(equations, samples, PARTS);
     let rows = factors.rows_without(None);
     let count: usize = rows.iter().sum();
-    // As many as unknowns fit anything.
+    // As many equations as unknowns can always be met.
     if count < LEAST * unknowns {
         return Err(IdentifyError::TooFew { equations: count, unknowns });
     }
@@ -136,26 +134,25 @@ pub fn fit(
         covariance,
         memory,
         whiteness,
-        sigma,
         rows,
         solution,
         factors,
     })
 }
 
-/// Root mean square of each joint's residuals in a fit without anything else \[Nm\].
+/// Root mean square of each joint's residuals in a fit without standard errors \[Nm\].
 pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
     let (solution, _) = reweighted(factors, Weighting::Joint, unknowns);
     root_mean(&factors.residual_squares(&solution.beta, None), &factors.rows_without(None))
 }
 
-/// Root mean squares; not a number where there are none.
+/// Root mean squares; NaN without rows.
 #[must_use]
 pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
     squares.iter().zip(rows).map(|(sum, n)| (sum / *n as f64).sqrt()).collect()
 }
 
-/// The solution, and the deviation of each joint \[Nm\].
+/// The solution, and the standard deviation of each joint's residuals \[Nm\].
 pub(super) fn reweighted(
     factors: &Factors,
     weighting: Weighting,
@@ -176,7 +173,7 @@ pub(super) fn reweighted(
                 let n = rows[joint] as f64;
                 let torque: f64 = factors.squares.iter().map(|part| part[joint]).sum();
                 let found = (squares[joint] / (n - lost[joint]).max(1.0)).sqrt();
-                // Data without noise have rounding errors left.
+                // Noiseless data leave rounding errors.
                 found.max(1e-9 * (torque / n.max(1.0)).sqrt()).max(1e-12)
             })
             .collect();
@@ -191,7 +188,7 @@ pub(super) fn reweighted(
     (solution, sigma)
 }
 
-/// How many parameters were fitted to the equations of each joint.
+/// Degrees of freedom that the fit takes from the equations of each joint.
 fn lost(factors: &Factors, solution: &Solution, weights: &[f64]) -> Vec<f64> {
     let inverse = solution.inverse_normal();
     let place = |column: &usize| solution.determined.iter().position(|known| known == column);
@@ -262,8 +259,8 @@ fn errors(
         residuals.iter().zip(&lost).map(|(e, lost)| autocovariance(e, *lost)).collect();
     if let Some(known) = &samples.noise {
         for (found, known) in noise.iter_mut().zip(known) {
-            // What repetitions tell is free of what was fitted; where much more is left, the
-            // model misses something, and that counts.
+            // The noise of repetitions does not depend on the fit. Much larger residuals are model error,
+            // which has to count.
             if found[0] < MISSES * known[0] {
                 found.clone_from(known);
             }
@@ -280,8 +277,15 @@ fn errors(
     if white && weighting == Weighting::Joint && samples.noise.is_none() {
         return Errors { covariance: inverse, memory, whiteness };
     }
-    let middle = between(equations, samples, factors, solution, weights, &noise, instants);
+    let noise = Noise { weights, autocovariances: &noise };
+    let middle = between(equations, samples, factors, solution, &noise, instants);
     Errors { covariance: &inverse * middle * &inverse, memory, whiteness }
+}
+
+/// Noise of each joint's equations: w, 1 over its deviation, and the autocovariances Ω.
+struct Noise<'a> {
+    weights: &'a [f64],
+    autocovariances: &'a [Vec<f64>],
 }
 
 /// Σ w⁴ Xᵀ Ω X over the joints, from pieces of the log.
@@ -290,18 +294,17 @@ fn between(
     samples: &Samples,
     factors: &Factors,
     solution: &Solution,
-    weights: &[f64],
-    noise: &[Vec<f64>],
+    noise: &Noise<'_>,
     instants: usize,
 ) -> DMatrix<f64> {
     let layout = &factors.layout;
-    let lags = noise.iter().map(Vec::len).max().unwrap_or(1);
+    let lags = noise.autocovariances.iter().map(Vec::len).max().unwrap_or(1);
     let piece = (PIECE * lags).max(200);
     let pieces = (INSTANTS / piece).max(2);
     let period = (instants / pieces).max(piece);
     let unknowns = solution.beta.len();
     let mut middle = DMatrix::zeros(unknowns, unknowns);
-    let mut used = vec![0_usize; weights.len()];
+    let mut used = vec![0_usize; noise.weights.len()];
     // The rows of the piece that is being read, unusable ones as zeros.
     let mut rows: Vec<f64> = Vec::new();
     let width = layout.width();
@@ -309,7 +312,7 @@ fn between(
     let mut block = 0;
     let mut close = |rows: &mut Vec<f64>| {
         if !rows.is_empty() {
-            add_piece(&mut middle, rows, width, factors, weights, noise);
+            add_piece(&mut middle, rows, width, factors, noise);
         }
         rows.clear();
     };
@@ -334,7 +337,7 @@ fn between(
         number += 1;
     });
     close(&mut rows);
-    // Pieces stand for the whole.
+    // The pieces are a sample of all instants.
     let all: usize = factors.rows_without(None).iter().sum();
     let share = all as f64 / used.iter().sum::<usize>().max(1) as f64;
     let kept = middle.select_columns(&solution.determined).select_rows(&solution.determined);
@@ -346,8 +349,7 @@ fn add_piece(
     rows: &[f64],
     width: usize,
     factors: &Factors,
-    weights: &[f64],
-    noise: &[Vec<f64>],
+    noise: &Noise<'_>,
 ) {
     let count = rows.len() / width;
     let mut from = 0;
@@ -357,7 +359,7 @@ fn add_piece(
         for k in 0..columns.len() {
             let column = x.column(k);
             let mut to = coloured.column_mut(k);
-            for (lag, covariance) in noise[joint].iter().enumerate().take(count) {
+            for (lag, covariance) in noise.autocovariances[joint].iter().enumerate().take(count) {
                 for i in 0..count - lag {
                     to[i] += covariance * column[i + lag];
                     if lag > 0 {
@@ -366,7 +368,7 @@ fn add_piece(
                 }
             }
         }
-        let product = x.tr_mul(&coloured) * weights[joint].powi(4);
+        let product = x.tr_mul(&coloured) * noise.weights[joint].powi(4);
         for (a, to) in columns.iter().enumerate() {
             for (b, other) in columns.iter().enumerate() {
                 middle[(*to, *other)] += product[(a, b)];

@@ -1,4 +1,4 @@
-//! What a link is taken for before anything was measured.
+//! Priors of the links before identification.
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
@@ -6,15 +6,15 @@ use super::consistent::{BODY, margin};
 use crate::arm::dynamics::{Load, body_parameters, link_of, link_parameters, pseudo_inertia};
 use crate::arm::robot::{Link, Model};
 
-/// Density of an arm, with what is hollow in it \[kg/m³\].
+/// Mean density of an arm, hollow parts included \[kg/m³\].
 const DENSITY: f64 = 1500.0;
 /// Slenderness of a link: its radius over its length.
 const SLENDER: f64 = 0.25;
 /// Least length of a link \[m\].
 const SHORTEST: f64 = 0.1;
 
-/// The pseudo-inertia that a link has before anything was measured: that of the model where
-/// it is one of a body, else of a bar to the next joint.
+/// The prior pseudo-inertia of a link: that of the model if it is physically consistent, else of a
+/// bar to the next joint.
 pub(super) fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
     if let Some(link) = model.links.get(joint) {
         let values = link_parameters(link);

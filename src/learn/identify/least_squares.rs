@@ -1,8 +1,8 @@
-//! Weighted least squares with a rank that the data decide.
+//! Least squares with numerical rank determination.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A column of which less than this share is new counts as a combination of those before.
+/// A column whose part orthogonal to the columns before is below this share is dependent on them.
 const TOLERANCE: f64 = 1e-7;
 
 /// The solution of stacked equations.
@@ -31,7 +31,7 @@ impl Solution {
         &inverse * inverse.transpose()
     }
 
-    /// How long a determined column is in the combination `parts` of them, over the whole \[1\].
+    /// Length of column `of` in the combination `parts`, over the length of the whole \[1\].
     #[must_use]
     pub fn share(&self, parts: &[(usize, f64)], of: usize) -> f64 {
         let mut whole = DVector::zeros(self.factor.nrows());
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_combination_and_a_column_of_zeros_are_found() {
+    fn dependent_and_zero_columns_are_found() {
         let value = |i: usize, k: usize| (0.7 * (i * 3 + k) as f64).sin() + 0.2 * k as f64;
         let stacked = DMatrix::from_fn(40, 6, |i, k| match k {
             2 => 2.0 * value(i, 0) - 3.0 * value(i, 1),

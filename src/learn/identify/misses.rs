@@ -1,22 +1,22 @@
-//! How far a model is from measured torques.
+//! Residuals of a model on measured torques.
 
 use nalgebra::DVector;
 
 use super::factors::Factors;
 use super::fit::root_mean;
 
-/// Errors on samples, by joint.
+/// Residuals on samples, by joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Misses {
     /// Root mean square of the residuals \[Nm\].
     pub rms: Vec<f64>,
-    /// The same over that of the torque \[1\].
+    /// `rms` over the root mean square of the torque \[1\].
     pub relative: Vec<f64>,
 }
 
 impl Misses {
-    /// Those of base parameters β on the samples of some factors.
-    pub(super) fn of(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
+    /// The residuals of base parameters β on the samples of some factors.
+    pub(super) fn new(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
         let joints = factors.first().map_or(0, |of| of.layout.columns.len());
         let (mut squares, mut torque, mut rows) =
             (vec![0.0; joints], vec![0.0; joints], vec![0; joints]);

@@ -1,7 +1,7 @@
-//! From measured logs to a robot's dynamic model, with standard errors.
+//! A robot's dynamic model from measured logs, with standard errors.
 //!
-//! [`prepare`] makes instants of a log, [`Equations`] the rows of the equations of motion,
-//! [`fit`] the base parameters, [`identify`] a model that can be.
+//! [`prepare`] turns a log into instants, [`Equations`] writes the equations of motion at these,
+//! [`fit`] solves them for the base parameters, [`identify`] makes a physically consistent model.
 
 mod clean;
 mod clipped;
@@ -14,19 +14,23 @@ mod essential;
 mod factors;
 mod fit;
 mod guess;
+mod identified;
 mod least_squares;
 mod misses;
 mod names;
+mod nearest;
 mod noise;
+mod pipeline;
 mod prepare;
 mod quality;
 mod repetitions;
 mod samples;
+mod settings;
 mod torque;
 mod triangle;
 mod units;
+mod updated;
 mod whiteness;
-mod work;
 mod wrist;
 
 pub use clean::cleaned;
@@ -38,12 +42,14 @@ pub use error::IdentifyError;
 pub use essential::{Collinear, collinear, essential};
 pub use factors::Factors;
 pub use fit::{Fit, Weighting, fit};
+pub use identified::Identified;
 pub use least_squares::{Condition, Solution};
 pub use misses::Misses;
+pub use pipeline::identify;
 pub use prepare::{Hints, prepare};
 pub use quality::{Grade, Quality};
 pub use samples::{Block, Samples, Source};
+pub use settings::{Free, Settings};
 pub use torque::{Torques, per_ampere, torques};
 pub use units::{beyond_range, check_angles, check_torques, weight_factor};
 pub use whiteness::Whiteness;
-pub use work::{Free, Identified, Settings, identify};

@@ -1,15 +1,15 @@
-//! What an estimate is of, in words.
+//! Names of estimated parameter combinations.
 
 use std::fmt::Write;
 
-use super::work::Identified;
+use super::identified::Identified;
 
-/// Share of a column from which on it counts as a part of another one.
+/// Least share of a column in a combination for it to be named.
 const PART: f64 = 1e-4;
 
 impl Identified {
-    /// The combination of parameters that the value of base parameter `row` is of: its own, and
-    /// what this motion does not tell from it.
+    /// The combination of parameters that base parameter `row` stands for: its own, and those that this
+    /// motion does not separate from it.
     #[must_use]
     pub fn name(&self, row: usize) -> String {
         let mut name = self.base.name(row);

@@ -1,4 +1,4 @@
-//! Noise that is not white: autocovariances, by an autoregressive model.
+//! Autocovariances of coloured noise, by an autoregressive model.
 
 /// Largest order of the model.
 const MAX_ORDER: usize = 24;
@@ -6,10 +6,10 @@ const MAX_ORDER: usize = 24;
 const MAX_LAG: usize = 300;
 /// An autocovariance below this share of the variance ends the sequence.
 const NEGLIGIBLE: f64 = 0.005;
-/// Share of the mean density of power that a noise has at each frequency at least: how empty a
-/// band is, is known no better.
+/// Least power spectral density at any frequency, over the mean: an empty band cannot be resolved
+/// better.
 const EMPTY: f64 = 0.05;
-/// Frequencies at which the density is looked at.
+/// Frequencies at which the density is evaluated.
 const FREQUENCIES: usize = 1024;
 
 /// A residual with its place: piece of the log, number of the instant, value.
@@ -29,15 +29,15 @@ pub(super) fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
     let sample = autocovariances(residuals, orders, correction);
     let model = levinson(&sample, n);
     let mut sequence = extended(&sample, &model);
-    // Of a sequence that was cut off, the density of power may be below zero somewhere, and so
-    // would be the variance of a parameter.
+    // A truncated sequence may have a negative spectral density, which would make variances of
+    // parameters negative.
     let least = least_density(&sequence);
     sequence[0] += (EMPTY * sequence[0] - least).max(0.0);
     sequence
 }
 
-/// The least density of power of a noise with such autocovariances, over that of white noise
-/// with a variance of 1.
+/// The least power spectral density of noise with these autocovariances, over that of white noise of
+/// variance 1.
 fn least_density(sequence: &[f64]) -> f64 {
     let density = |frequency: usize| -> f64 {
         let step = std::f64::consts::PI * frequency as f64 / FREQUENCIES as f64;
@@ -63,8 +63,7 @@ pub(super) fn autocovariances(residuals: &[Residual], lags: usize, correction: f
     sums.iter().map(|sum| correction * sum / n).collect()
 }
 
-/// Coefficients a of e(t) = Σ aₖ e(t − k) + white noise, of the order with the least BIC: one
-/// that is too high takes what the fit took for memory.
+/// Coefficients a of e(t) = Σ aₖ e(t − k) + white noise, of the order with the least BIC.
 fn levinson(covariance: &[f64], n: f64) -> Vec<f64> {
     let mut variance = covariance[0];
     let mut a: Vec<f64> = Vec::new();
@@ -133,9 +132,9 @@ mod tests {
         assert!(found[1..].iter().all(|x| x.abs() < SAMPLED), "{found:?}");
     }
 
-    /// Differences of white noise have no power at rest: a mean of them must still have a variance.
+    /// Differences of white noise have no power at frequency 0, but their mean must have a variance.
     #[test]
-    fn no_sum_of_noise_has_a_variance_below_zero() {
+    fn sums_of_noise_have_a_positive_variance() {
         let white = noise(20_000, 0.0);
         let rough: Vec<Residual> =
             white.windows(3).map(|w| (0, w[0].1, w[2].2 - 2.0 * w[1].2 + w[0].2)).collect();

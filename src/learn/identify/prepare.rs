@@ -1,7 +1,7 @@
-//! From a log to the instants at which equations are written down.
+//! From a log to the instants at which the equations of motion are written.
 
 use crate::learn::log::{
-    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step,
+    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step, range,
     sections,
 };
 
@@ -12,8 +12,8 @@ use super::samples::{Block, Samples, Source};
 
 /// Share of the power of the motion that its bandwidth holds.
 const SHARE: f64 = 0.95;
-/// Cut-off frequency of the filter over the bandwidth of the motion: friction changes its
-/// sense faster than the motion.
+/// Cut-off frequency of the filter over the bandwidth of the motion: friction has a wider band than
+/// the motion.
 const CUTOFF: f64 = 8.0;
 /// Largest cut-off frequency, relative to the sampling rate.
 const HIGHEST: f64 = 0.125;
@@ -32,11 +32,11 @@ const THINNED: f64 = 400.0;
 const PASSED: f64 = 0.4;
 /// Periods of that cut-off frequency over which its kernel spreads a step.
 const SMEARED: f64 = 1.0;
-/// A first repetition that misses the others by this much more than they do each other is
-/// still settling.
+/// Ratio of the first repetition's squared deviation from the mean to that of the others from which
+/// it counts as settling.
 const SETTLING: f64 = 4.0;
 
-/// What is known of a log beside its columns.
+/// What is known about a log beside its columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hints {
     /// Duration of a repetition \[s\].
@@ -81,23 +81,16 @@ fn owned(log: &Log, channel: fn(usize) -> Channel) -> Option<Vec<Vec<f64>>> {
     Some(log.of_joints(channel)?.into_iter().map(<[f64]>::to_vec).collect())
 }
 
-fn range(x: &[f64]) -> f64 {
-    let (low, high) = x
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    high - low
-}
-
 /// Rates between samples \[rad/s\].
 fn changes(x: &[f64], step: f64) -> Vec<f64> {
     x.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect()
 }
 
-/// A joint that rests does so exactly, so that nothing is read into its noise.
+/// Sets the motion of resting joints to exact rest, so that encoder noise does not count.
 fn still(samples: &mut Samples) {
     for block in &mut samples.blocks {
         for joint in &samples.resting {
-            let mean = block.q[*joint].iter().sum::<f64>() / block.len().max(1) as f64;
+            let mean = block.q[*joint].iter().sum::<f64>() / block.instants().max(1) as f64;
             block.q[*joint].fill(mean);
             block.qd[*joint].fill(0.0);
             block.qdd[*joint].fill(0.0);
@@ -117,18 +110,18 @@ fn differentiated(
     let all: Vec<&[f64]> =
         q.iter().chain(tau).chain(qd.unwrap_or_default()).map(Vec::as_slice).collect();
     let sections = sections(log.time(), &all);
-    // How long a thinned torque remembers that a joint turned back \[s\].
+    // Time over which thinning smears the reversal of a joint \[s\].
     let smeared = sections.first().map_or(0.0, |section| {
         thinning(section).map_or(0.0, |every| SMEARED * every as f64 * section.step / PASSED)
     });
     let sections: Vec<Section> = sections.iter().map(thinned).collect();
-    let Some(longest) = sections.iter().max_by_key(|section| section.len()) else {
+    let Some(longest) = sections.iter().max_by_key(|section| section.samples()) else {
         return Err(IdentifyError::Short { seconds: 0.0 });
     };
     let step = longest.step;
     let known = hints.period.or_else(|| of_cycles(log));
     let positions: Vec<&[f64]> = longest.series[..joints].iter().map(Vec::as_slice).collect();
-    // A motion that does not repeat as was said may repeat otherwise.
+    // A motion that does not repeat with the given period may have another one.
     let found = |known| find_periods(&positions, step, known);
     if hints.cutoff.is_none()
         && let Some(periods) = found(known).or_else(|| known.and_then(|_| found(None)))
@@ -158,7 +151,7 @@ fn differentiated(
     let blocks: Vec<Block> = sections
         .iter()
         // Twice the kernel, and some instants to use.
-        .filter(|section| section.len() > 3 * filter.width())
+        .filter(|section| section.samples() > 3 * filter.width())
         .map(|section| block(section, joints, &filter, clipped))
         .collect();
     if blocks.is_empty() {
@@ -176,18 +169,18 @@ fn differentiated(
     })
 }
 
-/// Of so many samples one is kept; `None` where all are.
+/// One of this many samples is kept; `None`: all are.
 fn thinning(section: &Section) -> Option<usize> {
     let fast = section.step * FASTEST <= 1.0;
     fast.then(|| (1.0 / (section.step * THINNED)).floor().max(2.0) as usize)
 }
 
-/// The section at a rate that is worth computing with.
+/// The section at a lower sampling rate, where it is needlessly high.
 fn thinned(section: &Section) -> Section {
     let Some(every) = thinning(section) else { return section.clone() };
     let step = section.step * every as f64;
     let filter = LowPass::new(PASSED / step, section.step);
-    if section.len() < 2 * filter.width() {
+    if section.samples() < 2 * filter.width() {
         return section.clone();
     }
     let of = |x: &Vec<f64>| -> Vec<f64> {
@@ -205,7 +198,7 @@ fn thinned(section: &Section) -> Section {
     }
 }
 
-/// The period that a column of repetitions tells \[s\].
+/// The period by the column `cycle` \[s\].
 fn of_cycles(log: &Log) -> Option<f64> {
     let cycle = log.column(Channel::Cycle)?;
     let t = log.time();
@@ -235,7 +228,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
                 .enumerate()
                 .flat_map(|(r, of)| of.iter().enumerate().map(move |(k, e)| (r, k, *e)))
                 .collect();
-            // A mean was taken off; the noise of the mean is smaller by their number.
+            // The mean was subtracted; its noise variance is that of a repetition over their number.
             let lost = residuals.len() as f64 / count;
             autocovariance(&residuals, lost).iter().map(|c| c / count).collect()
         })
@@ -267,7 +260,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
     }
 }
 
-/// Whether the first repetition misses the mean by far more than the others.
+/// Whether the first repetition deviates far more from the mean than the others.
 fn is_settling(spread: &[Vec<Vec<f64>>]) -> bool {
     let power = |x: &Vec<f64>| x.iter().map(|e| e * e).sum::<f64>();
     spread.iter().any(|repetitions| {
@@ -292,7 +285,7 @@ fn block(section: &Section, joints: usize, filter: &LowPass, clipped: &Spans) ->
         .collect();
     let t: Vec<f64> = (0..count).map(|i| section.time(i + filter.half)).collect();
     let here =
-        |span: &&[f64; 2]| span[1] >= section.start && span[0] <= section.time(section.len());
+        |span: &&[f64; 2]| span[1] >= section.start && span[0] <= section.time(section.samples());
     let clipped = clipped.iter().map(|of| of.iter().filter(here).copied().collect()).collect();
     Block { t, q, qd, qdd, tau, clipped }
 }

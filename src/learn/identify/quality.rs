@@ -1,8 +1,10 @@
-//! How much of the torques a model explains, and whether that is a model at all.
+//! How much of the measured torques a model explains, and the grade that follows.
 
 use std::fmt::Write;
 
 use nalgebra::DVector;
+
+use crate::learn::log::{downhill, on_grid, vertex};
 
 use super::equations::Equations;
 use super::factors::Factors;
@@ -11,39 +13,37 @@ use super::misses::Misses;
 use super::samples::{Block, Samples};
 use super::whiteness::Whiteness;
 
-/// Mean share of the torques' variance that a good model explains, and a fair one.
+/// Least mean share of the torques' variance that a good model explains, and a fair one.
 const GOOD: f64 = 0.9;
 const FAIR: f64 = 0.7;
-/// The same of the joint that is explained least.
+/// Least share at the joint that a good model explains least.
 const GOOD_WORST: f64 = 0.87;
-/// How many times the residuals of the free fit those of a model that can be have where signs or
-/// columns may be wrong, and where they are.
+/// Residuals of the physically consistent model over those of the unconstrained fit from which signs
+/// or columns may be wrong, and from which they are.
 const ASTRAY: [f64; 2] = [1.5, 3.0];
-/// A model that explains less is none.
+/// Least mean share below which there is no model.
 const NONE: f64 = 0.25;
-/// Of a joint that is explained so well nothing is missed.
+/// Share above which the residuals of a joint may be rounding.
 const EXACT: f64 = 0.999;
-/// A friction below zero by so many deviations is none.
+/// Standard deviations by which a friction has to be below 0 to be surely negative.
 const SURE: f64 = 5.0;
-/// Largest shift in time that is tried, and the steps it is tried in, first and then \[s\].
+/// Largest time shift that is tried, and the coarse and the fine step \[s\].
 const SHIFT: f64 = 1.0;
 const STEPS: [f64; 2] = [0.05, 0.01];
-/// Instants that tell a shift.
+/// Instants from which a shift is estimated.
 const INSTANTS: usize = 3000;
-/// Least variance of a torque, over its mean square.
+/// Least variance of a torque over its mean square.
 const LEAST: f64 = 1e-3;
-/// Share of the residuals' power that a shift has to take away to be told, a long and a short
-/// one.
+/// Share of the residuals' power that a shift has to remove to be reported: a long one, a short one.
 const GAIN: f64 = 0.5;
 const LITTLE: f64 = 0.05;
-/// First step of the search for a short shift, the longest one found so, and the shortest that
-/// is told \[s\].
+/// Step of the search for a short shift, its largest and its smallest result \[s\].
 const SHORT: f64 = 0.01;
 const LONGEST: f64 = 0.4;
 const TOLD: f64 = 0.003;
-/// Share by which the residuals' power of a joint may grow with a shift of the clocks.
+/// Share by which a shift may increase the residuals' power of a joint.
 const SPOILED: f64 = 0.1;
-/// Residuals that noise has with less than this probability have more in them.
+/// p-value of the whiteness test below which residuals are not white.
 const WHITE: f64 = 1e-3;
 
 /// How good a model is.
@@ -51,40 +51,39 @@ const WHITE: f64 = 1e-3;
 pub enum Grade {
     /// It explains the torques.
     Good,
-    /// Mostly.
+    /// It explains most of the torques.
     Fair,
-    /// Something else is in them.
+    /// It misses much of the torques.
     Poor,
-    /// No robot that can be has such torques.
+    /// No physically possible robot has such torques.
     None,
 }
 
-/// A statement of how good a model is.
+/// How well a model explains measured torques.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
-    /// In a word.
+    /// The grade.
     pub grade: Grade,
-    /// Share of the variance of each joint's torque that the model explains; not a number
-    /// where a joint rests. Less than 0: worse than a constant.
+    /// Share of the variance of each joint's torque that the model explains; NaN for a resting joint,
+    /// below 0 if worse than a constant.
     pub explained: Vec<f64>,
-    /// The same of torques that took no part: of other logs, else of fifths of the time from the
-    /// other four. None where the motion repeats: a single repetition is mostly noise.
+    /// The same for held-out torques: those of validation logs, else each fifth of the time predicted
+    /// from the other four. `None` where the motion repeats: a single repetition is mostly noise.
     pub predicted: Option<Vec<f64>>,
-    /// Joints whose Coulomb friction in the free fit surely gives power, from 0.
+    /// Joints, from 0, whose Coulomb friction is surely negative in the unconstrained fit.
     pub giving_power: Vec<usize>,
-    /// The joint, from 0, at which the model misses the most times what the free fit does, where
-    /// that is strange.
+    /// The joint, from 0, with the largest ratio of residuals of the model to those of the
+    /// unconstrained fit, and that ratio, where it is suspicious.
     pub astray: Option<(usize, f64)>,
-    /// By how much the torques fit the motion better if they are taken from later, \[s\].
+    /// Delay of the torques against the motion, where it explains much of the residuals \[s\].
     pub late: Option<f64>,
-    /// How many times the weight of the robot file's masses the torques carry, where that is
-    /// strange.
+    /// Ratio of the weight in the torques to that of the robot file's masses, where it is suspicious.
     pub weight: Option<f64>,
 }
 
 impl Quality {
-    /// Takes note that the torques carry `factor` times the weight of the robot file's masses: far
-    /// less are those of motors or of another unit, far more may be a file without true masses.
+    /// Notes that the torques carry `factor` times the weight of the robot file's masses. Far below 1
+    /// they are motor torques or in another unit; far above 1 the file may have no true masses.
     pub fn doubt_weight(&mut self, factor: f64) {
         self.weight = Some(factor);
         self.grade = match self.grade {
@@ -95,7 +94,7 @@ impl Quality {
         };
     }
 
-    /// In a sentence.
+    /// The quality as a sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
         let word = match self.grade {
@@ -150,10 +149,9 @@ impl Quality {
     }
 }
 
-/// What is said of a model that explains these `shares` of the torques, of those that it was fitted
-/// to and of those that took no part, and misses `rms` \[Nm\] of `samples`, of
-/// which the free fit misses `free`; `giving_power` are the
-/// joints whose friction surely does, `whiteness` is that of the free fit.
+/// The quality of a model with the residuals `rms` \[Nm\] on `samples`, where the unconstrained fit
+/// has `free`; `explained` and `predicted` are shares of the training and held-out torques,
+/// `whiteness` is of the unconstrained fit.
 #[must_use]
 pub(super) fn quality(
     equations: &Equations<'_>,
@@ -167,10 +165,10 @@ pub(super) fn quality(
     let shares = || [Some(&explained), predicted.as_ref()].into_iter().flatten();
     let mean_of_fitted = mean(&explained);
     let mean = shares().map(|of| mean(of)).fold(1.0, f64::min);
-    // A joint that is not explained is not made good by the others.
+    // The other joints do not make up for one that is not explained.
     let worst = shares().flatten().copied().fold(1.0, f64::min);
     let reversed = 2 * giving_power.len() > moving;
-    // Residuals of some size: what data without noise leave is rounding.
+    // Noiseless data leave rounding errors only, whose ratio tells nothing.
     let times =
         |joint: usize| (explained[joint] < EXACT).then(|| (joint, rms[joint] / free[joint]));
     let astray = (0..rms.len()).filter_map(times).max_by(|a, b| a.1.total_cmp(&b.1));
@@ -206,17 +204,17 @@ pub(super) fn surely_negative(value: f64, sd: f64) -> bool {
     value < -SURE * sd
 }
 
-/// The mean share of the moving joints.
+/// Mean share over the moving joints.
 fn mean(shares: &[f64]) -> f64 {
     let known = || shares.iter().filter(|share| share.is_finite());
     known().map(|share| share.clamp(0.0, 1.0)).sum::<f64>() / known().count().max(1) as f64
 }
 
-/// The share of the variance of each joint's torque, as the equations have it, behind a filter;
-/// not a number where a joint rests.
+/// Share of the variance of each joint's torque that is explained, behind the filter of the
+/// equations; NaN for a resting joint.
 #[must_use]
 pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
-    let count: usize = samples.iter().map(Samples::len).sum();
+    let count: usize = samples.iter().map(Samples::instants).sum();
     let share = |(joint, (rms, relative)): (usize, (&f64, &f64))| {
         if samples.iter().all(|of| of.resting.contains(&joint)) {
             return f64::NAN;
@@ -232,65 +230,44 @@ pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
     misses.rms.iter().zip(&misses.relative).enumerate().map(share).collect()
 }
 
-/// The shift in time with which torques fit the motion best, where that is far better \[s\].
+/// The time shift with which torques fit the motion far better than without, if there is one \[s\].
 fn late(equations: &Equations<'_>, samples: &Samples) -> Option<f64> {
-    let block = samples.blocks.iter().max_by_key(|block| block.len())?;
+    let block = samples.blocks.iter().max_by_key(|block| block.instants())?;
     let miss = |shift: f64| missed(equations, samples, block, shift);
-    let mut best = (0.0, miss(0.0)?);
-    let none = best.1;
-    for step in STEPS {
-        let middle = best.0;
-        let reach = if step == STEPS[0] { SHIFT } else { STEPS[0] };
-        let steps = (reach / step).round() as i32;
-        for k in -steps..=steps {
-            let shift = middle + step * f64::from(k);
-            if let Some(found) = miss(shift).filter(|found| *found < best.1) {
-                best = (shift, found);
-            }
-        }
-    }
-    (best.1 < GAIN * none).then_some(best.0)
+    let none = miss(0.0)?;
+    let [coarse, fine] = STEPS;
+    let near = on_grid(0.0, coarse, (SHIFT / coarse).round() as i32, miss)?;
+    let best = on_grid(near.shift, fine, (coarse / fine).round() as i32, miss)?;
+    (best.misfit < GAIN * none).then_some(best.shift)
 }
 
-/// A short shift: downhill from none, by whole samples, as noise between two is smaller than
-/// theirs; then between them by a parabola. Joints count by their residuals `rms` \[Nm\].
+/// A short time shift \[s\]: descent from 0 in whole samples, because interpolation between samples
+/// would smooth their noise; then a parabola. Joints are weighted by their residuals `rms` \[Nm\].
 fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> Option<f64> {
-    let block = samples.blocks.iter().max_by_key(|block| block.len())?;
+    let block = samples.blocks.iter().max_by_key(|block| block.instants())?;
     let weights: Vec<f64> =
         rms.iter().map(|rms| if *rms > 0.0 { 1.0 / rms } else { 0.0 }).collect();
     let width = (SHORT / samples.step).round().max(1.0) as isize;
-    let most = (LONGEST / samples.step) as isize;
-    let by_joint = |k: isize| {
-        let part = shifted(samples, block, k)?;
+    let most = (LONGEST / samples.step) as isize / width;
+    let by_joint = |steps: isize| {
+        let part = shifted(samples, block, steps * width)?;
         Some(missed_by(equations, &part, |_| weights.clone()))
     };
-    let miss = |k: isize| Some(by_joint(k)?.iter().sum::<f64>());
+    let miss = |steps: isize| Some(by_joint(steps)?.iter().sum::<f64>());
     let none = miss(0)?;
-    let (mut middle, mut here) = (0, none);
-    let [mut before, mut after] = [miss(-width)?, miss(width)?];
-    while before < here || after < here {
-        let sense = if before < after { -1 } else { 1 };
-        let next = middle + sense * width;
-        if next.abs() > most {
-            return None;
-        }
-        let beyond = miss(next + sense * width)?;
-        (before, here, after) =
-            if sense < 0 { (beyond, before, here) } else { (here, after, beyond) };
-        middle = next;
-    }
-    let bend = before + after - 2.0 * here;
-    let place = if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
-    let late = (middle as f64 + place * width as f64) * samples.step;
+    let (middle, around) = downhill(most, miss)?;
+    let place = vertex(around).unwrap_or(0.0);
+    let [before, here, after] = around;
+    let late = ((middle * width) as f64 + place * width as f64) * samples.step;
     let least = here - 0.25 * (before - after) * place;
-    // Rows far apart tell no less than half of their distance.
+    // A shift below half a sample interval cannot be resolved.
     let told = if samples.step > SHORT { 0.5 * samples.step } else { TOLD };
     if late.abs() < told || least > (1.0 - LITTLE) * none {
         return None;
     }
-    // Clocks are those of all joints: what spoils one of them is something else.
+    // All joints share the clocks: a shift that makes one of them worse is something else.
     let [none, before, here, after] =
-        [by_joint(0)?, by_joint(middle - width)?, by_joint(middle)?, by_joint(middle + width)?];
+        [by_joint(0)?, by_joint(middle - 1)?, by_joint(middle)?, by_joint(middle + 1)?];
     let spoiled = (0..none.len()).any(|j| {
         let (slope, bend) = (after[j] - before[j], before[j] + after[j] - 2.0 * here[j]);
         let there = here[j] + 0.5 * place * (slope + bend * place);
@@ -299,8 +276,8 @@ fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> O
     (!spoiled).then_some(late)
 }
 
-/// Sum over the joints of the share of the torque's power that a free fit misses, with the
-/// torques taken from `shift` later \[s\].
+/// Sum over the joints of the unexplained share of the torque's power in an unconstrained fit, with
+/// the torques taken from `shift` later \[s\].
 fn missed(equations: &Equations<'_>, samples: &Samples, block: &Block, shift: f64) -> Option<f64> {
     let part = shifted(samples, block, (shift / samples.step).round() as isize)?;
     let of_torque = |factors: &Factors| -> Vec<f64> {
@@ -310,39 +287,28 @@ fn missed(equations: &Equations<'_>, samples: &Samples, block: &Block, shift: f6
     Some(missed_by(equations, &part, of_torque).iter().sum())
 }
 
-/// The weighted power that a free fit misses, by joint.
+/// Weighted residual power of an unconstrained fit, by joint.
 fn missed_by(
     equations: &Equations<'_>,
     samples: &Samples,
     weights: impl Fn(&Factors) -> Vec<f64>,
 ) -> Vec<f64> {
-    let factors = Factors::of(equations, samples, 1);
+    let factors = Factors::new(equations, samples, 1);
     let weights = weights(&factors);
     let beta: DVector<f64> = solve(&factors.stacked(&weights, equations.base.rank())).beta;
     let squares = factors.residual_squares(&beta, None);
     squares.iter().zip(&weights).map(|(e, w)| e * w * w).collect()
 }
 
-/// Instants from the middle of a block with the torques of so many samples later; `None` where
-/// it is too short.
+/// Instants from the middle of a block with the torques from `moved` samples later; `None` if the
+/// block is too short.
 fn shifted(samples: &Samples, block: &Block, moved: isize) -> Option<Samples> {
     let step = samples.step;
     let margin = (SHIFT / step).ceil() as usize + (STEPS[0] / step).ceil() as usize;
-    let last = block.len().checked_sub(margin).filter(|last| *last > 2 * margin)?;
-    let kept = margin..last.min(margin + INSTANTS.max(2 * margin));
-    let of = |series: &Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-        series.iter().map(|x| x[kept.clone()].to_vec()).collect()
-    };
-    let later = |x: &Vec<f64>| -> Vec<f64> {
-        kept.clone().filter_map(|i| x.get(i.checked_add_signed(moved)?).copied()).collect()
-    };
-    let part = Block {
-        t: block.t[kept.clone()].to_vec(),
-        q: of(&block.q),
-        qd: of(&block.qd),
-        qdd: of(&block.qdd),
-        tau: block.tau.iter().map(later).collect(),
-        clipped: block.clipped.clone(),
-    };
+    let last = block.instants().checked_sub(margin).filter(|last| *last > 2 * margin)?;
+    let kept: Vec<usize> = (margin..last.min(margin + INSTANTS.max(2 * margin))).collect();
+    let later: Vec<usize> = kept.iter().filter_map(|i| i.checked_add_signed(moved)).collect();
+    let mut part = block.select(&kept);
+    part.tau = block.select(&later).tau;
     Some(Samples { blocks: vec![part], noise: None, repetitions: None, ..samples.clone() })
 }

@@ -1,5 +1,4 @@
-//! Cross-validation over the repetitions of a motion: each is predicted by what the others
-//! say.
+//! Cross-validation over the repetitions of a motion: each is predicted from the others.
 
 use nalgebra::DVector;
 
@@ -7,10 +6,10 @@ use super::equations::Equations;
 use super::factors::Factors;
 use super::samples::{Block, Samples};
 
-/// Groups of repetitions at most.
+/// Largest number of groups of repetitions.
 const GROUPS: usize = 5;
 
-/// Some repetitions that are predicted from the others.
+/// A fold: repetitions that are predicted from the others.
 #[derive(Clone, Debug)]
 pub(super) struct Fold {
     /// The equations with the mean of the others.
@@ -29,10 +28,10 @@ pub(super) fn folds(equations: &Equations<'_>, samples: &Samples) -> Option<Vec<
         return None;
     }
     let groups = count.min(GROUPS);
-    let factors = |moved: Block| Factors::of(equations, &with(samples, moved), 1);
+    let factors = |moved: Block| Factors::new(equations, &with(samples, moved), 1);
     let fold = |group: usize| {
         let members: Vec<usize> = (group..count).step_by(groups).collect();
-        // The mean of the others, as it differs from that of all.
+        // The mean of the others, as a difference from the mean of all.
         let others = |r: usize| !members.contains(&r);
         let tested = |member: &usize| factors(moved(block, spread, &|r: usize| r == *member));
         Fold {

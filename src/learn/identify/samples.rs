@@ -1,4 +1,4 @@
-//! The instants of a log at which the equations of motion are written down.
+//! The instants of a log at which the equations of motion are written.
 
 use crate::arm::robot::MAX_DOF;
 
@@ -38,21 +38,30 @@ pub struct Block {
     pub qdd: Vec<Vec<f64>>,
     /// Torques at each joint \[Nm\].
     pub tau: Vec<Vec<f64>>,
-    /// Of each joint, spans of time in which its torque stands at a limit \[s\].
+    /// For each joint, spans of time in which its torque is clipped \[s\].
     pub clipped: Vec<Vec<[f64; 2]>>,
 }
 
 impl Block {
     /// Number of instants.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn instants(&self) -> usize {
         self.t.len()
     }
 
-    /// Whether there are none.
+    /// The block with only the instants of these indices.
     #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.t.is_empty()
+    pub(super) fn select(&self, kept: &[usize]) -> Block {
+        let of = |x: &Vec<f64>| -> Vec<f64> { kept.iter().map(|i| x[*i]).collect() };
+        let of_joints = |series: &[Vec<f64>]| series.iter().map(of).collect();
+        Block {
+            t: of(&self.t),
+            q: of_joints(&self.q),
+            qd: of_joints(&self.qd),
+            qdd: of_joints(&self.qdd),
+            tau: of_joints(&self.tau),
+            clipped: self.clipped.clone(),
+        }
     }
 
     /// One row of a series by joint; entries beyond the robot's joints are 0.
@@ -89,17 +98,11 @@ pub struct Samples {
 impl Samples {
     /// Number of instants.
     #[must_use]
-    pub fn len(&self) -> usize {
-        self.blocks.iter().map(Block::len).sum()
+    pub fn instants(&self) -> usize {
+        self.blocks.iter().map(Block::instants).sum()
     }
 
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Of each joint, instants at which its torque stands at a limit, as a share of all.
+    /// For each joint, the share of the instants at which its torque is clipped.
     #[must_use]
     pub fn share_at_limits(&self) -> Vec<f64> {
         let joints = self.blocks.first().map_or(0, |block| block.clipped.len());
@@ -111,6 +114,6 @@ impl Samples {
                 }
             }
         }
-        counts.iter().map(|count| *count as f64 / self.len().max(1) as f64).collect()
+        counts.iter().map(|count| *count as f64 / self.instants().max(1) as f64).collect()
     }
 }

@@ -1,8 +1,8 @@
 //! Torques of a log: logged, or from currents.
 //!
-//! Phase currents become vectors, vectors a current of one sign or the other, and sign and
-//! scale are decided by what a robot can do: friction takes power, and gravity has to be
-//! held.
+//! Phase currents give a space vector, whose component along the rotor's torque axis is the current up
+//! to its sign. Sign and scale follow from physics: friction dissipates power, and the torques carry
+//! the weight.
 
 use std::fmt::Write;
 
@@ -12,15 +12,15 @@ use crate::learn::log::{Channel, Log, derivatives, signed, vectors};
 
 use super::error::IdentifyError;
 
-/// Rows that sign and scale are decided from.
+/// Rows from which sign and scale are decided.
 const ROWS: usize = 3000;
-/// Correlation with the model from which on it decides the sign.
+/// Least correlation with the model for it to decide the sign.
 const DECIDES: f64 = 0.3;
 /// Deviation of the logarithm of a factor against gravity.
 const DEVIATION: f64 = 0.02;
-/// By how much the torques of a robot differ from those of its file.
+/// Relative uncertainty of the torques of the robot file.
 const ALIKE: f64 = 3.0;
-/// A factor further than this from all that are known is none of them.
+/// Logarithmic distance from a known factor beyond which a factor is unknown.
 const UNKNOWN: f64 = 0.12;
 
 /// A factor that phase currents are often wrong by, its logarithmic prior and what it is.
@@ -31,9 +31,9 @@ type Factor = (f64, f64, &'static str);
 pub struct Torques {
     /// By joint \[Nm\].
     pub tau: Vec<Vec<f64>>,
-    /// In words.
+    /// Their origin in words.
     pub origin: String,
-    /// What a reader has to know.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
@@ -192,7 +192,7 @@ pub(super) fn motor_side(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<usiz
     (0..model.dof).filter(is_motor).collect()
 }
 
-/// What a robot like the model would need, at some of the rows.
+/// Torques of the model at some of the rows.
 struct Rough {
     rows: Vec<usize>,
     /// Rates by joint.
@@ -247,8 +247,8 @@ impl Rough {
         self.rows.iter().map(|i| values[*i]).collect()
     }
 
-    /// Whether a joint's torque has the wrong sign: against the model where they have to do
-    /// with each other, else because friction would give power.
+    /// Whether a joint's torque has the wrong sign: by its correlation with the model's, or, if that is
+    /// small, because friction would produce power.
     fn is_reversed(&self, joint: usize, tau: &[f64]) -> bool {
         let tau = self.at(tau);
         let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
@@ -275,7 +275,7 @@ impl Rough {
         Some(signs)
     }
 
-    /// The factor that is missing against gravity, and what is said of it.
+    /// The missing scale factor by comparison with gravity, and a sentence on it.
     fn factor(&self, tau: &[Vec<f64>]) -> (f64, String) {
         let Some(rigid) = &self.tau else {
             return (1.0, "scale of the currents: no model to compare with gravity".into());
@@ -323,7 +323,7 @@ impl Rough {
                 ),
             );
         }
-        // What other factor the masses of a robot file that are a little off would ask for.
+        // Other known factors, with the error of the file's masses that they would imply.
         let known = clarke.iter().chain(&of_root).map(|(other, ..)| *other);
         let others: Vec<String> = known
             .filter(|other| (other / factor).ln().abs() > f64::EPSILON)
@@ -353,7 +353,8 @@ impl Rough {
     }
 }
 
-/// How much of `expected` is in `measured`, beside friction and an offset, with its deviation.
+/// The regression coefficient of `measured` on `expected`, beside friction and an offset, with its
+/// standard deviation.
 fn slope(measured: &[f64], expected: &[f64], qd: &[f64]) -> Option<(f64, f64)> {
     let largest = qd.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let mut normal = nalgebra::Matrix4::<f64>::zeros();
@@ -375,7 +376,7 @@ fn slope(measured: &[f64], expected: &[f64], qd: &[f64]) -> Option<(f64, f64)> {
     Some((solution[0], (left * inverse[(0, 0)]).sqrt()))
 }
 
-/// Lengths with the sign of a rough torque; it may change only where the length is small.
+/// Lengths with the sign of a rough torque, which may change only where the length is small.
 fn by_segments(lengths: &[f64], rough: &[f64]) -> Vec<f64> {
     let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
     let mut out = Vec::with_capacity(lengths.len());

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Rows that are collected before they are worked in, for each column.
+/// Rows that are collected for each column before a factorisation.
 const ROWS_PER_COLUMN: usize = 3;
 
 /// The triangular factor of all rows so far; the last column is the right side.

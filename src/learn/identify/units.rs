@@ -1,4 +1,4 @@
-//! Units that cannot be right, and what they seem to be.
+//! Plausibility of the units of a log, and what they seem to be.
 
 use crate::arm::dynamics::{Data, Load, rnea};
 use crate::arm::robot::Model;
@@ -7,37 +7,37 @@ use crate::learn::log::{Channel, Log, derivatives, median_step};
 use super::error::IdentifyError;
 use super::torque::motor_side;
 
-/// The share of the rates that counts for the largest.
+/// Quantile of the rates that counts as the largest.
 const FAST: f64 = 0.99;
 /// Largest rate of a joint whose limit is not known \[rad/s\].
 const LARGEST: f64 = 15.0;
-/// Over the range of a joint by this factor is no overshoot.
+/// Factor of a joint's range beyond which a position is no overshoot.
 const FAR: f64 = 2.0;
-/// The same of its rate: robot files have round numbers for limits.
+/// The same for its rate: limits in robot files are rounded.
 const FAST_BEYOND: f64 = 8.0;
-/// Degrees within which no joint of a motion stays that was made to tell anything.
+/// Range \[°\] that the joint of an exciting motion exceeds.
 const TINY: f64 = 6.3;
 /// Least angle that a joint turns, in the unit of its column, if it is taken to move.
 const TURNS: f64 = 0.3;
 /// Time over which rates and positions are compared \[s\].
 const WINDOW: f64 = 0.1;
-/// Changes smaller than this share of what they should be are none.
+/// Share of the expected change below which there is no change.
 const STILL: f64 = 1e-3;
-/// By how much a factor may miss what it is taken for.
+/// Relative tolerance of a factor.
 const NEAR: f64 = 1.3;
-/// The same of a torque on the motor's side, as the model is only roughly known.
+/// The same for motor-side torques, as the model is only roughly known.
 const ROUGHLY: f64 = 3.0;
-/// Torques that carry so many times the weight of the model's masses are not its own.
+/// Ratio of carried weight to that of the model's masses beyond which the torques are not its own.
 const STRANGE: f64 = 10.0;
-/// Share of the squared correlation from which on two columns have to do with each other.
+/// Least squared correlation of related columns.
 const RELATED: f64 = 0.25;
-/// Rows further apart than this tell no rates \[s\].
+/// Largest interval of rows that resolves rates \[s\].
 const SLOWEST: f64 = 0.5;
-/// Beyond a limit by this angle no joint comes to stand \[rad\].
+/// Largest overshoot beyond a position limit \[rad\].
 const OVERSHOT: f64 = 0.1;
-/// Times its limit that no joint's torque reaches.
+/// Factor of its limit that no joint's torque reaches.
 const BEYOND: f64 = 10.0;
-/// Rows that are looked at.
+/// Largest number of rows that are evaluated.
 const ROWS: usize = 4000;
 /// Degrees in one radian.
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
@@ -124,8 +124,8 @@ fn radians_in_degrees(model: &Model, log: &Log) -> Option<f64> {
     (most > TURNS).then_some(most)
 }
 
-/// The share of a joint's turning that its logged rates have to do with, where it is little:
-/// squared correlation over pieces long enough for the steps of an encoder.
+/// Squared correlation of a joint's logged rates with its motion, where it is low; over pieces long
+/// enough for the steps of an encoder.
 fn unrelated(t: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
     let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
     let mut from = 0;
@@ -157,8 +157,7 @@ pub fn beyond_range(model: &Model, log: &Log) -> Vec<(usize, f64)> {
     (0..log.joints()).filter_map(furthest).collect()
 }
 
-/// How many times the rates of `x` the logged ones are; `None` where they have little to do
-/// with each other.
+/// Ratio of the logged rates to those of `x`; `None` where they are hardly correlated.
 fn factor(t: &[f64], x: &[f64], logged: &[f64]) -> Option<f64> {
     let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
     for (found, logged) in derivatives(t, x).iter().zip(logged) {
@@ -216,8 +215,8 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
     Ok(())
 }
 
-/// How many times the weight of the model's masses the torques carry, where that is far from
-/// once at all joints that carry any: the geometric mean, and a joint, from 0.
+/// Ratio of the weight in the torques to that of the model's masses, where it is far from 1 at all
+/// joints that carry any: the geometric mean, and a joint, from 0.
 #[must_use]
 pub fn weight_factor(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<(f64, usize)> {
     let carried = if model.has_dynamics() { carried(model, log, tau) } else { Vec::new() };
@@ -239,7 +238,7 @@ fn carried(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<(usize, f64)> {
     let (mut both, mut own) = (vec![0.0; n], vec![0.0; n]);
     for row in (0..log.time().len()).step_by(every) {
         let at: Vec<f64> = q.iter().map(|q| q[row]).collect();
-        // Gravity alone says the order of magnitude.
+        // Gravity alone gives the order of magnitude.
         let expected = rnea(model, &mut data, &Load::none(), &at, &[], &[]);
         for joint in 0..n {
             both[joint] += expected[joint] * tau[joint][row];

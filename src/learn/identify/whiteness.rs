@@ -3,27 +3,27 @@
 
 use super::noise::{Residual, autocovariances};
 
-/// Lags that are looked at, an even number.
+/// Number of lags, even.
 const LAGS: usize = 20;
-/// The quantile of the normal distribution of an interval of 95 %.
+/// Half width of the 95 % interval of the standard normal distribution.
 const INTERVAL: f64 = 1.96;
 
-/// What the residuals of a joint remember.
+/// Autocorrelation of the residuals of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whiteness {
     /// Autocorrelation at lag 1, 2, … of the instants.
     pub autocorrelation: Vec<f64>,
-    /// Largest size that 95 % of those of white noise have.
+    /// 95 % bound on the size of an autocorrelation of white noise.
     pub band: f64,
-    /// How many lie outside.
+    /// Number of lags outside the bound.
     pub outside: usize,
     /// Q = n (n + 2) Σ ρ²/(n − lag).
     pub ljung_box: f64,
-    /// Probability of so much or more in white noise.
+    /// Probability of this or a larger value for white noise.
     pub p_value: f64,
 }
 
-/// Of residuals in the order of time; `None` where there are too few.
+/// The whiteness of residuals in the order of time; `None` with too few.
 #[must_use]
 pub(super) fn whiteness(residuals: &[Residual]) -> Option<Whiteness> {
     if residuals.len() < 4 * LAGS {
@@ -47,7 +47,7 @@ pub(super) fn whiteness(residuals: &[Residual]) -> Option<Whiteness> {
     })
 }
 
-/// P(χ² > x) of [`LAGS`] degrees of freedom, an even number 2 m: e^(−x/2) Σ (x/2)^k / k!, k < m.
+/// P(χ² > x), in closed form, which needs no crate of distributions, of [`LAGS`] degrees of freedom, an even number 2 m: e^(−x/2) Σ (x/2)^k / k!, k < m.
 fn chi_square_beyond(x: f64) -> f64 {
     let half = 0.5 * x;
     let mut term = (-half).exp();
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_passes_as_often_as_promised_and_coloured_noise_does_not() {
+    fn the_test_has_its_size_and_rejects_coloured_noise() {
         let refused = |memory: f64| {
             let sure = |seed: &u64| whiteness(&noise(*seed, memory)).unwrap().p_value < 0.05;
             (0..RUNS).filter(sure).count() as f64 / RUNS as f64
@@ -92,7 +92,7 @@ mod tests {
 
     /// 31.41 is the tabled quantile of 95 % for 20 degrees of freedom.
     #[test]
-    fn the_distribution_is_the_tabled_one() {
+    fn chi_square_tail_matches_the_table() {
         assert!((chi_square_beyond(31.410_43) - 0.05).abs() < 1e-6);
         assert!((chi_square_beyond(0.0) - 1.0).abs() < 1e-12);
     }

@@ -1,27 +1,31 @@
-//! Whether the gears of axes 5 and 6 are coupled, told by the torques.
+//! Whether the gears of axes 5 and 6 are coupled: the coupling with which a fit of all parameters has
+//! the least residuals.
+//!
+//! `gap::coupled` finds a change of the coupling of a known model, beside other effects.
 
 use crate::arm::dynamics::BaseParameters;
 use crate::arm::robot::Model;
+use crate::learn::log::golden_section;
 
 use super::equations::{Equations, Known};
 use super::factors::Factors;
 use super::fit::without_errors;
-use super::samples::{Block, Samples, Source};
+use super::samples::{Samples, Source};
 
 /// Couplings that are tried first.
 const TRIED: [f64; 8] = [1.0, -1.0, 0.5, -0.5, 1.5, -1.5, 2.0, -2.0];
-/// Least change of the logarithms of both residuals that tells a coupling.
+/// Least decrease of the sum of the logarithms of both joints' residuals.
 const TOLD: f64 = 0.4;
-/// How far from a tried coupling it is sought.
+/// Half width of the interval around a tried coupling that is searched.
 const AROUND: f64 = 0.3;
-/// Steps of the search.
+/// Steps of the golden section.
 const STEPS: usize = 16;
-/// A coupling as near to a tried one as this is that one.
+/// A result this near to a tried coupling counts as that one.
 const ROUND: f64 = 0.03;
-/// Instants that are enough.
+/// Largest number of instants.
 const INSTANTS: usize = 6000;
 
-/// The coupling that the samples show; `None` where they show none.
+/// The coupling \[1\], where it explains the torques of axes 5 and 6 far better than none.
 #[must_use]
 pub(super) fn wrist_coupling(
     model: &Model,
@@ -36,7 +40,7 @@ pub(super) fn wrist_coupling(
         let mut model = model.clone();
         model.wrist.coupling = coupling;
         let equations = Equations { model: &model, base, known: Known::Nothing };
-        let factors = Factors::of(&equations, &samples, 1);
+        let factors = Factors::new(&equations, &samples, 1);
         let rms = without_errors(&factors, base.rank());
         rms[4].ln() + rms[5].ln()
     };
@@ -47,32 +51,17 @@ pub(super) fn wrist_coupling(
     if gain.is_nan() || gain <= TOLD {
         return None;
     }
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut low, mut high) = (near - AROUND, near + AROUND);
-    let mut inner = [high - golden * (high - low), low + golden * (high - low)];
-    let mut values = inner.map(miss);
-    for _ in 0..STEPS {
-        if values[0] < values[1] {
-            high = inner[1];
-            inner = [high - golden * (high - low), inner[0]];
-            values = [miss(inner[0]), values[0]];
-        } else {
-            low = inner[0];
-            inner = [inner[1], low + golden * (high - low)];
-            values = [values[1], miss(inner[1])];
-        }
-    }
-    let found = 0.5 * (low + high);
+    let found = golden_section([near - AROUND, near + AROUND], STEPS, miss);
     Some(if (found - near).abs() < ROUND { near } else { found })
 }
 
-/// As many samples as are needed, from the middle.
+/// At most [`INSTANTS`] instants of the longest block.
 fn shortened(samples: &Samples) -> Samples {
-    let Some(longest) = samples.blocks.iter().max_by_key(|block| block.len()) else {
+    let Some(longest) = samples.blocks.iter().max_by_key(|block| block.instants()) else {
         return samples.clone();
     };
-    let count = longest.len();
-    // What was filtered has to stay in one piece; rows of their own need not.
+    let count = longest.instants();
+    // Filtered samples have to be consecutive.
     let kept: Vec<usize> = match samples.source {
         Source::Filtered { .. } => {
             let length = count.min(INSTANTS);
@@ -81,16 +70,5 @@ fn shortened(samples: &Samples) -> Samples {
         }
         _ => (0..count).step_by(count.div_ceil(INSTANTS).max(1)).collect(),
     };
-    let of = |series: &[Vec<f64>]| -> Vec<Vec<f64>> {
-        series.iter().map(|x| kept.iter().map(|i| x[*i]).collect()).collect()
-    };
-    let block = Block {
-        t: kept.iter().map(|i| longest.t[*i]).collect(),
-        q: of(&longest.q),
-        qd: of(&longest.qd),
-        qdd: of(&longest.qdd),
-        tau: of(&longest.tau),
-        clipped: longest.clipped.clone(),
-    };
-    Samples { blocks: vec![block], ..samples.clone() }
+    Samples { blocks: vec![longest.select(&kept)], ..samples.clone() }
 }

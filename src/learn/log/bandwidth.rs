@@ -1,4 +1,4 @@
-//! How fast a measured motion is.
+//! Bandwidth of a measured motion.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 

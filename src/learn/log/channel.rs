@@ -31,7 +31,7 @@ pub enum Channel {
     Command,
 }
 
-/// Channels that are there for each joint or for none.
+/// Channels that a log has for each joint or for none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Family {
     Position,
@@ -44,7 +44,7 @@ pub(super) enum Family {
     Single,
 }
 
-/// A column's channel, and what its figures are multiplied with.
+/// A column's channel, and the factor to its SI unit.
 pub(super) struct Named {
     pub(super) channel: Channel,
     pub(super) unit: f64,
@@ -64,8 +64,7 @@ impl Channel {
         }
     }
 
-    /// The channel of a column's name, in any case; `None` for a name that says
-    /// nothing to us.
+    /// The channel of a column's name, in any case; `None` for an unknown name.
     pub(super) fn named(name: &str) -> Option<Named> {
         let name = name.trim().to_ascii_lowercase();
         let plain = |channel| Some(Named { channel, unit: 1.0 });

@@ -5,8 +5,8 @@ use std::io::Read;
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use super::Log;
 use super::columns::{Column, ColumnMap, check, recognised};
+use super::data::Log;
 use super::error::LogError;
 use super::rows::Rows;
 

@@ -1,11 +1,11 @@
-//! Rates and accelerations of what was sampled.
+//! First and second derivatives of sampled series.
 //!
 //! A polynomial is fitted by least squares to the samples around each one, and
 //! differentiated there (A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of
 //! data by simplified least squares procedures", Anal. Chem. 36, 1964), in the times as
-//! they are. The window lies to both sides, so that nothing is late. Its width is chosen
-//! for each series: the widest whose error in predicting a sample from its neighbours is
-//! next to the least. At the ends of a section the window is that of the last sample which
+//! they are. The window is symmetric, so that there is no delay. Its width is chosen
+//! for each series: the widest whose leave-one-out prediction error is close to the
+//! least. At the ends of a section the window is that of the last sample which
 //! has both sides.
 //!
 //! Where an acceleration jumps, as at the ramps of a move, no polynomial fits across. There the
@@ -48,7 +48,7 @@ pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     let sections = sections(t);
     let half = half_width(t, x, &sections);
     let mut found = vec![None; t.len()];
-    let smooth = Smooth::of(t, x, &sections);
+    let smooth = Smooth::new(t, x, &sections);
     // The noise of the samples, from how well they are predicted, but for jumps.
     let noise = error_of(t, x, &sections, half).unwrap_or(0.0).min(smooth.variance);
     for [from, to] in &sections {
@@ -115,7 +115,7 @@ struct Smooth<'a> {
 }
 
 impl<'a> Smooth<'a> {
-    fn of(t: &'a [f64], x: &'a [f64], sections: &[[usize; 2]]) -> Smooth<'a> {
+    fn new(t: &'a [f64], x: &'a [f64], sections: &[[usize; 2]]) -> Smooth<'a> {
         let half = HALF_WIDTHS[0];
         let stride = t.len().div_ceil(TRIALS).max(1);
         let inner = sections.iter().filter(|[from, to]| to - from > 2 * half);

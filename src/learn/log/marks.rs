@@ -1,19 +1,18 @@
-//! Two recorders of one run, brought together by the marks that both have.
+//! Synchronisation of two recorders of one run by common marks.
 //!
-//! A digital output changes while the robot moves; one recorder has it beside the positions,
-//! the other as a voltage beside the currents. Its changes tell how one clock goes by the
-//! other.
+//! A digital output changes while the robot moves; one recorder logs it with the positions, the other
+//! as a voltage with the currents. The times of its changes give offset and pace of the clocks.
 
-use super::channel::Family;
+use super::channel::{Channel, Family};
+use super::data::Log;
 use super::error::LogError;
 use super::uniform::{interpolated, median_step};
-use super::{Channel, Log};
 
-/// Fewer changes than this fit anything.
+/// Least number of changes: fewer fit any pair of clocks.
 const MARKS: usize = 3;
-/// By how much two clocks may differ in pace.
+/// Largest relative difference in pace of two clocks.
 const PACE: f64 = 0.02;
-/// How far a mark may lie off the line through all, in intervals of the slower recorder.
+/// Largest residual of a mark, in sample intervals of the slower recorder.
 const OFF: f64 = 2.5;
 
 /// Whether two logs are halves of one: positions here, what drives the motors there.
@@ -27,14 +26,14 @@ pub fn are_halves(positions: &Log, other: &Log) -> bool {
         && !driven.iter().any(|family| has(positions, *family))
 }
 
-/// Two halves as one.
+/// Two synchronised logs as one.
 #[derive(Clone, Debug)]
 pub struct Aligned {
     /// Both.
     pub log: Log,
     /// Marks that both have.
     pub marks: usize,
-    /// Largest distance between two of them \[s\].
+    /// Largest residual of a mark \[s\].
     pub worst: f64,
     /// Interval of the slower recorder \[s\]: its marks can be late by that, all together.
     pub step: f64,
@@ -50,7 +49,7 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
     let step = median_step(positions.time()).max(median_step(other.time()));
     // Recorders start and stop at times of their own, so that one may miss marks at its ends.
     let shifts = -there.len().cast_signed()..=here.len().cast_signed();
-    let fits: Vec<Clock> = shifts.filter_map(|shift| Clock::of(&here, &there, shift)).collect();
+    let fits: Vec<Clock> = shifts.filter_map(|shift| Clock::fitted(&here, &there, shift)).collect();
     let most = fits
         .iter()
         .filter(|clock| clock.worst <= OFF * step)
@@ -98,7 +97,7 @@ fn interpolated_at(t: &[f64], x: &[f64], at: f64) -> f64 {
     interpolated(&t[part.clone()], &x[part], at, 1.0, 1)[0]
 }
 
-/// How one clock goes by the other: `here = to + pace (there − from)`.
+/// One clock as a linear function of the other: `here = to + pace (there − from)`.
 struct Clock {
     pace: f64,
     to: f64,
@@ -109,9 +108,9 @@ struct Clock {
 }
 
 impl Clock {
-    /// Where the first mark there is the one of number `shift` here; `None` where they do not
-    /// change in the same sense, are too few, or the clocks would differ too much.
-    fn of(here: &[Change], there: &[Change], shift: isize) -> Option<Clock> {
+    /// The fit if mark 0 there is mark `shift` here; `None` where the marks change in opposite senses,
+    /// are too few, or give clocks of too different pace.
+    fn fitted(here: &[Change], there: &[Change], shift: isize) -> Option<Clock> {
         let (first, skipped) = (shift.max(0).cast_unsigned(), (-shift).max(0).cast_unsigned());
         let pairs: Vec<(Change, Change)> =
             here.iter().skip(first).copied().zip(there.iter().skip(skipped).copied()).collect();
@@ -155,8 +154,9 @@ fn changes(log: &Log) -> Vec<Change> {
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+    use super::super::columns::ColumnMap;
+    use super::super::csv::read_csv;
     use super::*;
-    use crate::learn::log::{ColumnMap, read_csv};
 
     fn log(header: &str, step: f64, count: usize, row: impl Fn(f64) -> String) -> Log {
         let mut text = format!("{header}\n");

@@ -1,7 +1,8 @@
 //! Positions, rates and accelerations of a log: as logged, or differentiated.
 
+use super::channel::Channel;
+use super::data::{Log, Rejected};
 use super::differentiate::derivatives;
-use super::{Channel, Log, Rejected};
 
 /// The motion in a log, a row for each usable one.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,8 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 
-use super::Log;
 use super::columns::{ColumnMap, check, recognised};
+use super::data::Log;
 use super::error::LogError;
 use super::rows::Rows;
 

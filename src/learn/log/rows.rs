@@ -1,14 +1,14 @@
-//! Rows as they are read, good ones and others.
+//! Checks of the rows of a log as they are read.
 
 use super::channel::Channel;
 use super::columns::Column;
+use super::data::{Log, MIN_ROWS, Rejected};
 use super::error::LogError;
-use super::{Log, MIN_ROWS, Rejected};
 
-/// No clock shows a time as large as this \[s\].
+/// Larger times are invalid \[s\].
 const NO_CLOCK: f64 = 1e12;
-/// A row whose time leaps ahead by this many times the interval over it is the wrong one,
-/// not those after it.
+/// A row whose time leaps ahead by this many times the interval between its neighbours is the
+/// invalid one, not the rows after it.
 const LEAP: f64 = 100.0;
 
 /// A log that is being read.

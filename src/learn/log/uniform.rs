@@ -1,12 +1,12 @@
 //! Samples at equal intervals.
 
-/// An interval longer than the usual one by this factor ends a section.
+/// An interval longer than the median by this factor ends a section.
 const GAP: f64 = 3.5;
 /// Share of an interval by which a sample may miss its place on the grid.
 const JITTER: f64 = 0.02;
-/// An interval longer than the usual one by this factor has lost a sample, however uneven the clock.
+/// An interval longer than the median by this factor has lost a sample, however uneven the clock.
 const LOSES: f64 = 1.75;
-/// Share of an interval within which there has to be a sample, so that a place is not lost.
+/// Share of an interval within which a grid point has to have a sample, or it counts as lost.
 const LOST: f64 = 0.5;
 
 /// Samples of several series at equal intervals, without a gap.
@@ -18,21 +18,15 @@ pub struct Section {
     pub step: f64,
     /// The series, all of the same length.
     pub series: Vec<Vec<f64>>,
-    /// Samples that the log has not: they come from those around them.
+    /// Samples that the log lacks: they are interpolated.
     pub lost: Vec<usize>,
 }
 
 impl Section {
     /// Number of samples.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn samples(&self) -> usize {
         self.series.first().map_or(0, Vec::len)
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Time of a sample \[s\].
@@ -48,6 +42,15 @@ pub fn median_step(t: &[f64]) -> f64 {
     let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The largest value less the smallest.
+#[must_use]
+pub fn range(x: &[f64]) -> f64 {
+    let (low, high) = x
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    high - low
 }
 
 /// The series at equal intervals: as they are where the times `t` (ascending, s) are even,
@@ -101,8 +104,8 @@ fn section(t: &[f64], series: &[&[f64]]) -> Section {
     Section { start, step, series: between, lost }
 }
 
-/// Whether samples are even and only their times are not: they are smoother as they are logged than
-/// between the times.
+/// Whether samples are even and only their logged times are not: then they are smoother as logged
+/// than interpolated at those times.
 fn is_clock_uneven(series: &[&[f64]], between: &[Vec<f64>]) -> bool {
     let odds = |(logged, between): (&&[f64], &Vec<f64>)| {
         let [logged, between] = [logged, between.as_slice()].map(roughness);
@@ -111,7 +114,7 @@ fn is_clock_uneven(series: &[&[f64]], between: &[Vec<f64>]) -> bool {
     series.iter().zip(between).map(odds).sum::<f64>() < 0.0
 }
 
-/// Mean square of fourth differences, which noise has and motion hardly.
+/// Mean square of fourth differences, which noise dominates.
 fn roughness(x: &[f64]) -> f64 {
     let squares =
         x.windows(5).map(|x| (x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4]).powi(2));
@@ -199,7 +202,7 @@ mod tests {
             (0..60).map(|i| 0.5 * f64::from(i) + if i < 40 { 0.0 } else { 7.0 }).collect();
         let x: Vec<f64> = t.iter().map(|t| (13.0 * t).sin()).collect();
         let found = sections(&t, &[&x]);
-        assert_eq!(found.iter().map(Section::len).collect::<Vec<_>>(), [40, 20]);
+        assert_eq!(found.iter().map(Section::samples).collect::<Vec<_>>(), [40, 20]);
         assert_eq!(found[0].series[0], x[..40]);
     }
 }

@@ -120,10 +120,10 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
         );
     }
     let settings = Settings {
-        seed: args.seed,
         cycles: args.cycles as usize,
         // Whole rows of a log.
         period_s: (args.period * 10.0).round() / 10.0,
+        ..Settings::new(args.seed)
     };
     let progress = progress(u64::from(args.count), args.quiet);
     let labels: anyhow::Result<Vec<_>> = (1..=args.count as usize)

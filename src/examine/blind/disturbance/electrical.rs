@@ -1,9 +1,12 @@
-//! Between the motor's torque and the current that is taken for it.
+//! Faults between the motor's torque and the current from which it is inferred.
 
 use std::f64::consts::{PI, TAU};
 
+use super::super::action::Action;
+use super::super::fault::Disturbance;
 use super::super::random::Random;
-use super::{Action, Disturbance, Scale, mapped, memoryless, with_state};
+use super::super::scale::Scale;
+use super::laws::{mapped, memoryless, with_state};
 
 /// Steps of the iteration that inverts a motor's curve.
 const STEPS: usize = 30;
@@ -15,7 +18,7 @@ pub(super) fn torque_constant(scale: &Scale<'_>, random: &mut Random) -> Disturb
     let form = random.below(forms.len());
     let order = scale.ratio[joint] * 3.0;
     let wobble = random.between(0.5, 1.5);
-    Disturbance::of("torque_constant", forms[form], joint).graded("error", error).acting(
+    Disturbance::at_joint("torque_constant", forms[form], joint).graded("error", error).acting(
         Action::Torques(mapped(joint, move |m, tau| {
             let ripple = match form {
                 1 => 0.002 * (order * m.q[joint]).cos(),
@@ -32,7 +35,7 @@ pub(super) fn current_sign(scale: &Scale<'_>, random: &mut Random) -> Disturbanc
     let forms = ["flipped", "flipped_with_offset", "flipped_and_scaled"];
     let form = random.below(forms.len());
     let offset = 0.003 * scale.rms[joint];
-    Disturbance::of("current_sign", forms[form], joint).acting(Action::Torques(mapped(
+    Disturbance::at_joint("current_sign", forms[form], joint).acting(Action::Torques(mapped(
         joint,
         move |_, tau| match form {
             1 => -tau + offset,
@@ -59,7 +62,7 @@ pub(super) fn current_saturation(scale: &Scale<'_>, random: &mut Random) -> Dist
         3 => i - 2.0 * error * (i - i.clamp(-0.5, 0.5)),
         _ => i * (1.0 - error / (1.0 + error).powi(3) * i * i),
     };
-    Disturbance::of("current_saturation", forms[form], joint).with("error", error).acting(
+    Disturbance::at_joint("current_saturation", forms[form], joint).with("error", error).acting(
         Action::Torques(mapped(joint, move |_, tau| {
             let wanted = tau / peak;
             let mut i = wanted;
@@ -78,7 +81,7 @@ pub(super) fn flux_weakening(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let from = random.between(0.35, 0.75);
     let forms = ["square_beyond", "kinked", "smooth", "cosine"];
     let form = random.below(forms.len());
-    Disturbance::of("flux_weakening", forms[form], joint)
+    Disturbance::at_joint("flux_weakening", forms[form], joint)
         .with("velocity", from * fastest)
         .with("error", error)
         .acting(Action::Torques(mapped(joint, move |m, tau| {
@@ -106,7 +109,7 @@ pub(super) fn ripple(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let forms = ["cosine", "two_harmonics", "triangle", "growing_with_load"];
     let form = random.below(forms.len());
     let typical = scale.rms[joint].max(1e-6);
-    Disturbance::of("ripple", forms[form], joint)
+    Disturbance::at_joint("ripple", forms[form], joint)
         .with("amplitude", amplitude)
         .with("order", order)
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -127,7 +130,7 @@ pub(super) fn resonance(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let omega = TAU * random.between(3.0, 9.0);
     let damping = random.between(0.02, 0.08);
     let share = random.log_between(0.1, 0.5);
-    Disturbance::of("outside", "resonance", joint).with("frequency", omega / TAU).acting(
+    Disturbance::at_joint("outside", "resonance", joint).with("frequency", omega / TAU).acting(
         Action::Joints(with_state(joint, [0.0; 2], move |state: &mut [f64; 2], m| {
             let [x, v] = *state;
             let v = v + m.dt * (omega * omega * (m.load[joint] - x) - 2.0 * damping * omega * v);

@@ -1,13 +1,16 @@
-//! Bodies, springs and forces: what the arm is, carries and touches.
+//! Faults of bodies, springs and external forces.
 
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
+use super::super::action::{Action, Begin};
+use super::super::fault::Disturbance;
 use super::super::mechanics::Joints;
 use super::super::plant::Plant;
 use super::super::random::Random;
-use super::{Action, Begin, Disturbance, NONE, Scale, memoryless};
+use super::super::scale::Scale;
+use super::laws::{NONE, memoryless};
 use crate::arm::robot::MAX_DOF;
 
 /// The wrist's joints, from 0.
@@ -58,7 +61,7 @@ pub(super) fn link_parameters(scale: &Scale<'_>, random: &mut Random) -> Disturb
     let form = random.below(forms.len());
     let factor = 1.0 + random.sign() * random.between(0.15, 0.6);
     let shift = Vector3::from_fn(|_, _| random.sign() * random.between(0.01, 0.04));
-    let mut disturbance = Disturbance::of("link_parameters", forms[form], link);
+    let mut disturbance = Disturbance::at_joint("link_parameters", forms[form], link);
     if form == 0 {
         let mass = scale.plant.bodies.get(link).map_or(0.0, |body| body.mass);
         disturbance = disturbance.with("mass", (factor - 1.0) * mass);
@@ -86,7 +89,7 @@ pub(super) fn rotor_inertia(scale: &Scale<'_>, random: &mut Random) -> Disturban
     let form = random.below(forms.len());
     let fastest = scale.fastest[joint].max(1e-3);
     let equal: &[&str] = if joint < 2 { &["link_parameters"] } else { &[] };
-    Disturbance::of("rotor_inertia", forms[form], joint)
+    Disturbance::at_joint("rotor_inertia", forms[form], joint)
         .with("inertia", inertia)
         .like(equal)
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -107,7 +110,7 @@ pub(super) fn gravity_spring(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let stiffness = size / 0.7;
     let forms = ["linear", "rod_and_spring", "gas_cylinder"];
     let form = random.below(forms.len());
-    Disturbance::of("gravity_spring", forms[form], joint)
+    Disturbance::at_joint("gravity_spring", forms[form], joint)
         .with("stiffness", stiffness)
         .with("centre", centre)
         .acting(Action::Joints(memoryless(joint, move |m| {
@@ -168,7 +171,7 @@ pub(super) fn cable(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let centre = random.between(low, high);
     let forms = ["linear", "stiffening", "taut_on_one_side", "slipping"];
     let form = random.below(forms.len());
-    Disturbance::of("cable", forms[form], joint)
+    Disturbance::at_joint("cable", forms[form], joint)
         .with("stiffness", stiffness)
         .with("centre", centre)
         .acting(Action::Joints(memoryless(joint, move |m| {
@@ -256,14 +259,12 @@ pub(super) fn hysteretic_cable(scale: &Scale<'_>, random: &mut Random) -> Distur
     let joint = scale.one_of(&WRIST, random);
     let size = random.log_between(0.05, 0.3) * scale.rms[joint];
     let yields_at = random.between(0.15, 0.5);
-    Disturbance::of("outside", "hysteretic_cable", joint).acting(Action::Joints(super::with_state(
-        joint,
-        0.0,
-        move |z: &mut f64, m| {
+    Disturbance::at_joint("outside", "hysteretic_cable", joint).acting(Action::Joints(
+        super::laws::with_state(joint, 0.0, move |z: &mut f64, m| {
             let step = m.qd[joint] * m.dt / yields_at;
             *z += step - 0.5 * (step.abs() * *z * z.abs() + step * z.powi(2));
             *z = z.clamp(-1.5, 1.5);
             size * (*z + 0.3 * m.q[joint].sin())
-        },
-    )))
+        }),
+    ))
 }

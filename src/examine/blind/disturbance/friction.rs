@@ -1,9 +1,12 @@
-//! Friction that is not the nominal model's.
+//! Faults of friction.
 
 use std::f64::consts::TAU;
 
+use super::super::action::{Action, Moment};
+use super::super::fault::Disturbance;
 use super::super::random::Random;
-use super::{Action, Disturbance, Moment, Scale, memoryless, with_state};
+use super::super::scale::Scale;
+use super::laws::{memoryless, with_state};
 
 /// Times its share of a smooth step of this width, torques change sign \[1\].
 const SMOOTH: f64 = 0.05;
@@ -24,7 +27,7 @@ pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let forms = ["constant", "smooth_step", "sag_at_speed"];
     let form = random.below(forms.len());
     let fastest = scale.fastest[joint].max(1e-3);
-    Disturbance::of("friction_level", forms[form], joint)
+    Disturbance::at_joint("friction_level", forms[form], joint)
         // Against what the robot is said to be: the usual spread is a part of the change.
         .graded("coulomb", coulomb + scale.plant.coulomb[joint] - scale.nominal.coulomb[joint])
         .graded("viscous", viscous + scale.plant.viscous[joint] - scale.nominal.viscous[joint])
@@ -45,7 +48,7 @@ pub(super) fn stribeck(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let velocity = random.log_between(0.02, 0.2);
     let forms = ["exponential", "gaussian", "lorentzian", "one_minus_tanh", "logistic"];
     let form = random.below(forms.len());
-    Disturbance::of("stribeck", forms[form], joint)
+    Disturbance::at_joint("stribeck", forms[form], joint)
         .with("stiction", stiction)
         .with("velocity", velocity)
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -74,7 +77,7 @@ pub(super) fn nonlinear_viscous(scale: &Scale<'_>, random: &mut Random) -> Distu
         _ => random.between(0.05, 0.25),
     };
     let coefficient = size / if form < 3 { fastest.powf(exponent) } else { 1.0 };
-    Disturbance::of("nonlinear_viscous", forms[form], joint)
+    Disturbance::at_joint("nonlinear_viscous", forms[form], joint)
         .with("coefficient", coefficient)
         .with("exponent", exponent)
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -94,8 +97,9 @@ pub(super) fn viscous_asymmetry(scale: &Scale<'_>, random: &mut Random) -> Distu
     let fastest = scale.fastest[joint].max(1e-3);
     let forms = ["absolute", "rounded", "square", "forwards_only"];
     let form = random.below(forms.len());
-    Disturbance::of("viscous_asymmetry", forms[form], joint).with("asymmetry", asymmetry).acting(
-        Action::Gears(memoryless(joint, move |m| {
+    Disturbance::at_joint("viscous_asymmetry", forms[form], joint)
+        .with("asymmetry", asymmetry)
+        .acting(Action::Gears(memoryless(joint, move |m| {
             let v = m.rate[joint];
             let rounded = 0.05 * fastest;
             asymmetry
@@ -105,8 +109,7 @@ pub(super) fn viscous_asymmetry(scale: &Scale<'_>, random: &mut Random) -> Distu
                     3 => 2.0 * v.max(0.0),
                     _ => v.abs(),
                 }
-        })),
-    )
+        })))
 }
 
 pub(super) fn load_friction(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -115,7 +118,7 @@ pub(super) fn load_friction(scale: &Scale<'_>, random: &mut Random) -> Disturban
     let typical = scale.load[joint].max(1e-3);
     let forms = ["linear", "rounded", "power_below_1"];
     let form = random.below(forms.len());
-    Disturbance::of("load_friction", forms[form], joint)
+    Disturbance::at_joint("load_friction", forms[form], joint)
         .with("mu", mu)
         .like(&["gear_efficiency"])
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -136,7 +139,7 @@ pub(super) fn gear_efficiency(scale: &Scale<'_>, random: &mut Random) -> Disturb
     let (typical, fastest) = (scale.load[joint].max(1e-3), scale.fastest[joint].max(1e-3));
     let forms = ["switched", "smooth_switch", "saturating_load"];
     let form = random.below(forms.len());
-    Disturbance::of("gear_efficiency", forms[form], joint)
+    Disturbance::at_joint("gear_efficiency", forms[form], joint)
         .with("motoring", motoring)
         .with("generating", generating)
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -163,7 +166,7 @@ pub(super) fn position_friction(scale: &Scale<'_>, random: &mut Random) -> Distu
     let tight = random.between(low, high);
     let forms = ["cosine", "two_harmonics", "tight_spot", "worn_range"];
     let form = random.below(forms.len());
-    Disturbance::of("position_friction", forms[form], joint)
+    Disturbance::at_joint("position_friction", forms[form], joint)
         .with("amplitude", amplitude)
         .with("phase", phase)
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -186,7 +189,7 @@ pub(super) fn warm_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let half_speed = (0.5 * scale.fastest[joint]).max(1e-3);
     let forms = ["exponential", "heated_by_friction", "two_masses"];
     let form = random.below(forms.len());
-    Disturbance::of("warm_up", forms[form], joint)
+    Disturbance::at_joint("warm_up", forms[form], joint)
         .with("time_constant", constant)
         .with("coulomb", coulomb)
         .with("viscous", viscous)
@@ -214,7 +217,7 @@ pub(super) fn brake_drag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
     let end = start + random.between(0.1, 0.3) * scale.period_s;
     let forms = ["gated", "fading", "ramp"];
     let form = random.below(forms.len());
-    Disturbance::of("brake_drag", forms[form], joint)
+    Disturbance::at_joint("brake_drag", forms[form], joint)
         .with("drag", drag)
         .with("t_start_s", start)
         .with("t_end_s", end)

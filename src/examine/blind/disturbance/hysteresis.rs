@@ -3,8 +3,11 @@
 //! Dahl 1968; C. Canudas de Wit et al. 1995 (`LuGre`); F. Al-Bender, V. Lampaert, J. Swevers
 //! 2005 (Maxwell slip).
 
+use super::super::action::Action;
+use super::super::fault::Disturbance;
 use super::super::random::Random;
-use super::{Action, Disturbance, Scale, with_state};
+use super::super::scale::Scale;
+use super::laws::with_state;
 
 /// Maxwell's elements: share of the friction, and of the distance at which each slips.
 const ELEMENTS: [[f64; 2]; 4] = [[0.4, 0.4], [0.3, 0.9], [0.2, 1.6], [0.1, 3.0]];
@@ -14,7 +17,7 @@ pub(super) fn presliding(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
     let distance = random.log_between(1.5e-3, 30e-3);
     let forms = ["dahl", "lugre", "maxwell_slip", "stiff_then_soft"];
     let form = random.below(forms.len());
-    Disturbance::of("presliding", forms[form], joint).with("distance", distance).acting(
+    Disturbance::at_joint("presliding", forms[form], joint).with("distance", distance).acting(
         Action::Gears(with_state(joint, [0.0; ELEMENTS.len()], move |z, m| {
             let v = m.rate[joint];
             let step = v * m.dt;

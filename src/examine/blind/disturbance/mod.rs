@@ -1,178 +1,18 @@
-//! What can be wrong with a robot or its log, in several functional forms each.
+//! Faults of a robot or its log, in several functional forms each.
 
 mod compliance;
 mod electrical;
 mod environment;
 mod friction;
 mod hysteresis;
+mod laws;
 mod outside;
 mod power;
 mod sensing;
 
-use super::mechanics::Joints;
-use super::plant::Plant;
+use super::fault::Disturbance;
 use super::random::Random;
-use super::trust::Trust;
-use super::workspace::Workspace;
-use crate::arm::robot::MAX_DOF;
-
-pub(super) use compliance::Compliance;
-
-/// A moment of the simulated robot.
-pub(super) struct Moment {
-    /// Since the first log began \[s\].
-    pub(super) t: f64,
-    /// Since the period began \[s\].
-    pub(super) in_period: f64,
-    /// Time since the last moment \[s\].
-    pub(super) dt: f64,
-    /// Joints \[rad\], with rates and accelerations.
-    pub(super) q: Joints,
-    pub(super) qd: Joints,
-    /// Rates and accelerations of the motors, divided by the gear ratios.
-    pub(super) rate: Joints,
-    pub(super) acceleration: Joints,
-    /// Direction of dry friction: the sign of `rate`, and a part of the last one at rest.
-    pub(super) sign: Joints,
-    /// Torque through the gears \[Nm\].
-    pub(super) load: Joints,
-    /// The robot's own friction \[Nm, Nm s/rad\].
-    pub(super) coulomb: Joints,
-    pub(super) viscous: Joints,
-}
-
-/// Changes a value for each joint as time goes by.
-pub(super) type Change = Box<dyn FnMut(&Moment, &mut Joints)>;
-/// Begins a change at the start of a log.
-pub(super) type Begin = Box<dyn Fn() -> Change + Send + Sync>;
-/// Changes the power \[W\] of a moment, knowing the torques.
-pub(super) type PowerChange = Box<dyn FnMut(&Moment, &Joints, f64) -> f64>;
-pub(super) type BeginPower = Box<dyn Fn() -> PowerChange + Send + Sync>;
-
-/// Where a disturbance acts.
-pub(super) enum Action {
-    /// On what the robot is.
-    Plant(Box<dyn Fn(&mut Plant) + Send + Sync>),
-    /// Adds torques at the motors.
-    Gears(Begin),
-    /// Adds torques at the joints.
-    Joints(Begin),
-    /// Changes the logged torques.
-    Torques(Begin),
-    /// Changes the logged positions.
-    Positions(Begin),
-    /// Between motor and link.
-    Compliance(Compliance),
-    /// On the electrical power.
-    Power(BeginPower),
-}
-
-/// A parameter of the truth.
-#[derive(Clone, Debug)]
-pub(super) struct Parameter {
-    pub(super) name: &'static str,
-    pub(super) joint: Option<usize>,
-    pub(super) value: f64,
-    /// Whether it means the same in every form of the law.
-    pub(super) graded: bool,
-}
-
-/// One thing that is wrong.
-pub(super) struct Disturbance {
-    /// Effect id; `outside` for what no library has.
-    pub(super) id: &'static str,
-    pub(super) form: &'static str,
-    /// Joints, from 0; empty where it is of the whole arm.
-    pub(super) joints: Vec<usize>,
-    pub(super) parameters: Vec<Parameter>,
-    /// Within the period \[s\].
-    pub(super) window: Option<[f64; 2]>,
-    /// Effects whose torques are exactly the same here.
-    pub(super) equivalents: &'static [&'static str],
-    pub(super) actions: Vec<Action>,
-}
-
-impl Disturbance {
-    fn new(id: &'static str, form: &'static str, joints: Vec<usize>) -> Disturbance {
-        Disturbance {
-            id,
-            form,
-            joints,
-            parameters: Vec::new(),
-            window: None,
-            equivalents: &[],
-            actions: Vec::new(),
-        }
-    }
-
-    fn of(id: &'static str, form: &'static str, joint: usize) -> Disturbance {
-        Disturbance::new(id, form, vec![joint])
-    }
-
-    /// With a parameter whose value does not depend on the law's form.
-    fn graded(self, name: &'static str, value: f64) -> Disturbance {
-        self.parameter(name, value, true)
-    }
-
-    /// With a parameter of this form.
-    fn with(self, name: &'static str, value: f64) -> Disturbance {
-        self.parameter(name, value, false)
-    }
-
-    fn parameter(mut self, name: &'static str, value: f64, graded: bool) -> Disturbance {
-        let joint = self.joints.first().copied();
-        self.parameters.push(Parameter { name, joint, value, graded });
-        self
-    }
-
-    fn within(mut self, window: [f64; 2]) -> Disturbance {
-        self.window = Some(window);
-        self
-    }
-
-    fn like(mut self, equivalents: &'static [&'static str]) -> Disturbance {
-        self.equivalents = equivalents;
-        self
-    }
-
-    fn acting(mut self, action: Action) -> Disturbance {
-        self.actions.push(action);
-        self
-    }
-}
-
-/// What the sizes of disturbances are drawn from.
-pub(super) struct Scale<'a> {
-    /// What the robot is said to be, and what it is when nothing is wrong.
-    pub(super) nominal: &'a Plant,
-    pub(super) plant: &'a Plant,
-    pub(super) workspace: &'a Workspace,
-    pub(super) trust: Trust,
-    pub(super) period_s: f64,
-    /// Gear ratios.
-    pub(super) ratio: Joints,
-    /// Of the motion, for each joint: rms and largest torque, largest rate, rms torque through
-    /// the gear.
-    pub(super) rms: Joints,
-    pub(super) peak: Joints,
-    pub(super) fastest: Joints,
-    pub(super) load: Joints,
-    /// Rms power \[W\], without the base.
-    pub(super) power: f64,
-}
-
-impl Scale<'_> {
-    fn any_joint(&self, random: &mut Random) -> usize {
-        random.below(self.plant.dof)
-    }
-
-    /// A joint among some.
-    fn one_of(&self, joints: &[usize], random: &mut Random) -> usize {
-        joints.get(random.below(joints.len())).copied().unwrap_or(0).min(self.plant.dof - 1)
-    }
-}
-
-type Draw = fn(&Scale<'_>, &mut Random) -> Disturbance;
+use super::scale::{Draw, Scale};
 
 /// Effects of the torques: id and how one is drawn.
 const TORQUE: [(&str, Draw); 29] = [
@@ -228,49 +68,15 @@ pub(super) fn power_effect(scale: &Scale<'_>, random: &mut Random) -> Disturbanc
     POWER[random.below(POWER.len())].1(scale, random)
 }
 
-/// Bodies that differ far more than is believed.
+/// Bodies that differ far more than their believed spread.
 pub(super) fn link_parameters(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     environment::link_parameters(scale, random)
 }
 
-/// What no library has.
+/// A fault that no effect of the library describes.
 pub(super) fn outside(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     outside::outside(scale, random)
 }
-
-/// A change without a memory: what is added to one joint.
-fn memoryless(joint: usize, law: impl Fn(&Moment) -> f64 + Clone + Send + Sync + 'static) -> Begin {
-    Box::new(move || {
-        let law = law.clone();
-        Box::new(move |moment, tau| tau[joint] += law(moment))
-    })
-}
-
-/// A change with a memory: what is added to one joint; the law begins anew with each log.
-fn with_state<S: Clone + Send + Sync + 'static>(
-    joint: usize,
-    state: S,
-    law: impl Fn(&mut S, &Moment) -> f64 + Clone + Send + Sync + 'static,
-) -> Begin {
-    Box::new(move || {
-        let (law, mut state) = (law.clone(), state.clone());
-        Box::new(move |moment, tau| tau[joint] += law(&mut state, moment))
-    })
-}
-
-/// A change of one joint's logged value, without a memory.
-fn mapped(
-    joint: usize,
-    law: impl Fn(&Moment, f64) -> f64 + Clone + Send + Sync + 'static,
-) -> Begin {
-    Box::new(move || {
-        let law = law.clone();
-        Box::new(move |moment, values| values[joint] = law(moment, values[joint]))
-    })
-}
-
-/// Nothing for each joint.
-const NONE: Joints = [0.0; MAX_DOF];
 
 #[cfg(test)]
 mod tests {
@@ -281,9 +87,14 @@ mod tests {
     use super::super::fourier::fourier;
     use super::super::model_error::ModelError;
     use super::super::motion::Motion;
+    use super::super::plant::Plant;
     use super::super::robots;
     use super::super::simulate::{Robot, Row, Supply, simulate};
+    use super::super::trust::Trust;
+    use super::super::workspace::Workspace;
+    use super::laws::NONE;
     use super::*;
+    use crate::arm::robot::MAX_DOF;
 
     /// Draws of each effect.
     const DRAWS: usize = 24;
@@ -303,11 +114,11 @@ mod tests {
     fn bench() -> Bench {
         let mut random = Random::new(1, 1, "test");
         let model = robots::robot(&mut random).unwrap();
-        let workspace = Workspace::of(&model);
+        let workspace = Workspace::new(&model);
         let motion = fourier(&workspace, 4.0, &mut random);
         let nothing = [0.0; MAX_DOF];
         Bench {
-            plant: Plant::of(&model),
+            plant: Plant::new(&model),
             workspace,
             motion,
             error: ModelError::drawn(0, &nothing, &nothing, &nothing, &nothing, &mut random),

@@ -1,13 +1,15 @@
-//! What no library of effects has: a diagnosis has to say that it does not know.
+//! Faults that no effect of the library describes: a diagnosis has to say that it does not know.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
+use super::super::action::{Action, Begin};
+use super::super::fault::Disturbance;
 use super::super::random::Random;
-use super::{
-    Action, Begin, Disturbance, Draw, NONE, Scale, electrical, environment, memoryless, with_state,
-};
+use super::super::scale::{Draw, Scale};
+use super::laws::{NONE, memoryless, with_state};
+use super::{electrical, environment};
 
 const KINDS: [Draw; 11] = [
     environment::hysteretic_cable,
@@ -65,7 +67,7 @@ fn drift_with_load(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let typical = scale.rms[joint].max(1e-6);
     let size = random.sign() * random.log_between(0.05, 0.3) * typical;
     let slow = random.between(1.0, 8.0);
-    Disturbance::of("outside", "drift_with_load", joint).acting(Action::Joints(with_state(
+    Disturbance::at_joint("outside", "drift_with_load", joint).acting(Action::Joints(with_state(
         joint,
         1.0,
         move |heat: &mut f64, m| {
@@ -80,13 +82,12 @@ fn friction_of_acceleration(scale: &Scale<'_>, random: &mut Random) -> Disturban
     let joint = scale.any_joint(random);
     let share = random.log_between(0.1, 0.6);
     let knee = 0.3 * scale.workspace.acceleration[joint].max(0.1);
-    Disturbance::of("outside", "friction_of_acceleration", joint).acting(Action::Gears(memoryless(
-        joint,
-        move |m| {
+    Disturbance::at_joint("outside", "friction_of_acceleration", joint).acting(Action::Gears(
+        memoryless(joint, move |m| {
             let pushed = (m.acceleration[joint] * m.sign[joint] / knee).tanh();
             share * m.coulomb[joint] * pushed * m.sign[joint]
-        },
-    )))
+        }),
+    ))
 }
 
 /// The current of one joint shows in another's.
@@ -95,9 +96,9 @@ fn cross_talk(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let from = other(scale, joint, random);
     let ratio = scale.rms[joint] / scale.rms[from].max(1e-6);
     let share = random.sign() * random.log_between(0.04, 0.3) * ratio;
-    Disturbance::of("outside", "cross_talk", joint).acting(Action::Torques(Box::new(move || {
-        Box::new(move |_, tau| tau[joint] += share * tau[from])
-    })))
+    Disturbance::at_joint("outside", "cross_talk", joint).acting(Action::Torques(Box::new(
+        move || Box::new(move |_, tau| tau[joint] += share * tau[from]),
+    )))
 }
 
 /// A limit on the torque; what it withholds comes later.
@@ -105,8 +106,8 @@ fn clipped_and_wound_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let limit = random.between(0.55, 0.85) * scale.peak[joint];
     let unwinds = random.between(2.0, 10.0);
-    Disturbance::of("outside", "clipped_and_wound_up", joint).acting(Action::Torques(Box::new(
-        move || {
+    Disturbance::at_joint("outside", "clipped_and_wound_up", joint).acting(Action::Torques(
+        Box::new(move || {
             let mut owed = 0.0;
             Box::new(move |m, tau| {
                 let wanted = tau[joint];
@@ -114,8 +115,8 @@ fn clipped_and_wound_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
                 owed = (owed + (wanted - given) * m.dt).clamp(-0.1 * limit, 0.1 * limit);
                 tau[joint] = given;
             })
-        },
-    )))
+        }),
+    ))
 }
 
 /// A random smooth torque over two joints' positions.
@@ -126,15 +127,14 @@ fn smooth_of_two_positions(scale: &Scale<'_>, random: &mut Random) -> Disturbanc
     let waves: [[f64; 4]; 4] = std::array::from_fn(|_| {
         [random.normal(), random.normal(), random.between(0.0, TAU), 0.7 * random.normal()]
     });
-    Disturbance::of("outside", "smooth_of_two_positions", joint).acting(Action::Joints(memoryless(
-        joint,
-        move |m| {
+    Disturbance::at_joint("outside", "smooth_of_two_positions", joint).acting(Action::Joints(
+        memoryless(joint, move |m| {
             let wave = |[a, b, phase, c]: [f64; 4]| {
                 c * (1.5 * a * m.q[joint] + 1.5 * b * m.q[second] + phase).sin()
             };
             size * waves.into_iter().map(wave).sum::<f64>()
-        },
-    )))
+        }),
+    ))
 }
 
 /// Dry friction that follows the position of another joint.
@@ -143,7 +143,7 @@ fn friction_of_another_joint(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let second = other(scale, joint, random);
     let share = random.log_between(0.15, 0.7);
     let phase = random.between(0.0, TAU);
-    Disturbance::of("outside", "friction_of_another_joint", joint).acting(Action::Gears(
+    Disturbance::at_joint("outside", "friction_of_another_joint", joint).acting(Action::Gears(
         memoryless(joint, move |m| {
             share * m.coulomb[joint] * (1.7 * m.q[second] + phase).sin() * m.sign[joint]
         }),
@@ -156,7 +156,7 @@ fn chatter(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let size = random.log_between(0.1, 0.6) * scale.plant.coulomb[joint];
     let omega = TAU * random.between(6.0, 14.0);
     let slow = 0.15 * scale.fastest[joint].max(1e-3);
-    Disturbance::of("outside", "chatter", joint).acting(Action::Gears(memoryless(
+    Disturbance::at_joint("outside", "chatter", joint).acting(Action::Gears(memoryless(
         joint,
         move |m| {
             let awake = (-(m.rate[joint] / slow).powi(2)).exp();
@@ -170,7 +170,7 @@ fn viscous_of_load(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let typical = scale.load[joint].max(1e-6);
     let share = random.log_between(0.15, 0.8);
-    Disturbance::of("outside", "viscous_of_load", joint)
+    Disturbance::at_joint("outside", "viscous_of_load", joint)
         .acting(Action::Gears(memoryless(joint, move |m| {
             share * m.viscous[joint] * m.rate[joint] * m.load[joint] / typical
         })))

@@ -1,9 +1,11 @@
-//! Losses that the nominal drive does not have.
+//! Faults of the drive's losses.
 
 use std::f64::consts::TAU;
 
+use super::super::action::{Action, BeginPower, PowerChange};
+use super::super::fault::Disturbance;
 use super::super::random::Random;
-use super::{Action, BeginPower, Disturbance, PowerChange, Scale};
+use super::super::scale::Scale;
 
 fn power(begin: impl Fn() -> PowerChange + Send + Sync + 'static) -> Action {
     let begin: BeginPower = Box::new(begin);
@@ -16,19 +18,21 @@ pub(super) fn copper_loss(scale: &Scale<'_>, random: &mut Random) -> Disturbance
     let loss = random.log_between(0.03, 0.4) * scale.power / (typical * typical);
     let forms = ["square", "warming_copper", "skin_effect"];
     let form = random.below(forms.len());
-    Disturbance::of("copper_loss", forms[form], joint).with("loss", loss).acting(power(move || {
-        let mut heat = 0.0;
-        Box::new(move |m, tau, watts| {
-            let x = tau[joint] / typical;
-            heat += m.dt / 60.0 * (x * x - heat);
-            let grown = match form {
-                1 => x * x * (1.0 + 0.1 * heat),
-                2 => x * x * (1.0 + 0.05 * m.rate[joint].abs()),
-                _ => x * x,
-            };
-            watts + loss * typical * typical * grown
-        })
-    }))
+    Disturbance::at_joint("copper_loss", forms[form], joint).with("loss", loss).acting(power(
+        move || {
+            let mut heat = 0.0;
+            Box::new(move |m, tau, watts| {
+                let x = tau[joint] / typical;
+                heat += m.dt / 60.0 * (x * x - heat);
+                let grown = match form {
+                    1 => x * x * (1.0 + 0.1 * heat),
+                    2 => x * x * (1.0 + 0.05 * m.rate[joint].abs()),
+                    _ => x * x,
+                };
+                watts + loss * typical * typical * grown
+            })
+        },
+    ))
 }
 
 pub(super) fn inverter_loss(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -37,8 +41,9 @@ pub(super) fn inverter_loss(scale: &Scale<'_>, random: &mut Random) -> Disturban
     let per_current = random.log_between(0.03, 0.4) * scale.power / typical;
     let forms = ["absolute", "rounded", "with_resistance"];
     let form = random.below(forms.len());
-    Disturbance::of("inverter_loss", forms[form], joint).with("per_current", per_current).acting(
-        power(move || {
+    Disturbance::at_joint("inverter_loss", forms[form], joint)
+        .with("per_current", per_current)
+        .acting(power(move || {
             Box::new(move |_, tau, watts| {
                 let current = tau[joint].abs();
                 let grown = match form {
@@ -48,8 +53,7 @@ pub(super) fn inverter_loss(scale: &Scale<'_>, random: &mut Random) -> Disturban
                 };
                 watts + per_current * grown
             })
-        }),
-    )
+        }))
 }
 
 pub(super) fn iron_loss(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -58,17 +62,19 @@ pub(super) fn iron_loss(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let loss = random.log_between(0.05, 0.6) * scale.power / (fastest * fastest);
     let forms = ["eddy", "steinmetz", "eddy_and_hysteresis"];
     let form = random.below(forms.len());
-    Disturbance::of("iron_loss", forms[form], joint).with("loss", loss).acting(power(move || {
-        Box::new(move |m, _, watts| {
-            let x = (m.rate[joint] / fastest).abs();
-            let grown = match form {
-                1 => x.powf(1.6),
-                2 => 0.7 * x * x + 0.3 * x,
-                _ => x * x,
-            };
-            watts + loss * fastest * fastest * grown
-        })
-    }))
+    Disturbance::at_joint("iron_loss", forms[form], joint).with("loss", loss).acting(power(
+        move || {
+            Box::new(move |m, _, watts| {
+                let x = (m.rate[joint] / fastest).abs();
+                let grown = match form {
+                    1 => x.powf(1.6),
+                    2 => 0.7 * x * x + 0.3 * x,
+                    _ => x * x,
+                };
+                watts + loss * fastest * fastest * grown
+            })
+        },
+    ))
 }
 
 pub(super) fn base_load(scale: &Scale<'_>, random: &mut Random) -> Disturbance {

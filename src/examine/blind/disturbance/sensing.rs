@@ -1,11 +1,14 @@
-//! How a log differs from what happened.
+//! Faults of sensing and logging.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
+use super::super::action::{Action, Begin};
+use super::super::fault::Disturbance;
 use super::super::mechanics::Joints;
 use super::super::random::Random;
-use super::{Action, Begin, Disturbance, NONE, Scale, mapped};
+use super::super::scale::Scale;
+use super::laws::{NONE, mapped};
 
 pub(super) fn encoder_offset(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
@@ -17,7 +20,7 @@ pub(super) fn encoder_offset(scale: &Scale<'_>, random: &mut Random) -> Disturba
             _ => random.log_between(2e-3, 60e-3),
         };
     let phase = random.between(0.0, TAU);
-    Disturbance::of("encoder_offset", forms[form], joint).graded("offset", offset).acting(
+    Disturbance::at_joint("encoder_offset", forms[form], joint).graded("offset", offset).acting(
         Action::Positions(mapped(joint, move |_, q| {
             let eccentric = if form == 2 { 0.01 * offset * (q + phase).cos() } else { 0.0 };
             q - offset - eccentric
@@ -30,7 +33,7 @@ pub(super) fn torque_offset(scale: &Scale<'_>, random: &mut Random) -> Disturban
     let offset = random.sign() * random.log_between(0.015, 0.25) * scale.rms[joint];
     let forms = ["constant", "directions_differ", "fading_in"];
     let form = random.below(forms.len());
-    Disturbance::of("torque_offset", forms[form], joint).graded("offset", offset).acting(
+    Disturbance::at_joint("torque_offset", forms[form], joint).graded("offset", offset).acting(
         Action::Torques(mapped(joint, move |m, tau| {
             let share = match form {
                 1 => m.sign[joint] * m.sign[joint],

@@ -1,4 +1,4 @@
-//! What a diagnosis says, as far as it is graded.
+//! The graded part of a diagnosis.
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -55,7 +55,7 @@ impl Verdict {
         }
     }
 
-    /// Whether it owns up to not knowing.
+    /// Whether it says that it does not know.
     pub(super) fn abstains(self) -> bool {
         matches!(
             self,
@@ -143,7 +143,7 @@ impl Diagnosis {
 }
 
 impl Said {
-    /// All ids that it says this may be.
+    /// All ids of its class.
     pub(super) fn ids(&self) -> Vec<&str> {
         let mut ids = vec![self.id.as_str()];
         ids.extend(self.class.iter().map(String::as_str).filter(|id| *id != self.id));

@@ -1,4 +1,4 @@
-//! Grades of diagnoses, when the seals are open.
+//! Grades of diagnoses against the opened labels.
 
 mod diagnosis;
 mod score;
@@ -26,7 +26,7 @@ const BINS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0];
 pub struct Grades {
     /// Cases that were graded.
     pub cases: usize,
-    /// Those of them whose logs show their effects too little for them to be asked for.
+    /// Cases whose effects are not detectable in their logs.
     pub undetectable: usize,
     /// What was left out of the library, where something was.
     pub left_out: Option<String>,

@@ -1,13 +1,13 @@
-//! One case: what was right.
+//! The score of one case.
 
 use std::collections::BTreeSet;
 
 use super::super::label::{Kind, Label, Truth};
 use super::diagnosis::{Diagnosis, Said, Verdict};
 
-/// An effect that the logs show less than this is not asked for \[nats\].
+/// Least detectability of an effect that is asked for \[nats\].
 pub(super) const DETECTABLE_NATS: f64 = 10.0;
-/// A class of more ids says nothing.
+/// A class of more ids does not count as an answer.
 const LARGEST_CLASS: usize = 5;
 /// A place is asked for where one joint has this share of the gap at least.
 const CLEAR_SHARE: f64 = 0.5;
@@ -47,7 +47,7 @@ impl Outcome {
         !matches!(self, Outcome::Verdict(_))
     }
 
-    /// Whether it owns up to not knowing.
+    /// Whether it says that it does not know.
     pub(super) fn abstains(self) -> bool {
         matches!(self, Outcome::Verdict(verdict) if verdict.abstains())
     }

@@ -26,7 +26,7 @@ fn power(log: &Ready) -> Option<Powers> {
         Source::Periodic { period, periods, .. } => (periods, period),
         Source::Filtered { .. } | Source::Logged => (1, 0.0),
     };
-    let mut mean = vec![0.0; block.len()];
+    let mut mean = vec![0.0; block.instants()];
     for repetition in 0..count {
         let mut row = 0;
         for (k, t) in block.t.iter().enumerate() {

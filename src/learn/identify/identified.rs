@@ -1,0 +1,84 @@
+//! The result of an identification.
+
+use crate::arm::dynamics::{BaseParameters, JOINT, Load, RIGID};
+use crate::arm::robot::Model;
+
+use super::equations::{Equations, Known};
+use super::fit::Fit;
+use super::misses::Misses;
+use super::nearest::base_values;
+use super::quality::Quality;
+use super::samples::{Samples, Source};
+
+/// An identified model, with the fit that it comes from.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// The model, with identified parameters.
+    pub model: Model,
+    /// The free base parameters.
+    pub base: BaseParameters,
+    /// The fit without constraints.
+    pub fit: Fit,
+    /// All free parameters of the model, in the order of `among`.
+    pub parameters: Vec<f64>,
+    /// Their indices among all, as [`Parameters::name`] counts them.
+    pub among: Vec<usize>,
+    /// The coupling of the wrist that was found in the data, where the model stated none.
+    pub coupling: Option<f64>,
+    /// Errors of the model on the samples that it was fitted to.
+    pub training: Misses,
+    /// The same on those that it was not.
+    pub validation: Option<Misses>,
+    /// Errors of the fit without constraints on these.
+    pub unconstrained_validation: Option<Misses>,
+    /// Root mean square of each joint's residuals \[Nm\] with consistent models of the other parts
+    /// of the data, which are those of the fit's `cross_rms`.
+    pub cross_rms: Vec<f64>,
+    /// Whether every link is a body that can be.
+    pub physically_consistent: bool,
+    /// What was added at the flange, where that was free.
+    pub payload: Option<Load>,
+    /// Joints that were not excited, from 0.
+    pub resting: Vec<usize>,
+    /// Where the rates come from.
+    pub source: Source,
+    /// How much the model explains.
+    pub quality: Quality,
+}
+
+impl Identified {
+    /// Time, usable torques (not a number where a joint rests) and those of the model, of each
+    /// instant of samples, and the rates: `[measured, predicted, rate]` by joint.
+    #[must_use]
+    pub fn traces(&self, nominal: &Model, samples: &Samples) -> Vec<(f64, [Vec<f64>; 3])> {
+        let beta = base_values(&self.base, &self.among, &self.parameters);
+        let known = match self.payload {
+            Some(_) => Known::All,
+            None if self.among.len() < (RIGID + JOINT) * nominal.dof => Known::Rigid,
+            None => Known::Nothing,
+        };
+        let mut model = nominal.clone();
+        model.wrist = self.model.wrist.clone();
+        let equations = Equations { model: &model, base: &self.base, known };
+        let layout = equations.layout();
+        let mut rows = Vec::new();
+        equations.each(samples, &layout, &mut |instant| {
+            let n = layout.columns.len();
+            let mut parts = [Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n)];
+            let mut from = 0;
+            for (joint, columns) in layout.columns.iter().enumerate() {
+                let to = from + columns.len();
+                let of = instant.x[from..to].iter().zip(columns);
+                let free: f64 = of.map(|(x, column)| x * beta[*column]).sum();
+                let predicted = free + instant.tau[joint] - instant.y[joint];
+                let shown = |value: f64| if instant.usable[joint] { value } else { f64::NAN };
+                parts[0].push(shown(instant.tau[joint]));
+                parts[1].push(shown(predicted));
+                parts[2].push(instant.qd[joint]);
+                from = to;
+            }
+            rows.push((instant.t, parts));
+        });
+        rows
+    }
+}
