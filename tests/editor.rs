@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::Path;
 
-use joulepath::rapid::ir::is_movement;
+use joulepath::rapid::builtins::is_movement;
 use serde_json::{Value, json};
 
 const GRAMMAR: &str = "editors/vscode/syntaxes/rapid.tmLanguage.json";

@@ -2,6 +2,7 @@
 //!
 //! It uses no other wing: it knows no robot.
 
+pub mod builtins;
 pub mod diagnostics;
 pub mod ir;
 pub mod syntax;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Isometry3;
 
-use super::instructions::MoveForm;
 use super::value::{Datum, Origin};
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::text::Span;
 
 /// Where a movement goes.

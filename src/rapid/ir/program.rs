@@ -8,7 +8,8 @@ use super::hir::{
     ArgKind, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode,
     Routine, RoutineKind, Scope, StmtKind, TypeDefKind,
 };
-use super::{instructions, layout, user};
+use super::user;
+use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::text::Span;
 
 /// A data object at module level.
@@ -160,8 +161,11 @@ impl Program {
         let mut key = type_key.to_owned();
         // An alias chain is short; a circular one ends here.
         for _ in 0..16 {
-            if let Some(known) = layout::components(&key) {
-                return Some(known.iter().map(|(n, t)| ((*n).into(), (*t).into())).collect());
+            if let Some(known) = builtins::data_type(&key)
+                && !known.components.is_empty()
+            {
+                let parts = known.components.iter();
+                return Some(parts.map(|(n, t)| ((*n).into(), (*t).into())).collect());
             }
             let def = self.modules.iter().flat_map(|m| &m.types).find(|t| t.name.key == key)?;
             match &def.kind {
@@ -252,13 +256,19 @@ impl RoutineScope<'_> {
         };
         // What a routine that is no routine of the program does to its arguments.
         let outside = match (&call.callee, callee) {
-            (Callee::Name(name), None) if !instructions::may_write(&name.key) => return,
-            (Callee::Name(name), None) if instructions::is_writing(&name.key) => Writer::Program,
+            (Callee::Name(name), None) if !builtins::may_write(&name.key) => return,
+            (Callee::Name(name), None)
+                if builtins::instruction(&name.key).is_some_and(Instruction::is_writing) =>
+            {
+                Writer::Program
+            }
             (Callee::Name(name), _) => Writer::UnknownCall(name.text.as_str().into()),
             (Callee::Late(_), _) => Writer::UnknownCall("%…%".into()),
         };
         let only = match (&call.callee, callee) {
-            (Callee::Name(name), None) => instructions::written(&name.key),
+            (Callee::Name(name), None) => {
+                builtins::instruction(&name.key).and_then(Instruction::written)
+            }
             _ => None,
         };
         let mut position = 0;
@@ -281,7 +291,7 @@ impl RoutineScope<'_> {
                 index.and_then(|index| found.params.get(&(id, index)).cloned())
             } else {
                 let is_it = only.is_none_or(|only| match name {
-                    Some(name) => name == only.name,
+                    Some(name) => name.eq_ignore_ascii_case(only.name),
                     None => position == only.position,
                 });
                 is_it.then(|| outside.clone())

@@ -7,7 +7,7 @@ use super::hir::{
     Arg, ArgKind, BinaryOp, Block, Call, Callee, Expr, ExprKind, ParamMode, Routine, StmtKind,
 };
 use super::program::{DataId, Program, RoutineId, Symbol};
-use super::{functions, predefined};
+use crate::rapid::builtins::{self, Instruction, Source};
 
 /// What an expression depends on.
 #[derive(Clone, Debug, Default)]
@@ -32,17 +32,6 @@ pub fn reads(program: &Program, routine: RoutineId, expr: &Expr) -> Reads {
     let mut walk = Walk { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
     walk.expr(routine, expr);
     Reads { fixed: !walk.changes, ..walk.found }
-}
-
-/// Functions that tell where the robot is, or that take it into account.
-const POSITION: [&str; 8] =
-    ["cjointt", "cpos", "crobt", "ctool", "cwobj", "calcjointt", "calcrobt", "calcrotaxisframe"];
-/// Functions that give the level of a signal, which is their argument.
-const LEVELS: [&str; 7] = ["ainput", "aoutput", "dinput", "doutput", "ginput", "goutput", "testdi"];
-
-/// Whether a function of RAPID (lower-case name) leaves its arguments as they are.
-pub fn only_reads(key: &str) -> bool {
-    functions::lookup(key).is_some() || POSITION.contains(&key) || LEVELS.contains(&key)
 }
 
 struct Walk<'p> {
@@ -120,7 +109,7 @@ impl Walk<'_> {
             Some(Symbol::Routine(_) | Symbol::Ambiguous) => {
                 self.effect(&format!("names {text}, which is no data"));
             }
-            None if predefined::lookup(key).is_some() => {}
+            None if builtins::predefined(key).is_some() => {}
             None => {
                 self.changes = true;
                 self.found.signals.insert(text.to_owned());
@@ -137,12 +126,14 @@ impl Walk<'_> {
                 }
             }
             Some(_) => self.effect(&format!("calls {text}, which is no function")),
-            None if POSITION.contains(&key) => {
-                self.effect("is computed from where the robot stands");
-            }
-            None if LEVELS.contains(&key) || key == "present" => self.changes = true,
-            None if functions::lookup(key).is_some() => {}
-            None => self.effect(&format!("calls {text}, whose value no condition can tell")),
+            None => match builtins::function(key).map(|function| function.source) {
+                Some(Source::Arguments) => {}
+                Some(Source::Signal | Source::Call) => self.changes = true,
+                Some(Source::Position | Source::Kinematics | Source::Mounting) => {
+                    self.effect("is computed from where the robot stands");
+                }
+                _ => self.effect(&format!("calls {text}, whose value no condition can tell")),
+            },
         }
     }
 
@@ -201,7 +192,7 @@ impl Walk<'_> {
         let own = &self.program.routine(at).name.text;
         match &call.callee {
             Callee::Name(name)
-                if matches!(name.key.as_str(), "incr" | "decr" | "add" | "clear")
+                if builtins::instruction(&name.key).is_some_and(Instruction::counts)
                     && self.program.resolve(at.module, &name.key).is_none() =>
             {
                 self.arguments(at, &call.args);

@@ -6,19 +6,8 @@
 use std::collections::BTreeMap;
 
 use super::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Ident, Stmt, StmtKind};
-use super::predefined;
 use super::program::{Program, RoutineId};
-
-/// What a signal can be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SignalKind {
-    /// 0 or 1.
-    Digital,
-    /// A whole number from 0.
-    Group,
-    /// Any number.
-    Analog,
-}
+use crate::rapid::builtins::{self, Function, Instruction, SignalKind};
 
 /// A signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,19 +55,8 @@ fn by_name(name: &str) -> Option<SignalKind> {
 
 /// The kind of the signal that an instruction or function takes first.
 fn by_use(key: &str) -> Option<SignalKind> {
-    match key {
-        "waitdi" | "waitdo" | "setdo" | "set" | "reset" | "pulsedo" | "invertdo" | "isignaldi"
-        | "isignaldo" | "searchl" | "searchc" | "searchextj" | "dinput" | "doutput" | "testdi" => {
-            Some(SignalKind::Digital)
-        }
-        "waitgi" | "waitgo" | "setgo" | "isignalgi" | "isignalgo" | "ginput" | "goutput" => {
-            Some(SignalKind::Group)
-        }
-        "waitai" | "waitao" | "setao" | "isignalai" | "isignalao" | "ainput" | "aoutput" => {
-            Some(SignalKind::Analog)
-        }
-        _ => None,
-    }
+    let instruction = builtins::instruction(key).and_then(Instruction::signal);
+    instruction.or_else(|| builtins::function(key).and_then(Function::signal))
 }
 
 struct Found<'a> {
@@ -183,7 +161,7 @@ impl Found<'_> {
     fn name(&mut self, name: &Ident, kind: Option<SignalKind>) {
         if self.own.contains(&name.key)
             || self.program.resolve(self.module, &name.key).is_some()
-            || predefined::lookup(&name.key).is_some()
+            || builtins::predefined(&name.key).is_some()
             || name.key == "errno"
         {
             return;

@@ -10,7 +10,7 @@ use super::sampling::{Loaded, SpeedCap};
 use super::stream::Stream;
 use super::tcp_limits;
 use super::timed::TimedMotion;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::retime::path::{Leg, LegKind, build};
 

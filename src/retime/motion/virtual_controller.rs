@@ -20,8 +20,8 @@ use super::timeline::{Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord,
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::{Conf, Tcp, fk, ik_conf, ik_near, limits_ok};
 use crate::arm::robot::Model;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::exec::{Machine, Note, Waited, execute};
-use crate::rapid::ir::instructions::MoveForm;
 use crate::rapid::ir::movement::{Movement, Output, Stop, Target, Tool, Unresolved, Wait};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;

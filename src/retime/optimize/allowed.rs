@@ -3,7 +3,7 @@
 use super::freedom::{Bound, Freedom};
 use crate::arm::dynamics::Data;
 use crate::arm::robot::Model;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::retime::energy::power::power;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{MoveRecord, Run, What};

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::allowed::Loads;
 use crate::arm::kinematics::Obstacle;
 use crate::arm::robot::Model;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Movement;
 use crate::rapid::text::Span;
 

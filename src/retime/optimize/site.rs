@@ -8,8 +8,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::reason::Reason;
+use crate::rapid::builtins::{MoveForm, is_movement};
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Stmt, StmtKind};
-use crate::rapid::ir::instructions::{MoveForm, is_movement};
 use crate::rapid::ir::movement::{Argument, Movement, Settings};
 use crate::rapid::ir::program::Program;
 use crate::rapid::ir::value::Dependence;

@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::backup::Backup;
 use super::input::{self, InputFile, Place};
+use crate::rapid::builtins::is_of_move_family;
 use crate::rapid::diagnostics::{self, Diagnostic, Label, Paint};
-use crate::rapid::ir::is_of_move_family;
 use crate::rapid::syntax::{self, NodeKind, Parse, SyntaxError, ast};
 use crate::rapid::text::{self, FileId, SourceFile, Span};
 

@@ -6,8 +6,9 @@ use anyhow::bail;
 
 use super::common::CellArgs;
 use crate::arm::robot::nearest;
+use crate::rapid::builtins::SignalKind;
 use crate::rapid::ir::program::Program;
-use crate::rapid::ir::signals::{Signal, SignalKind, signals};
+use crate::rapid::ir::signals::{Signal, signals};
 use crate::retime::motion::Simulation;
 
 /// Checks the names of `--assume` and `--input`, and all levels.

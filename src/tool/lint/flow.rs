@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::quiet::Quiet;
+use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::ir::graph::{Graph, NodeId, Step, When};
 use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
-use crate::rapid::ir::instructions;
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
 
 /// Statements that are looked at before a question is given up.
@@ -56,33 +56,6 @@ pub enum Through {
     /// Everything but movements.
     All,
 }
-
-/// Settings of the motion that take effect with the next movement, and messages: no reason for a
-/// robot to stand still.
-const QUIET: &[&str] = &[
-    "accset",
-    "velset",
-    "confj",
-    "confl",
-    "singarea",
-    "pathacclim",
-    "worldacclim",
-    "motionsup",
-    "cirpathmode",
-    "speedrefresh",
-    "tpwrite",
-    "tperase",
-    "tpshow",
-    "incr",
-    "decr",
-    "add",
-    "clear",
-    "errwrite",
-    "uimsgwrite",
-];
-
-/// Instructions that set outputs.
-const OUTPUTS: &[&str] = &["setdo", "set", "reset", "pulsedo", "setgo", "setao", "invertdo"];
 
 /// The control flow of a program.
 pub struct Flow<'p> {
@@ -170,7 +143,8 @@ impl<'p> Flow<'p> {
             ),
             StmtKind::Call(call) => {
                 let Callee::Name(name) = &call.callee else { return Class::Other };
-                if instructions::movement(&name.key).is_some() {
+                let instruction = builtins::instruction(&name.key);
+                if instruction.is_some_and(Instruction::is_movement) {
                     return Class::Move;
                 }
                 match self.program.resolve(routine.module, &name.key) {
@@ -178,13 +152,15 @@ impl<'p> Flow<'p> {
                     Some(_) => return Class::Other,
                     None => {}
                 }
-                let key = name.key.as_str();
-                if OUTPUTS.contains(&key) {
+                if instruction.is_some_and(Instruction::sets_output) {
                     Class::Output
-                } else if key.starts_with("wait") || instructions::is_waiting(key) {
+                } else if name.key.starts_with("wait")
+                    || instruction.is_some_and(Instruction::waits_outside)
+                {
                     Class::Wait
                 } else {
-                    quiet(QUIET.contains(&key) && self.quiet.arguments(routine, &call.args))
+                    let on_the_fly = instruction.is_some_and(|found| found.on_the_fly);
+                    quiet(on_the_fly && self.quiet.arguments(routine, &call.args))
                 }
             }
             StmtKind::Return(value) => {
@@ -264,9 +240,7 @@ impl<'p> Flow<'p> {
         match &stmt.kind {
             StmtKind::Call(call) => match &call.callee {
                 Callee::Name(name) => {
-                    !instructions::is_harmless(&name.key)
-                        && !instructions::is_writing(&name.key)
-                        && !instructions::is_waiting(&name.key)
+                    builtins::instruction(&name.key).is_none_or(Instruction::may_move)
                 }
                 Callee::Late(_) => true,
             },

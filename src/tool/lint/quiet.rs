@@ -2,76 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::rapid::builtins;
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, DataKind, Expr, ExprKind, StmtKind};
-use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
-
-/// Functions of RAPID that depend on their arguments alone.
-const PURE: &[&str] = &[
-    "abs",
-    "absdnum",
-    "acos",
-    "andpred",
-    "asin",
-    "atan",
-    "atan2",
-    "bitand",
-    "bitcheck",
-    "bitlsh",
-    "bitneg",
-    "bitor",
-    "bitrsh",
-    "bitxor",
-    "bool",
-    "bytetostr",
-    "cos",
-    "defaccframe",
-    "defframe",
-    "dim",
-    "distance",
-    "dnumtonum",
-    "dnumtostr",
-    "dotprod",
-    "euler",
-    "eulerzyx",
-    "exp",
-    "max",
-    "min",
-    "mirpos",
-    "mod",
-    "norient",
-    "numtodnum",
-    "numtostr",
-    "offs",
-    "orient",
-    "orientzyx",
-    "posemult",
-    "poseinv",
-    "posevect",
-    "pow",
-    "present",
-    "reltool",
-    "round",
-    "rounddnum",
-    "sin",
-    "sqrt",
-    "strdigcmp",
-    "strfind",
-    "strlen",
-    "strmap",
-    "strmatch",
-    "strmemb",
-    "strorder",
-    "strpart",
-    "strtobyte",
-    "strtoval",
-    "tan",
-    "trunc",
-    "truncdnum",
-    "type",
-    "valtostr",
-    "vectmagn",
-];
 
 /// What names of a program are data.
 pub struct Quiet<'p> {
@@ -105,7 +38,8 @@ impl<'p> Quiet<'p> {
                     && indices.iter().all(|index| self.expression(routine, index))
             }
             ExprKind::Call(name, args) => {
-                PURE.contains(&name.key.as_str()) && self.arguments(routine, args)
+                builtins::function(&name.key).is_some_and(|function| function.on_the_fly)
+                    && self.arguments(routine, args)
             }
             ExprKind::Aggregate(items) => items.iter().all(|item| self.expression(routine, item)),
             ExprKind::Unary(_, operand) => self.expression(routine, operand),
@@ -131,7 +65,7 @@ impl<'p> Quiet<'p> {
     pub fn is_data(&self, routine: RoutineId, key: &str) -> bool {
         self.is_local(routine, key)
             || self.program.resolve(routine.module, key).is_some()
-            || predefined::lookup(key).is_some()
+            || builtins::predefined(key).is_some()
     }
 
     /// Whether writing to a target may tell another task something: `PERS` data that are no

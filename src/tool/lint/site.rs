@@ -6,11 +6,11 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::flow::Place;
 use super::quiet::Quiet;
+use crate::rapid::builtins::{MoveForm, MoveSignature, movement};
 use crate::rapid::ir::exec::evaluate;
 use crate::rapid::ir::hir::{
     ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
 };
-use crate::rapid::ir::instructions::{MoveForm, MoveSignature, movement};
 use crate::rapid::ir::movement::{Movement, Speed, Target, Zone};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::ir::value::Datum;

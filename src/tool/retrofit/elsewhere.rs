@@ -2,10 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::rapid::builtins::{self, Function, Instruction, may_write};
 use crate::rapid::ir::hir::{Arg, Block, Callee, DataKind, Expr, ExprKind, Routine, StmtKind};
-use crate::rapid::ir::instructions::{finds_by_name, may_write};
 use crate::rapid::ir::lower;
-use crate::rapid::ir::reads::only_reads;
 use crate::rapid::syntax;
 use crate::rapid::text::SourceFile;
 
@@ -46,7 +45,8 @@ impl Written {
                 StmtKind::Call(call) => {
                     let writes = match &call.callee {
                         Callee::Name(name) => {
-                            self.by_name |= finds_by_name(&name.key);
+                            self.by_name |= builtins::instruction(&name.key)
+                                .is_some_and(Instruction::finds_by_name);
                             may_write(&name.key)
                         }
                         Callee::Late(_) => true,
@@ -68,7 +68,7 @@ impl Written {
 
     fn expr(&mut self, expr: &Expr) {
         if let ExprKind::Call(name, args) = &expr.kind
-            && !only_reads(&name.key)
+            && !builtins::function(&name.key).is_some_and(Function::only_reads)
         {
             self.places(args);
         }

@@ -1,6 +1,6 @@
 //! Lines, arcs and waits that the user made free by a comment.
 
-use crate::rapid::ir::instructions::is_movement;
+use crate::rapid::builtins::is_movement;
 use crate::rapid::syntax::{self, NodeKind, TokenKind, ast};
 use crate::rapid::text::{SourceFile, Span};
 

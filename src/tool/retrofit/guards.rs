@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::settings::{Form, Settings};
 use super::work::Source;
+use crate::rapid::builtins::{is_controller_specific, is_movement};
 use crate::rapid::ir::hir::{
     ArgKind, Block, Callee, DataKind, Expr, ExprKind, Scope, StmtKind, UnaryOp,
 };
-use crate::rapid::ir::instructions::is_movement;
 use crate::rapid::ir::movement::Argument;
 use crate::rapid::ir::program::{DataId, Program, RoutineId};
 use crate::rapid::ir::reads::{Reads, reads};
@@ -145,11 +145,10 @@ impl<'p> Guards<'p> {
     }
 }
 
-/// Whether a name has another value on another controller: that of `vmax` is the robot's own, and
-/// versions differ in what `tool0`, `wobj0` and `load0` hold.
+/// Whether a name has another value on another controller.
 fn differs_by_controller(expr: &Expr) -> bool {
     let ExprKind::Ref(name) = &expr.kind else { return false };
-    matches!(name.key.as_str(), "vmax" | "tool0" | "wobj0" | "load0")
+    is_controller_specific(&name.key)
 }
 
 /// Whether the controller works a value out instead of reading it.

@@ -4,76 +4,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::guards::Guards;
+use crate::rapid::builtins::{self, Cause, Function, Instruction, Source, is_movement, may_write};
 use crate::rapid::ir::hir::{Arg, BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
-use crate::rapid::ir::instructions::{finds_by_name, is_movement, is_writing, may_write};
 use crate::rapid::ir::movement::Stop;
 use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
-use crate::rapid::ir::reads::only_reads;
 use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::site::Site;
 use crate::tool::emit;
-
-/// Errors that a movement without process or `\Conc` raises while it runs.
-const MOVEMENT_ERRORS: [&str; 3] = ["err_coll_stop", "err_path_stop", "long_jmp_all_err"];
-
-/// Errors of a division and of an element that there is not.
-const ARGUMENT_ERRORS: [&str; 2] = ["err_divzero", "err_arrayindex"];
-
-/// Instructions of an interrupt routine that change how movements run, or what is left of them.
-const CHANGES_MOVEMENTS: [&str; 29] = [
-    "accset",
-    "cirpathmode",
-    "clearpath",
-    "confj",
-    "confl",
-    "corrclear",
-    "corrcon",
-    "corrdiscon",
-    "corrwrite",
-    "eoffsoff",
-    "eoffson",
-    "eoffsset",
-    "gripload",
-    "motionprocessmodeset",
-    "pathacclim",
-    "pathresol",
-    "pdispoff",
-    "pdispon",
-    "pdispset",
-    "singarea",
-    "softact",
-    "softdeact",
-    "speedlimaxis",
-    "speedrefresh",
-    "stepbwdpath",
-    "tunereset",
-    "tuneservo",
-    "velset",
-    "worldacclim",
-];
-
-/// Functions of RAPID that tell something of the controller or of files, or write to their arguments,
-/// and do nothing else.
-const OF_THE_CONTROLLER: [&str; 15] = [
-    "cdate",
-    "clkread",
-    "cspeedoverride",
-    "ctime",
-    "getsysinfo",
-    "gettime",
-    "intno",
-    "isfile",
-    "isstopmoveact",
-    "opmode",
-    "present",
-    "robos",
-    "runmode",
-    "strtoval",
-    "testandset",
-];
 
 /// Gives the sites and variants that can't be streams their reasons, where they have none yet.
 pub(super) fn mark(
@@ -165,7 +105,7 @@ fn external_axes(simulation: &Simulation) -> BTreeSet<usize> {
 /// first movement, so that the error would come earlier.
 fn catcher(program: &Program) -> Option<Reason> {
     let takes = |(numbers, block): &(Vec<Expr>, Block)| {
-        let named = |number: &Expr| is_number(number, &ARGUMENT_ERRORS);
+        let named = |number: &Expr| is_number(number, Cause::Argument);
         (numbers.is_empty() || numbers.iter().any(named)) && may_take(block)
     };
     let routine = routines(program).find(|routine| routine.error.iter().any(takes))?;
@@ -181,12 +121,12 @@ fn may_take(block: &Block) -> bool {
     block.iter().any(|stmt| match &stmt.kind {
         StmtKind::If { branches, otherwise } => {
             otherwise.is_some()
-                || branches.iter().any(|(condition, _)| may_hold(condition, &ARGUMENT_ERRORS))
+                || branches.iter().any(|(condition, _)| may_hold(condition, Cause::Argument))
         }
         StmtKind::Test { value, cases, default } if is_errno(value) => {
             default.is_some()
                 || cases.iter().any(|(values, _)| {
-                    values.iter().any(|number| is_number(number, &ARGUMENT_ERRORS))
+                    values.iter().any(|number| is_number(number, Cause::Argument))
                 })
         }
         StmtKind::Raise(_) => false,
@@ -215,7 +155,7 @@ fn handler_of(routine: &Routine) -> Option<String> {
         return Some("its routine has a BACKWARD handler, which goes back step by step".into());
     }
     let mut taking = routine.error.iter().filter(|(numbers, _)| {
-        numbers.is_empty() || numbers.iter().any(|n| is_number(n, &MOVEMENT_ERRORS))
+        numbers.is_empty() || numbers.iter().any(|n| is_number(n, Cause::Movement))
     });
     let again = taking.find_map(|(_, handler)| resumes(handler))?;
     Some(format!(
@@ -235,13 +175,13 @@ fn resumes(block: &Block) -> Option<&'static str> {
         },
         StmtKind::If { branches, otherwise } => branches
             .iter()
-            .filter(|(condition, _)| may_hold(condition, &MOVEMENT_ERRORS))
+            .filter(|(condition, _)| may_hold(condition, Cause::Movement))
             .map(|(_, block)| block)
             .chain(otherwise)
             .find_map(resumes),
         StmtKind::Test { value, cases, default } if is_errno(value) => cases
             .iter()
-            .filter(|(values, _)| values.iter().any(|n| is_number(n, &MOVEMENT_ERRORS)))
+            .filter(|(values, _)| values.iter().any(|n| is_number(n, Cause::Movement)))
             .map(|(_, block)| block)
             .chain(default)
             .find_map(resumes),
@@ -249,13 +189,13 @@ fn resumes(block: &Block) -> Option<&'static str> {
     })
 }
 
-/// Whether a condition can hold after one of some errors.
-fn may_hold(condition: &Expr, errors: &[&str]) -> bool {
+/// Whether a condition can hold after an error of a cause.
+fn may_hold(condition: &Expr, cause: Cause) -> bool {
     match &condition.kind {
-        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(a) => is_number(b, errors),
-        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(b) => is_number(a, errors),
-        ExprKind::Binary(BinaryOp::And, a, b) => may_hold(a, errors) && may_hold(b, errors),
-        ExprKind::Binary(BinaryOp::Or, a, b) => may_hold(a, errors) || may_hold(b, errors),
+        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(a) => is_number(b, cause),
+        ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(b) => is_number(a, cause),
+        ExprKind::Binary(BinaryOp::And, a, b) => may_hold(a, cause) && may_hold(b, cause),
+        ExprKind::Binary(BinaryOp::Or, a, b) => may_hold(a, cause) || may_hold(b, cause),
         _ => true,
     }
 }
@@ -264,10 +204,10 @@ fn is_errno(expr: &Expr) -> bool {
     matches!(&expr.kind, ExprKind::Ref(name) if name.key == "errno")
 }
 
-/// Whether a number may be that of one of some errors.
-fn is_number(number: &Expr, errors: &[&str]) -> bool {
+/// Whether a number may be that of an error of a cause.
+fn is_number(number: &Expr, cause: Cause) -> bool {
     match &number.kind {
-        ExprKind::Ref(name) => errors.contains(&name.key.as_str()),
+        ExprKind::Ref(name) => builtins::error(&name.key) == Some(cause),
         _ => true,
     }
 }
@@ -352,10 +292,11 @@ impl Reach {
     fn call(&mut self, program: &Program, module: usize, name: &str) {
         let key = name.to_lowercase();
         let Some(Symbol::Routine(id)) = program.resolve(module, &key) else {
-            if CHANGES_MOVEMENTS.contains(&key.as_str()) {
+            let instruction = builtins::instruction(&key);
+            if instruction.is_some_and(|found| found.changes_motion) {
                 self.changes.get_or_insert(name.to_owned());
             }
-            if finds_by_name(&key) {
+            if instruction.is_some_and(Instruction::finds_by_name) {
                 self.changes
                     .get_or_insert(format!("{name}, which finds data or procedures by name"));
             }
@@ -363,8 +304,10 @@ impl Reach {
                 self.moves.get_or_insert(name.to_owned());
             }
             self.stores_path |= key == "storepath";
-            let is_instruction = is_movement(&key) || !may_write(&key) || is_writing(&key);
-            if !is_instruction && !only_reads(&key) && !OF_THE_CONTROLLER.contains(&key.as_str()) {
+            let function = builtins::function(&key);
+            let is_known = instruction.is_some_and(Instruction::is_known)
+                || function.is_some_and(|found| found.source != Source::NotCalculated);
+            if !is_known {
                 self.changes.get_or_insert(format!("{name}, of which nothing is known here,"));
             }
             return;
@@ -386,7 +329,7 @@ impl Reach {
     fn expr(&mut self, program: &Program, module: usize, expr: &Expr) {
         if let ExprKind::Call(name, args) = &expr.kind {
             self.call(program, module, &name.text);
-            if !only_reads(&name.key) {
+            if !builtins::function(&name.key).is_some_and(Function::only_reads) {
                 for arg in args.iter().filter_map(Arg::value) {
                     self.writes(program, module, arg);
                 }

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::work::Source;
+use crate::rapid::builtins::{MoveForm, movement};
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
-use crate::rapid::ir::instructions::{MoveForm, movement};
 use crate::rapid::ir::program::Program;
 use crate::rapid::text::Span;
 

@@ -1,13 +1,13 @@
 //! Calls of the program's own routines.
 
-use super::super::hir::{
+use super::eval::declared_twice;
+use super::executor::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
+use super::flow::{Flow, Raised};
+use crate::rapid::ir::hir::{
     Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, RoutineKind, Stmt,
 };
-use super::super::program::{RoutineId, Symbol};
-use super::super::value::{Datum, Dependence, Origin};
-use super::eval::declared_twice;
-use super::flow::{Flow, Raised};
-use super::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
+use crate::rapid::ir::program::{RoutineId, Symbol};
+use crate::rapid::ir::value::{Datum, Dependence, Origin};
 use crate::rapid::text::Span;
 
 impl Executor<'_> {
@@ -170,7 +170,7 @@ impl Executor<'_> {
     /// Something that may move the robot or take time in a way that is not known.
     pub(super) fn opaque(&mut self, span: Span, reason: &str) {
         self.unresolved(span, reason);
-        self.machine.moves(Err(super::super::movement::Unresolved {
+        self.machine.moves(Err(crate::rapid::ir::movement::Unresolved {
             span,
             reason: reason.to_owned(),
             moves: true,

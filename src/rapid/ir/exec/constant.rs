@@ -1,10 +1,11 @@
 //! Values that the program has by itself, whatever has run before.
 
-use super::super::hir::{Expr, ExprKind, Ident};
-use super::super::movement::{Movement, Output, Unresolved, Wait};
-use super::super::program::{DataId, Program};
-use super::super::value::{Datum, Dependence, Value};
-use super::{Executor, Frame, Machine, Waited};
+use super::executor::{Executor, Frame};
+use super::machine::{Machine, Waited};
+use crate::rapid::ir::hir::{Expr, ExprKind, Ident};
+use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
+use crate::rapid::ir::program::{DataId, Program};
+use crate::rapid::ir::value::{Datum, Dependence, Value};
 
 /// The value of an expression that stands in a module. What depends on a variable that the
 /// program writes, on an input or on the robot is unknown, with the reason.

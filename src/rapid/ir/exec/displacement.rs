@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::Isometry3;
 
-use super::super::convert;
-use super::super::hir::Stmt;
-use super::super::movement::Settings;
-use super::Executor;
-use super::instruction::Arguments;
+use super::arguments::Arguments;
+use super::executor::Executor;
+use crate::rapid::ir::convert;
+use crate::rapid::ir::hir::Stmt;
+use crate::rapid::ir::movement::Settings;
 
 impl Executor<'_> {
     /// `PDispOn [\Rot] \ExeP:=there, programmed, tool`: what is programmed at the one point runs

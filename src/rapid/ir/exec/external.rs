@@ -1,10 +1,11 @@
 //! Movements of external axes: their time, during which the robot stands.
 
-use super::super::hir::Stmt;
-use super::super::instructions::MoveSignature;
-use super::super::value::Datum;
-use super::Executor;
-use super::instruction::{Arguments, Length};
+use super::arguments::Arguments;
+use super::executor::Executor;
+use super::waits::Length;
+use crate::rapid::builtins::MoveSignature;
+use crate::rapid::ir::hir::Stmt;
+use crate::rapid::ir::value::Datum;
 
 /// Values from here on stand for an axis that is not there (RAPID: 9E9).
 const ABSENT: f64 = 8.9e9;

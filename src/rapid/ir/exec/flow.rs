@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use super::super::hir::{Block, Data, Expr, ExprKind, Ident, Stmt, StmtKind};
-use super::super::value::{Datum, Dependence, Origin, Value};
-use super::eval::equal;
-use super::polling::{Mark, Pass, Poll};
-use super::{Cell, Executor, MAX_STATEMENTS};
+use super::executor::{Cell, Executor, MAX_STATEMENTS, Poll};
+use super::polling::{Mark, Pass};
+use crate::rapid::ir::hir::{Block, Data, Expr, ExprKind, Ident, Stmt, StmtKind};
+use crate::rapid::ir::value::{Dependence, Origin, Value};
 use crate::rapid::text::Span;
 
 /// The note on a loop without an end.
@@ -43,15 +42,6 @@ pub(super) struct Raised {
 const RETRIES: u32 = 4;
 /// The error number with which a handler takes what any routine below raises.
 const ANY_ERROR: &str = "long_jmp_all_err";
-
-/// A condition, as far as it is known.
-pub(super) enum Condition {
-    Known(bool),
-    /// It depends on inputs at assumed levels.
-    Assumed(bool),
-    /// And why, in brackets.
-    Unknown(String),
-}
 
 impl Executor<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Flow {
@@ -243,225 +233,14 @@ impl Executor<'_> {
         let history = self.history(&value.origin);
         let name = data.name.text.as_str().into();
         let reading = match data.kind {
-            super::super::hir::DataKind::Const => Origin::default(),
+            crate::rapid::ir::hir::DataKind::Const => Origin::default(),
             _ if self.is_in_function() => Origin::of(Dependence::Inner(name)),
             _ => Origin::of(Dependence::Local(name)),
         };
-        let read_only = data.kind == super::super::hir::DataKind::Const;
+        let read_only = data.kind == crate::rapid::ir::hir::DataKind::Const;
         self.cells.push(Cell { value, reading, history, read_only, input: None });
         let cell = self.cells.len() - 1;
         self.frame_mut().names.push((data.name.key.clone(), cell));
-    }
-
-    fn if_statement(&mut self, branches: &[(Expr, Block)], otherwise: Option<&Block>) -> Flow {
-        // The last condition on inputs: it decides whether a GOTO is reached.
-        let mut decided = None;
-        let mut input = None;
-        for (condition, block) in branches {
-            let is = self.condition(condition);
-            input = self.seen_input.clone().or(input);
-            match is {
-                Condition::Known(false) if self.seen_input.is_some() => {
-                    self.note_branch(condition, "FALSE", Some(block));
-                }
-                Condition::Known(false) => {}
-                Condition::Assumed(false) => {
-                    self.note_branch(condition, "FALSE", Some(block));
-                    decided = Some(Poll { condition: condition.clone(), value: false });
-                }
-                Condition::Known(true) => {
-                    if self.seen_input.is_some() {
-                        self.note_branch(condition, "TRUE", otherwise);
-                    }
-                    return decided_by(decided, self.block_by(input, block));
-                }
-                Condition::Assumed(true) => {
-                    self.note_branch(condition, "TRUE", otherwise);
-                    decided = Some(Poll { condition: condition.clone(), value: true });
-                    return decided_by(decided, self.block_by(input, block));
-                }
-                Condition::Unknown(why) => {
-                    self.unresolved(
-                        condition.span,
-                        format!("the condition is not known{why}: taken as FALSE"),
-                    );
-                }
-            }
-        }
-        match otherwise {
-            Some(block) => decided_by(decided, self.block_by(input, block)),
-            None => Flow::Next,
-        }
-    }
-
-    /// A block that runs because of an input, if there is one: what it assigns depends on that.
-    fn block_by(&mut self, input: Option<Arc<str>>, block: &Block) -> Flow {
-        let depth = self.deciding.len();
-        self.deciding.extend(input);
-        let flow = self.block(block);
-        self.deciding.truncate(depth);
-        flow
-    }
-
-    /// Data that a block would have assigned depend on the input because of which it did not run.
-    fn left_out(&mut self, block: &Block) {
-        for stmt in block {
-            if let StmtKind::Assign { target, .. } = &stmt.kind
-                && let Some(cell) = target.base().and_then(|name| self.cell_of(name))
-            {
-                self.cells[cell].input.clone_from(&self.seen_input);
-            }
-            for inner in stmt.kind.blocks() {
-                self.left_out(inner);
-            }
-        }
-    }
-
-    /// Tells which way an `IF` on inputs went and what the other way holds, if anything moves or
-    /// waits there.
-    fn note_branch(&mut self, condition: &Expr, taken: &str, left_out: Option<&Block>) {
-        if let Some(block) = left_out {
-            self.left_out(block);
-        }
-        let calls = left_out.map_or(0, |block| calls(block));
-        if calls == 0 {
-            return;
-        }
-        let what = if calls == 1 { "instruction" } else { "instructions" };
-        let state = self.how_to_state(condition);
-        self.unresolved(
-            condition.span,
-            format!(
-                "depends on inputs, taken as {taken}: the other branch ({calls} {what}) was not \
-                 run; {state}"
-            ),
-        );
-    }
-
-    fn how_to_state(&mut self, expr: &Expr) -> String {
-        let seen = self.seen_input.clone();
-        let signal = self.first_signal(expr).or(seen);
-        format!("--assume {}=LEVEL states another", signal.as_deref().unwrap_or("SIGNAL"))
-    }
-
-    pub(super) fn condition(&mut self, expr: &Expr) -> Condition {
-        let condition = self.read_condition(expr);
-        let Condition::Assumed(value) = condition else { return condition };
-        if self.forced == Some(expr.span) {
-            self.forced = None;
-            return Condition::Assumed(!value);
-        }
-        if self.watchers > 0 {
-            self.polls.push(Poll { condition: expr.clone(), value });
-        }
-        condition
-    }
-
-    fn read_condition(&mut self, expr: &Expr) -> Condition {
-        self.seen_input = None;
-        let value = self.eval(expr);
-        let value = self.level(value);
-        let input = value.origin.iter().any(|d| matches!(d, Dependence::Input(_)));
-        match value.datum {
-            Datum::Bool(b) if input => Condition::Assumed(b),
-            Datum::Bool(b) => Condition::Known(b),
-            Datum::Num(x) if input => Condition::Assumed(x != 0.0),
-            Datum::Num(x) => Condition::Known(x != 0.0),
-            datum => Condition::Unknown(match datum.first_unknown() {
-                Some(unknown) => format!(" ({})", unknown.reason),
-                None => String::new(),
-            }),
-        }
-    }
-
-    fn test_statement(
-        &mut self,
-        value: &Expr,
-        cases: &[(Vec<Expr>, Block)],
-        default: Option<&Block>,
-    ) -> Flow {
-        self.seen_input = None;
-        let tested = self.eval(value);
-        let tested = self.level(tested);
-        let input = self.seen_input.clone();
-        if let Some(unknown) = tested.datum.first_unknown() {
-            let reason = unknown.reason.clone();
-            let taken = if default.is_some() { "DEFAULT is taken" } else { "no CASE is taken" };
-            let reason = format!("the TEST value is not known ({reason}): {taken}");
-            self.unresolved(value.span, reason);
-        } else {
-            let mut taken = None;
-            'cases: for (i, (values, _)) in cases.iter().enumerate() {
-                for expr in values {
-                    let candidate = self.eval(expr);
-                    let candidate = self.level(candidate);
-                    if equal(&candidate.datum, &tested.datum) {
-                        taken = Some(i);
-                        break 'cases;
-                    }
-                }
-            }
-            if input.is_some() {
-                self.seen_input.clone_from(&input);
-                self.note_case(value, &tested.datum, taken, cases, default);
-            }
-            if let Some((_, block)) = taken.and_then(|i| cases.get(i)) {
-                return self.block_by(input, block);
-            }
-        }
-        match default {
-            Some(block) => self.block_by(input, block),
-            None => Flow::Next,
-        }
-    }
-}
-
-impl Executor<'_> {
-    /// Tells which way a `TEST` on inputs went and what the others hold.
-    fn note_case(
-        &mut self,
-        value: &Expr,
-        tested: &Datum,
-        taken: Option<usize>,
-        cases: &[(Vec<Expr>, Block)],
-        default: Option<&Block>,
-    ) {
-        let others = cases.iter().enumerate().filter(|(i, _)| taken != Some(*i));
-        let mut blocks: Vec<&Block> = others.map(|(_, (_, block))| block).collect();
-        blocks.extend(default.filter(|_| taken.is_some()));
-        for block in &blocks {
-            self.left_out(block);
-        }
-        let mut left_out: Vec<usize> = blocks.into_iter().map(|block| calls(block)).collect();
-        left_out.retain(|calls| *calls > 0);
-        let count: usize = left_out.iter().sum();
-        if count == 0 {
-            return;
-        }
-        let branches = if left_out.len() == 1 { "branch" } else { "branches" };
-        let what = if count == 1 { "instruction" } else { "instructions" };
-        let level = match tested {
-            Datum::Num(x) => number_text(*x),
-            Datum::Bool(b) => b.to_string().to_uppercase(),
-            _ => "it is".to_owned(),
-        };
-        let state = self.how_to_state(value);
-        self.unresolved(
-            value.span,
-            format!(
-                "depends on inputs, taken as {level}: {} other {branches} ({count} {what}) not \
-                 run; {state}",
-                left_out.len()
-            ),
-        );
-    }
-}
-
-/// The flow out of a branch; a `GOTO` in it was decided by the condition.
-fn decided_by(decided: Option<Poll>, flow: Flow) -> Flow {
-    match flow {
-        Flow::Jump(label, None) => Flow::Jump(label, decided.map(Box::new)),
-        other => other,
     }
 }
 
@@ -484,15 +263,6 @@ pub(super) fn never_leaves(block: &[Stmt]) -> bool {
         | StmtKind::Broken => false,
         kind => kind.blocks().into_iter().all(|inner| never_leaves(inner)),
     })
-}
-
-/// Number of instructions and calls in a block, inner blocks included.
-fn calls(block: &[Stmt]) -> usize {
-    let of = |stmt: &Stmt| match &stmt.kind {
-        StmtKind::Call(_) => 1,
-        kind => kind.blocks().into_iter().map(|inner| calls(inner)).sum(),
-    };
-    block.iter().map(of).sum()
 }
 
 /// A number as RAPID text that reads back as the same number.

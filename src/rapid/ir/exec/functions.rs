@@ -1,12 +1,13 @@
 //! RAPID's own functions, and calls of the program's.
 
-use super::super::functions::{self, Given};
-use super::super::hir::{Arg, ArgKind, Expr, ExprKind, Ident};
-use super::super::program::Symbol;
-use super::super::value::{Datum, Dependence, Origin, Value};
-use super::Executor;
 use super::eval::declared_twice;
+use super::executor::Executor;
 use super::flow::Flow;
+use crate::rapid::builtins::{self, Source};
+use crate::rapid::ir::functions::{self, Given};
+use crate::rapid::ir::hir::{Arg, ArgKind, Expr, ExprKind, Ident};
+use crate::rapid::ir::program::Symbol;
+use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 
 impl Executor<'_> {
     /// The value of `name(args)`.
@@ -26,15 +27,55 @@ impl Executor<'_> {
             "cspeedoverride" => {
                 return self.override_of_speed(args, expr);
             }
-            "isfile" | "opmode" | "robos" | "runmode" | "gettime" | "cdate" | "ctime" => {
-                return Value::unknown(
-                    format!("{} depends on the controller", name.text),
-                    expr.span,
-                );
-            }
             _ => {}
         }
+        let source = builtins::function(&name.key).map(|function| function.source);
+        if source == Some(Source::Controller) {
+            let reason = format!("{} depends on the controller", name.text);
+            return Value::unknown(reason, expr.span);
+        }
+        let (mut values, mut options) = self.values_of(args);
+        if source == Some(Source::Signal)
+            && let Some(value) = values.pop()
+        {
+            return self.level(value);
+        }
         let mut origin = Origin::default();
+        for value in values.iter_mut().chain(options.iter_mut().filter_map(|(_, v)| v.as_mut())) {
+            origin.join(&value.origin);
+            if let Datum::Signal(signal) = &value.datum {
+                let reason = format!("'{signal}' is not declared in the files given");
+                value.datum = Datum::unknown(reason, expr.span);
+            }
+        }
+        let all = values.iter().chain(options.iter().filter_map(|(_, value)| value.as_ref()));
+        if let Some(unknown) = all.into_iter().find_map(|v| v.datum.first_unknown()) {
+            let datum = Datum::Unknown(unknown.clone());
+            return Value { datum, type_key: "".into(), origin };
+        }
+        match name.key.as_str() {
+            "calcrobt" => return self.robtarget_at(&values, &options, expr),
+            "getsysinfo" => return self.system_info(&options, expr),
+            _ => {}
+        }
+        let Some(function) = functions::lookup(&name.key) else {
+            return Value::unknown(not_known(name, source), expr.span);
+        };
+        let given = Given {
+            args: values.iter().map(|value| &value.datum).collect(),
+            options: options.iter().map(|(k, v)| (*k, v.as_ref().map(|v| &v.datum))).collect(),
+        };
+        match function(&given) {
+            Some((datum, type_key)) => Value { datum, type_key: type_key.into(), origin },
+            None => Value::unknown(
+                format!("'{}' has no value for these arguments", name.text),
+                expr.span,
+            ),
+        }
+    }
+
+    /// The values of the arguments in order, and those of the options by lower-case name.
+    fn values_of<'e>(&mut self, args: &'e [Arg]) -> (Vec<Value>, Vec<(&'e str, Option<Value>)>) {
         let mut values = Vec::new();
         let mut options: Vec<(&str, Option<Value>)> = Vec::new();
         for arg in args {
@@ -54,44 +95,7 @@ impl Executor<'_> {
                 }
             }
         }
-        if matches!(
-            name.key.as_str(),
-            "dinput" | "doutput" | "ginput" | "goutput" | "ainput" | "aoutput" | "testdi"
-        ) && let Some(value) = values.pop()
-        {
-            return self.level(value);
-        }
-        for value in values.iter_mut().chain(options.iter_mut().filter_map(|(_, v)| v.as_mut())) {
-            origin.join(&value.origin);
-            if let Datum::Signal(signal) = &value.datum {
-                let reason = format!("'{signal}' is not declared in the files given");
-                value.datum = Datum::unknown(reason, expr.span);
-            }
-        }
-        let all = values.iter().chain(options.iter().filter_map(|(_, value)| value.as_ref()));
-        if let Some(unknown) = all.into_iter().find_map(|v| v.datum.first_unknown()) {
-            let datum = Datum::Unknown(unknown.clone());
-            return Value { datum, type_key: "".into(), origin };
-        }
-        match name.key.as_str() {
-            "calcrobt" => return self.robtarget_at(&values, &options, expr),
-            "getsysinfo" => return self.system_info(&options, expr),
-            _ => {}
-        }
-        let Some(function) = functions::lookup(&name.key) else {
-            return Value::unknown(not_known(name), expr.span);
-        };
-        let given = Given {
-            args: values.iter().map(|value| &value.datum).collect(),
-            options: options.iter().map(|(k, v)| (*k, v.as_ref().map(|v| &v.datum))).collect(),
-        };
-        match function(&given) {
-            Some((datum, type_key)) => Value { datum, type_key: type_key.into(), origin },
-            None => Value::unknown(
-                format!("'{}' has no value for these arguments", name.text),
-                expr.span,
-            ),
-        }
+        (values, options)
     }
 
     fn present(&mut self, args: &[Arg]) -> Value {
@@ -124,12 +128,10 @@ impl Executor<'_> {
 }
 
 /// Why a function has no value here.
-fn not_known(name: &Ident) -> String {
-    match name.key.as_str() {
-        "crobt" | "cpos" | "ctool" | "cwobj" => {
-            format!("{} depends on where the robot is", name.text)
-        }
-        "calcjointt" => format!("{} needs the robot's kinematics", name.text),
+fn not_known(name: &Ident, source: Option<Source>) -> String {
+    match source {
+        Some(Source::Position) => format!("{} depends on where the robot is", name.text),
+        Some(Source::Kinematics) => format!("{} needs the robot's kinematics", name.text),
         _ => format!("the function '{}' is not known", name.text),
     }
 }

@@ -1,10 +1,11 @@
 //! `FOR` and `WHILE`.
 
-use super::super::hir::{Block, Expr, ExprKind, Ident, Stmt};
-use super::super::value::{Datum, Dependence, Origin, Value};
-use super::flow::{Condition, Flow, never_leaves};
-use super::polling::{Mark, Pass, Poll};
-use super::{Cell, Executor, MAX_PASSES};
+use super::branches::Condition;
+use super::executor::{Cell, Executor, MAX_PASSES, Poll};
+use super::flow::{Flow, never_leaves};
+use super::polling::{Mark, Pass};
+use crate::rapid::ir::hir::{Block, Expr, ExprKind, Ident, Stmt};
+use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 
 impl Executor<'_> {
     pub(super) fn for_statement(

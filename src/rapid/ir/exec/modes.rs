@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::super::hir::{Expr, ExprKind, Stmt};
-use super::super::movement::Settings;
-use super::Executor;
-use super::instruction::Arguments;
+use super::arguments::Arguments;
+use super::executor::Executor;
+use crate::rapid::ir::hir::{Expr, ExprKind, Stmt};
+use crate::rapid::ir::movement::Settings;
 
 /// Options of `CirPathMode` in the order of their numbers in `C_MOTSET.cirpathreori`.
 /// Source: RAPID reference, `motsetdata`.

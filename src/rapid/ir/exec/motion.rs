@@ -1,14 +1,14 @@
 //! Movement instructions: from arguments to a [`Movement`].
 
-use super::super::convert;
-use super::super::hir::{Arg, Expr, ExprKind, Stmt};
-use super::super::instructions::{MoveForm, MoveSignature};
-use super::super::movement::{Argument, Movement, Stop, Target, Unresolved, Zone};
-use super::super::processes;
-use super::super::program::Symbol;
-use super::super::value::{Datum, Dependence, Origin, Value};
-use super::Executor;
-use super::instruction::Arguments;
+use super::arguments::Arguments;
+use super::executor::Executor;
+use crate::rapid::builtins::{self, Instruction, MoveForm, MoveKind, MoveSignature};
+use crate::rapid::ir::convert;
+use crate::rapid::ir::hir::{Expr, ExprKind, Stmt};
+use crate::rapid::ir::movement::{Argument, Movement, Speed, Stop, Target, Tool, Unresolved, Zone};
+use crate::rapid::ir::predefined;
+use crate::rapid::ir::program::Symbol;
+use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 
 /// Options that a movement may have without changing where or how fast it goes.
 const KNOWN_OPTIONS: &[&str] = &[
@@ -34,47 +34,21 @@ struct Given {
     arguments: Vec<Argument>,
 }
 
-impl Executor<'_> {
-    pub(super) fn movement(
-        &mut self,
-        stmt: &Stmt,
-        text: &str,
-        signature: MoveSignature,
-        arguments: &Arguments<'_>,
-        args: &[Arg],
-    ) {
-        if signature.form == MoveForm::ExternalJoint {
-            self.external(stmt, text, signature, arguments);
-            return;
-        }
-        let movement = self.resolve(stmt, text, signature, arguments);
-        let movement = movement.map_err(|reason| {
-            self.unresolved(stmt.span, reason.clone());
-            Unresolved { span: stmt.span, reason, moves: true }
-        });
-        let key = text.to_lowercase();
-        if key.starts_with("search") {
-            self.forget_written(args, &key, "is found by a search");
-            self.unresolved(
-                stmt.span,
-                "where the search finds its signal is not known: it runs to its end point",
-            );
-        }
-        if let Some(what) = processes::unmodelled(&key) {
-            self.unresolved(stmt.span, what);
-        }
-        self.moves += 1;
-        self.machine.moves(movement);
-    }
+/// The arguments of a movement by what they mean.
+struct Parts<'e> {
+    via: Option<&'e Expr>,
+    target: &'e Expr,
+    speed: &'e Expr,
+    zone: Option<&'e Expr>,
+    tool: &'e Expr,
+}
 
-    fn resolve(
-        &mut self,
-        stmt: &Stmt,
+impl<'e> Parts<'e> {
+    fn new(
         text: &str,
         signature: MoveSignature,
-        arguments: &Arguments<'_>,
-    ) -> Result<Movement, String> {
-        let mut given = Given::default();
+        arguments: &Arguments<'e>,
+    ) -> Result<Parts<'e>, String> {
         let mut positional = arguments.positional.iter().copied().skip(signature.before);
         let mut take = |name: &str, what: &str| {
             arguments
@@ -92,28 +66,68 @@ impl Executor<'_> {
             take("", "trigger")?;
         }
         let zone = if signature.zone { Some(take("zone", "zone")?) } else { None };
-        let tool = take("tool", "tool")?;
+        Ok(Parts { via, target, speed, zone, tool: take("tool", "tool")? })
+    }
+}
 
-        let via = match via {
+impl Executor<'_> {
+    pub(super) fn movement(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        signature: MoveSignature,
+        arguments: &Arguments<'_>,
+    ) {
+        if signature.form == MoveForm::ExternalJoint {
+            self.external(stmt, text, signature, arguments);
+            return;
+        }
+        let movement = self.resolve(stmt, text, signature, arguments);
+        let movement = movement.map_err(|reason| {
+            self.unresolved(stmt.span, reason.clone());
+            Unresolved { span: stmt.span, reason, moves: true }
+        });
+        if signature.kind == MoveKind::Search {
+            let instruction = builtins::instruction(&text.to_lowercase());
+            if let Some(written) = instruction.and_then(Instruction::written) {
+                self.forget_written(arguments.all, written, "is found by a search");
+            }
+        }
+        if let Some(what) = not_simulated(signature.kind) {
+            self.unresolved(stmt.span, what);
+        }
+        self.moves += 1;
+        self.machine.moves(movement);
+    }
+
+    fn resolve(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        signature: MoveSignature,
+        arguments: &Arguments<'_>,
+    ) -> Result<Movement, String> {
+        let parts = Parts::new(text, signature, arguments)?;
+        let mut given = Given::default();
+        let via = match parts.via {
             Some(expr) => {
                 let value = self.argument(expr, "robtarget", &mut given);
                 Some(convert::robtarget(&value.datum)?)
             }
             None => None,
         };
-        let target_type = match signature.form {
-            MoveForm::AbsJ => "jointtarget",
-            _ => "robtarget",
-        };
-        let target_value = self.argument(target, target_type, &mut given);
+        let to_joints = signature.form == MoveForm::AbsJ;
+        let target_type = if to_joints { "jointtarget" } else { "robtarget" };
+        let target_value = self.argument(parts.target, target_type, &mut given);
         let external = convert::external(&target_value.datum);
-        let target = match signature.form {
-            MoveForm::AbsJ => Target::Joints(convert::jointtarget(&target_value.datum)?),
-            _ => Target::Pose(convert::robtarget(&target_value.datum)?),
+        let target = if to_joints {
+            Target::Joints(convert::jointtarget(&target_value.datum)?)
+        } else {
+            Target::Pose(convert::robtarget(&target_value.datum)?)
         };
-        let speed_value = self.argument(speed, "speeddata", &mut given);
+        let speed_value = self.argument(parts.speed, "speeddata", &mut given);
         let mut speed = convert::speed(&speed_value.datum)?;
-        let zone = match zone {
+        let zone = match parts.zone {
             Some(expr) => {
                 let value = self.argument(expr, "zonedata", &mut given);
                 convert::zone(&value.datum)?
@@ -121,63 +135,19 @@ impl Executor<'_> {
             None => Zone { fine: true, tcp: 0.0, orientation: 0.0, angle: 0.0 },
         };
         let zone = self.zone_options(zone, arguments, &mut given)?;
-        let stop = match arguments.option_value("inpos") {
-            Some(expr) => {
-                let value = self.argument(expr, "stoppointdata", &mut given);
-                convert::stop(&value.datum)?
-            }
+        let stop = match self.option(arguments, "inpos", "stoppointdata", &mut given) {
+            Some(value) => convert::stop(&value.datum)?,
             None => Stop::Fine,
         };
-        let tool_value = self.argument(tool, "tooldata", &mut given);
-        let tool_name = match &tool.kind {
-            ExprKind::Ref(name) => name.text.as_str(),
-            _ => "tool",
-        };
-        let named = tool;
-        let tool = convert::tool(&tool_value.datum, tool_name)
-            .map_err(|why| self.blame(named, &tool_value.datum, &why))?;
-        let wobj = match arguments.option_value("wobj") {
-            Some(expr) => self.argument(expr, "wobjdata", &mut given),
-            None => super::super::predefined::lookup("wobj0")
-                .unwrap_or_else(|| Value::unknown("wobj0", stmt.span)),
-        };
+        let tool = self.tool(parts.tool, &mut given)?;
+        let wobj = self
+            .option(arguments, "wobj", "wobjdata", &mut given)
+            .or_else(|| predefined::lookup("wobj0"))
+            .unwrap_or_else(|| Value::unknown("wobj0", stmt.span));
         let wobj = convert::work_object(&wobj.datum)?;
-        let total_load = match arguments.option_value("tload") {
-            Some(expr) => {
-                let value = self.argument(expr, "loaddata", &mut given);
-                Some(convert::load(&value.datum)?)
-            }
-            None => None,
-        };
-        if let Some(expr) = arguments.option_value("v") {
-            let value = self.argument(expr, "num", &mut given);
-            speed.tcp = convert::num(&value.datum, "\\V")? * 1e-3;
-            if speed.tcp <= 0.0 {
-                return Err("\\V is not positive".into());
-            }
-        }
-        let time = match arguments.option_value("t") {
-            Some(expr) => {
-                let value = self.argument(expr, "num", &mut given);
-                let time = convert::num(&value.datum, "\\T")?;
-                if time <= 0.0 {
-                    return Err("\\T is not positive".into());
-                }
-                Some(time)
-            }
-            None => None,
-        };
-        let mut origin = given.origin;
-        for dependence in origin.iter() {
-            if let Dependence::TrustedPersistent(name) = dependence {
-                let text = format!("PERS {name} has its value of the source");
-                if !self.execution.assumed.contains(&text) {
-                    self.execution.assumed.push(text);
-                }
-            }
-        }
-        let history = self.history(&origin);
-        origin.join(&history);
+        let total_load = self.option(arguments, "tload", "loaddata", &mut given);
+        let total_load = total_load.map(|value| convert::load(&value.datum)).transpose()?;
+        let time = self.speed_options(&mut speed, arguments, &mut given)?;
         let other_arguments = arguments
             .optional
             .iter()
@@ -200,15 +170,57 @@ impl Executor<'_> {
             zone,
             stop,
             tool,
-            tool_span: named.span,
+            tool_span: parts.tool.span,
             wobj,
             total_load,
             settings: self.settings.clone(),
             concurrent: arguments.has_option("conc"),
             other_arguments,
-            origin,
+            origin: self.origin_of_movement(given.origin),
             arguments: given.arguments,
         })
+    }
+
+    /// What the arguments depend on, directly or not. Data that are trusted are noted.
+    fn origin_of_movement(&mut self, mut origin: Origin) -> Origin {
+        for dependence in origin.iter() {
+            if let Dependence::TrustedPersistent(name) = dependence {
+                self.assume(format!("PERS {name} has its value of the source"));
+            }
+        }
+        let history = self.history(&origin);
+        origin.join(&history);
+        origin
+    }
+
+    fn tool(&mut self, expr: &Expr, given: &mut Given) -> Result<Tool, String> {
+        let value = self.argument(expr, "tooldata", given);
+        let name = match &expr.kind {
+            ExprKind::Ref(name) => name.text.as_str(),
+            _ => "tool",
+        };
+        convert::tool(&value.datum, name).map_err(|why| self.blame(expr, &value.datum, &why))
+    }
+
+    /// `\V` replaces the TCP speed; the time of `\T`, s.
+    fn speed_options(
+        &mut self,
+        speed: &mut Speed,
+        arguments: &Arguments<'_>,
+        given: &mut Given,
+    ) -> Result<Option<f64>, String> {
+        if let Some(value) = self.option(arguments, "v", "num", given) {
+            speed.tcp = convert::num(&value.datum, "\\V")? * 1e-3;
+            if speed.tcp <= 0.0 {
+                return Err("\\V is not positive".into());
+            }
+        }
+        let Some(value) = self.option(arguments, "t", "num", given) else { return Ok(None) };
+        let time = convert::num(&value.datum, "\\T")?;
+        if time <= 0.0 {
+            return Err("\\T is not positive".into());
+        }
+        Ok(Some(time))
     }
 
     /// Why an argument can't be used, with the name of the data; where their value is known but
@@ -237,8 +249,7 @@ impl Executor<'_> {
         arguments: &Arguments<'_>,
         given: &mut Given,
     ) -> Result<Zone, String> {
-        if let Some(expr) = arguments.option_value("z") {
-            let value = self.argument(expr, "num", given);
+        if let Some(value) = self.option(arguments, "z", "num", given) {
             let size = convert::num(&value.datum, "\\Z")?.max(0.0) * 1e-3;
             // The other sizes keep their proportion to the TCP zone.
             let scale = if zone.tcp > 0.0 { size / zone.tcp } else { 1.5 };
@@ -255,10 +266,40 @@ impl Executor<'_> {
         Ok(zone)
     }
 
+    /// The value of an option that is given.
+    fn option(
+        &mut self,
+        arguments: &Arguments<'_>,
+        key: &str,
+        type_name: &'static str,
+        given: &mut Given,
+    ) -> Option<Value> {
+        arguments.option_value(key).map(|expr| self.argument(expr, type_name, given))
+    }
+
     fn argument(&mut self, expr: &Expr, type_name: &'static str, given: &mut Given) -> Value {
         let value = self.eval(expr);
         given.origin.join(&value.origin);
         given.arguments.push(Argument { span: expr.span, type_name, datum: value.datum.clone() });
         value
+    }
+}
+
+/// What the simulation leaves out of a movement that does more than move.
+fn not_simulated(kind: MoveKind) -> Option<&'static str> {
+    match kind {
+        MoveKind::Search => {
+            Some("where the search finds its signal is not known: it runs to its end point")
+        }
+        MoveKind::ArcWeld => Some(
+            "how fast it welds and how long the arc takes to start is said by its seam and weld \
+             data: it is simulated at its speed argument, without waiting",
+        ),
+        MoveKind::Application => Some(
+            "how fast the process runs and how long it takes to start is said by its process data: \
+             it is simulated at its speed argument, without waiting",
+        ),
+        MoveKind::SpotWeld => Some("how long the spot weld takes is not known: it counts 0 s"),
+        MoveKind::Plain | MoveKind::Event | MoveKind::Transfer | MoveKind::Dispense => None,
     }
 }

@@ -6,12 +6,13 @@
 
 use std::sync::Arc;
 
-use super::super::hir::{ArgKind, Block, Call, Callee, Expr, ExprKind, Stmt, StmtKind};
-use super::super::instructions;
-use super::super::movement::Wait;
-use super::super::program::Symbol;
-use super::super::value::Datum;
-use super::{Executor, MAX_CALL_DEPTH, Waited};
+use super::executor::{CellId, Executor, MAX_CALL_DEPTH, Poll};
+use super::machine::Waited;
+use crate::rapid::builtins::{self, Instruction};
+use crate::rapid::ir::hir::{ArgKind, Block, Call, Callee, Expr, ExprKind, Stmt, StmtKind};
+use crate::rapid::ir::movement::Wait;
+use crate::rapid::ir::program::Symbol;
+use crate::rapid::ir::value::Datum;
 
 /// Times that one loop may wait before it is taken as one that never ends.
 const MAX_WAITS: u32 = 20;
@@ -20,12 +21,6 @@ const MAX_COUNTED: u32 = 1000;
 
 /// Inputs of one condition whose order is looked at.
 const MAX_TOGETHER: usize = 6;
-
-/// A condition on inputs, and what it was.
-pub(super) struct Poll {
-    pub(super) condition: Expr,
-    pub(super) value: bool,
-}
 
 /// The state at the start of a pass.
 pub(super) struct Mark {
@@ -296,15 +291,12 @@ impl Executor<'_> {
                 self.block_moves(id.module, &self.program.routine(id).body, depth + 1)
             }
             Some(_) => true,
-            None => {
-                instructions::is_movement(&name.key)
-                    || (instructions::may_write(&name.key) && !instructions::is_writing(&name.key))
-            }
+            None => builtins::instruction(&name.key).is_none_or(Instruction::may_move),
         }
     }
 
     /// Notes that data or a signal have another value than before.
-    pub(super) fn changes(&mut self, cell: Option<super::CellId>) {
+    pub(super) fn changes(&mut self, cell: Option<CellId>) {
         self.stamp += 1;
         let stamp = self.stamp;
         let frame = self.frame_mut();

@@ -2,10 +2,10 @@
 
 use nalgebra::Isometry3;
 
-use super::super::convert;
-use super::super::hir::{Arg, ArgKind, Expr};
-use super::super::value::{Datum, Dependence, Origin, Value};
-use super::Executor;
+use super::executor::Executor;
+use crate::rapid::ir::convert;
+use crate::rapid::ir::hir::{Arg, ArgKind, Expr};
+use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 use crate::rapid::text::Span;
 
 /// Largest TCP speed that `VelSet` allows where the program has not set it, mm/s.

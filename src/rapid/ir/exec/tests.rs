@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::rapid::ir::lower;
-use crate::rapid::ir::movement::Target;
+use crate::rapid::ir::movement::{Movement, Output, Target, Unresolved, Wait};
 use crate::rapid::syntax;
 use crate::rapid::text::FileId;
 

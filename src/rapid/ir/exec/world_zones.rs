@@ -1,15 +1,17 @@
 //! World zones: what they do to data and signals. They move nothing.
 
-use super::super::hir::Arg;
-use super::Executor;
-use super::instruction::Arguments;
+use super::arguments::Arguments;
+use super::executor::Executor;
+use crate::rapid::builtins::{self, Instruction};
 
 impl Executor<'_> {
     /// `WZDOSet zone, shape, signal, value`: from here on the place of the robot sets the signal,
     /// so that its level is not known any more.
-    pub(super) fn zone_output(&mut self, args: &[Arg], arguments: &Arguments<'_>) {
+    pub(super) fn zone_output(&mut self, arguments: &Arguments<'_>) {
         const SIGNAL: usize = 2;
-        self.forget_written(args, "wzdoset", "is written by WZDOSet");
+        if let Some(written) = builtins::instruction("wzdoset").and_then(Instruction::written) {
+            self.forget_written(arguments.all, written, "is written by WZDOSet");
+        }
         let signal = arguments.positional.get(SIGNAL).and_then(|expr| self.first_signal(expr));
         if let Some(signal) = signal
             && self.signals.remove(&signal.to_lowercase()).is_some()

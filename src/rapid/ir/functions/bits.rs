@@ -1,6 +1,6 @@
 //! Functions of bits: a `byte` has 8, a `dnum` 52.
 
-use super::{Function, Given, Typed, boolean};
+use super::given::{Function, Given, Typed, boolean};
 use crate::rapid::ir::value::Datum;
 
 /// The function of a name in lower case.

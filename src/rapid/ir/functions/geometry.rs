@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use super::{Function, Given, Typed, num};
+use super::given::{Function, Given, Typed, num};
 use crate::rapid::ir::convert;
 use crate::rapid::ir::value::Datum;
 

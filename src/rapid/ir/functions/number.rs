@@ -1,6 +1,6 @@
 //! Functions of numbers and vectors to a number.
 
-use super::{Function, Given, num};
+use super::given::{Function, Given, Typed, num};
 use crate::rapid::ir::value::Datum;
 
 /// The function of a name in lower case; those of `dnum` are those of `num`.
@@ -31,13 +31,13 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
 }
 
 /// `Round` and `Trunc` with `\Dec`.
-fn decimals(given: &Given<'_>, step: fn(f64) -> f64) -> Option<super::Typed> {
+fn decimals(given: &Given<'_>, step: fn(f64) -> f64) -> Option<Typed> {
     let scale = 10_f64.powf(given.option("dec", 0.0)?);
     num(step(given.num(0)? * scale) / scale)
 }
 
 /// `Dim(array, n)`: size of the n-th dimension.
-fn dimension(given: &Given<'_>) -> Option<super::Typed> {
+fn dimension(given: &Given<'_>) -> Option<Typed> {
     let mut datum = *given.args.first()?;
     for _ in 1..given.num(1)? as usize {
         let Datum::List(items) = datum else { return None };

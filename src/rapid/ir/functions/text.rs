@@ -1,6 +1,6 @@
 //! Functions of strings. Positions count from 1.
 
-use super::{Function, Given, Typed, boolean, num};
+use super::given::{Function, Given, Typed, boolean, num};
 use crate::rapid::ir::value::Datum;
 
 /// Significant digits of a `num` as text.

@@ -1,6 +1,7 @@
 //! What lowering makes of declarations and statements.
 
 use super::*;
+use crate::rapid::ir::hir::{Arg, ArgKind, ExprKind};
 use crate::rapid::syntax;
 
 fn modules(bytes: &[u8]) -> Vec<Module> {

@@ -33,7 +33,7 @@ use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::{Deed, Done};
 use crate::arm::kinematics::{Conf, ik_conf};
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Target;
 
 rule!("EW604", "conf-off-jump", Settings, Robot, Warning, "conf_off_jump.rs");

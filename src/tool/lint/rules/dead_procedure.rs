@@ -39,15 +39,12 @@ use std::collections::BTreeSet;
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::flow::Class;
+use crate::rapid::builtins::{self, Instruction, MoveForm};
 use crate::rapid::ir::graph::Step;
 use crate::rapid::ir::hir::{Callee, RoutineKind, Scope, Stmt, StmtKind};
-use crate::rapid::ir::instructions::MoveForm;
 use crate::rapid::ir::program::{RoutineId, Symbol};
 
 rule!("EW702", "dead-procedure", Program, Text, Info, "dead_procedure.rs");
-
-/// Instructions that wait for somebody at the robot.
-const ASKING: &[&str] = &["stop", "break", "tpreadfk", "tpreadnum", "tpreaddnum", "uimsgbox"];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let Some(entry) = context.entry.filter(|_| !context.flow.has_late_calls()) else { return };
@@ -121,7 +118,9 @@ fn is_for_operators(context: &Context<'_>, id: RoutineId) -> bool {
     }
     let asks = statements(context, id).into_iter().any(|stmt| match &stmt.kind {
         StmtKind::Call(call) => match &call.callee {
-            Callee::Name(name) => ASKING.contains(&name.key.as_str()),
+            Callee::Name(name) => {
+                builtins::instruction(&name.key).is_some_and(Instruction::asks_operator)
+            }
             Callee::Late(_) => false,
         },
         _ => false,

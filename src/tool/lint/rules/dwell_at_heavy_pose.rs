@@ -39,7 +39,7 @@ use super::super::weigh::Weighed;
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::Model;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Speed, Stop, Target, Wait, Zone};
 use crate::retime::energy::power::holding_w;
 use crate::retime::motion::Step;

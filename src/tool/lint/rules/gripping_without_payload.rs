@@ -47,7 +47,7 @@ use std::collections::BTreeMap;
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::{Deed, Done};
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
 

@@ -37,7 +37,7 @@ use super::super::edits::{fix, replace};
 use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
 use super::super::weigh::Weighed;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Movement;
 use crate::retime::motion::Step;
 

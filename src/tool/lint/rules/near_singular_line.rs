@@ -34,7 +34,7 @@ use super::super::trace::Deed;
 use super::super::weigh::Weighed;
 use super::line_in_free_air::as_joint;
 use crate::arm::kinematics::singularity;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 
 rule!("EW404", "near-singular-line", Path, Robot, Warning, "near_singular_line.rs");
 

@@ -38,9 +38,9 @@ use super::super::finding::Finding;
 use super::super::site::{Site, facts_of};
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::graph::Step as GraphStep;
 use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
-use crate::rapid::ir::instructions::MoveForm;
 use crate::rapid::text::Span;
 use crate::retime::motion::Step;
 

@@ -38,6 +38,7 @@ use super::super::flow::{Next, Through};
 use super::super::site::Site;
 use super::super::trace::Deed;
 use super::super::weigh::Weighed;
+use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::ir::hir::{Callee, StmtKind};
 use crate::rapid::ir::movement::{Movement, Speed};
 use crate::rapid::text::Span;
@@ -170,7 +171,9 @@ fn hurries(context: &Context<'_>, index: usize) -> Option<Finding> {
     let waits = next.iter().all(|next| match next {
         Next::Wait(place) => context.flow.statement(*place).is_some_and(|stmt| match &stmt.kind {
             StmtKind::Call(call) => match &call.callee {
-                Callee::Name(name) => matches!(name.key.as_str(), "waitdi" | "waitgi" | "waitai"),
+                Callee::Name(name) => {
+                    builtins::instruction(&name.key).is_some_and(Instruction::waits_for_input)
+                }
                 Callee::Late(_) => false,
             },
             _ => false,

@@ -31,7 +31,7 @@
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::weigh::Weighed;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Speed};
 use crate::retime::motion::Step;
 

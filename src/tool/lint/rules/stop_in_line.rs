@@ -37,7 +37,7 @@ use super::super::context::{Context, Corner};
 use super::super::edits::zone_within;
 use super::super::finding::Finding;
 use super::unneeded_stop_point::{stops_for_movements, with_zone};
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 
 rule!("EW102", "stop-in-line", Stops, Text, Warning, "stop_in_line.rs");
 

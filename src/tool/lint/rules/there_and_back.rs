@@ -36,7 +36,7 @@ use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::flow::Through;
 use super::move_to_same_place::same_goal;
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 
 rule!("EW402", "there-and-back", Path, Text, Info, "there_and_back.rs");
 

@@ -42,8 +42,8 @@ use super::super::context::{Context, Corner};
 use super::super::edits::{NamedZone, fix, replace, zone_within};
 use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::hir::RoutineKind;
-use crate::rapid::ir::instructions::MoveForm;
 use crate::rapid::ir::movement::Movement;
 use crate::retime::motion::Step;
 

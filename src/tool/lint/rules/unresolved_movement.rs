@@ -31,7 +31,7 @@ use std::fmt::Write as _;
 use super::super::context::Context;
 use super::super::finding::Finding;
 use super::super::trace::{Deed, record};
-use crate::rapid::ir::instructions::MoveForm;
+use crate::rapid::builtins::MoveForm;
 use crate::rapid::text::Span;
 
 rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.rs");

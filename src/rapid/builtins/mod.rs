@@ -1,0 +1,32 @@
+//! The table of RAPID's built-ins: instructions, functions, data types and predefined data.
+//!
+//! Every question about a built-in name is answered here. To add an instruction, add one line to
+//! the table of its topic; if it does something that the executor does not know yet, add a variant
+//! to [`Effect`] and its function in `ir/exec`. Names and arguments: RAPID reference of
+//! `RobotWare` 6; those of process instructions: the application manuals.
+
+mod communication;
+mod data;
+mod function;
+mod functions;
+mod index;
+mod instruction;
+mod movements;
+mod parameter;
+mod processes;
+mod program;
+mod settings;
+mod signals;
+#[cfg(test)]
+mod tests;
+mod types;
+
+pub use data::{Cause, Literal, Predefined, error, is_controller_specific, predefined};
+pub use function::{Function, Source};
+#[cfg(test)]
+pub(in crate::rapid) use functions::FUNCTIONS;
+pub use index::{function, instruction, is_movement, is_of_move_family, may_write, movement};
+pub use instruction::{
+    Count, Effect, Instruction, Level, MoveForm, MoveKind, MoveSignature, Setting, Wait, Written,
+};
+pub use types::{DataType, SignalKind, data_type};

@@ -1,0 +1,36 @@
+//! Lists of parameters, written in one line of text.
+//!
+//! `"\\Conc Signal:signaldo SearchPoint= ToPoint"`: an option has a backslash, an argument that is
+//! written to ends with `=`, a type stands behind a colon where something depends on it.
+
+use super::types::{SignalKind, data_type};
+
+/// A parameter of an instruction or a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// As RAPID writes it.
+    pub name: &'static str,
+    /// Whether it is an option: `\Name`.
+    pub optional: bool,
+    /// Whether the argument is written to.
+    pub written: bool,
+    /// The kind of the signal, if it is one.
+    pub signal: Option<SignalKind>,
+}
+
+/// The parameters of a list, in order.
+pub(super) fn parameters(list: &'static str) -> impl Iterator<Item = Parameter> {
+    list.split_whitespace().map(|text| {
+        let optional = text.starts_with('\\');
+        let written = text.ends_with('=');
+        let (name, type_name) = text.split_once(':').unwrap_or((text, ""));
+        let name = name.trim_start_matches('\\').trim_end_matches('=');
+        let signal = data_type(type_name).and_then(|ty| ty.signal);
+        Parameter { name, optional, written, signal }
+    })
+}
+
+/// The parameters that are not optional.
+pub(super) fn positional(list: &'static str) -> impl Iterator<Item = Parameter> {
+    parameters(list).filter(|parameter| !parameter.optional)
+}

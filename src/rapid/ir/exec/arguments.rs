@@ -1,0 +1,54 @@
+//! The arguments of a call.
+
+use super::executor::Executor;
+use crate::rapid::ir::hir::{Arg, ArgKind, Expr, ExprKind};
+
+/// The arguments of an instruction, by position and by name.
+pub(super) struct Arguments<'e> {
+    /// All of them, in order.
+    pub(super) all: &'e [Arg],
+    pub(super) positional: Vec<&'e Expr>,
+    /// Lower-case name, as written, and value.
+    pub(super) optional: Vec<(&'e str, &'e str, Option<&'e Expr>)>,
+    /// Options that are there only if the routine was called with a parameter, as written: `Z?Zone`.
+    pub(super) conditional: Vec<String>,
+}
+
+impl<'e> Arguments<'e> {
+    /// Of a call in a routine that was given what `executor` says.
+    pub(super) fn new(executor: &Executor<'_>, args: &'e [Arg]) -> Arguments<'e> {
+        let mut positional = Vec::new();
+        let mut optional = Vec::new();
+        let mut conditional = Vec::new();
+        for arg in args {
+            match &arg.kind {
+                ArgKind::Positional(expr) => positional.push(expr),
+                ArgKind::Named(name, expr) => {
+                    optional.push((name.key.as_str(), name.text.as_str(), Some(expr)));
+                }
+                ArgKind::Optional(name, expr) => {
+                    optional.push((name.key.as_str(), name.text.as_str(), expr.as_ref()));
+                }
+                ArgKind::Conditional(name, outer) => {
+                    if let ExprKind::Ref(outer) = &outer.kind {
+                        conditional.push(format!("{}?{}", name.text, outer.text));
+                    }
+                    if executor.given(outer).is_some() {
+                        optional.push((name.key.as_str(), name.text.as_str(), Some(outer)));
+                    }
+                }
+            }
+        }
+        Arguments { all: args, positional, optional, conditional }
+    }
+
+    /// Whether an option is given, with or without a value.
+    pub(super) fn has_option(&self, key: &str) -> bool {
+        self.optional.iter().any(|(k, _, _)| *k == key)
+    }
+
+    /// The value of an option that is present and has one.
+    pub(super) fn option_value(&self, key: &str) -> Option<&'e Expr> {
+        self.optional.iter().find(|(k, _, _)| *k == key).and_then(|(_, _, expr)| *expr)
+    }
+}

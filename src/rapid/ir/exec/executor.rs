@@ -1,0 +1,179 @@
+//! The state of an execution.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::machine::Machine;
+use crate::rapid::ir::hir::Expr;
+use crate::rapid::ir::movement::Settings;
+use crate::rapid::ir::program::{DataId, Program, RoutineId};
+use crate::rapid::ir::value::{Origin, Value};
+use crate::rapid::text::Span;
+
+/// Something that was not followed exactly, with the place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Note {
+    /// Where.
+    pub span: Span,
+    /// What and why.
+    pub reason: String,
+}
+
+/// What one execution left behind besides what the machine was told.
+#[derive(Debug, Default)]
+pub struct Execution {
+    /// What could not be followed: `unresolved` of the reports.
+    pub unresolved: Vec<Note>,
+    /// What was assumed: levels of inputs, values of `PERS` data.
+    pub assumed: Vec<String>,
+}
+
+/// Bounds that keep execution finite.
+pub(super) const MAX_STATEMENTS: u64 = 5_000_000;
+pub(super) const MAX_CALL_DEPTH: usize = 100;
+/// Passes of a loop whose condition is known and stays true.
+pub(super) const MAX_PASSES: u32 = 100_000;
+
+/// Index of a storage cell.
+pub(super) type CellId = usize;
+
+/// Where a value is stored.
+#[derive(Debug)]
+pub(super) struct Cell {
+    pub(super) value: Value,
+    /// What reading it adds to the origin.
+    pub(super) reading: Origin,
+    /// Inputs, stored values and places of the robot from which what it holds was worked out.
+    pub(super) history: Origin,
+    pub(super) read_only: bool,
+    /// An input from which the value was worked out.
+    pub(super) input: Option<Arc<str>>,
+}
+
+/// An active routine.
+pub(super) struct Frame {
+    pub(super) module: usize,
+    pub(super) routine: Arc<str>,
+    /// The call that it runs for.
+    pub(super) called_at: Option<Span>,
+    /// Parameters, local data and loop variables, innermost last.
+    pub(super) names: Vec<(String, CellId)>,
+    /// Optional parameters that were given.
+    pub(super) present: Vec<String>,
+    /// Its declaration; none for an expression that stands by itself.
+    pub(super) id: Option<RoutineId>,
+    /// True while its error handler runs.
+    pub(super) handling: bool,
+    /// Cells from here on are its own.
+    pub(super) base: CellId,
+    /// When its own data last changed, see [`Executor::stamp`].
+    pub(super) changed: u64,
+}
+
+impl Frame {
+    pub(super) fn new(module: usize, routine: Arc<str>, id: Option<RoutineId>) -> Frame {
+        Frame {
+            module,
+            routine,
+            called_at: None,
+            names: Vec::new(),
+            present: Vec::new(),
+            id,
+            handling: false,
+            base: 0,
+            changed: 0,
+        }
+    }
+}
+
+/// A condition on inputs, and what it was.
+pub(super) struct Poll {
+    pub(super) condition: Expr,
+    pub(super) value: bool,
+}
+
+pub(super) struct Executor<'a> {
+    pub(super) program: &'a Program,
+    pub(super) machine: &'a mut dyn Machine,
+    pub(super) cells: Vec<Cell>,
+    pub(super) globals: BTreeMap<DataId, CellId>,
+    /// Cells below this one hold module data and stay.
+    pub(super) kept_cells: usize,
+    pub(super) frames: Vec<Frame>,
+    /// Level of each signal that the program has set or waited for.
+    pub(super) signals: BTreeMap<String, f64>,
+    pub(super) settings: Arc<Settings>,
+    /// Where the external axes stand, in RAPID's units, once a movement of theirs has told.
+    pub(super) external_axes: Option<Vec<f64>>,
+    pub(super) statements: u64,
+    /// Counts changes of data and signals.
+    pub(super) stamp: u64,
+    /// When data or signals other than the own ones of an active routine last changed.
+    pub(super) changed_outside: u64,
+    /// Number of movements.
+    pub(super) moves: u64,
+    /// Length of the waits whose length the program states, s.
+    pub(super) waited_s: f64,
+    /// The conditions on inputs of the loops that are watched.
+    pub(super) polls: Vec<Poll>,
+    /// Number of loops that are watched for what they ask.
+    pub(super) watchers: usize,
+    /// A condition whose next value is taken the other way.
+    pub(super) forced: Option<Span>,
+    /// The input that was read last, itself or through data worked out from it.
+    pub(super) seen_input: Option<Arc<str>>,
+    /// The inputs because of which the present statements run, innermost last.
+    pub(super) deciding: Vec<Arc<str>>,
+    /// The error that a handler deals with: RAPID's `ERRNO`.
+    pub(super) errno: Option<Arc<str>>,
+    pub(super) execution: Execution,
+}
+
+impl<'a> Executor<'a> {
+    pub(super) fn new(program: &'a Program, machine: &'a mut dyn Machine) -> Executor<'a> {
+        Executor {
+            program,
+            machine,
+            cells: Vec::new(),
+            globals: BTreeMap::new(),
+            kept_cells: 0,
+            frames: Vec::new(),
+            signals: BTreeMap::new(),
+            settings: Arc::new(Settings::default()),
+            external_axes: None,
+            statements: 0,
+            stamp: 0,
+            changed_outside: 0,
+            moves: 0,
+            waited_s: 0.0,
+            polls: Vec::new(),
+            watchers: 0,
+            forced: None,
+            seen_input: None,
+            deciding: Vec::new(),
+            errno: None,
+            execution: Execution::default(),
+        }
+    }
+
+    pub(super) fn frame(&self) -> &Frame {
+        self.frames.last().unwrap_or_else(|| unreachable!("execution is inside a routine"))
+    }
+
+    pub(super) fn frame_mut(&mut self) -> &mut Frame {
+        self.frames.last_mut().unwrap_or_else(|| unreachable!("execution is inside a routine"))
+    }
+
+    pub(super) fn unresolved(&mut self, span: Span, reason: impl Into<String>) {
+        let note = Note { span, reason: reason.into() };
+        if !self.execution.unresolved.contains(&note) {
+            self.execution.unresolved.push(note);
+        }
+    }
+
+    pub(super) fn assume(&mut self, text: String) {
+        if !self.execution.assumed.contains(&text) {
+            self.execution.assumed.push(text);
+        }
+    }
+}

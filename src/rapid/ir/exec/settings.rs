@@ -1,0 +1,257 @@
+//! Instructions that change how movements run.
+
+use std::sync::Arc;
+
+use super::arguments::Arguments;
+use super::executor::Executor;
+use crate::rapid::builtins::Setting;
+use crate::rapid::ir::convert;
+use crate::rapid::ir::hir::Stmt;
+use crate::rapid::ir::movement::Settings;
+use crate::rapid::ir::value::{Datum, Value};
+
+/// Least limit of `PathAccLim` and `WorldAccLim`, m/s²: lower ones are raised.
+const LEAST_ACCELERATION: f64 = 0.1;
+
+/// Largest override of `VelSet`, %.
+const MOST_OVERRIDE: f64 = 200.0;
+
+/// Why a setting is not made.
+enum NotSet {
+    /// Its value is not known.
+    Unknown,
+    /// The controller stops with an error at this value.
+    Refused(String),
+    /// It stops all movements.
+    StopsMovements,
+}
+
+impl Executor<'_> {
+    pub(super) fn setting(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        setting: Setting,
+        arguments: &Arguments<'_>,
+    ) {
+        match setting {
+            Setting::PDispOn if arguments.has_option("exep") => {
+                self.displace(stmt, text, arguments);
+            }
+            Setting::PDispOn => self.unmodelled(stmt, text),
+            Setting::PathAccLim => self.path_acceleration(stmt, text, arguments),
+            Setting::WorldAccLim => self.world_acceleration(stmt, text, arguments),
+            Setting::SingArea => self.sing_area(text, arguments),
+            Setting::PathResol => self.path_resolution(stmt, text, arguments),
+            Setting::MotionProcessMode => self.process_mode(stmt, text, arguments),
+            Setting::CirPathMode => self.circle_mode(stmt, text, arguments),
+            Setting::AccSet
+            | Setting::ConfJ
+            | Setting::ConfL
+            | Setting::GripLoad
+            | Setting::PDispOff
+            | Setting::PDispSet
+            | Setting::SpeedRefresh
+            | Setting::VelSet => self.set(stmt, text, setting, arguments),
+        }
+    }
+
+    /// A setting of the values of its arguments.
+    fn set(&mut self, stmt: &Stmt, text: &str, setting: Setting, arguments: &Arguments<'_>) {
+        let mut values = Vec::new();
+        for expr in &arguments.positional {
+            let value = self.eval(expr);
+            values.push(self.level(value));
+        }
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        match self.change(setting, &values, arguments, &mut settings) {
+            Ok(()) => {}
+            Err(NotSet::Unknown) => {
+                settings.other.push(text.into());
+                self.not_known(stmt, text);
+            }
+            Err(NotSet::Refused(what)) => {
+                self.refused(stmt, text, &what);
+                return;
+            }
+            Err(NotSet::StopsMovements) => {
+                let reason = format!("{text} 0 stops all movements: taken as if it were not there");
+                self.unresolved(stmt.span, reason);
+                return;
+            }
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    fn change(
+        &mut self,
+        setting: Setting,
+        values: &[Value],
+        arguments: &Arguments<'_>,
+        settings: &mut Settings,
+    ) -> Result<(), NotSet> {
+        let num = |i: usize| values.get(i).and_then(|v| v.datum.num()).ok_or(NotSet::Unknown);
+        let on = arguments.has_option("on");
+        match setting {
+            Setting::VelSet => set_speed(settings, num(0)?, num(1)?)?,
+            Setting::AccSet => {
+                let (acceleration, ramp) = (num(0)?, num(1)?);
+                let fine = arguments.option_value("finepointramp");
+                let fine = fine.and_then(|expr| self.eval(expr).datum.num());
+                // The controller raises lower values to 20 % and 10 %.
+                settings.fine_point_ramp = fine.unwrap_or(100.0).clamp(10.0, 100.0) / 100.0;
+                settings.acceleration = acceleration.clamp(20.0, 100.0) / 100.0;
+                settings.ramp = ramp.clamp(10.0, 100.0) / 100.0;
+            }
+            Setting::SpeedRefresh => match num(0)? {
+                percent if percent > 0.0 && percent <= 100.0 => settings.refresh = percent / 100.0,
+                0.0 => return Err(NotSet::StopsMovements),
+                percent => return Err(NotSet::Refused(format!("{percent} % of the speed"))),
+            },
+            Setting::ConfJ => settings.conf_joint = on,
+            Setting::ConfL => settings.conf_linear = on,
+            Setting::GripLoad => {
+                let value = values.first().ok_or(NotSet::Unknown)?;
+                match convert::load(&value.datum) {
+                    Ok(load) => settings.grip_load = Some(load),
+                    Err(why) => {
+                        self.blame(arguments.positional[0], &value.datum, &why);
+                        return Err(NotSet::Unknown);
+                    }
+                }
+                settings.grip_load_data = Some(value.datum.clone());
+            }
+            Setting::PDispSet => {
+                let value = values.first().ok_or(NotSet::Unknown)?;
+                let pose = convert::pose(&value.datum, "the displacement");
+                settings.displacement = Some(pose.map_err(|_| NotSet::Unknown)?);
+            }
+            _ => {
+                settings.displacement = None;
+                settings.other.retain(|name| !name.eq_ignore_ascii_case("PDispOn"));
+            }
+        }
+        Ok(())
+    }
+
+    /// A value at which the controller stops with an error.
+    fn refused(&mut self, stmt: &Stmt, text: &str, what: &str) {
+        self.unresolved(
+            stmt.span,
+            format!(
+                "the controller stops with an error here: {text} with {what}; taken as if it were \
+                 not there"
+            ),
+        );
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        settings.other.push(text.into());
+        self.settings = Arc::new(settings);
+    }
+
+    fn not_known(&mut self, stmt: &Stmt, text: &str) {
+        let reason = format!("{text} with a value that is not known: simulated as before it");
+        self.unresolved(stmt.span, reason);
+    }
+
+    fn sing_area(&mut self, text: &str, arguments: &Arguments<'_>) {
+        let mut settings = Settings::clone(&self.settings);
+        settings.sing_area = arguments
+            .optional
+            .iter()
+            .find(|(key, _, _)| *key != "off")
+            .map(|(_, option, _)| format!("{text}\\{option}").into());
+        self.settings = Arc::new(settings);
+    }
+
+    /// `PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`.
+    fn path_acceleration(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let mut limits = [f64::INFINITY; 2];
+        let mut known = arguments.positional.len() == 2;
+        let options = ["accmax", "decelmax"];
+        for (i, (expr, option)) in arguments.positional.iter().zip(options).enumerate() {
+            match self.eval(expr).datum {
+                Datum::Bool(false) => {}
+                Datum::Bool(true) => {
+                    let value = arguments.option_value(option);
+                    match value.and_then(|expr| self.eval(expr).datum.num()) {
+                        Some(limit) => limits[i] = self.least(stmt, text, limit),
+                        None => known = false,
+                    }
+                }
+                _ => known = false,
+            }
+        }
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        if known {
+            settings.path_acceleration = limits;
+        } else {
+            settings.other.push(text.into());
+            self.not_known(stmt, text);
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    /// A limit of the acceleration, raised to the least that there is.
+    fn least(&mut self, stmt: &Stmt, text: &str, limit: f64) -> f64 {
+        if limit < LEAST_ACCELERATION {
+            let reason = format!(
+                "{text} with {limit} m/s², less than the controller takes: simulated with \
+                 {LEAST_ACCELERATION} m/s²"
+            );
+            self.unresolved(stmt.span, reason);
+        }
+        limit.max(LEAST_ACCELERATION)
+    }
+
+    /// `WorldAccLim \On := m/s²` or `\Off`.
+    fn world_acceleration(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
+        let on = arguments.option_value("on").map(|expr| self.eval(expr).datum.num());
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        match on {
+            None if arguments.has_option("off") => settings.world_acceleration = f64::INFINITY,
+            Some(Some(limit)) => {
+                settings.world_acceleration = self.least(stmt, text, limit);
+            }
+            _ => {
+                settings.other.push(text.into());
+                self.not_known(stmt, text);
+            }
+        }
+        self.settings = Arc::new(settings);
+    }
+
+    /// A setting that changes movements in a way that is not modelled.
+    pub(super) fn unmodelled(&mut self, stmt: &Stmt, text: &str) {
+        self.unresolved(
+            stmt.span,
+            format!("{text} is not simulated: what follows runs as if it were not there"),
+        );
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
+        settings.other.push(text.into());
+        self.settings = Arc::new(settings);
+    }
+
+    pub(super) fn clear_unmodelled(&mut self, keys: &[&str]) {
+        let mut settings = Settings::clone(&self.settings);
+        settings.other.retain(|name| !keys.contains(&name.to_lowercase().as_str()));
+        self.settings = Arc::new(settings);
+    }
+}
+
+/// `VelSet`: % of the programmed speeds, and the largest TCP speed in mm/s.
+fn set_speed(settings: &mut Settings, percent: f64, max: f64) -> Result<(), NotSet> {
+    if !(percent > 0.0 && percent <= MOST_OVERRIDE) {
+        return Err(NotSet::Refused(format!("{percent} % of the programmed speed")));
+    }
+    if max <= 0.0 {
+        return Err(NotSet::Refused(format!("a largest speed of {max} mm/s")));
+    }
+    settings.speed_override = percent / 100.0;
+    settings.speed_max = max * 1e-3;
+    Ok(())
+}
