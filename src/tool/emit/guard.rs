@@ -7,7 +7,6 @@ use tera::{Context, Tera};
 
 use super::names::Names;
 use super::site::{EmitError, Parameter, Recorded, Site};
-use super::stream_module::{end_of_line, has_external};
 use crate::rapid::ir::number::number;
 use crate::rapid::text::{Charset, Edit, SourceFile, Span};
 
@@ -121,7 +120,7 @@ pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usiz
             word(settings.conf_linear),
             word(settings.lines),
         ),
-        external: site.streams.iter().any(has_external),
+        external: site.has_external(),
     }
 }
 
@@ -277,10 +276,19 @@ fn lines<'t>(arguments: impl Iterator<Item = &'t str>, indent: &str) -> String {
     text
 }
 
+/// The end of line that a file uses first; LF where it has none.
+pub fn end_of_line(bytes: &[u8]) -> &'static str {
+    match bytes.iter().position(|b| *b == b'\n' || *b == b'\r') {
+        Some(i) if bytes[i] == b'\r' && bytes.get(i + 1) == Some(&b'\n') => "\r\n",
+        Some(i) if bytes[i] == b'\r' => "\r",
+        _ => "\n",
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::site::{EmittedStream, MotionSettings};
     use super::*;
-    use crate::tool::emit::{EmittedStream, MotionSettings};
 
     /// A stream is looked at first that comes after the last one: in their order each costs one look.
     #[test]

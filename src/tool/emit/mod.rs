@@ -11,7 +11,7 @@ mod layout;
 mod literal;
 pub mod names;
 mod site;
-pub mod stream_module;
+mod stream_module;
 mod stream_test;
 
 pub use brake_note::{BrakeDwell, brake_note};
@@ -20,11 +20,11 @@ pub use generated::{
     EGM_STEP_S, GeneratedMove, GeneratedNames, egm_module, egm_rows, generated_module, jointtarget,
     main_module, stream_time,
 };
-pub use guard::EDIT_REMARK;
+pub use guard::{EDIT_REMARK, end_of_line};
 pub use layout::Layout;
 pub use names::{Names, has_streams, missing_streams, own_name};
 pub use site::{
     EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
 };
-pub use stream_module::{Emission, emit, end_of_line};
+pub use stream_module::{Emission, emit};
 pub use stream_test::{TestStream, stream_test};

@@ -1,6 +1,7 @@
 //! What is emitted: places of the original, the streams that may stand for them, and what their
 //! guards compare.
 
+use super::literal::NO_AXIS;
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{Edit, Span};
 
@@ -21,6 +22,13 @@ pub struct Site {
     pub streams: Vec<EmittedStream>,
     /// Its executions in a cycle, in their order: the index of the stream that runs, if one does.
     pub order: Vec<Option<usize>>,
+}
+
+impl Site {
+    /// Whether the targets of its streams name external axes.
+    pub(super) fn has_external(&self) -> bool {
+        self.streams.iter().flat_map(|stream| stream.external).any(|x| x < NO_AXIS)
+    }
 }
 
 /// Something that a guard compares.

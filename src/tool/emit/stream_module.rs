@@ -136,7 +136,7 @@ pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitErro
     context.insert("orientation_rounding", &number(ORIENTATION_ROUNDING, 6));
     context.insert("number_rounding", &number(NUMBER_ROUNDING, 6));
     context.insert("external_tolerance", &number(EXTERNAL_TOLERANCE, 6));
-    context.insert("external", &sites.iter().flat_map(|site| &site.streams).any(has_external));
+    context.insert("external", &sites.iter().any(Site::has_external));
     context.insert("switches", &recorded.switches);
     context.insert("load", &recorded.load);
     context.insert("count", &sites.len().to_string());
@@ -218,20 +218,6 @@ fn time(t: f64, override_percent: f64) -> String {
     }
 }
 
-/// Whether the targets of a stream name external axes.
-pub(super) fn has_external(stream: &EmittedStream) -> bool {
-    stream.external.iter().any(|x| *x < NO_AXIS)
-}
-
 fn external_axis(x: f64) -> String {
     if x >= NO_AXIS { "9E9".to_owned() } else { number(x, 9) }
-}
-
-/// The end of line that a file uses first; LF where it has none.
-pub fn end_of_line(bytes: &[u8]) -> &'static str {
-    match bytes.iter().position(|b| *b == b'\n' || *b == b'\r') {
-        Some(i) if bytes[i] == b'\r' && bytes.get(i + 1) == Some(&b'\n') => "\r\n",
-        Some(i) if bytes[i] == b'\r' => "\r",
-        _ => "\n",
-    }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Isometry3;
 
-use super::Form;
+use super::settings::Form;
 use super::table::{Amount, Points, Table};
 use crate::arm::kinematics::{
     Conf, IkError, LimitViolation, conf_of, fk, ik_conf, ik_near, limits_ok,

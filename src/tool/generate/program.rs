@@ -1,20 +1,20 @@
 //! The files of a generated program, and what reading them again and simulating them shows.
 
+use super::error::GenerateError;
 use super::follow::{self, Followed, Sampled, TOLERANCE};
 use super::measure::Measure;
 use super::moves::{Moves, Target};
-use super::{Form, GenerateError};
+use super::settings::Form;
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::Model;
 use crate::rapid::ir::number::number;
-use crate::rapid::syntax;
 use crate::retime::motion::stream::Stream;
 use crate::retime::motion::timed::TimedMotion;
 use crate::retime::motion::timeline::What;
-use crate::retime::motion::{Options, Simulation, simulate};
+use crate::retime::motion::{Options, Simulation};
 use crate::retime::path::joint_path::DOF;
 use crate::tool::emit::{self, EmitError, GeneratedMove, GeneratedNames, jointtarget, stream_time};
-use crate::tool::retrofit::{OutputFile, OutputKind, read_again, read_program};
+use crate::tool::retrofit::{OutputFile, parses, read_again, run_again};
 
 /// Largest distance of a reached point from the one asked for, rad.
 const REACHED: f64 = 1e-4;
@@ -104,8 +104,8 @@ pub(super) fn egm(
     let text = emit::egm_rows(&sampled.positions);
     let module = emit::egm_module(names, &sampled.positions, "tool0", "wobj0")?;
     let mut outputs = complete(names, module)?;
-    outputs.push(new_file(format!("{}.csv", names.module), text));
-    parses(&outputs[..2])?;
+    outputs.push(OutputFile::added(format!("{}.csv", names.module), text));
+    check_text(&outputs[..2])?;
     Ok(outputs)
 }
 
@@ -113,21 +113,13 @@ pub(super) fn egm(
 fn complete(names: &GeneratedNames, module: String) -> Result<Vec<OutputFile>, GenerateError> {
     let main: Result<String, EmitError> = emit::main_module(names);
     Ok(vec![
-        new_file(format!("{}.mod", names.module), module),
-        new_file(format!("{}.mod", names.main), main?),
+        OutputFile::added(format!("{}.mod", names.module), module),
+        OutputFile::added(format!("{}.mod", names.main), main?),
     ])
 }
 
-fn new_file(path: String, text: String) -> OutputFile {
-    OutputFile { path, kind: OutputKind::New, bytes: text.into_bytes(), input: None }
-}
-
-fn parses(outputs: &[OutputFile]) -> Result<(), GenerateError> {
-    let clean = outputs.iter().all(|output| {
-        let parse = syntax::parse(&output.bytes);
-        parse.errors.is_empty() && parse.tolerances.is_empty()
-    });
-    if clean { Ok(()) } else { Err(broken("the text does not parse")) }
+fn check_text(outputs: &[OutputFile]) -> Result<(), GenerateError> {
+    if parses(&[], outputs) { Ok(()) } else { Err(broken("the text does not parse")) }
 }
 
 fn broken(what: impl Into<String>) -> GenerateError {
@@ -136,14 +128,12 @@ fn broken(what: impl Into<String>) -> GenerateError {
 
 /// The cycle of the emitted text.
 fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, GenerateError> {
-    parses(outputs)?;
-    let files = read_again(outputs);
-    let (program, entry) =
-        read_program(&files, "main").map_err(|error| broken(error.to_string()))?;
-    let simulation = simulate(&program, entry, model, &Options::default());
+    check_text(outputs)?;
+    let simulation = run_again(outputs, "main", model, &Options::default())
+        .map_err(|error| broken(error.to_string()))?;
     match simulation.unresolved.first() {
         Some(note) => {
-            let file = &files[note.span.file.0 as usize].file;
+            let file = &read_again(outputs)[note.span.file.0 as usize].file;
             let line = file.position(note.span.start).line;
             Err(broken(format!("{}:{line}: {}", file.path, note.reason)))
         }

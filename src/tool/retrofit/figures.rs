@@ -1,8 +1,11 @@
 //! The result of a retrofit as plain data.
 
+use super::files::OutputFile;
+use super::padding::Padding;
 use super::signals::SignalShift;
+use super::uncertainty::Uncertainty;
 use crate::rapid::text::Span;
-use crate::retime::energy::{Account, EnergyParts};
+use crate::retime::energy::Account;
 use crate::retime::motion::Simulation;
 use crate::retime::optimize::check::Check;
 use crate::retime::optimize::energy_curve::TimeEnergy;
@@ -32,16 +35,6 @@ pub struct LowerLimits {
     pub original_s: f64,
     /// s.
     pub optimized_s: f64,
-}
-
-/// A wait at the end of the original cycle that the comparison adds, so that both sides take the
-/// same time.
-#[derive(Clone, Debug)]
-pub struct Padding {
-    /// s.
-    pub duration_s: f64,
-    /// What it costs: base load, holding and open brakes.
-    pub energy: EnergyParts,
 }
 
 impl Figures {
@@ -138,28 +131,23 @@ pub struct Verification {
     pub checks: Vec<(String, bool)>,
 }
 
-/// What an output file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputKind {
-    /// A file of the input, as it was.
-    Unchanged,
-    /// A file of the input with insertions.
-    Changed,
-    /// A new file.
-    New,
-}
+impl Verification {
+    /// Of a program in which nothing was changed.
+    pub(super) fn none() -> Verification {
+        let checks = Vec::new();
+        Verification { passed: true, worst: Check::none(), intended_error_rad: 0.0, checks }
+    }
 
-/// A file of the complete program.
-#[derive(Clone, Debug)]
-pub struct OutputFile {
-    /// Path below the output folder, with `/`.
-    pub path: String,
-    /// What it is.
-    pub kind: OutputKind,
-    /// Its content.
-    pub bytes: Vec<u8>,
-    /// For a changed file, which of the input's it is.
-    pub input: Option<usize>,
+    /// Adds a check.
+    pub(super) fn note(&mut self, what: &str, held: bool) {
+        self.checks.push((what.to_owned(), held));
+        self.passed &= held;
+    }
+
+    /// The first check that did not hold.
+    pub(super) fn broken(&self) -> Option<&str> {
+        self.checks.iter().find(|(_, held)| !held).map(|(what, _)| what.as_str())
+    }
 }
 
 /// A retrofit.
@@ -186,7 +174,7 @@ pub struct Retrofit {
     /// Both cycles if the robot can do less than its file assumes; empty where nothing is assumed.
     pub lower_limits: Vec<LowerLimits>,
     /// Energies and savings over plausible robots; `None` for a point estimate.
-    pub uncertainty: Option<super::uncertainty::Uncertainty>,
+    pub uncertainty: Option<Uncertainty>,
     /// RAPID instructions that guards run in a cycle, at most.
     pub guard_instructions: usize,
     /// The original cycle.

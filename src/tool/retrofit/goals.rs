@@ -2,60 +2,23 @@
 
 use rayon::prelude::*;
 
-use super::lower_limits::{Lowered, lateness};
-use super::notes::end;
-use super::settings::{Budget, Objective, Settings};
-use super::work::{RetrofitError, Way, rounded_up, run_of};
-use crate::arm::dynamics::Load;
-use crate::arm::robot::Model;
-use crate::retime::energy::power::holding_w;
-use crate::retime::energy::{Account, EnergyParts};
-use crate::retime::motion::Simulation;
+use super::candidate::Candidate;
+use super::cycle_time::cycle;
+use super::error::RetrofitError;
+use super::original::Original;
+use super::planning::Planning;
+use super::settings::{Budget, Objective};
+use super::tolerances::TIME_TOLERANCE;
 use crate::retime::motion::timeline::{Event, WaitBasis, What};
-use crate::retime::optimize::cycle::{Cycle, Part, TradeOff};
+use crate::retime::optimize::cycle::{Cycle, TradeOff};
 use crate::retime::optimize::energy_curve::Curve;
-use crate::retime::optimize::freedom::Freedom;
-use crate::retime::optimize::retime::{Goal, SLOWEST, Task, fastest};
-use crate::retime::optimize::site::Site;
-use crate::retime::path::joint_path::Joints;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest};
 
 /// Times at which the curves are looked at besides the first ones.
 const LOOKS: usize = 4;
 /// Goals that differ by less are the same, s.
 const QUANTUM: f64 = 1e-4;
-/// Rounding of a sum of times, s.
-const TIME_TOLERANCE: f64 = 1e-6;
-
-/// What streams are planned for.
-pub(super) struct Planning<'a> {
-    /// The robot whose energy is minimised.
-    pub(super) model: &'a Model,
-    pub(super) settings: &'a Settings,
-    /// The original, and what it takes with that robot.
-    pub(super) simulation: &'a Simulation,
-    pub(super) before: &'a Account,
-    pub(super) sites: &'a [Site],
-}
-
-impl<'a> Planning<'a> {
-    /// The task of timing a way anew.
-    pub(super) fn task<'f>(&self, way: &Way, freedom: &'f Freedom) -> Option<Task<'f>>
-    where
-        'a: 'f,
-    {
-        let event = *self.sites[way.site].variants[way.variant].events.first()?;
-        let parts = self.before.events[event].iter();
-        Some(Task {
-            model: self.model,
-            run: run_of(self.simulation, self.sites, way)?,
-            energy_before: parts.fold(EnergyParts::default(), |a, b| a + *b),
-            spacing_s: self.settings.spacing_s,
-            closest_s: self.settings.closest_s,
-            freedom,
-            cost: self.settings.cost,
-        })
-    }
-}
 
 /// The times of a cycle's runs.
 pub(super) struct Plan {
@@ -73,13 +36,12 @@ struct Shared {
 
 /// The goal of each task: its share of the time.
 pub(super) fn goals(
-    model: &Model,
-    settings: &Settings,
-    (simulation, lowered): (&Simulation, &[Lowered]),
-    sites: &[Site],
-    ways: &[Way],
+    planning: &Planning<'_>,
+    candidates: &[Candidate],
     tasks: &[(usize, Task<'_>)],
 ) -> Result<Plan, RetrofitError> {
+    let (original, settings) = (&planning.job.original, &planning.settings);
+    let simulation = &original.cycle.simulation;
     let before = |task: &Task<'_>| task.run.duration();
     let each = |goal: &dyn Fn(&Task<'_>) -> Goal| Plan {
         goals: tasks.iter().map(|(_, task)| goal(task)).collect(),
@@ -88,6 +50,8 @@ pub(super) fn goals(
     if settings.objective == Objective::Time {
         return Ok(each(&|_| Goal::Fastest));
     }
+    let events = |(i, _): &(usize, Task<'_>)| original.events(&candidates[*i]);
+    let events: Vec<&[usize]> = tasks.iter().map(events).collect();
     let (takt, bounds): (f64, Vec<(f64, f64)>) = match settings.budget {
         Budget::Factor(x) => return Ok(each(&|task| Goal::Exactly(x * before(task)))),
         Budget::AsBefore => {
@@ -103,29 +67,37 @@ pub(super) fn goals(
             let bounds = |(_, task): &(usize, Task<'_>)| (before(task), SLOWEST * before(task));
             (simulation.cycle_s, tasks.iter().map(bounds).collect())
         }
-        Budget::Takt(takt) => (takt, possible(simulation, sites, ways, tasks, takt)?),
+        Budget::Takt(takt) => (takt, possible(original, tasks, &events, takt)?),
     };
-    let original = (simulation, lowered);
-    let mut cycle = cycle(model, settings, original, sites, ways, tasks, takt);
+    let cycle = cycle(original, planning.model, settings, &events, takt);
+    Ok(shared_time(cycle, tasks, &bounds)
+        .unwrap_or_else(|| each(&|task| Goal::Within(before(task)))))
+}
+
+/// The plan that shares the time of a cycle, with curves that are looked at where it matters; `None`
+/// where the time can't be shared. `bounds`: the shortest and longest time of each task, s.
+fn shared_time(
+    mut cycle: Cycle,
+    tasks: &[(usize, Task<'_>)],
+    bounds: &[(f64, f64)],
+) -> Option<Plan> {
     let mut curves: Vec<Option<Curve<'_>>> = tasks
         .par_iter()
-        .zip(&bounds)
+        .zip(bounds)
         .map(|((_, task), (shortest, longest))| Curve::new(task, *shortest, *longest))
         .collect();
     let mut looks = 0;
     loop {
-        let known = tasks.iter().zip(&bounds).zip(&curves);
+        let known = tasks.iter().zip(bounds).zip(&curves);
         let known: Option<Vec<TradeOff>> = known
             .map(|(((_, task), (shortest, longest)), curve)| {
                 // Where nothing is known of its energy, a run keeps its time.
-                let kept = || vec![(before(task).max(*shortest).min(*longest), 0.0)];
+                let kept = || vec![(task.run.duration().max(*shortest).min(*longest), 0.0)];
                 curve.as_ref().and_then(Curve::trade_off).or_else(|| TradeOff::new(kept()))
             })
             .collect();
         let shared = Shared { curves: known.unwrap_or_default(), cycle };
-        let Some(times) = shared.times() else {
-            return Ok(each(&|task| Goal::Within(before(task))));
-        };
+        let times = shared.times()?;
         looks += 1;
         let learnt = curves
             .par_iter_mut()
@@ -133,7 +105,7 @@ pub(super) fn goals(
             .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.learn(*time)));
         if looks > LOOKS || learnt.filter(|learnt| *learnt).count() == 0 {
             let goals = times.into_iter().map(Goal::Exactly).collect();
-            return Ok(Plan { goals, shared: Some(shared) });
+            return Some(Plan { goals, shared: Some(shared) });
         }
         cycle = shared.cycle;
     }
@@ -188,75 +160,55 @@ impl Plan {
     }
 }
 
-/// The shortest and longest useful time of each task, s.
+/// The shortest and longest useful time of each task, s. `events`: in which each task runs.
 fn possible(
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
+    original: &Original<'_>,
     tasks: &[(usize, Task<'_>)],
+    events: &[&[usize]],
     takt: f64,
 ) -> Result<Vec<(f64, f64)>, RetrofitError> {
+    let cycle_s = original.cycle.simulation.cycle_s;
     let before = |task: &Task<'_>| task.run.duration();
-    let executions = |i: usize| sites[ways[i].site].variants[ways[i].variant].events.len() as f64;
     let least: Vec<f64> = tasks
         .par_iter()
         .map(|(_, task)| fastest(task).unwrap_or(f64::MAX).min(before(task)))
         .collect();
-    let movable: f64 = tasks.iter().map(|(i, task)| executions(*i) * before(task)).sum();
-    let shortest: f64 = tasks.iter().zip(&least).map(|((i, _), t)| executions(*i) * t).sum();
-    let fixed = simulation.cycle_s - movable;
+    let executions = || events.iter().map(|events| events.len() as f64);
+    let movable: f64 = tasks.iter().zip(executions()).map(|((_, task), n)| n * before(task)).sum();
+    let shortest: f64 = least.iter().zip(executions()).map(|(t, n)| n * t).sum();
+    let fixed = cycle_s - movable;
     if takt < fixed + shortest {
         let least = rounded_up(fixed + shortest);
         return Err(RetrofitError::Takt { takt, least, fixed: fixed.max(0.0) });
     }
     // As above, where the takt leaves the choice.
     let bounds = |((_, task), least): (&(usize, Task<'_>), &f64)| {
-        let shortest = if takt < simulation.cycle_s { *least } else { before(task) };
+        let shortest = if takt < cycle_s { *least } else { before(task) };
         (shortest, (SLOWEST * before(task)).max(*least))
     };
     Ok(tasks.iter().zip(&least).map(bounds).collect())
 }
 
-/// The cycle as the tasks see it. What is left of the takt (s) is spent at its end. Known waits keep
-/// what the original would be late there if its limits were lower than assumed.
-pub(super) fn cycle(
-    model: &Model,
-    settings: &Settings,
-    (simulation, lowered): (&Simulation, &[Lowered]),
-    sites: &[Site],
-    ways: &[Way],
+/// Refuses a factor that no run can do; where some run can do it, the others stay with that as their
+/// reason.
+pub(super) fn check_factor(
+    factor: f64,
     tasks: &[(usize, Task<'_>)],
-    takt: f64,
-) -> Cycle {
-    let mut parts: Vec<Part> =
-        simulation.events.iter().map(|event| Part::Fixed(event.duration)).collect();
-    for (task, (way, _)) in tasks.iter().enumerate() {
-        for event in &sites[ways[*way].site].variants[ways[*way].variant].events {
-            parts[*event] = Part::Run(task);
-        }
-    }
-    for (index, event) in simulation.events.iter().enumerate() {
-        let What::Wait(record) = &event.what else { continue };
-        let Some(signal) = record.wait.signal.as_ref().map(|name| name.to_lowercase()) else {
-            continue;
+    outcomes: &[Result<Retiming, Reason>],
+) -> Result<(), RetrofitError> {
+    let share =
+        |((_, task), outcome): (&(usize, Task<'_>), &Result<Retiming, Reason>)| match outcome {
+            Err(Reason::TooShort(least)) => Some(least / task.run.duration()),
+            _ => None,
         };
-        let delay = settings.options.inputs.get(&signal).copied();
-        if let (WaitBasis::Input, Some(delay)) = (record.basis, delay) {
-            let is_same = |event: &Event| match &event.what {
-                What::Wait(other) => {
-                    other.wait.signal.as_ref().is_some_and(|name| name.to_lowercase() == signal)
-                }
-                _ => false,
-            };
-            let since = simulation.events[..index].iter().rposition(is_same);
-            parts[index] = Part::Arrival {
-                since,
-                delay,
-                least: lateness(simulation, lowered, since, index).min(event.duration),
-                holding_w: holding_w(model, &record.load, &record.q).iter().sum(),
-            };
-        }
+    let shares: Option<Vec<f64>> = tasks.iter().zip(outcomes).map(share).collect();
+    match shares.and_then(|list| list.into_iter().reduce(f64::min)) {
+        Some(least) => Err(RetrofitError::Factor { factor, least: rounded_up(least) }),
+        None => Ok(()),
     }
-    let holding = |(load, q): (&Load, &Joints)| holding_w(model, load, q).iter().sum();
-    Cycle { parts, takt, resting_w: end(simulation).map_or(0.0, holding) }
+}
+
+/// Up to the next figure with three decimals: what a message tells to give has to do.
+fn rounded_up(x: f64) -> f64 {
+    (x * 1e3).ceil() / 1e3
 }

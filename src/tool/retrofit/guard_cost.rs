@@ -1,37 +1,34 @@
 //! What guards take: at the stop point before a stream they run a few dozen instructions of RAPID.
 
+use super::candidate::{Candidate, State};
 use super::figures::INSTRUCTION_MS;
-use super::settings::{Budget, Objective, Settings};
-use super::work::{Way, run_of};
-use crate::arm::robot::Model;
+use super::job::Job;
+use super::settings::{Budget, Objective};
 use crate::rapid::text::Span;
 use crate::retime::energy::power::holding_w;
-use crate::retime::motion::Simulation;
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::site::Site;
 
 /// Share of the cycle that all guards may take.
 const MOST: f64 = 0.005;
 
-/// The ways of sites whose guards take more than their streams save, and of those that save least
-/// for their time where all guards take too much of the cycle. `guards`: places and instructions in
-/// a cycle.
+/// Refuses the candidates of sites whose guards take more than their streams save, and of those that
+/// save least for their time where all guards take too much of the cycle. `guards`: places and
+/// instructions in a cycle.
 pub(super) fn costly(
-    model: &Model,
-    settings: &Settings,
-    simulation: &Simulation,
-    (sites, ways): (&[Site], &[Way]),
+    job: &Job<'_>,
+    candidates: &[Candidate],
     guards: &[(Span, usize)],
-) -> Vec<(usize, Reason)> {
+) -> Vec<(usize, State)> {
+    let Job { original, model, settings, .. } = job;
     // Place, time of its guards in a cycle, s, and what a second of them saves: J, or s.
     let mut worth: Vec<(usize, f64, f64)> = Vec::new();
     let mut costly = Vec::new();
-    for (site, own) in sites.iter().enumerate() {
-        let Some((_, count)) = guards.iter().find(|(span, _)| *span == own.span) else { continue };
+    for (index, site) in original.sites.iter().enumerate() {
+        let Some((_, count)) = guards.iter().find(|(span, _)| *span == site.span) else { continue };
         let time = 1e-3 * INSTRUCTION_MS * *count as f64;
-        let gains = ways.iter().filter(|way| way.site == site).filter_map(|way| {
-            let retiming = way.outcome.as_ref().ok()?;
-            let run = run_of(simulation, sites, way)?;
+        let gains = candidates.iter().filter(|c| c.site == index).filter_map(|candidate| {
+            let retiming = candidate.retiming()?;
+            let run = original.run(candidate)?;
             let coils = model.brakes.as_ref().map_or(0.0, |brakes| brakes.power_released_w);
             let holding: f64 = holding_w(model, &run.load, &run.start).iter().sum();
             let standing = model.drive.base_w + coils + holding;
@@ -39,7 +36,7 @@ pub(super) fn costly(
             // A slower stream spends a wait: standing would have taken that.
             let saved_j =
                 retiming.energy_before_j - retiming.energy.energy_j() - standing * saved_s;
-            let executions = own.variants[way.variant].events.len() as f64;
+            let executions = original.events(candidate).len() as f64;
             Some((executions * saved_j, executions * saved_s, standing))
         });
         let (saved_j, saved_s, standing) = gains
@@ -49,16 +46,16 @@ pub(super) fn costly(
             Objective::Time => (saved_s, time),
         };
         // Where more or less time is asked for, runs may take more energy so that others save it.
-        let own = settings.budget == Budget::AsBefore || settings.objective == Objective::Time;
-        if own && saved < cost {
+        let must_pay = settings.budget == Budget::AsBefore || settings.objective == Objective::Time;
+        if must_pay && saved < cost {
             let unit = if settings.objective == Objective::Energy { "J" } else { "s" };
             let why = format!(
                 "its guards take {cost:.2} {unit} in a cycle ({:.1} ms), its streams save {saved:.2} {unit}",
                 1e3 * time
             );
-            costly.push((site, why));
+            costly.push((index, why));
         } else {
-            worth.push((site, time, saved / time));
+            worth.push((index, time, saved / time));
         }
     }
     if costly.is_empty() {
@@ -66,7 +63,7 @@ pub(super) fn costly(
         let mut all = 0.0;
         for (site, time, _) in worth {
             all += time;
-            if all > MOST * simulation.cycle_s {
+            if all > MOST * original.cycle.simulation.cycle_s {
                 all -= time;
                 let why = format!(
                     "its guards take {:.1} ms in a cycle, and all guards may take {:.1} % of it",
@@ -77,10 +74,11 @@ pub(super) fn costly(
             }
         }
     }
-    let ways = ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok());
-    ways.filter_map(|(index, way)| {
-        let (_, why) = costly.iter().find(|(site, _)| *site == way.site)?;
-        Some((index, Reason::NoStream(why.clone())))
-    })
-    .collect()
+    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
+    streams
+        .filter_map(|(index, candidate)| {
+            let (_, why) = costly.iter().find(|(site, _)| *site == candidate.site)?;
+            Some((index, State::Refused(Reason::NoStream(why.clone()))))
+        })
+        .collect()
 }

@@ -4,8 +4,9 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::files::Source;
+use super::interrupts::written_by_interrupts;
 use super::settings::{Form, Settings};
-use super::work::Source;
 use crate::rapid::builtins::{is_controller_specific, is_movement};
 use crate::rapid::ir::hir::{
     ArgKind, Block, Callee, DataKind, Expr, ExprKind, Scope, StmtKind, UnaryOp,
@@ -33,17 +34,16 @@ pub(super) struct Guards<'p> {
 }
 
 impl<'p> Guards<'p> {
-    /// `by_interrupts`: data that interrupt routines may write.
+    /// The arguments of a program that was read from these files.
     pub(super) fn new(
         program: &'p Program,
         files: &'p [Source],
-        by_interrupts: BTreeSet<DataId>,
         settings: &Settings,
     ) -> Guards<'p> {
         let elsewhere = &settings.written_elsewhere;
         let inline_targets = settings.inline_targets || settings.form == Form::Speeds;
         let mut arguments = BTreeMap::new();
-        let mut meanwhile = by_interrupts;
+        let mut meanwhile = written_by_interrupts(program);
         for (m, module) in program.modules.iter().enumerate() {
             for (index, routine) in module.routines.iter().enumerate() {
                 let id = RoutineId { module: m, index };

@@ -3,17 +3,17 @@
 //! The program itself stays as it was: nothing plans or limits a guided motion but its sender, and
 //! the virtual controller does not run it.
 
-use super::figures::{OutputFile, OutputKind};
-use super::outputs::unchanged;
-use super::work::{RetrofitError, Source, Way, run_of};
+use super::candidate::{Candidate, State, with_states};
+use super::error::RetrofitError;
+use super::files::{OutputFile, unchanged};
+use super::original::Original;
+use super::tolerances::ENDPOINT_TOLERANCE;
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::Span;
-use crate::retime::motion::Simulation;
 use crate::retime::motion::stream::{DOF, Joints, Stream};
 use crate::retime::motion::timeline::Run;
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::site::Site;
 use crate::tool::emit::{self, EGM_STEP_S, GeneratedNames, Names};
 
 /// The folder, relative to the program.
@@ -21,25 +21,22 @@ const FOLDER: &str = "egm";
 /// Largest distance of a position in the file from the motion, rad: the rounding of its text.
 const ROUNDING: f64 = 1e-7;
 
-/// The files of the program as they were, and a module with its positions for each way that has a
-/// stream. The ways then have their reason to stay.
-pub(super) fn files(
-    files: &[Source],
-    program: &Program,
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &mut [Way],
+/// The files of the program as they were, and a module with its positions for each candidate that has
+/// a stream. The candidates then have their reason to stay.
+pub(super) fn guided(
+    original: &Original<'_>,
+    candidates: Vec<Candidate>,
     names: &Names,
-) -> Result<Vec<OutputFile>, RetrofitError> {
-    let mut outputs: Vec<OutputFile> =
-        files.iter().enumerate().map(|(i, source)| unchanged(i, source)).collect();
-    for (index, way) in ways.iter_mut().enumerate() {
-        let Some(run) = run_of(simulation, sites, way) else { continue };
-        let Ok(retiming) = &way.outcome else { continue };
-        let (tool, work_object) = match arguments(files, program, run) {
+) -> Result<(Vec<OutputFile>, Vec<Candidate>), RetrofitError> {
+    let mut outputs = unchanged(original.files);
+    let mut refused = Vec::new();
+    for (index, candidate) in candidates.iter().enumerate() {
+        let Some(run) = original.run(candidate) else { continue };
+        let Some(retiming) = candidate.retiming() else { continue };
+        let (tool, work_object) = match arguments(original, run) {
             Ok(arguments) => arguments,
             Err(reason) => {
-                way.outcome = Err(reason);
+                refused.push((index, State::Refused(reason)));
                 continue;
             }
         };
@@ -50,29 +47,25 @@ pub(super) fn files(
             procedure: format!("{}Egm{number}", names.prefix),
             main: String::new(),
         };
-        let text = emit::egm_rows(&positions);
-        way.outcome = if reads_as(&text, &positions) && ends_at(&positions, &run.end) {
+        let rows = emit::egm_rows(&positions);
+        let reason = if reads_as(&rows, &positions) && ends_at(&positions, &run.end) {
             let module = emit::egm_module(&names, &positions, &tool, &work_object)?;
-            for (extension, text) in [("mod", module), ("csv", text)] {
-                outputs.push(OutputFile {
-                    path: format!("{FOLDER}/{}.{extension}", names.module),
-                    kind: OutputKind::New,
-                    bytes: text.into_bytes(),
-                    input: None,
-                });
+            for (extension, text) in [("mod", module), ("csv", rows)] {
+                let path = format!("{FOLDER}/{}.{extension}", names.module);
+                outputs.push(OutputFile::added(path, text));
             }
-            Err(Reason::Guided(retiming.energy_before_j - retiming.energy.energy_j()))
+            Reason::Guided(retiming.energy_before_j - retiming.energy.energy_j())
         } else {
-            Err(Reason::Verification(
-                "the positions in the file are not those of the motion".into(),
-            ))
+            Reason::Verification("the positions in the file are not those of the motion".into())
         };
+        refused.push((index, State::Refused(reason)));
     }
-    Ok(outputs)
+    Ok((outputs, with_states(candidates, refused)))
 }
 
 /// Tool and work object of a run as a module beside the program can name them.
-fn arguments(files: &[Source], program: &Program, run: &Run) -> Result<(String, String), Reason> {
+fn arguments(original: &Original<'_>, run: &Run) -> Result<(String, String), Reason> {
+    let Original { files, program, .. } = original;
     let Some(record) = run.moves.first() else { return Err(Reason::NoMotion) };
     let movement = &record.movement;
     if movement.total_load.is_some() {
@@ -131,7 +124,5 @@ fn reads_as(text: &str, positions: &[Joints]) -> bool {
 }
 
 fn ends_at(positions: &[Joints], end: &Joints) -> bool {
-    /// Distance of a stream's end from the programmed one, rad.
-    const END: f64 = 1e-4;
-    positions.last().is_some_and(|q| (0..DOF).all(|j| (q[j] - end[j]).abs() <= END))
+    positions.last().is_some_and(|q| (0..DOF).all(|j| (q[j] - end[j]).abs() <= ENDPOINT_TOLERANCE))
 }

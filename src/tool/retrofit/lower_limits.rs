@@ -5,114 +5,60 @@
 
 use rayon::prelude::*;
 
-use super::figures::{LowerLimits, OutputFile};
-use super::outputs::read_again;
+use super::candidate::{Candidate, State};
+use super::figures::LowerLimits;
+use super::files::{OutputFile, read_again};
+use super::lowered::Lowered;
+use super::original::Original;
+use super::read::read_program;
 use super::settings::Settings;
-use super::work::{Way, read_program};
-use crate::arm::robot::Model;
-use crate::rapid::ir::program::{Program, RoutineId};
 use crate::retime::motion::{Simulation, simulate};
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::site::Site;
 
-/// Shares of the assumed limits that are looked at.
-const SHARES: [f64; 3] = [0.9, 0.8, 0.7];
 /// Share by which a stream may take longer than its movements under lower limits.
 const LONGER: f64 = 1.005;
 /// Rounding of a time, s.
 const ROUNDING: f64 = 1e-4;
 
-/// The original under lower limits.
-pub(super) struct Lowered {
-    share: f64,
-    model: Model,
-    simulation: Simulation,
-}
-
-/// The original under lower limits; empty where no limit is assumed.
-pub(super) fn lowered(
-    program: &Program,
-    entry: RoutineId,
-    model: &Model,
-    settings: &Settings,
-) -> Vec<Lowered> {
-    let assumed = ["acceleration", "torque"].map(|key| !model.is_known("limits", key));
-    if assumed == [false; 2] {
-        return Vec::new();
-    }
-    let lower = |share: &f64| {
-        let scaled = |limits: &Option<Vec<f64>>, is_assumed: bool| {
-            let factor = if is_assumed { *share } else { 1.0 };
-            limits.as_ref().map(|limits| limits.iter().map(|x| factor * x).collect())
-        };
-        let mut limits = model.limits.clone();
-        limits.acceleration = scaled(&limits.acceleration, assumed[0]);
-        limits.torque = scaled(&limits.torque, assumed[1]);
-        let model = Model { limits, ..model.clone() };
-        let simulation = simulate(program, entry, &model, &settings.options);
-        Lowered { share: *share, model, simulation }
-    };
-    SHARES.par_iter().map(lower).collect()
-}
-
-/// How much later the original may come to an event than it is planned to, s, counted from the end
-/// of another event or from the start of the cycle.
-pub(super) fn lateness(
-    planned: &Simulation,
+/// The emitted program under each of the lower limits; empty where it can't be read.
+pub(super) fn emitted_under(
     lowered: &[Lowered],
-    since: Option<usize>,
-    event: usize,
-) -> f64 {
-    let way_there = |simulation: &Simulation| {
-        let from = match since {
-            Some(since) => {
-                let since = simulation.events.get(since)?;
-                since.t_start + since.duration
-            }
-            None => 0.0,
-        };
-        Some(simulation.events.get(event)?.t_start - from)
-    };
-    let late = |lower: &Lowered| Some(way_there(&lower.simulation)? - way_there(planned)?);
-    lowered.iter().filter_map(late).fold(0.0, f64::max)
-}
-
-/// How long original and retrofit take under lower limits, and the ways whose streams lose more
-/// than their movements. A stream that is slower on purpose may take the time that it was given;
-/// what it loses beyond that counts. `planned` are original and retrofit under the assumed limits;
-/// `whole` says that the events of both are the same.
-pub(super) fn compare(
-    lowered: &[Lowered],
-    planned: (&Simulation, &Simulation),
     outputs: &[OutputFile],
     settings: &Settings,
-    (sites, ways): (&[Site], &[Way]),
-    whole: bool,
-) -> (Vec<LowerLimits>, Vec<(usize, Reason)>) {
+) -> Vec<Simulation> {
     let emitted = read_again(outputs);
-    let Ok((program, entry)) = read_program(&emitted, &settings.entry) else {
-        return (Vec::new(), Vec::new());
+    let Ok((program, entry)) = read_program(&emitted, &settings.entry) else { return Vec::new() };
+    let simulated = |lower: &Lowered| simulate(&program, entry, &lower.model, &settings.options);
+    lowered.par_iter().map(simulated).collect()
+}
+
+/// How long original and retrofit take under lower limits.
+pub(super) fn cycles(lowered: &[Lowered], emitted: &[Simulation]) -> Vec<LowerLimits> {
+    let cycles = |(lower, after): (&Lowered, &Simulation)| LowerLimits {
+        share: lower.share,
+        original_s: lower.simulation.cycle_s,
+        optimized_s: after.cycle_s,
     };
-    let after: Vec<Simulation> = lowered
-        .par_iter()
-        .map(|lower| simulate(&program, entry, &lower.model, &settings.options))
-        .collect();
-    let pairs = || lowered.iter().zip(&after);
-    let table = pairs()
-        .map(|(lower, after)| LowerLimits {
-            share: lower.share,
-            original_s: lower.simulation.cycle_s,
-            optimized_s: after.cycle_s,
-        })
-        .collect();
-    let loses = |way: &Way| {
-        let mut events = sites[way.site].variants[way.variant].events.iter();
-        events.find_map(|event| {
-            let duration = |of: &Simulation| Some(of.events.get(*event)?.duration);
-            let given = (duration(planned.1)? - duration(planned.0)?).max(0.0);
-            pairs().find_map(|(lower, after)| {
-                let before = duration(&lower.simulation)?;
-                let now = duration(after)?;
+    lowered.iter().zip(emitted).map(cycles).collect()
+}
+
+/// Refuses the candidates whose streams lose more time under lower limits than their movements. A
+/// stream that is slower on purpose may take the time that it was given; what it loses beyond that
+/// counts. `after`: the retrofit under the assumed limits, with the events of the original.
+pub(super) fn losing(
+    original: &Original<'_>,
+    after: &Simulation,
+    emitted: &[Simulation],
+    candidates: &[Candidate],
+) -> Vec<(usize, State)> {
+    let duration = |of: &Simulation, event: usize| Some(of.events.get(event)?.duration);
+    let loses = |candidate: &Candidate| {
+        original.events(candidate).iter().find_map(|event| {
+            let before = duration(&original.cycle.simulation, *event)?;
+            let given = (duration(after, *event)? - before).max(0.0);
+            original.lowered.iter().zip(emitted).find_map(|(lower, emitted)| {
+                let before = duration(&lower.simulation, *event)?;
+                let now = duration(emitted, *event)?;
                 (now > LONGER * before + given + ROUNDING).then(|| {
                     Reason::NoStream(format!(
                         "with limits {:.0} % lower than assumed it would take {now:.3} s instead \
@@ -124,11 +70,6 @@ pub(super) fn compare(
             })
         })
     };
-    let failed = ways
-        .iter()
-        .enumerate()
-        .filter(|(_, way)| whole && way.outcome.is_ok())
-        .filter_map(|(index, way)| Some((index, loses(way)?)))
-        .collect();
-    (table, failed)
+    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
+    streams.filter_map(|(index, c)| Some((index, State::Refused(loses(c)?)))).collect()
 }

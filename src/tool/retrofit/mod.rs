@@ -3,41 +3,66 @@
 //! Parse, simulate, optimise, emit; then read the emitted text again, simulate
 //! that, and compare. What does not hold keeps its original moves.
 
-mod demand;
+mod brakes;
+mod candidate;
+mod cycle_time;
 mod elsewhere;
-pub mod figures;
+mod emission_context;
+mod emitted_sites;
+mod error;
+mod figures;
+mod files;
 mod freed;
 mod goals;
 mod guard_cost;
 mod guards;
 mod guided;
 mod hazards;
+mod interrupts;
+mod job;
 mod lower_limits;
+mod lowered;
 mod notes;
+mod order;
+mod original;
 mod outputs;
 mod padding;
+mod pipeline;
+mod planning;
+mod read;
 mod recorded;
-mod rests;
+mod relocated_waits;
+mod results;
+mod rewritten;
+mod rounds;
 mod segments;
 mod settings;
 mod sharing;
 mod signals;
+mod simulated;
 mod speed_arguments;
+mod speed_search;
+mod speed_slots;
 mod speeds;
+mod tolerances;
+mod torque_demand;
 mod uncertainty;
 mod verify;
+mod verify_speeds;
+mod verify_streams;
 mod without;
-mod work;
 
+pub use brakes::BRAKE_NOTE;
 pub use elsewhere::written_in;
-pub use figures::{
-    Figures, LowerLimits, OutputFile, OutputKind, Padding, Retrofit, Segment, SegmentKind,
-    Verification,
-};
+pub use error::RetrofitError;
+pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};
+pub use files::{OutputFile, OutputKind, Source, read_again};
 pub use freed::freed;
-pub use outputs::{BRAKE_NOTE, read_again};
+pub use padding::Padding;
+pub use pipeline::retrofit;
+pub use read::read_program;
 pub use settings::{Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings};
 pub use signals::{SignalKind, SignalShift};
 pub use uncertainty::Uncertainty;
+pub(in crate::tool) use verify::{parses, run_again};
 pub use without::{is_streams, prefix, without_streams};
-pub use work::{RetrofitError, Source, read_program, retrofit};

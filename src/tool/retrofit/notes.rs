@@ -2,16 +2,14 @@
 
 use std::fmt::Write;
 
-use super::figures::{Figures, Padding, Segment, SegmentKind};
+use super::figures::{Figures, Segment, SegmentKind};
+use super::original::Original;
+use super::padding::Padding;
 use super::settings::{Budget, Objective, Settings};
-use super::work::Source;
-use crate::arm::dynamics::Load;
+use super::simulated::Simulated;
 use crate::arm::robot::Model;
 use crate::retime::energy::account::at_rest;
-use crate::retime::motion::Simulation;
-use crate::retime::motion::timeline::What;
 use crate::retime::optimize::reason::Reason;
-use crate::retime::path::joint_path::Joints;
 
 /// Differences of energy below this are rounding, J.
 const ROUNDING_J: f64 = 1e-3;
@@ -20,10 +18,9 @@ const UNUSED: f64 = 0.01;
 
 /// The notes on the time that was asked for.
 pub(super) fn notes(
-    files: &[Source],
+    program: &Original<'_>,
     model: &Model,
     settings: &Settings,
-    simulation: &Simulation,
     segments: &[Segment],
     (original, optimized, padding): (&Figures, &Figures, Option<&Padding>),
 ) -> Vec<String> {
@@ -50,11 +47,11 @@ pub(super) fn notes(
         .filter(|segment| segment.kind != SegmentKind::Idle && segment.rewritten)
         .filter(|segment| {
             let waited = segment.time_after_s - segment.time_before_s;
-            let before = segment.energy_before_j + resting_j(model, simulation, waited);
+            let before = segment.energy_before_j + resting_j(model, &program.cycle, waited);
             segment.energy_after_j > before + ROUNDING_J
         })
         .map(|segment| {
-            let file = &files[segment.span.file.0 as usize].file;
+            let file = &program.files[segment.span.file.0 as usize].file;
             format!("{}:{}", file.path, file.position(segment.span.start).line)
         })
         .collect();
@@ -72,7 +69,7 @@ pub(super) fn notes(
     if let Budget::Takt(takt) = settings.budget
         && takt >= original.cycle_s
     {
-        let rest = |cycle_s: f64| resting_j(model, simulation, takt - cycle_s);
+        let rest = |cycle_s: f64| resting_j(model, &program.cycle, takt - cycle_s);
         let _ = write!(
             note,
             "; with the rest of the takt waited for, {:.1} J instead of {:.1} J",
@@ -85,7 +82,7 @@ pub(super) fn notes(
 }
 
 /// Says what is minimised, and what joints are asked, where torque limits are not known.
-pub(super) fn of_mean(model: &Model) -> String {
+pub(super) fn mean_energy(model: &Model) -> String {
     format!(
         "the torque limits of {} are estimated: streams minimise the mean energy over plausible robots \
          (--pareto shows that mean, too), and ask no more torque of any joint than the original cycle \
@@ -158,15 +155,6 @@ fn unchanged(segments: &[Segment]) -> Option<String> {
 }
 
 /// Energy of standing at the end of the cycle for some time, J.
-fn resting_j(model: &Model, simulation: &Simulation, duration: f64) -> f64 {
-    end(simulation).map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
-}
-
-/// Load and place of the robot at the end of the cycle.
-pub(super) fn end(simulation: &Simulation) -> Option<(&Load, &Joints)> {
-    simulation.events.iter().rev().find_map(|event| match &event.what {
-        What::Run(run) => Some((&run.load, &run.end)),
-        What::Wait(wait) => Some((&wait.load, &wait.q)),
-        What::Output(..) | What::Left(_) => None,
-    })
+fn resting_j(model: &Model, cycle: &Simulated, duration: f64) -> f64 {
+    cycle.end().map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
 }

@@ -1,8 +1,8 @@
 //! What nothing in RAPID can read back (the load, some settings) is written down by the program
 //! itself, behind each statement that changes it.
 
+use super::files::Source;
 use super::guards::one_line;
-use super::work::Source;
 use crate::rapid::ir::hir::{
     Arg, ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
 };

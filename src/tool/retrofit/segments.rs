@@ -2,56 +2,50 @@
 
 use std::collections::BTreeMap;
 
+use super::candidate::{Candidate, State};
 use super::figures::{Segment, SegmentKind};
-use super::rests::Resting;
-use super::work::Way;
+use super::original::Original;
+use super::relocated_waits::RelocatedWait;
+use super::simulated::Simulated;
 use crate::rapid::text::Span;
-use crate::retime::energy::{Account, EnergyParts};
+use crate::retime::energy::EnergyParts;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::What;
 use crate::retime::optimize::idle::Dwell;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::PathUse;
-use crate::retime::optimize::site::Site;
+use crate::retime::optimize::site::not_reached;
 
 /// Dwells shorter than this are not listed, s: gripper times.
 const SHORTEST_DWELL: f64 = 0.1;
 
-/// The segments in the order of the source.
+/// The segments in the order of the source. `dwells`: of the original.
 pub(super) fn segments(
-    (before, before_account): (&Simulation, &Account),
-    (after, after_account): (&Simulation, &Account),
-    sites: &[Site],
-    ways: &[Way],
-    (dwells, restings): (&[Dwell], &[Resting]),
-    not_reached: &[Span],
+    original: &Original<'_>,
+    after: &Simulated,
+    candidates: &[Candidate],
+    dwells: &[Dwell],
+    waits: &[RelocatedWait],
 ) -> Vec<Segment> {
-    let cost = |simulation: &Simulation, account: &Account, events: &[usize]| {
-        let time: f64 = events.iter().map(|i| simulation.events[*i].duration).sum();
-        let energy = events
-            .iter()
-            .flat_map(|i| &account.events[*i])
-            .fold(EnergyParts::default(), |sum, part| sum + *part);
-        (time, energy.energy_j())
-    };
+    let before = &original.cycle;
     let mut segments = Vec::new();
-    for (index, site) in sites.iter().enumerate() {
+    for (index, site) in original.sites.iter().enumerate() {
         let mut segment = Segment::new(site.span, SegmentKind::Timing, None);
         let mut bound = 0.0;
-        for way in ways.iter().filter(|way| way.site == index) {
-            let events = &site.variants[way.variant].events;
+        for candidate in candidates.iter().filter(|candidate| candidate.site == index) {
+            let events = original.events(candidate);
             segment.executions += events.len();
             if segment.pareto.is_empty() {
-                segment.pareto.clone_from(&way.pareto);
+                segment.pareto.clone_from(&candidate.pareto);
             }
-            let (time, energy) = cost(before, before_account, events);
+            let (time, energy) = cost(before, events);
             segment.time_before_s += time;
             segment.energy_before_j += energy;
-            let (time, energy) = cost(after, after_account, events);
-            segment.time_after_s += time;
-            segment.energy_after_j += energy;
-            match &way.outcome {
-                Ok(retiming) => {
+            let (time_after, energy_after) = cost(after, events);
+            segment.time_after_s += time_after;
+            segment.energy_after_j += energy_after;
+            match &candidate.state {
+                State::Done(retiming) => {
                     segment.rewritten = true;
                     match &retiming.path {
                         PathUse::Kept => {}
@@ -64,29 +58,38 @@ pub(super) fn segments(
                     segment.points += retiming.stream.points().len();
                     bound += retiming.lower_bound_j * events.len() as f64;
                 }
-                Err(reason) => {
-                    bound += energy;
+                State::Refused(reason) => {
+                    bound += energy_after;
                     segment.reason.get_or_insert(reason.clone());
                 }
+                State::Pending => bound += energy_after,
             }
             segment.events.extend(events);
         }
         segment.lower_bound_j = segment.rewritten.then_some(bound).filter(|b| b.is_finite());
         segments.push(segment);
     }
-    segments.extend(left(before));
+    segments.extend(unresolved(&before.simulation));
+    let not_reached = not_reached(original.program, &before.simulation);
     segments.extend(
         not_reached
             .iter()
             .map(|span| Segment::new(*span, SegmentKind::Timing, Some(Reason::NotReached))),
     );
-    segments.extend(idle(before, before_account, after_account, dwells, restings));
+    segments.extend(idle(before, after, dwells, waits));
     segments.sort_by_key(|segment| segment.span);
     segments
 }
 
+/// Time \[s\] and energy \[J\] of some events.
+fn cost(cycle: &Simulated, events: &[usize]) -> (f64, f64) {
+    let time: f64 = events.iter().map(|i| cycle.simulation.events[*i].duration).sum();
+    let parts = events.iter().flat_map(|i| &cycle.account.events[*i]);
+    (time, parts.fold(EnergyParts::default(), |sum, part| sum + *part).energy_j())
+}
+
 /// Movements that could not be worked out, by statement.
-fn left(simulation: &Simulation) -> Vec<Segment> {
+fn unresolved(simulation: &Simulation) -> Vec<Segment> {
     let mut by_place: BTreeMap<Span, Segment> = BTreeMap::new();
     for event in &simulation.events {
         if let What::Left(unresolved) = &event.what {
@@ -102,27 +105,27 @@ fn left(simulation: &Simulation) -> Vec<Segment> {
 
 /// Dwells by place.
 fn idle(
-    simulation: &Simulation,
-    before: &Account,
-    after: &Account,
+    before: &Simulated,
+    after: &Simulated,
     dwells: &[Dwell],
-    restings: &[Resting],
+    waits: &[RelocatedWait],
 ) -> Vec<Segment> {
     let mut by_place: BTreeMap<_, Segment> = BTreeMap::new();
     for dwell in dwells {
         if dwell.duration < SHORTEST_DWELL && !matches!(dwell.reason, Reason::UnknownDwell) {
             continue;
         }
-        let energy = |account: &Account| -> f64 {
-            dwell.events.iter().flat_map(|i| &account.events[*i]).map(EnergyParts::energy_j).sum()
+        let energy = |cycle: &Simulated| -> f64 {
+            let parts = dwell.events.iter().flat_map(|i| &cycle.account.events[*i]);
+            parts.map(EnergyParts::energy_j).sum()
         };
-        let time: f64 = dwell.events.iter().map(|i| simulation.events[*i].duration).sum();
+        let time: f64 = dwell.events.iter().map(|i| before.simulation.events[*i].duration).sum();
         let segment = by_place.entry(dwell.span).or_insert_with(|| {
             Segment::new(dwell.span, SegmentKind::Idle, Some(dwell.reason.clone()))
         });
         segment.executions += 1;
-        let resting = restings.iter().find(|r| r.events.iter().any(|e| dwell.events.contains(e)));
-        if let Some(Resting { rest, .. }) = resting {
+        let wait = waits.iter().find(|wait| wait.events.iter().any(|e| dwell.events.contains(e)));
+        if let Some(RelocatedWait { rest, .. }) = wait {
             segment.rewritten = true;
             segment.rewritten_executions += 1;
             segment.points = rest.out.points().len() + rest.back.points().len();

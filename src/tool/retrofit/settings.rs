@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::retime::motion::Options;
+use crate::arm::robot::Model;
+use crate::retime::motion::{Options, Simulation};
+use crate::retime::optimize::allowed::Loads;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::Freedom;
 use crate::tool::emit::Layout;
@@ -104,5 +106,14 @@ impl Default for Settings {
             pareto: 0,
             written_elsewhere: BTreeSet::new(),
         }
+    }
+}
+
+impl Settings {
+    /// The settings with the loads that the joints of a robot bear in the original: streams ask no
+    /// more of them.
+    pub(super) fn with_shown_loads(&self, model: &Model, original: &Simulation) -> Settings {
+        let loads = Some(Loads::shown(model, original));
+        Settings { freedom: Freedom { loads, ..self.freedom.clone() }, ..self.clone() }
     }
 }

@@ -1,42 +1,93 @@
 //! What runs make of their shares of the cycle's time, and what follows for the others.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
 use super::goals::Plan;
-use super::work::Outcome;
-use crate::retime::optimize::retime::{Goal, Task, retime};
+use super::settings::Budget;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::retime::{Goal, Retiming, Task, retime};
 
 /// Times that the cycle's time is shared anew, at most.
 const MOST_SHARINGS: usize = 4;
 
-/// A stream in the run's share of the cycle; where there is none, in its time before.
-pub(super) fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
-    let before = Goal::Within(task.run.duration());
-    let outcome = retime(task, goal);
-    if goal == before { outcome } else { outcome.or_else(|_| retime(task, before)) }
+/// A stream for each task of a plan, or why there is none. `progress` is told how many of how many
+/// are done.
+pub(super) fn streams(
+    plan: &Plan,
+    tasks: &[(usize, Task<'_>)],
+    budget: Budget,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Vec<Outcome> {
+    let done = AtomicUsize::new(0);
+    let outcomes = tasks.par_iter().zip(&plan.goals).map(|((_, task), goal)| {
+        let outcome = match budget {
+            Budget::AsBefore => useful(task, *goal),
+            Budget::Takt(_) | Budget::Factor(_) => retime(task, *goal),
+        };
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
+        outcome
+    });
+    outcomes.collect()
 }
 
-/// What a run takes with its outcome: time, s, and energy of the motion, J.
-fn taken(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
+/// A stream, or why there is none.
+type Outcome = Result<Retiming, Reason>;
+
+/// A stream in the run's share of the cycle; where there is none, in its time before.
+fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
+    let outcome = retime(task, goal);
+    if goal == within_before(task) { outcome } else { outcome.or_else(|_| as_before(task)) }
+}
+
+/// A stream in the time that the run took before.
+fn as_before(task: &Task<'_>) -> Outcome {
+    retime(task, within_before(task))
+}
+
+fn within_before(task: &Task<'_>) -> Goal {
+    Goal::Within(task.run.duration())
+}
+
+/// Time \[s\] and energy of the motion \[J\] of the original run.
+fn taken_before(task: &Task<'_>) -> (f64, f64) {
+    (task.run.duration(), task.energy_before.motion_energy_j())
+}
+
+/// Time \[s\] and energy of the motion \[J\] of each run with its outcome.
+fn taken(tasks: &[(usize, Task<'_>)], outcomes: &[Outcome]) -> Vec<(f64, f64)> {
+    let pairs = tasks.iter().zip(outcomes);
+    pairs.map(|((_, task), outcome)| taken_with(task, outcome)).collect()
+}
+
+fn taken_with(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
     match outcome {
         Ok(retiming) => (retiming.duration_s, retiming.energy.motion_energy_j()),
-        Err(_) => (task.run.duration(), task.energy_before.motion_energy_j()),
+        Err(_) => taken_before(task),
     }
+}
+
+/// The streams that there are, each in the time of its run before.
+fn all_as_before(tasks: &[(usize, Task<'_>)], outcomes: Vec<Outcome>) -> Vec<Outcome> {
+    let pairs = tasks.par_iter().zip(outcomes);
+    pairs.map(|((_, task), outcome)| outcome.and_then(|_| as_before(task))).collect()
 }
 
 /// Where a run did not get quicker as it should have, so that the others were given too much time,
 /// the time is shared anew; where that does not help, every run goes back to its time before.
 pub(super) fn keep_to_the_cycle(
-    plan: &mut Plan,
+    mut plan: Plan,
     tasks: &[(usize, Task<'_>)],
-    outcomes: &mut [(usize, Outcome)],
-) {
-    let time =
-        |((_, task), (_, outcome)): (&(usize, Task<'_>), &(usize, Outcome))| taken(task, outcome).0;
+    mut outcomes: Vec<Outcome>,
+) -> (Plan, Vec<Outcome>) {
+    let times = |outcomes: &[Outcome]| -> Vec<f64> {
+        taken(tasks, outcomes).into_iter().map(|(time, _)| time).collect()
+    };
     for _ in 0..MOST_SHARINGS {
-        let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
+        let times = times(&outcomes);
         if plan.holds(&times) {
-            return;
+            break;
         }
         let changed = plan.share_anew(&times);
         if changed.is_empty() {
@@ -45,16 +96,13 @@ pub(super) fn keep_to_the_cycle(
         let found: Vec<Outcome> =
             changed.par_iter().map(|i| useful(&tasks[*i].1, plan.goals[*i])).collect();
         for (i, outcome) in changed.into_iter().zip(found) {
-            outcomes[i].1 = outcome;
+            outcomes[i] = outcome;
         }
     }
-    let times: Vec<f64> = tasks.iter().zip(outcomes.iter()).map(time).collect();
-    if plan.holds(&times) {
-        return;
+    if !plan.holds(&times(&outcomes)) {
+        outcomes = all_as_before(tasks, outcomes);
     }
-    outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
-        |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
-    );
+    (plan, outcomes)
 }
 
 /// A run that takes more energy than before has to give its time to others that save more, or to
@@ -63,32 +111,26 @@ pub(super) fn keep_to_the_cycle(
 pub(super) fn leave_what_does_not_pay(
     plan: &Plan,
     tasks: &[(usize, Task<'_>)],
-    outcomes: &mut [(usize, Outcome)],
-) {
-    let before = |task: &Task<'_>| (task.run.duration(), task.energy_before.motion_energy_j());
-    let mut now: Vec<(f64, f64)> = tasks
-        .iter()
-        .zip(&*outcomes)
-        .map(|((_, task), (_, outcome))| taken(task, outcome))
-        .collect();
-    let excess = |i: usize| now[i].1 - before(&tasks[i].1).1;
+    mut outcomes: Vec<Outcome>,
+) -> Vec<Outcome> {
+    let mut now = taken(tasks, &outcomes);
+    let before: Vec<(f64, f64)> = tasks.iter().map(|(_, task)| taken_before(task)).collect();
+    let excess = |i: usize| now[i].1 - before[i].1;
     let mut costly: Vec<usize> = (0..tasks.len()).filter(|i| excess(*i) > 0.0).collect();
     costly.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
     for i in costly {
         let task = &tasks[i].1;
         let cost = plan.cost(&now);
-        let patient = std::mem::replace(&mut now[i], before(task));
+        let slower = std::mem::replace(&mut now[i], before[i]);
         if plan.cost(&now) < cost {
-            outcomes[i].1 = retime(task, Goal::Within(task.run.duration()));
-            now[i] = taken(task, &outcomes[i].1);
+            outcomes[i] = as_before(task);
+            now[i] = taken_with(task, &outcomes[i]);
         } else {
-            now[i] = patient;
+            now[i] = slower;
         }
     }
-    let all_before: Vec<(f64, f64)> = tasks.iter().map(|(_, task)| before(task)).collect();
-    if plan.cost(&now) >= plan.cost(&all_before) {
-        outcomes.par_iter_mut().zip(tasks).filter(|((_, outcome), _)| outcome.is_ok()).for_each(
-            |((_, outcome), (_, task))| *outcome = retime(task, Goal::Within(task.run.duration())),
-        );
+    if plan.cost(&now) >= plan.cost(&before) {
+        outcomes = all_as_before(tasks, outcomes);
     }
+    outcomes
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::work::Source;
+use super::files::Source;
 use crate::rapid::builtins::{MoveForm, movement};
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::program::Program;

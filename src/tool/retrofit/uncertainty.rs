@@ -1,15 +1,14 @@
 //! What a retrofit saves over plausible robots.
 
-use super::figures::Padding;
-use super::notes::end;
-use super::work::Way;
+use super::candidate::{Candidate, State};
+use super::original::Original;
+use super::padding::Padding;
+use super::simulated::Simulated;
 use crate::arm::robot::Model;
+use crate::retime::energy::EnergyParts;
 use crate::retime::energy::moments::Moments;
 use crate::retime::energy::plausible::{Contribution, Interval, Robots, moments};
-use crate::retime::energy::{Account, EnergyParts};
-use crate::retime::motion::Simulation;
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::site::Site;
 
 /// Share of the plausible robots in which a stream has to save.
 pub(super) const ENOUGH: f64 = 0.95;
@@ -27,47 +26,42 @@ pub struct Uncertainty {
     pub contributions: Vec<Contribution>,
 }
 
-/// Original or retrofit.
-#[derive(Clone, Copy)]
-pub(super) struct Side<'a> {
-    pub(super) simulation: &'a Simulation,
-    pub(super) account: &'a Account,
-}
-
-/// The ways whose streams do not save in enough of the robots.
-pub(super) fn uncertain_ways(
+/// Refuses the candidates whose streams do not save in enough of the robots.
+pub(super) fn uncertain(
     model: &Model,
     robots: &Robots,
-    before: Side<'_>,
-    after: Side<'_>,
-    sites: &[Site],
-    ways: &[Way],
-) -> Vec<(usize, Reason)> {
-    let sums =
-        |side: Side<'_>, event: usize| Some(Moments::of(model, side.simulation.events.get(event)?));
-    let own = |side: Side<'_>, event: usize| -> Option<f64> {
-        Some(side.account.events.get(event)?.iter().map(EnergyParts::motion_energy_j).sum())
+    original: &Original<'_>,
+    after: &Simulated,
+    candidates: &[Candidate],
+) -> Vec<(usize, State)> {
+    let before = &original.cycle;
+    let moments = |cycle: &Simulated, event: usize| {
+        Some(Moments::of(model, cycle.simulation.events.get(event)?))
     };
-    let weak = |way: &Way| {
-        let event = *sites[way.site].variants[way.variant].events.first()?;
-        let saved = own(before, event)? - own(after, event)?;
-        let share = share(model, robots, saved, [sums(before, event)?, sums(after, event)?]);
-        (share < ENOUGH).then_some(Reason::UncertainSaving(share))
+    let energy = |cycle: &Simulated, event: usize| -> Option<f64> {
+        Some(cycle.account.events.get(event)?.iter().map(EnergyParts::motion_energy_j).sum())
     };
-    let kept = ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok());
-    kept.filter_map(|(index, way)| Some((index, weak(way)?))).collect()
+    let weak = |candidate: &Candidate| {
+        let event = *original.events(candidate).first()?;
+        let saved = energy(before, event)? - energy(after, event)?;
+        let moments = [moments(before, event)?, moments(after, event)?];
+        let share = share(model, robots, saved, moments);
+        (share < ENOUGH).then_some(State::Refused(Reason::UncertainSaving(share)))
+    };
+    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
+    streams.filter_map(|(index, candidate)| Some((index, weak(candidate)?))).collect()
 }
 
 /// The share of the robots that take less motion energy in the whole cycle after than before.
 pub(super) fn share_that_saves(
     model: &Model,
     robots: &Robots,
-    before: Side<'_>,
-    after: Side<'_>,
+    before: &Simulated,
+    after: &Simulated,
 ) -> f64 {
-    let own = |side: Side<'_>| side.account.total.motion_energy_j();
-    let sums = [before, after].map(|side| moments(model, side.simulation));
-    share(model, robots, own(before) - own(after), sums)
+    let energy = |cycle: &Simulated| cycle.account.total.motion_energy_j();
+    let moments = [before, after].map(|cycle| moments(model, &cycle.simulation));
+    share(model, robots, energy(before) - energy(after), moments)
 }
 
 /// The share of the robots whose motion energy falls, where that of the model falls by `saved` J.
@@ -82,23 +76,23 @@ fn share(model: &Model, robots: &Robots, saved: f64, [mut less, after]: [Moments
 pub(super) fn uncertainty(
     model: &Model,
     robots: &Robots,
-    (before, padding): (Side<'_>, Option<&Padding>),
-    after: Side<'_>,
+    (before, padding): (&Simulated, Option<&Padding>),
+    after: &Simulated,
 ) -> Uncertainty {
-    let mut sums = moments(model, before.simulation);
-    if let (Some(padding), Some((load, q))) = (padding, end(before.simulation)) {
+    let mut sums = moments(model, &before.simulation);
+    if let (Some(padding), Some((load, q))) = (padding, before.end()) {
         sums.rest(model, load, q, padding.duration_s);
     }
     let padding = padding.map_or_else(EnergyParts::default, |padding| padding.energy);
     let a = robots.changes(model, &sums);
-    let b = robots.changes(model, &moments(model, after.simulation));
-    let of = |side: Side<'_>, more: f64, changes: &[EnergyParts], part: fn(&EnergyParts) -> f64| {
-        let own = part(&side.account.total) + more;
-        changes.iter().map(|change| own + part(change)).collect::<Vec<f64>>()
+    let b = robots.changes(model, &moments(model, &after.simulation));
+    let energies = |total: f64, changes: &[EnergyParts], part: fn(&EnergyParts) -> f64| {
+        changes.iter().map(|change| total + part(change)).collect::<Vec<f64>>()
     };
     let parts: [fn(&EnergyParts) -> f64; 2] = [EnergyParts::energy_j, EnergyParts::motion_energy_j];
-    let original = parts.map(|part| of(before, part(&padding), &a, part));
-    let optimized = parts.map(|part| of(after, 0.0, &b, part));
+    let original =
+        parts.map(|part| energies(part(&before.account.total) + part(&padding), &a, part));
+    let optimized = parts.map(|part| energies(part(&after.account.total), &b, part));
     let saving = [0, 1].map(|i| -> Vec<f64> {
         let pairs = original[i].iter().zip(&optimized[i]);
         pairs.map(|(a, b)| if *a > 0.0 { 100.0 * (a - b) / a } else { 0.0 }).collect()

@@ -1,71 +1,48 @@
-//! The verifier: reads the emitted text, simulates it, and compares.
+//! The verifier: reads the emitted text again, simulates it, and compares it with the original.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::figures::{OutputFile, OutputKind, Verification};
-use super::outputs::read_again;
-use super::rests::{self, Fault, Resting};
-use super::settings::Settings;
-use super::work::{Source, Way, nothing_to_verify, read_program};
+use super::candidate::Candidate;
+use super::error::RetrofitError;
+use super::figures::Verification;
+use super::files::{OutputFile, OutputKind, Source, read_again};
+use super::order::same_order;
+use super::original::Original;
+use super::read::read_program;
+use super::relocated_waits::{Fault, RelocatedWait, folded};
+use super::settings::{Budget, Settings};
+use super::simulated::Simulated;
+use super::speed_slots::Slot;
+use super::tolerances::TIME_TOLERANCE;
+use super::{verify_speeds, verify_streams};
 use crate::arm::robot::Model;
 use crate::rapid::syntax;
-use crate::retime::energy::{Account, account};
-use crate::retime::motion::stream::Stream;
-use crate::retime::motion::timed::TimedMotion;
-use crate::retime::motion::timeline::{Event, Run, What};
-use crate::retime::motion::{Simulation, simulate};
-use crate::retime::optimize::check::{Check, Room, check};
-use crate::retime::optimize::corridor::Corridor;
-use crate::retime::optimize::freedom::Freedom;
-use crate::retime::optimize::keep_out::body;
+use crate::retime::motion::{Options, Simulation, simulate};
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::retime::PathUse;
-use crate::retime::optimize::site::Site;
-use crate::retime::path::joint_path::DOF;
 
-/// Largest distance of an end point from the original one, rad.
-const ENDPOINT_TOLERANCE: f64 = 1e-4;
-/// Rounding of a sum of times, s.
-const TIME_TOLERANCE: f64 = 1e-6;
-/// Largest distance of a simulated stream from the intended one at any time, rad: the rounding of
-/// the text is in the intended one already.
-const INTENDED_TOLERANCE: f64 = 1e-6;
-/// Step between two comparisons of them, s.
-const STEP: f64 = 0.002;
-
-/// One attempt.
-pub(super) struct Attempt {
-    /// The cycle of the emitted program, with the waits where they were.
-    pub(super) simulation: Simulation,
-    /// Its energy.
-    pub(super) account: Account,
-    /// What was seen.
-    pub(super) verification: Verification,
-    /// Ways that did not hold, with the reason.
-    pub(super) failed: Vec<(usize, Reason)>,
-    /// Waits that are not spent elsewhere as intended, by their index.
-    pub(super) restless: BTreeMap<usize, Fault>,
+/// What an emitted program does in another way than the original.
+#[derive(Clone, Copy)]
+pub(super) enum Rewrite<'a> {
+    /// Streams stand for movements, and waits are spent elsewhere. Text is only inserted.
+    Streams { candidates: &'a [Candidate], waits: &'a [RelocatedWait] },
+    /// Movements have other speeds: a factor for each slot.
+    Speeds { slots: &'a [Slot], factors: &'a [f64] },
 }
 
-/// Verifies an emitted program. Every way that fails is named; where the fault can't be given
-/// to one way, all of them are.
-pub(super) fn verify(
-    files: &[Source],
-    outputs: &[OutputFile],
-    model: &Model,
-    settings: &Settings,
-    original: &Simulation,
-    (sites, ways, restings): (&[Site], &[Way], &[Resting]),
-) -> Attempt {
-    let rewritten: Vec<usize> = (0..ways.len()).filter(|i| ways[*i].outcome.is_ok()).collect();
-    let emitted = read_again(outputs);
-    let mut verification = nothing_to_verify();
-    let mut note = |what: &str, held: bool| verification.checks.push((what.to_owned(), held));
-    let everything = |why: &str| {
-        rewritten.iter().map(|i| (*i, Reason::Verification(why.to_owned()))).collect::<Vec<_>>()
-    };
+/// What the verifier saw of an emitted program.
+pub(super) struct Attempt {
+    /// The cycle of the emitted program, with the waits where they were.
+    pub(super) simulated: Simulated,
+    pub(super) verification: Verification,
+    /// Candidates that did not hold, with the reason.
+    pub(super) failed: Vec<(usize, Reason)>,
+    /// Waits that are not spent elsewhere as intended, by their index.
+    pub(super) wait_faults: BTreeMap<usize, Fault>,
+}
 
-    let clean = outputs.iter().all(|output| match output.kind {
+/// Whether files that are new or changed have no syntax errors besides those of the original.
+pub(in crate::tool) fn parses(files: &[Source], outputs: &[OutputFile]) -> bool {
+    outputs.iter().all(|output| match output.kind {
         OutputKind::New => {
             let parse = syntax::parse(&output.bytes);
             parse.errors.is_empty() && parse.tolerances.is_empty()
@@ -76,143 +53,133 @@ pub(super) fn verify(
             errors(&output.bytes) <= before
         }
         OutputKind::Unchanged => true,
-    });
-    note("the emitted text parses", clean);
-    let bytes_kept = outputs.iter().all(|output| match (output.kind, output.input) {
-        (OutputKind::Changed, Some(i)) => is_subsequence(&files[i].file.bytes, &output.bytes),
-        (OutputKind::Unchanged, Some(i)) => files[i].file.bytes == output.bytes,
-        _ => true,
-    });
-    note("every byte of the original is kept", bytes_kept);
-    let program = read_program(&emitted, &settings.entry);
-    let Ok((program, entry)) = program else {
-        note("the emitted program has its entry", false);
-        verification.passed = false;
-        let failed = everything("the emitted text could not be read again");
-        let restless = (0..restings.len()).map(|index| (index, Fault::Other)).collect();
-        let simulation = empty();
-        let account = account(model, &simulation);
-        return Attempt { simulation, account, verification, failed, restless };
-    };
-    let simulation = simulate(&program, entry, model, &settings.options);
-    let joules = account(model, &simulation);
-    let ((simulation, joules), mut restless) =
-        rests::folded(model, settings, simulation, joules, restings);
-    note("waits that are spent elsewhere take their time", restless.is_empty());
-    let mut failed = if clean && bytes_kept {
-        Vec::new()
-    } else {
-        everything("the emitted text could not be read again")
-    };
+    })
+}
 
-    let same_events = same_order(original, &simulation);
-    note("movements, waits and outputs come in the same order", same_events);
-    if !same_events && !restings.is_empty() {
-        // Rather than judge the streams by it, the waits go back to where they were.
-        for index in 0..restings.len() {
-            restless.entry(index).or_insert(Fault::Other);
-        }
-    } else if !same_events && failed.is_empty() {
-        let why = "the emitted program runs in another order";
-        failed = match reordering(original, &simulation, sites, ways) {
-            Some(way) => vec![(way, Reason::Verification(why.into()))],
-            None => everything(why),
-        };
+/// Reads an emitted program again and simulates it.
+///
+/// # Errors
+/// A program that can't be read.
+pub(in crate::tool) fn run_again(
+    outputs: &[OutputFile],
+    entry: &str,
+    model: &Model,
+    options: &Options,
+) -> Result<Simulation, RetrofitError> {
+    let (program, entry) = read_program(&read_again(outputs), entry)?;
+    Ok(simulate(&program, entry, model, options))
+}
+
+/// Verifies an emitted program. Every candidate that fails is named; where the fault can't be given
+/// to one of them, all that have streams are.
+pub(super) fn verify(
+    original: &Original<'_>,
+    outputs: &[OutputFile],
+    model: &Model,
+    settings: &Settings,
+    rewrite: Rewrite<'_>,
+) -> Attempt {
+    let mut verification = Verification::none();
+    let is_readable = parses(original.files, outputs);
+    verification.note("the emitted text parses", is_readable);
+    let mut text_holds = is_readable;
+    if let Rewrite::Streams { .. } = rewrite {
+        let bytes_kept = outputs.iter().all(|output| keeps_bytes(original.files, output));
+        verification.note("every byte of the original is kept", bytes_kept);
+        text_holds &= bytes_kept;
     }
-    let cycle_kept = match settings.budget {
-        super::Budget::AsBefore => simulation.cycle_s <= original.cycle_s + TIME_TOLERANCE,
-        super::Budget::Takt(takt) => {
-            simulation.cycle_s <= takt.max(original.cycle_s) + TIME_TOLERANCE
-        }
-        super::Budget::Factor(_) => true,
+    let Ok(simulation) = run_again(outputs, &settings.entry, model, &settings.options) else {
+        verification.note("the emitted program has its entry", false);
+        return unreadable(model, verification, rewrite);
     };
-    note("the cycle takes no longer than allowed", cycle_kept);
-    if !cycle_kept && same_events && failed.is_empty() {
-        failed = slowed(original, &simulation, sites, ways);
+    let mut simulated = Simulated::with_energy(model, simulation);
+    let mut wait_faults = BTreeMap::new();
+    if let Rewrite::Streams { waits, .. } = rewrite {
+        (simulated, wait_faults) = folded(model, settings, simulated, waits);
+        verification.note("waits that are spent elsewhere take their time", wait_faults.is_empty());
     }
-    if failed.is_empty() && same_events {
-        let mut worst = Check::none();
-        let mut strayed: f64 = 0.0;
-        let strict = settings.freedom.strict();
-        for i in rewritten {
-            let way = &ways[i];
-            for event in &sites[way.site].variants[way.variant].events {
-                let (before, after) = (&original.events[*event], &simulation.events[*event]);
-                let Ok(retiming) = &way.outcome else { continue };
-                let freedom = match retiming.path {
-                    PathUse::Left => &settings.freedom,
-                    _ => &strict,
-                };
-                match compare(model, freedom, before, after, &retiming.stream) {
-                    Ok((check, distance)) => {
-                        worst = worst.max(&check);
-                        strayed = strayed.max(distance);
-                    }
-                    Err(why) => {
-                        failed.push((i, Reason::Verification(why)));
-                        break;
-                    }
+    let before = &original.cycle.simulation;
+    let order_kept = same_order(before, &simulated.simulation);
+    verification.note("movements, waits and outputs come in the same order", order_kept);
+    let cycle_kept = keeps_cycle(settings.budget, before.cycle_s, simulated.simulation.cycle_s);
+    verification.note("the cycle takes no longer than allowed", cycle_kept);
+
+    let mut attempt = Attempt { simulated, verification, failed: Vec::new(), wait_faults };
+    match rewrite {
+        Rewrite::Streams { candidates, waits } => {
+            let emitted = &attempt.simulated.simulation;
+            attempt.failed = if !text_holds {
+                verify_streams::all_failed(candidates, "the emitted text could not be read again")
+            } else if !order_kept && waits.is_empty() {
+                verify_streams::reordering(original, emitted, candidates)
+            } else if order_kept && !cycle_kept {
+                verify_streams::slowing(original, emitted, candidates)
+            } else {
+                Vec::new()
+            };
+            if !order_kept {
+                // Rather than judge the streams by it, the waits go back to where they were.
+                for index in 0..waits.len() {
+                    attempt.wait_faults.entry(index).or_insert(Fault::Other);
                 }
+            } else if attempt.failed.is_empty() {
+                let figures =
+                    verify_streams::compared(original, emitted, model, settings, candidates);
+                let held = figures.failed.is_empty();
+                attempt.failed = figures.failed;
+                let verification = &mut attempt.verification;
+                verification.worst = figures.worst;
+                verification.intended_error_rad = figures.intended_error_rad;
+                verification.note("every stream keeps limits, path and ends", held);
+                verification.note("every stream runs as intended at each moment", held);
             }
         }
-        verification.worst = worst;
-        verification.intended_error_rad = strayed;
-        let held = failed.is_empty();
-        verification.checks.push(("every stream keeps limits, path and ends".into(), held));
-        verification.checks.push(("every stream runs as intended at each moment".into(), held));
+        Rewrite::Speeds { slots, factors } if order_kept => {
+            let emitted = &attempt.simulated.simulation;
+            let speeds = (slots, factors);
+            let figures = verify_speeds::compared(original, emitted, model, settings, speeds);
+            let verification = &mut attempt.verification;
+            verification.worst = figures.worst;
+            verification.note("targets and zones are those of before", figures.same_paths);
+            verification.note("no programmed speed is exceeded", figures.keeps_ceilings);
+        }
+        Rewrite::Speeds { .. } => {}
     }
-    verification.passed = failed.is_empty() && verification.checks.iter().all(|(_, held)| *held);
-    Attempt { simulation, account: joules, verification, failed, restless }
+    attempt.verification.passed &= attempt.failed.is_empty();
+    attempt
 }
 
-/// The stream at the first event that is another one than before, or the last one before it.
-fn reordering(
-    original: &Simulation,
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
-) -> Option<usize> {
-    let pairs = original.events.iter().zip(&simulation.events);
-    let first = pairs.take_while(|(a, b)| same_event(a, b)).count();
-    streams(sites, ways).range(..=first).next_back().map(|(_, way)| *way)
-}
-
-/// The ways with streams, by the events in which they run.
-fn streams(sites: &[Site], ways: &[Way]) -> BTreeMap<usize, usize> {
-    let mut streams = BTreeMap::new();
-    for (i, way) in ways.iter().enumerate().filter(|(_, way)| way.outcome.is_ok()) {
-        let events = &sites[way.site].variants[way.variant].events;
-        streams.extend(events.iter().map(|event| (*event, i)));
-    }
-    streams
-}
-
-/// The streams behind which a movement that stays takes longer than before.
-fn slowed(
-    original: &Simulation,
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
-) -> Vec<(usize, Reason)> {
-    let streams = streams(sites, ways);
-    let pairs = original.events.iter().zip(&simulation.events).enumerate();
-    let slower = pairs.filter(|(event, (before, after))| {
-        !streams.contains_key(event) && after.duration > before.duration + TIME_TOLERANCE
-    });
-    let before = slower.filter_map(|(event, _)| streams.range(..event).next_back());
-    let blamed: BTreeSet<usize> = before.map(|(_, way)| *way).collect();
-    let why = "a movement after it takes longer from where it ends";
-    blamed.into_iter().map(|i| (i, Reason::Verification(why.into()))).collect()
-}
-
-fn empty() -> Simulation {
-    Simulation {
+/// What is known of an emitted program that can't be read.
+fn unreadable(model: &Model, verification: Verification, rewrite: Rewrite<'_>) -> Attempt {
+    let nothing = Simulation {
         events: Vec::new(),
         cycle_s: 0.0,
         repeats_from: None,
         unresolved: Vec::new(),
         assumed: Vec::new(),
         inputs_asked: BTreeSet::new(),
+    };
+    let why = "the emitted text could not be read again";
+    let (failed, waits) = match rewrite {
+        Rewrite::Streams { candidates, waits } => {
+            (verify_streams::all_failed(candidates, why), waits.len())
+        }
+        Rewrite::Speeds { .. } => (Vec::new(), 0),
+    };
+    Attempt {
+        simulated: Simulated::with_energy(model, nothing),
+        verification,
+        failed,
+        wait_faults: (0..waits).map(|index| (index, Fault::Other)).collect(),
+    }
+}
+
+/// Whether the bytes of the original are all there, in order.
+fn keeps_bytes(files: &[Source], output: &OutputFile) -> bool {
+    match (output.kind, output.input) {
+        (OutputKind::Changed, Some(i)) => is_subsequence(&files[i].file.bytes, &output.bytes),
+        (OutputKind::Unchanged, Some(i)) => files[i].file.bytes == output.bytes,
+        _ => true,
     }
 }
 
@@ -222,100 +189,11 @@ fn is_subsequence(part: &[u8], whole: &[u8]) -> bool {
     part.iter().all(|byte| rest.any(|other| other == byte))
 }
 
-/// The same kinds of events with the same outputs, waits and ends.
-pub(super) fn same_order(a: &Simulation, b: &Simulation) -> bool {
-    a.events.len() == b.events.len()
-        && a.events.iter().zip(&b.events).all(|(a, b)| same_event(a, b))
-}
-
-fn same_event(a: &Event, b: &Event) -> bool {
-    match (&a.what, &b.what) {
-        (What::Run(a), What::Run(b)) => same_ends(a, b),
-        (What::Wait(a), What::Wait(b)) => {
-            a.wait.instruction == b.wait.instruction && a.wait.signal == b.wait.signal
-        }
-        (What::Output(a, _), What::Output(b, _)) => a.signal == b.signal && a.value == b.value,
-        (What::Left(a), What::Left(b)) => a.reason == b.reason,
-        _ => false,
-    }
-}
-
-fn same_ends(a: &Run, b: &Run) -> bool {
-    (0..DOF).all(|j| {
-        (a.start[j] - b.start[j]).abs() <= ENDPOINT_TOLERANCE
-            && (a.end[j] - b.end[j]).abs() <= ENDPOINT_TOLERANCE
-    })
-}
-
-/// The stream that runs now against the run that was, and its distance (rad) from the intended
-/// one.
-fn compare(
-    model: &Model,
-    freedom: &Freedom,
-    before: &Event,
-    after: &Event,
-    intended: &Stream,
-) -> Result<(Check, f64), String> {
-    let (What::Run(run), What::Run(new)) = (&before.what, &after.what) else {
-        return Err("another event stands in its place".into());
-    };
-    let [(_, TimedMotion::Stream(stream))] = new.motions.as_slice() else {
-        return Err("the emitted points do not run as a stream".into());
-    };
-    let corridor =
-        Corridor::new(model, run, freedom).ok_or("the original path is not one piece")?;
-    if new.load != run.load {
-        return Err("it runs with another tool or load".into());
-    }
-    let body = body(model, run, freedom);
-    let tool = &run.legs[0].tool;
-    let check =
-        check(model, &run.load, tool, stream, Room::Corridor(&corridor), &run.end, body.as_ref());
-    if !check.holds() {
-        return Err("a limit is exceeded by the emitted points".into());
-    }
-    if check.endpoint_error_rad > ENDPOINT_TOLERANCE {
-        return Err("it ends elsewhere".into());
-    }
-    let strayed = distance(intended, stream);
-    if strayed > INTENDED_TOLERANCE {
-        return Err("the emitted points do not move as intended".into());
-    }
-    Ok((check, strayed))
-}
-
-/// Largest distance of a joint between two streams at the same time, rad; infinite where they do
-/// not take the same time.
-fn distance(intended: &Stream, stream: &Stream) -> f64 {
-    let duration = intended.duration();
-    if (stream.duration() - duration).abs() > TIME_TOLERANCE {
-        return f64::INFINITY;
-    }
-    let count = (duration / STEP).ceil().max(1.0) as usize;
-    let apart = |i: usize| {
-        let t = duration * i as f64 / count as f64;
-        let (a, b) = (intended.eval(t).0, stream.eval(t).0);
-        (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
-    };
-    (0..=count).map(apart).fold(0.0, f64::max)
-}
-
-#[cfg(test)]
-mod tests {
-    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
-
-    use super::*;
-
-    #[test]
-    fn another_motion_in_the_same_time_is_seen() {
-        let stream = |middle: f64, times: [f64; 3]| {
-            let points = vec![[0.1; DOF], [middle; DOF], [1.0; DOF]];
-            Stream::new([0.0; DOF], points, times.to_vec()).unwrap()
-        };
-        let intended = stream(0.8, [0.1, 0.1, 0.1]);
-        assert_eq!(distance(&intended, &intended), 0.0);
-        assert!(distance(&intended, &stream(0.79, [0.1, 0.1, 0.1])) > 1e-3);
-        assert!(distance(&intended, &stream(0.8, [0.09, 0.12, 0.09])) > 1e-3);
-        assert!(distance(&intended, &stream(0.8, [0.1, 0.1, 0.2])).is_infinite());
+/// Whether a cycle takes no longer than it may, both times in s.
+fn keeps_cycle(budget: Budget, before_s: f64, after_s: f64) -> bool {
+    match budget {
+        Budget::AsBefore => after_s <= before_s + TIME_TOLERANCE,
+        Budget::Takt(takt) => after_s <= takt.max(before_s) + TIME_TOLERANCE,
+        Budget::Factor(_) => true,
     }
 }

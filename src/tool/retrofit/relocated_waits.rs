@@ -1,15 +1,15 @@
-//! Waits of known length that are spent at a pose nearby, in the emitted program: which they are,
-//! what is emitted for them, and how a simulation of it compares with one that has the waits.
+//! Waits of known length that are spent at a pose nearby, where holding takes less: which they are,
+//! and how a simulation of the emitted program compares with one that has the waits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::outputs::{Writing, argument, compared, place};
+use super::candidate::{Candidate, State};
+use super::files::Source;
+use super::job::Job;
 use super::settings::Settings;
-use super::work::{Source, TIME_TOLERANCE, Way};
+use super::simulated::Simulated;
+use super::tolerances::{ENDPOINT_TOLERANCE, TIME_TOLERANCE};
 use crate::arm::robot::Model;
-use crate::rapid::ir::movement::Argument;
-use crate::rapid::ir::number::number;
-use crate::rapid::ir::value::Datum;
 use crate::rapid::text::Span;
 use crate::retime::energy::account::{at_rest, run_energy};
 use crate::retime::energy::{Account, EnergyParts};
@@ -20,23 +20,19 @@ use crate::retime::optimize::check::{Room, check};
 use crate::retime::optimize::keep_out::around;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::rest::{Rest, Standstill, rest};
-use crate::retime::optimize::site::Site;
 use crate::retime::path::joint_path::{DOF, Joints};
-use crate::tool::emit::{self, EmittedStream, MotionSettings, Pause};
 
 /// Joints closer than this are the same place, rad.
 const SAME_PLACE: f64 = 1e-6;
-/// The same after the rounding of emitted text, rad.
-const ENDPOINT_TOLERANCE: f64 = 1e-4;
 
 /// A wait that is spent elsewhere.
-pub(super) struct Resting {
+pub(super) struct RelocatedWait {
     /// The statement.
     pub(super) span: Span,
     /// The events in which it ran.
     pub(super) events: Vec<usize>,
     /// The run before the first of them.
-    run: usize,
+    pub(super) run: usize,
     /// How long the wait is, s.
     duration: f64,
     /// What is emitted.
@@ -47,20 +43,18 @@ pub(super) struct Resting {
 /// they are always the same, and the run before each of them can be a stream itself. An output
 /// that is set where the robot stands may start a process there: such a wait has to be made free
 /// by a comment.
-pub(super) fn restings(
-    model: &Model,
-    settings: &Settings,
-    files: &[Source],
-    simulation: &Simulation,
-    sites: &[Site],
-    ways: &[Way],
-) -> Vec<Resting> {
+pub(super) fn relocated_waits(job: &Job<'_>, candidates: &[Candidate]) -> Vec<RelocatedWait> {
+    let Job { original, model, settings, .. } = job;
+    let simulation = &original.cycle.simulation;
     let Some(distance) = settings.dwell_pose else { return Vec::new() };
     let loads = settings.freedom.loads(model).for_other_ways(model);
-    let free: BTreeSet<usize> = ways
+    let may_be_stream = |candidate: &&Candidate| {
+        matches!(candidate.state, State::Done(_) | State::Refused(Reason::NoSaving))
+    };
+    let free: BTreeSet<usize> = candidates
         .iter()
-        .filter(|way| matches!(way.outcome, Ok(_) | Err(Reason::NoSaving)))
-        .flat_map(|way| sites[way.site].variants[way.variant].events.iter().copied())
+        .filter(may_be_stream)
+        .flat_map(|candidate| original.events(candidate).iter().copied())
         .collect();
     let mut places: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
     for (index, event) in simulation.events.iter().enumerate() {
@@ -68,7 +62,7 @@ pub(super) fn restings(
             places.entry(record.wait.span).or_default().push(index);
         }
     }
-    let resting = |(span, events): (Span, Vec<usize>)| {
+    let relocated = |(span, events): (Span, Vec<usize>)| {
         let first = standing(simulation, events[0])?;
         let alike = events.iter().all(|event| {
             standing(simulation, *event).is_some_and(|other| {
@@ -80,7 +74,7 @@ pub(super) fn restings(
             })
         });
         let external = first.record.wait.external.is_some();
-        if !alike || external || !stands_alone(files, span) {
+        if !alike || external || !stands_alone(original.files, span) {
             return None;
         }
         let tool = &first.leading.legs.last()?.tool;
@@ -95,9 +89,9 @@ pub(super) fn restings(
             body: body.as_ref(),
         };
         let rest = rest(&standstill, distance, settings.spacing_s)?;
-        Some(Resting { span, run: first.run, duration: first.duration, events, rest })
+        Some(RelocatedWait { span, run: first.run, duration: first.duration, events, rest })
     };
-    places.into_iter().filter_map(resting).collect()
+    places.into_iter().filter_map(relocated).collect()
 }
 
 /// A wait with what came before it.
@@ -149,52 +143,6 @@ fn apart(a: &Joints, b: &Joints) -> f64 {
     (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
-/// What is emitted for a wait.
-pub(super) fn emitted(
-    writing: &Writing<'_>,
-    simulation: &Simulation,
-    resting: &Resting,
-) -> Option<emit::Site> {
-    let What::Run(run) = &simulation.events[resting.run].what else { return None };
-    let event = &simulation.events[resting.events[0]];
-    let What::Wait(record) = &event.what else { return None };
-    let movement = &run.moves.last()?.movement;
-    let length = Datum::Num(record.wait.duration?);
-    let length = Argument { span: record.wait.constant?, type_name: "num", datum: length };
-    // Where it stands is guarded; what it holds there is the last movement's.
-    let tool = movement.arguments.iter().find(|argument| argument.span == movement.tool_span);
-    let arguments: Vec<Argument> = std::iter::once(length).chain(tool.cloned()).collect();
-    let (parameters, values) = compared(writing, &arguments, movement);
-    let Rest { out, wait_s, back, energy, energy_before_j, .. } = &resting.rest;
-    let time = number(event.duration, 3);
-    let place = place(writing.files, resting.span);
-    let stream = EmittedStream {
-        start: *out.start(),
-        points: [out.points(), back.points()].concat(),
-        intervals: [out.intervals(), back.intervals()].concat(),
-        pause: Some(Pause { after: out.points().len() - 1, seconds: *wait_s }),
-        external: movement.external?,
-        values,
-        origin: format!("{place}, a wait"),
-        before: format!("{time} s {} J", number(*energy_before_j, 1)),
-        after: format!("{time} s {} J", number(energy.energy_j(), 1)),
-    };
-    Some(emit::Site {
-        span: resting.span,
-        origin: place,
-        parameters,
-        settings: MotionSettings {
-            fastest: 0.0,
-            conf_joint: movement.settings.conf_joint,
-            conf_linear: movement.settings.conf_linear,
-            lines: false,
-        },
-        tool: argument(writing.files, movement.tool_span),
-        streams: vec![stream],
-        order: vec![Some(0); resting.events.len()],
-    })
-}
-
 /// What became of a wait in the emitted program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fault {
@@ -210,13 +158,13 @@ pub(super) enum Fault {
 pub(super) fn folded(
     model: &Model,
     settings: &Settings,
-    simulation: Simulation,
-    account: Account,
-    restings: &[Resting],
-) -> ((Simulation, Account), BTreeMap<usize, Fault>) {
+    emitted: Simulated,
+    waits: &[RelocatedWait],
+) -> (Simulated, BTreeMap<usize, Fault>) {
+    let Simulated { simulation, account } = emitted;
     let mut due: BTreeMap<usize, usize> = BTreeMap::new();
-    for (index, resting) in restings.iter().enumerate() {
-        due.extend(resting.events.iter().map(|event| (*event, index)));
+    for (index, wait) in waits.iter().enumerate() {
+        due.extend(wait.events.iter().map(|event| (*event, index)));
     }
     let mut faults = BTreeMap::new();
     let mut events: Vec<Event> = Vec::with_capacity(simulation.events.len());
@@ -240,9 +188,8 @@ pub(super) fn folded(
             parts_energy.push(energy);
             taken += 1;
         }
-        let resting = &restings[index];
         let settling = events.last_mut().map_or(0.0, unsettle);
-        let fault = match lateness(model, settings, &parts, resting) {
+        let fault = match excess(model, settings, &parts, &waits[index]) {
             Some(late) if (late + settling).abs() <= TIME_TOLERANCE => None,
             Some(late) if late + settling > 0.0 => Some(Fault::Late(late + settling)),
             _ => Some(Fault::Other),
@@ -266,24 +213,25 @@ pub(super) fn folded(
         }
     }
     let simulation = Simulation { events, repeats_from, ..simulation };
-    ((simulation, Account { total: account.total, events: energies }), faults)
+    let account = Account { total: account.total, events: energies };
+    (Simulated { simulation, account }, faults)
 }
 
-/// Shortens the pauses of rests that are late, the first time; leaves out the other faulty ones.
-pub(super) fn mend(restings: &mut Vec<Resting>, faults: &BTreeMap<usize, Fault>, first: bool) {
-    let mut index = 0;
-    restings.retain_mut(|resting| {
-        let fault = faults.get(&index);
-        index += 1;
-        match fault {
-            None => true,
-            Some(Fault::Late(late)) if first && *late < resting.rest.wait_s => {
-                resting.rest.wait_s -= late;
-                true
-            }
-            Some(_) => false,
+/// The waits without the faulty ones; the first time, pauses of those that are late get shorter.
+pub(super) fn mended(
+    waits: Vec<RelocatedWait>,
+    faults: &BTreeMap<usize, Fault>,
+    first: bool,
+) -> Vec<RelocatedWait> {
+    let mend = |(index, mut wait): (usize, RelocatedWait)| match faults.get(&index) {
+        None => Some(wait),
+        Some(Fault::Late(late)) if first && *late < wait.rest.wait_s => {
+            wait.rest.wait_s -= late;
+            Some(wait)
         }
-    });
+        Some(_) => None,
+    };
+    waits.into_iter().enumerate().filter_map(mend).collect()
 }
 
 /// Events after the first one of a rest.
@@ -302,13 +250,19 @@ fn unsettle(event: &mut Event) -> f64 {
 
 /// How much longer than the wait three events take that are the way to a rest, standing there and
 /// the way back, within the limits, s; `None` where they are not that.
-fn lateness(model: &Model, settings: &Settings, parts: &[Event], resting: &Resting) -> Option<f64> {
+fn excess(
+    model: &Model,
+    settings: &Settings,
+    parts: &[Event],
+    wait: &RelocatedWait,
+) -> Option<f64> {
     let [out, stand, back] = parts else { return None };
-    let (What::Run(out), What::Wait(wait), What::Run(back)) = (&out.what, &stand.what, &back.what)
+    let (What::Run(out), What::Wait(record), What::Run(back)) =
+        (&out.what, &stand.what, &back.what)
     else {
         return None;
     };
-    let Rest { out: there, back: again, .. } = &resting.rest;
+    let Rest { out: there, back: again, .. } = &wait.rest;
     let ways_hold = [(out, there), (back, again)].into_iter().all(|(run, intended)| {
         let [(_, TimedMotion::Stream(stream))] = run.motions.as_slice() else { return false };
         let tool = &run.legs[0].tool;
@@ -317,11 +271,11 @@ fn lateness(model: &Model, settings: &Settings, parts: &[Event], resting: &Resti
         let room = Room::Free(&loads);
         let seen = check(model, &run.load, tool, stream, room, intended.end(), body.as_ref());
         seen.holds()
-            && run.load == wait.load
+            && run.load == record.load
             && apart(stream.end(), intended.end()) <= ENDPOINT_TOLERANCE
             && apart(stream.start(), intended.start()) <= ENDPOINT_TOLERANCE
     });
-    let stands = apart(&wait.q, there.end()) <= ENDPOINT_TOLERANCE;
+    let stands = apart(&record.q, there.end()) <= ENDPOINT_TOLERANCE;
     let time: f64 = parts.iter().map(|event| event.duration).sum();
-    (ways_hold && stands).then_some(time - resting.duration)
+    (ways_hold && stands).then_some(time - wait.duration)
 }

@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::goals::Planning;
-use super::work::{Outcome, Way};
+use super::candidate::{Candidate, State};
+use super::job::Job;
+use super::planning::Planning;
 use crate::arm::robot::{Model, Provenance};
 use crate::retime::energy::along::{Along, Instant};
 use crate::retime::energy::plausible::{Robots, moments};
@@ -46,15 +47,15 @@ pub(super) fn mean_robot(
 }
 
 /// Largest torque of each joint in a motion \[Nm\], robot by robot.
-pub(super) struct Demand(Vec<[f64; DOF]>);
+struct PeakTorques(Vec<[f64; DOF]>);
 
-impl Demand {
-    /// Of the runs among some events.
-    pub(super) fn of<'e>(
+impl PeakTorques {
+    /// In the runs among some events.
+    fn in_runs<'e>(
         model: &Model,
         robots: &Robots,
         events: impl Iterator<Item = &'e Event>,
-    ) -> Demand {
+    ) -> PeakTorques {
         let mut instants = Vec::new();
         for event in events {
             let What::Run(run) = &event.what else { continue };
@@ -68,12 +69,12 @@ impl Demand {
         let torques = along.torques(robots.drawn());
         let count = torques.first().map_or(0, nalgebra::Matrix::ncols);
         let largest = |robot| std::array::from_fn(|j| torques[j].column(robot).amax());
-        Demand((0..count).map(largest).collect())
+        PeakTorques((0..count).map(largest).collect())
     }
 
     /// What is asked of each joint over what `original` asks, in 95 % of the robots; and of the first
     /// joint of which more is asked, its number from 1 and the share in which no more is asked.
-    fn over(&self, original: &Demand) -> ([f64; DOF], Option<(usize, f64)>) {
+    fn over(&self, original: &PeakTorques) -> ([f64; DOF], Option<(usize, f64)>) {
         let mut exceeds = None;
         let ratios = std::array::from_fn(|j| {
             let pairs = self.0.iter().zip(&original.0);
@@ -92,41 +93,39 @@ impl Demand {
     }
 }
 
-/// Streams that are planned anew until they ask no more.
-pub(super) struct Frugal<'a> {
-    model: &'a Model,
+/// Plans streams anew that ask more torque than the original cycle.
+pub(super) struct TorqueBound<'a> {
+    job: &'a Job<'a>,
     robots: &'a Robots,
-    original: Demand,
-    /// Of each way that asked for more: plans so far, torques to plan with over those of the original.
+    original: PeakTorques,
+    /// Of each candidate that asked for more: plans so far, torques to plan with over those of the
+    /// original.
     planned: BTreeMap<usize, (usize, [f64; DOF])>,
 }
 
-impl<'a> Frugal<'a> {
-    /// Of a program as it is; `None` where something is known of the torques that the robot can do.
-    pub(super) fn of(
-        model: &'a Model,
-        robots: Option<&'a Robots>,
-        simulation: &Simulation,
-    ) -> Option<Frugal<'a>> {
-        let robots = robots.filter(|_| is_estimated(model))?;
-        let original = Demand::of(model, robots, simulation.events.iter());
-        Some(Frugal { model, robots, original, planned: BTreeMap::new() })
+impl<'a> TorqueBound<'a> {
+    /// `None` where something is known of the torques that the robot can do.
+    pub(super) fn new(job: &'a Job<'a>) -> Option<TorqueBound<'a>> {
+        let robots = job.robots.as_ref().filter(|_| is_estimated(job.model))?;
+        let events = job.original.cycle.simulation.events.iter();
+        let original = PeakTorques::in_runs(job.model, robots, events);
+        Some(TorqueBound { job, robots, original, planned: BTreeMap::new() })
     }
 
-    /// Plans the streams anew that ask more of a joint in the simulation `after` than the original cycle
-    /// does. Those without such a plan get their reason. Whether all of them can stay.
-    pub(super) fn hold(
+    /// New states of the candidates whose streams ask more of a joint in the simulation `after` than
+    /// the original cycle does: a stream with less torque, or the reason why there is none.
+    pub(super) fn replanned(
         &mut self,
         after: &Simulation,
-        ways: &mut [Way],
+        candidates: &[Candidate],
         planning: &Planning<'_>,
-    ) -> bool {
+    ) -> Vec<(usize, State)> {
         let mut asking = Vec::new();
-        for (index, way) in ways.iter().enumerate() {
-            let Ok(stream) = &way.outcome else { continue };
-            let variant = &planning.sites[way.site].variants[way.variant];
-            let Some(event) = variant.events.first() else { continue };
-            let own = Demand::of(self.model, self.robots, after.events.get(*event).into_iter());
+        for (index, candidate) in candidates.iter().enumerate() {
+            let Some(stream) = candidate.retiming() else { continue };
+            let Some(event) = self.job.original.events(candidate).first() else { continue };
+            let event = after.events.get(*event).into_iter();
+            let own = PeakTorques::in_runs(self.job.model, self.robots, event);
             let (ratios, exceeds) = own.over(&self.original);
             if let Some((joint, share)) = exceeds {
                 let (plans, torques) = self.planned.entry(index).or_insert((1, [1.0; DOF]));
@@ -140,21 +139,16 @@ impl<'a> Frugal<'a> {
                 asking.push((index, again, Reason::AsksMore(joint, share)));
             }
         }
-        let outcomes = asking.par_iter().map(|(index, again, reason)| {
+        let states = asking.par_iter().map(|(index, again, reason)| {
             let stream = again.and_then(|(torques, within)| {
                 let mut freedom = planning.settings.freedom.clone();
                 let loads = freedom.loads.as_mut()?;
                 loads.torque.iter_mut().zip(torques).for_each(|(torque, share)| *torque *= share);
-                let task = planning.task(&ways[*index], &freedom)?;
+                let task = planning.task(&candidates[*index], &freedom)?;
                 retime(&task, Goal::Within(within)).ok()
             });
-            (*index, stream.ok_or_else(|| reason.clone()))
+            (*index, State::from(stream.ok_or_else(|| reason.clone())))
         });
-        let outcomes: Vec<(usize, Outcome)> = outcomes.collect();
-        let all_stay = outcomes.is_empty();
-        for (index, outcome) in outcomes {
-            ways[index].outcome = outcome;
-        }
-        all_stay
+        states.collect()
     }
 }

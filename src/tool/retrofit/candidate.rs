@@ -1,0 +1,71 @@
+//! The variants of the sites as candidates for a stream.
+
+use crate::retime::optimize::energy_curve::TimeEnergy;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::retime::Retiming;
+use crate::retime::optimize::site::Site;
+
+/// A variant of a site, and what has been decided about it.
+pub(super) struct Candidate {
+    /// Index of the site.
+    pub(super) site: usize,
+    /// Index of the variant.
+    pub(super) variant: usize,
+    pub(super) state: State,
+    /// Its curve of energy over time; empty where it is not asked for.
+    pub(super) pareto: Vec<TimeEnergy>,
+}
+
+/// What has been decided about a candidate.
+#[derive(Debug)]
+pub(super) enum State {
+    /// Nothing yet: no stream was sought.
+    Pending,
+    /// The movements stay.
+    Refused(Reason),
+    /// A stream stands for the movements.
+    Done(Box<Retiming>),
+}
+
+impl From<Result<Retiming, Reason>> for State {
+    fn from(outcome: Result<Retiming, Reason>) -> State {
+        match outcome {
+            Ok(retiming) => State::Done(Box::new(retiming)),
+            Err(reason) => State::Refused(reason),
+        }
+    }
+}
+
+impl Candidate {
+    /// Its stream, if it has one.
+    pub(super) fn retiming(&self) -> Option<&Retiming> {
+        match &self.state {
+            State::Done(retiming) => Some(retiming),
+            State::Pending | State::Refused(_) => None,
+        }
+    }
+}
+
+/// A candidate for each variant: pending where no reason stands against it.
+pub(super) fn candidates(sites: &[Site]) -> Vec<Candidate> {
+    let variants = |(site, s): (usize, &Site)| {
+        let candidate = |(variant, reason): (usize, Option<Reason>)| {
+            let state = reason.map_or(State::Pending, State::Refused);
+            Candidate { site, variant, state, pareto: Vec::new() }
+        };
+        let reasons = s.variants.iter().map(|v| s.reason.clone().or_else(|| v.reason.clone()));
+        reasons.enumerate().map(candidate).collect::<Vec<_>>()
+    };
+    sites.iter().enumerate().flat_map(variants).collect()
+}
+
+/// The candidates with new states for some of them, by their indices.
+pub(super) fn with_states(
+    mut candidates: Vec<Candidate>,
+    states: impl IntoIterator<Item = (usize, State)>,
+) -> Vec<Candidate> {
+    for (index, state) in states {
+        candidates[index].state = state;
+    }
+    candidates
+}

@@ -1,0 +1,55 @@
+//! The time of a cycle as the sharing of it sees it.
+
+use super::lowered::lateness;
+use super::original::Original;
+use super::settings::Settings;
+use crate::arm::dynamics::Load;
+use crate::arm::robot::Model;
+use crate::retime::energy::power::holding_w;
+use crate::retime::motion::timeline::{Event, WaitBasis, What};
+use crate::retime::optimize::cycle::{Cycle, Part};
+use crate::retime::path::joint_path::Joints;
+
+/// The cycle as a sequence of parts. What is left of the takt (s) is spent at its end. Known waits
+/// keep what the original would be late there if its limits were lower than assumed. `runs`: the
+/// events of each run whose time is to be chosen.
+pub(super) fn cycle(
+    original: &Original<'_>,
+    model: &Model,
+    settings: &Settings,
+    runs: &[&[usize]],
+    takt: f64,
+) -> Cycle {
+    let simulation = &original.cycle.simulation;
+    let mut parts: Vec<Part> =
+        simulation.events.iter().map(|event| Part::Fixed(event.duration)).collect();
+    for (run, events) in runs.iter().enumerate() {
+        for event in *events {
+            parts[*event] = Part::Run(run);
+        }
+    }
+    for (index, event) in simulation.events.iter().enumerate() {
+        let What::Wait(record) = &event.what else { continue };
+        let Some(signal) = record.wait.signal.as_ref().map(|name| name.to_lowercase()) else {
+            continue;
+        };
+        let delay = settings.options.inputs.get(&signal).copied();
+        if let (WaitBasis::Input, Some(delay)) = (record.basis, delay) {
+            let is_same = |event: &Event| match &event.what {
+                What::Wait(other) => {
+                    other.wait.signal.as_ref().is_some_and(|name| name.to_lowercase() == signal)
+                }
+                _ => false,
+            };
+            let since = simulation.events[..index].iter().rposition(is_same);
+            parts[index] = Part::Arrival {
+                since,
+                delay,
+                least: lateness(simulation, &original.lowered, since, index).min(event.duration),
+                holding_w: holding_w(model, &record.load, &record.q).iter().sum(),
+            };
+        }
+    }
+    let holding = |(load, q): (&Load, &Joints)| holding_w(model, load, q).iter().sum();
+    Cycle { parts, takt, resting_w: original.cycle.end().map_or(0.0, holding) }
+}

@@ -1,0 +1,166 @@
+//! Interrupt routines: what they may do to a movement while it runs, and the data that they write.
+
+use std::collections::BTreeSet;
+
+use crate::rapid::builtins::{self, Function, Instruction, Source, is_movement, may_write};
+use crate::rapid::ir::hir::{Arg, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
+use crate::retime::optimize::reason::Reason;
+
+/// What connected interrupt routines may do to a movement.
+pub(super) fn interrupt_hazard(program: &Program) -> Option<Reason> {
+    traps(program).into_iter().find_map(|(trap, reach)| {
+        let what = reach.hazard()?;
+        Some(Reason::Interrupt(format!(
+            "the interrupt routine {trap} is connected somewhere in the program and may run {what} \
+             meanwhile"
+        )))
+    })
+}
+
+/// Module data that connected interrupt routines may write.
+pub(super) fn written_by_interrupts(program: &Program) -> BTreeSet<DataId> {
+    traps(program).into_iter().flat_map(|(_, reach)| reach.written).collect()
+}
+
+/// The connected interrupt routines by name, with what they run.
+fn traps(program: &Program) -> Vec<(String, Reach)> {
+    let mut found = Vec::new();
+    for (m, module) in program.modules.iter().enumerate() {
+        for block in module.routines.iter().flat_map(Routine::blocks) {
+            let mut traps = Vec::new();
+            connected(block, &mut traps);
+            for trap in traps {
+                let mut reach = Reach::default();
+                reach.call(program, m, &trap);
+                // A list of routines to look at, not a recursion: calls may be deep.
+                while let Some(id) = reach.open.pop() {
+                    let routine = program.routine(id);
+                    for expr in routine.data.iter().filter_map(|data| data.init.as_ref()) {
+                        reach.expr(program, id.module, expr);
+                    }
+                    for block in routine.blocks() {
+                        reach.block(program, id.module, block);
+                    }
+                }
+                found.push((trap, reach));
+            }
+        }
+    }
+    found
+}
+
+fn connected(block: &Block, traps: &mut Vec<String>) {
+    for stmt in block {
+        if let StmtKind::Connect { trap, .. } = &stmt.kind {
+            traps.push(trap.text.clone());
+        }
+        for inner in stmt.kind.blocks() {
+            connected(inner, traps);
+        }
+    }
+}
+
+/// What an interrupt routine runs, directly or not.
+#[derive(Default)]
+struct Reach {
+    /// Routines that were looked at, by module and index.
+    seen: BTreeSet<(usize, usize)>,
+    /// Routines still to be looked at.
+    open: Vec<RoutineId>,
+    /// The first instruction that changes movements.
+    changes: Option<String>,
+    /// The first movement.
+    moves: Option<String>,
+    /// Whether the path that it interrupts is kept for later.
+    stores_path: bool,
+    /// Module data that it may write: what it assigns to, and what it hands to other routines.
+    written: BTreeSet<DataId>,
+}
+
+impl Reach {
+    fn hazard(&self) -> Option<&str> {
+        let moves = self.moves.as_deref().filter(|_| !self.stores_path);
+        self.changes.as_deref().or(moves)
+    }
+
+    fn call(&mut self, program: &Program, module: usize, name: &str) {
+        let key = name.to_lowercase();
+        let Some(Symbol::Routine(id)) = program.resolve(module, &key) else {
+            let instruction = builtins::instruction(&key);
+            if instruction.is_some_and(|found| found.changes_motion) {
+                self.changes.get_or_insert(name.to_owned());
+            }
+            if instruction.is_some_and(Instruction::finds_by_name) {
+                self.changes
+                    .get_or_insert(format!("{name}, which finds data or procedures by name"));
+            }
+            if is_movement(&key) {
+                self.moves.get_or_insert(name.to_owned());
+            }
+            self.stores_path |= key == "storepath";
+            let function = builtins::function(&key);
+            let is_known = instruction.is_some_and(Instruction::is_known)
+                || function.is_some_and(|found| found.source != Source::NotCalculated);
+            if !is_known {
+                self.changes.get_or_insert(format!("{name}, of which nothing is known here,"));
+            }
+            return;
+        };
+        if self.seen.insert((id.module, id.index)) {
+            self.open.push(id);
+        }
+    }
+
+    fn writes(&mut self, program: &Program, module: usize, target: &Expr) {
+        if let Some(name) = target.base()
+            && let Some(Symbol::Data(id)) = program.resolve(module, &name.key)
+        {
+            self.written.insert(id);
+        }
+    }
+
+    /// Functions, too, may write to data, their own arguments among them.
+    fn expr(&mut self, program: &Program, module: usize, expr: &Expr) {
+        if let ExprKind::Call(name, args) = &expr.kind {
+            self.call(program, module, &name.text);
+            if !builtins::function(&name.key).is_some_and(Function::only_reads) {
+                for arg in args.iter().filter_map(Arg::value) {
+                    self.writes(program, module, arg);
+                }
+            }
+        }
+        for part in expr.parts() {
+            self.expr(program, module, part);
+        }
+    }
+
+    fn block(&mut self, program: &Program, module: usize, block: &Block) {
+        for stmt in block {
+            if let StmtKind::Assign { target, .. } = &stmt.kind {
+                self.writes(program, module, target);
+            }
+            if let StmtKind::Call(call) = &stmt.kind {
+                let only_reads = matches!(&call.callee, Callee::Name(name)
+                    if program.resolve(module, &name.key).is_none() && !may_write(&name.key));
+                if !only_reads {
+                    for arg in call.args.iter().filter_map(Arg::value) {
+                        self.writes(program, module, arg);
+                    }
+                }
+                match &call.callee {
+                    Callee::Name(name) => self.call(program, module, &name.text),
+                    Callee::Late(_) => {
+                        self.changes.get_or_insert("a procedure with a computed name".into());
+                    }
+                }
+            }
+            for expr in stmt.kind.exprs() {
+                self.expr(program, module, expr);
+            }
+            for inner in stmt.kind.blocks() {
+                self.block(program, module, inner);
+            }
+        }
+    }
+}

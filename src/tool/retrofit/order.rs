@@ -1,0 +1,44 @@
+//! The order of what a program does, before and after.
+
+use super::tolerances::ENDPOINT_TOLERANCE;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timeline::{Event, Run, What};
+use crate::retime::path::joint_path::DOF;
+
+/// The same kinds of events with the same outputs, waits and ends.
+pub(super) fn same_order(a: &Simulation, b: &Simulation) -> bool {
+    a.events.len() == b.events.len()
+        && a.events.iter().zip(&b.events).all(|(a, b)| same_event(a, b))
+}
+
+/// The same kind of event with the same output, wait or ends. A stream may stand for any movements,
+/// other movements keep their instructions.
+pub(super) fn same_event(a: &Event, b: &Event) -> bool {
+    match (&a.what, &b.what) {
+        (What::Run(a), What::Run(b)) => same_ends(a, b) && (is_stream(b) || same_moves(a, b)),
+        (What::Wait(a), What::Wait(b)) => {
+            a.wait.instruction == b.wait.instruction && a.wait.signal == b.wait.signal
+        }
+        (What::Output(a, _), What::Output(b, _)) => a.signal == b.signal && a.value == b.value,
+        (What::Left(a), What::Left(b)) => a.reason == b.reason,
+        _ => false,
+    }
+}
+
+fn same_ends(a: &Run, b: &Run) -> bool {
+    (0..DOF).all(|j| {
+        (a.start[j] - b.start[j]).abs() <= ENDPOINT_TOLERANCE
+            && (a.end[j] - b.end[j]).abs() <= ENDPOINT_TOLERANCE
+    })
+}
+
+fn is_stream(run: &Run) -> bool {
+    matches!(run.motions.as_slice(), [(_, TimedMotion::Stream(_))])
+}
+
+fn same_moves(a: &Run, b: &Run) -> bool {
+    a.moves.len() == b.moves.len()
+        && (a.moves.iter().zip(&b.moves))
+            .all(|(a, b)| a.movement.instruction == b.movement.instruction)
+}

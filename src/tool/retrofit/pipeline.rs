@@ -1,0 +1,123 @@
+//! The pipeline: its stages in their order.
+
+use rayon::prelude::*;
+
+use super::brakes::add_brake_note;
+use super::candidate::{State, candidates, with_states};
+use super::emission_context::EmissionContext;
+use super::error::RetrofitError;
+use super::figures::Retrofit;
+use super::files::Source;
+use super::goals::{check_factor, goals};
+use super::guards::Guards;
+use super::guided::guided;
+use super::hazards::marked_sites;
+use super::job::Job;
+use super::lowered::lowered;
+use super::original::Original;
+use super::planning::Planning;
+use super::read::read_program;
+use super::relocated_waits::relocated_waits;
+use super::results::results;
+use super::rewritten::Rewritten;
+use super::rounds::verified;
+use super::settings::{Budget, Form, Objective, Settings};
+use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, streams};
+use super::simulated::Simulated;
+use super::speeds;
+use super::torque_demand::mean_robot;
+use crate::arm::robot::{Model, Use, ready};
+use crate::retime::energy::plausible::Robots;
+use crate::retime::optimize::energy_curve::{TimeEnergy, pareto};
+use crate::retime::optimize::idle::dwells;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::retime::PathUse;
+
+/// Retrofits a program. `progress` is told how many of how many pieces are done.
+///
+/// # Errors
+/// What makes the whole job impossible; a piece that can't be improved stays as it is.
+pub fn retrofit(
+    files: &[Source],
+    model: &Model,
+    settings: &Settings,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Retrofit, RetrofitError> {
+    ready(model, Use::Optimize)?;
+    let (program, entry) = read_program(files, &settings.entry)?;
+    let cycle = Simulated::new(&program, entry, model, &settings.options);
+    let guards = Guards::new(&program, files, settings);
+    let sites = marked_sites(&program, &cycle.simulation, &guards, settings.form);
+    let lowered = lowered(&program, entry, model, settings);
+    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    let job = Job {
+        mean: mean_robot(model, robots.as_ref(), &cycle.simulation),
+        settings: settings.with_shown_loads(model, &cycle.simulation),
+        original: Original { files, program: &program, entry, cycle, sites, lowered },
+        model,
+        robots,
+    };
+    let (rewritten, leaves_path) = match settings.form {
+        Form::Speeds => (speeds::rewritten(&job, progress), false),
+        Form::Streams | Form::Guided => with_streams(&job, &guards, progress)?,
+    };
+    Ok(results(job, rewritten, leaves_path))
+}
+
+/// The program with streams, or with positions for externally guided motion beside it; and whether
+/// streams leave the programmed path.
+fn with_streams(
+    job: &Job<'_>,
+    guards: &Guards<'_>,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<(Rewritten, bool), RetrofitError> {
+    let Job { original, model, settings, .. } = job;
+    let planning = Planning::new(job);
+    let candidates = candidates(&original.sites);
+    let tasks = planning.tasks(&candidates);
+    let plan = goals(&planning, &candidates, &tasks)?;
+    let mut outcomes = streams(&plan, &tasks, settings.budget, progress);
+    match settings.budget {
+        Budget::AsBefore => {
+            let (plan, kept) = keep_to_the_cycle(plan, &tasks, outcomes);
+            outcomes = match settings.objective {
+                Objective::Energy => leave_what_does_not_pay(&plan, &tasks, kept),
+                Objective::Time => kept,
+            };
+        }
+        Budget::Factor(factor) => check_factor(factor, &tasks, &outcomes)?,
+        Budget::Takt(_) => {}
+    }
+    let curves: Vec<Vec<TimeEnergy>> = if settings.pareto > 0 {
+        tasks.par_iter().map(|(_, task)| pareto(task, settings.pareto)).collect()
+    } else {
+        Vec::new()
+    };
+    let tried: Vec<usize> = tasks.iter().map(|(index, _)| *index).collect();
+    let states = tried.iter().copied().zip(outcomes.into_iter().map(State::from));
+    let mut candidates = with_states(candidates, states);
+    for (index, curve) in tried.into_iter().zip(curves) {
+        candidates[index].pareto = curve;
+    }
+
+    let context = EmissionContext::new(job, guards);
+    let waits = relocated_waits(job, &candidates);
+    let mut rewritten = verified(&planning, &context, candidates, waits)?;
+    let leaves_path = rewritten
+        .candidates
+        .iter()
+        .filter_map(|candidate| candidate.retiming())
+        .any(|retiming| retiming.path == PathUse::Left);
+    if settings.form == Form::Guided {
+        let (files, candidates) = guided(original, rewritten.candidates, &context.names)?;
+        rewritten.candidates = candidates;
+        rewritten.outputs.files = files;
+        rewritten.outputs.guards.clear();
+        // The program that runs is the one before.
+        rewritten.simulated =
+            Simulated::new(original.program, original.entry, model, &settings.options);
+    }
+    let dwells = dwells(model, &rewritten.simulated.simulation);
+    add_brake_note(&mut rewritten.outputs.files, model, &dwells);
+    Ok((rewritten, leaves_path))
+}

@@ -1,0 +1,56 @@
+//! What streams are planned for.
+
+use super::candidate::{Candidate, State};
+use super::job::Job;
+use super::settings::Settings;
+use crate::arm::robot::Model;
+use crate::retime::energy::{Account, EnergyParts, account};
+use crate::retime::optimize::freedom::Freedom;
+use crate::retime::optimize::retime::Task;
+
+/// A job as the optimiser sees it: for the robot whose energy is minimised.
+pub(super) struct Planning<'a> {
+    pub(super) job: &'a Job<'a>,
+    /// The robot whose energy is minimised.
+    pub(super) model: &'a Model,
+    /// The settings with the loads of that robot.
+    pub(super) settings: Settings,
+    /// What that robot takes for the original.
+    account: Account,
+}
+
+impl<'a> Planning<'a> {
+    /// The planning of a job.
+    pub(super) fn new(job: &'a Job<'a>) -> Planning<'a> {
+        let (model, simulation) = (job.aim(), &job.original.cycle.simulation);
+        let settings = job.settings.with_shown_loads(model, simulation);
+        Planning { job, model, settings, account: account(model, simulation) }
+    }
+
+    /// The task of timing a candidate anew; `None` if it does not run.
+    pub(super) fn task<'f>(
+        &'f self,
+        candidate: &Candidate,
+        freedom: &'f Freedom,
+    ) -> Option<Task<'f>> {
+        let original = &self.job.original;
+        let event = *original.events(candidate).first()?;
+        let parts = self.account.events[event].iter();
+        Some(Task {
+            model: self.model,
+            run: original.run(candidate)?,
+            energy_before: parts.fold(EnergyParts::default(), |a, b| a + *b),
+            spacing_s: self.settings.spacing_s,
+            closest_s: self.settings.closest_s,
+            freedom,
+            cost: self.settings.cost,
+        })
+    }
+
+    /// The tasks of the pending candidates, with the indices of these.
+    pub(super) fn tasks(&self, candidates: &[Candidate]) -> Vec<(usize, Task<'_>)> {
+        let pending = candidates.iter().enumerate();
+        let pending = pending.filter(|(_, candidate)| matches!(candidate.state, State::Pending));
+        pending.filter_map(|(i, c)| Some((i, self.task(c, &self.settings.freedom)?))).collect()
+    }
+}

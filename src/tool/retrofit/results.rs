@@ -1,0 +1,81 @@
+//! The result of a retrofit from what its stages found.
+
+use super::figures::{Figures, LowerLimits, Retrofit, SegmentKind};
+use super::job::Job;
+use super::notes;
+use super::padding::padding;
+use super::rewritten::Rewritten;
+use super::segments::segments;
+use super::settings::Form;
+use super::signals::signals;
+use super::simulated::Simulated;
+use super::uncertainty::uncertainty;
+use crate::retime::optimize::idle::dwells;
+
+/// The result of a job. `leaves_path`: whether streams leave the programmed path.
+pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> Retrofit {
+    let Job { original, model, settings, robots, mean } = job;
+    let Rewritten { candidates, waits, respeeded, outputs, simulated, .. } = rewritten;
+    let dwells = dwells(model, &original.cycle.simulation);
+    let mut segments = segments(&original, &simulated, &candidates, &dwells, &waits);
+    for segment in &mut segments {
+        if mean.is_some() {
+            // The bounds are of the mean robot, the energies of the model.
+            segment.lower_bound_j = None;
+        }
+        if segment.kind == SegmentKind::Timing && respeeded.contains(&segment.span) {
+            segment.rewritten = true;
+            segment.rewritten_executions = segment.executions;
+            segment.reason = None;
+        }
+    }
+    let optimized = figures(&simulated);
+    let padding = padding(model, &original.cycle, optimized.cycle_s);
+    let uncertainty = robots
+        .map(|robots| uncertainty(model, &robots, (&original.cycle, padding.as_ref()), &simulated));
+    let before = figures(&original.cycle).padded(padding.as_ref());
+    let mut lower_limits = rewritten.lower_limits;
+    let mut notes = notes::notes(
+        &original,
+        model,
+        &settings,
+        &segments,
+        (&before, &optimized, padding.as_ref()),
+    );
+    if settings.form != Form::Speeds {
+        // A padded original waits less where its movements take longer.
+        if padding.is_some() {
+            for LowerLimits { original_s, .. } in &mut lower_limits {
+                *original_s = original_s.max(before.cycle_s);
+            }
+        }
+        notes.extend(mean.is_some().then(|| notes::mean_energy(model)));
+        if leaves_path {
+            notes.extend(notes::off_path(&settings, rewritten.verification.worst.deviation_m));
+        }
+    }
+    Retrofit {
+        original: before,
+        padding,
+        optimized,
+        potential_j: dwells.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b),
+        segments,
+        notes,
+        lower_limits,
+        uncertainty,
+        verification: rewritten.verification,
+        signals: signals(&original.cycle.simulation, &simulated.simulation),
+        guard_instructions: outputs.guards.iter().map(|(_, count)| count).sum(),
+        outputs: outputs.files,
+        before: (original.cycle.simulation, original.cycle.account),
+        after: (simulated.simulation, simulated.account),
+    }
+}
+
+fn figures(cycle: &Simulated) -> Figures {
+    Figures {
+        cycle_s: cycle.simulation.cycle_s,
+        energy_j: cycle.account.total.energy_j(),
+        motion_energy_j: cycle.account.total.motion_energy_j(),
+    }
+}

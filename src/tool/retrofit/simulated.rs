@@ -1,0 +1,41 @@
+//! A program as it runs on the virtual controller.
+
+use crate::arm::dynamics::Load;
+use crate::arm::robot::Model;
+use crate::rapid::ir::program::{Program, RoutineId};
+use crate::retime::energy::{Account, account};
+use crate::retime::motion::timeline::What;
+use crate::retime::motion::{Options, Simulation, simulate};
+use crate::retime::path::joint_path::Joints;
+
+/// One cycle of a program with its energy.
+pub(super) struct Simulated {
+    pub(super) simulation: Simulation,
+    pub(super) account: Account,
+}
+
+impl Simulated {
+    /// The cycle of a program.
+    pub(super) fn new(
+        program: &Program,
+        entry: RoutineId,
+        model: &Model,
+        options: &Options,
+    ) -> Simulated {
+        Simulated::with_energy(model, simulate(program, entry, model, options))
+    }
+
+    /// A simulation with the energy that this robot takes for it.
+    pub(super) fn with_energy(model: &Model, simulation: Simulation) -> Simulated {
+        Simulated { account: account(model, &simulation), simulation }
+    }
+
+    /// Load and joint positions of the robot at the end of the cycle.
+    pub(super) fn end(&self) -> Option<(&Load, &Joints)> {
+        self.simulation.events.iter().rev().find_map(|event| match &event.what {
+            What::Run(run) => Some((&run.load, &run.end)),
+            What::Wait(wait) => Some((&wait.load, &wait.q)),
+            What::Output(..) | What::Left(_) => None,
+        })
+    }
+}

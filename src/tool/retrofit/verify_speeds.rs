@@ -1,0 +1,90 @@
+//! The verification of other programmed speeds: the same path, and no speed above a ceiling.
+
+use super::original::Original;
+use super::settings::Settings;
+use super::speed_slots::Slot;
+use crate::arm::dynamics::Data;
+use crate::arm::robot::Model;
+use crate::retime::energy::power::power;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::{Run, What};
+use crate::retime::optimize::check::Check;
+use crate::retime::optimize::freedom::{Bound, Freedom};
+use crate::retime::path::joint_path::DOF;
+
+/// Step of the samples of the verified motions, s.
+const STEP: f64 = 0.002;
+/// Distance of the ends of the same target, rad.
+const SAME_END: f64 = 1e-6;
+
+/// What the runs with other speeds do.
+pub(super) struct SpeedFigures {
+    /// Worst figures of all changed runs.
+    pub(super) worst: Check,
+    /// Whether targets and zones are those of before.
+    pub(super) same_paths: bool,
+    /// Whether no programmed speed is exceeded.
+    pub(super) keeps_ceilings: bool,
+}
+
+/// Compares the runs of an emitted program, whose events are those of the original. `factors`: one
+/// for each slot.
+pub(super) fn compared(
+    original: &Original<'_>,
+    emitted: &Simulation,
+    model: &Model,
+    settings: &Settings,
+    (slots, factors): (&[Slot], &[f64]),
+) -> SpeedFigures {
+    let mut figures = SpeedFigures { worst: Check::none(), same_paths: true, keeps_ceilings: true };
+    let before = &original.cycle.simulation;
+    for (slot, factor) in slots.iter().zip(factors).filter(|(s, f)| s.is_changed(**f)) {
+        for event in &slot.events {
+            let runs = (&before.events[*event].what, &emitted.events[*event].what);
+            let (What::Run(was), What::Run(now)) = runs else { continue };
+            figures.same_paths &= now.problem.is_none() && same_path(was, now);
+            figures.keeps_ceilings &= *factor <= 1.0 || keeps_ceilings(was, now, &settings.freedom);
+            figures.worst = figures.worst.max(&shares(model, now));
+        }
+    }
+    figures
+}
+
+fn same_path(was: &Run, now: &Run) -> bool {
+    was.legs.len() == now.legs.len()
+        && was.legs.iter().zip(&now.legs).all(|(a, b)| {
+            a.zone == b.zone
+                && a.target == b.target
+                && (0..DOF).all(|j| (a.end[j] - b.end[j]).abs() <= SAME_END)
+        })
+}
+
+fn keeps_ceilings(was: &Run, now: &Run, freedom: &Freedom) -> bool {
+    was.moves.iter().zip(&now.moves).all(|(a, b)| {
+        freedom.bound(&a.movement) == Bound::Robot || b.movement.speed.tcp <= a.movement.speed.tcp
+    })
+}
+
+/// Shares of the limits that a run uses as the virtual controller plans it.
+fn shares(model: &Model, run: &Run) -> Check {
+    let limits = &model.limits;
+    let share = |values: &[f64], limit: &Option<Vec<f64>>| {
+        limit.as_ref().map_or(0.0, |limit| {
+            values.iter().zip(limit).map(|(x, most)| x.abs() / most).fold(0.0, f64::max)
+        })
+    };
+    let mut data = Data::new();
+    let mut check = Check::none();
+    let count = (run.duration() / STEP).ceil().max(1.0) as usize;
+    for i in 0..=count {
+        let state = run.at(run.duration() * i as f64 / count as f64);
+        let tau = power(model, &mut data, &run.load, &state).tau;
+        check = check.max(&Check {
+            velocity: share(&state.qd, &limits.velocity),
+            acceleration: share(&state.qdd, &limits.acceleration),
+            torque: share(&tau, &limits.torque),
+            ..Check::none()
+        });
+    }
+    check
+}

@@ -1,0 +1,191 @@
+//! The verification of streams: each against the run that it stands for.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::candidate::Candidate;
+use super::order::same_event;
+use super::original::Original;
+use super::settings::Settings;
+use super::tolerances::{ENDPOINT_TOLERANCE, TIME_TOLERANCE};
+use crate::arm::robot::Model;
+use crate::retime::motion::Simulation;
+use crate::retime::motion::stream::Stream;
+use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timeline::{Event, What};
+use crate::retime::optimize::check::{Check, Room, check};
+use crate::retime::optimize::corridor::Corridor;
+use crate::retime::optimize::freedom::Freedom;
+use crate::retime::optimize::keep_out::body;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::retime::PathUse;
+use crate::retime::path::joint_path::DOF;
+
+/// Largest distance of a simulated stream from the intended one at any time, rad: the rounding of
+/// the text is in the intended one already.
+const INTENDED_TOLERANCE: f64 = 1e-6;
+/// Step between two comparisons of them, s.
+const STEP: f64 = 0.002;
+
+/// What the streams of an emitted program do.
+pub(super) struct StreamFigures {
+    /// Worst figures of all streams.
+    pub(super) worst: Check,
+    /// Largest distance of a joint from the intended stream at any time, rad.
+    pub(super) intended_error_rad: f64,
+    /// Candidates whose streams do not hold, and why.
+    pub(super) failed: Vec<(usize, Reason)>,
+}
+
+/// Compares the streams of an emitted program, whose events are those of the original.
+pub(super) fn compared(
+    original: &Original<'_>,
+    emitted: &Simulation,
+    model: &Model,
+    settings: &Settings,
+    candidates: &[Candidate],
+) -> StreamFigures {
+    let mut figures =
+        StreamFigures { worst: Check::none(), intended_error_rad: 0.0, failed: Vec::new() };
+    let strict = settings.freedom.strict();
+    for (index, candidate) in candidates.iter().enumerate() {
+        let Some(retiming) = candidate.retiming() else { continue };
+        let freedom = match retiming.path {
+            PathUse::Left => &settings.freedom,
+            PathUse::Kept | PathUse::KeptFor(_) => &strict,
+        };
+        for event in original.events(candidate) {
+            let (before, after) =
+                (&original.cycle.simulation.events[*event], &emitted.events[*event]);
+            match compare(model, freedom, before, after, &retiming.stream) {
+                Ok((check, distance)) => {
+                    figures.worst = figures.worst.max(&check);
+                    figures.intended_error_rad = figures.intended_error_rad.max(distance);
+                }
+                Err(why) => {
+                    figures.failed.push((index, Reason::Verification(why.to_owned())));
+                    break;
+                }
+            }
+        }
+    }
+    figures
+}
+
+/// All candidates that have streams, with this reason.
+pub(super) fn all_failed(candidates: &[Candidate], why: &str) -> Vec<(usize, Reason)> {
+    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
+    streams.map(|(index, _)| (index, Reason::Verification(why.to_owned()))).collect()
+}
+
+/// The stream at the first event that is another one than before, or the last one before it; all
+/// streams where there is none.
+pub(super) fn reordering(
+    original: &Original<'_>,
+    emitted: &Simulation,
+    candidates: &[Candidate],
+) -> Vec<(usize, Reason)> {
+    let why = "the emitted program runs in another order";
+    let pairs = original.cycle.simulation.events.iter().zip(&emitted.events);
+    let first = pairs.take_while(|(a, b)| same_event(a, b)).count();
+    match streams(original, candidates).range(..=first).next_back() {
+        Some((_, index)) => vec![(*index, Reason::Verification(why.into()))],
+        None => all_failed(candidates, why),
+    }
+}
+
+/// The candidates with streams, by the events in which they run.
+fn streams(original: &Original<'_>, candidates: &[Candidate]) -> BTreeMap<usize, usize> {
+    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
+    streams.flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i))).collect()
+}
+
+/// The streams behind which a movement that stays takes longer than before.
+pub(super) fn slowing(
+    original: &Original<'_>,
+    emitted: &Simulation,
+    candidates: &[Candidate],
+) -> Vec<(usize, Reason)> {
+    let streams = streams(original, candidates);
+    let events = &original.cycle.simulation.events;
+    let pairs = events.iter().zip(&emitted.events).enumerate();
+    let slower = pairs.filter(|(event, (before, after))| {
+        !streams.contains_key(event) && after.duration > before.duration + TIME_TOLERANCE
+    });
+    let before = slower.filter_map(|(event, _)| streams.range(..event).next_back());
+    let blamed: BTreeSet<usize> = before.map(|(_, candidate)| *candidate).collect();
+    let why = "a movement after it takes longer from where it ends";
+    blamed.into_iter().map(|i| (i, Reason::Verification(why.into()))).collect()
+}
+
+/// The stream that runs now against the run that was, and its distance (rad) from the intended
+/// one.
+fn compare(
+    model: &Model,
+    freedom: &Freedom,
+    before: &Event,
+    after: &Event,
+    intended: &Stream,
+) -> Result<(Check, f64), &'static str> {
+    let (What::Run(run), What::Run(new)) = (&before.what, &after.what) else {
+        return Err("another event stands in its place");
+    };
+    let [(_, TimedMotion::Stream(stream))] = new.motions.as_slice() else {
+        return Err("the emitted points do not run as a stream");
+    };
+    let corridor =
+        Corridor::new(model, run, freedom).ok_or("the original path is not one piece")?;
+    if new.load != run.load {
+        return Err("it runs with another tool or load");
+    }
+    let body = body(model, run, freedom);
+    let tool = &run.legs[0].tool;
+    let check =
+        check(model, &run.load, tool, stream, Room::Corridor(&corridor), &run.end, body.as_ref());
+    if !check.holds() {
+        return Err("a limit is exceeded by the emitted points");
+    }
+    if check.endpoint_error_rad > ENDPOINT_TOLERANCE {
+        return Err("it ends elsewhere");
+    }
+    let strayed = distance(intended, stream);
+    if strayed > INTENDED_TOLERANCE {
+        return Err("the emitted points do not move as intended");
+    }
+    Ok((check, strayed))
+}
+
+/// Largest distance of a joint between two streams at the same time, rad; infinite where they do
+/// not take the same time.
+fn distance(intended: &Stream, stream: &Stream) -> f64 {
+    let duration = intended.duration();
+    if (stream.duration() - duration).abs() > TIME_TOLERANCE {
+        return f64::INFINITY;
+    }
+    let count = (duration / STEP).ceil().max(1.0) as usize;
+    let apart = |i: usize| {
+        let t = duration * i as f64 / count as f64;
+        let (a, b) = (intended.eval(t).0, stream.eval(t).0);
+        (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
+    };
+    (0..=count).map(apart).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::*;
+
+    #[test]
+    fn another_motion_in_the_same_time_is_seen() {
+        let stream = |middle: f64, times: [f64; 3]| {
+            let points = vec![[0.1; DOF], [middle; DOF], [1.0; DOF]];
+            Stream::new([0.0; DOF], points, times.to_vec()).unwrap()
+        };
+        let intended = stream(0.8, [0.1, 0.1, 0.1]);
+        assert_eq!(distance(&intended, &intended), 0.0);
+        assert!(distance(&intended, &stream(0.79, [0.1, 0.1, 0.1])) > 1e-3);
+        assert!(distance(&intended, &stream(0.8, [0.09, 0.12, 0.09])) > 1e-3);
+        assert!(distance(&intended, &stream(0.8, [0.1, 0.1, 0.2])).is_infinite());
+    }
+}
