@@ -3,9 +3,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::robot::{Link, MAX_DOF, Model};
+use crate::arm::robot::{GRAVITY, Link, MAX_DOF, Model};
 
-use super::GRAVITY;
 use super::load::Load;
 use super::motor_side::motor_rates;
 

@@ -44,6 +44,3 @@ pub use pseudo_inertia::{body_parameters, link_of, pseudo_inertia};
 pub use regressor::{Regressor, regressor};
 pub use rnea::{gravity, rigid_bodies, rnea, rnea_each};
 pub use torque::{Torque, torque, torque_each};
-
-/// Acceleration of free fall \[m/s²\].
-pub const GRAVITY: f64 = 9.81;

@@ -68,8 +68,8 @@ fn ten(parameters: &[f64]) -> [f64; RIGID] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::parameters::link_parameters;
     use super::*;
-    use crate::arm::dynamics::link_parameters;
 
     #[test]
     fn a_link_becomes_a_pseudo_inertia_and_back() {

@@ -5,13 +5,14 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::arm::dynamics::{Data, Load, rigid_bodies};
-use crate::arm::robot::{Link, Model};
+use crate::arm::robot::{GRAVITY, Link, Model};
 
 use super::bodies::added as with_body;
 use super::effect::{
     Channel, Coordinate, Effect, Form, Of, Published, Role, bounded, free, linear, shaped,
 };
 use super::motion::Motion;
+use super::scale::Scale;
 
 /// A force from outside.
 pub(super) const CONTACT: Effect = Effect {
@@ -48,11 +49,8 @@ pub(super) const CONTACT: Effect = Effect {
     form: Form::Series(added),
 };
 
-/// Acceleration of gravity of the unit mass whose weight is the force \[m/s²\].
-const WEIGHT: f64 = 9.81;
-
-fn usual(of: &super::effect::Scale) -> f64 {
-    WEIGHT * of.payload
+fn usual(of: &Scale) -> f64 {
+    GRAVITY * of.payload
 }
 
 /// Coordinates are the components of the force, how it grows, then the window.
@@ -115,7 +113,7 @@ fn pulled(model: &Model, force: &Vector3<f64>, size: f64) -> Model {
     let nothing = Link { mass: 0.0, com: Vector3::zeros(), inertia: Matrix3::zeros() };
     pulled.links = vec![nothing; model.dof];
     let mut body = [0.0; 10];
-    body[0] = size / WEIGHT;
+    body[0] = size / GRAVITY;
     if let Some(last) = pulled.links.last_mut() {
         *last = with_body(last, &model.kinematics.flange, &body);
     }

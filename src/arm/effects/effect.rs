@@ -4,6 +4,7 @@ use crate::arm::dynamics::Load;
 use crate::arm::robot::{Law, LawState, Model};
 
 use super::motion::Motion;
+use super::scale::Scale;
 
 /// What shows an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,31 +68,6 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// An integer or the like: no value between those that are tried.
     Choice(fn(&Scale) -> Vec<f64>),
-}
-
-/// What is usual at a joint, in a motion.
-#[derive(Clone, Copy, Debug)]
-pub struct Scale {
-    /// Joint, from 0.
-    pub joint: usize,
-    /// Coulomb friction, or what it may be \[Nm\].
-    pub coulomb: f64,
-    /// Viscous friction, or what it may be \[Nm s/rad\].
-    pub viscous: f64,
-    /// Inertia that the motor sees: rotor \[kg m²\].
-    pub rotor: f64,
-    /// Root mean square and largest of the torque \[Nm\].
-    pub torque: [f64; 2],
-    /// Largest rate \[rad/s\].
-    pub rate: f64,
-    /// Gear ratio; 1 where it is not known.
-    pub ratio: f64,
-    /// Interval of the rows \[s\].
-    pub step: f64,
-    /// Mass that the flange may carry \[kg\].
-    pub payload: f64,
-    /// Mass of the joint's link \[kg\], and its mean moment about the joint's origin \[kg m²\].
-    pub link: (f64, f64),
 }
 
 /// Torques by joint \[Nm\] in a motion, of the coordinates of a joint, from 0.

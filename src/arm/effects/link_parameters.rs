@@ -5,7 +5,8 @@ use nalgebra::Isometry3;
 use crate::arm::robot::Model;
 
 use super::bodies::added;
-use super::effect::{Channel, Effect, Form, Of, Scale, every, free, linear};
+use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+use super::scale::Scale;
 
 /// Masses, centres and inertias of the links.
 pub(super) const LINK_PARAMETERS: Effect = Effect {

@@ -42,6 +42,7 @@ mod register;
 mod response;
 mod ripple;
 mod rotor_inertia;
+mod scale;
 mod speed_limit;
 mod springs;
 mod stribeck;
@@ -60,9 +61,10 @@ pub use applied::{
 };
 pub use bodies::added as with_body;
 pub use effect::{
-    Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,
+    Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Values,
 };
 pub use motion::Motion;
 pub use page::page;
 pub use register::{ALL, find};
 pub use response::Response;
+pub use scale::Scale;

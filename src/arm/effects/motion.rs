@@ -8,13 +8,6 @@ use crate::arm::dynamics::{
 };
 use crate::arm::robot::{LawState, MAX_DOF, Model};
 
-use super::effect::Scale;
-
-/// Friction that a joint may have where the robot states none, of its torque.
-const FRICTION: f64 = 0.05;
-/// Mass that a flange carries where nothing is known, of the links' masses.
-const PAYLOAD: f64 = 0.03;
-
 /// Rows of a motion with the model's torques. Series are by joint, then by row.
 #[derive(Clone, Debug)]
 pub struct Motion<'a> {
@@ -290,35 +283,6 @@ impl<'a> Motion<'a> {
             vec![4, 5]
         } else {
             vec![joint]
-        }
-    }
-
-    /// What is usual at a joint.
-    #[must_use]
-    pub fn scale(&self, joint: usize) -> Scale {
-        let model = self.model;
-        let tau = &self.torque[joint];
-        let rms = (tau.iter().map(|x| x * x).sum::<f64>() / tau.len().max(1) as f64).sqrt();
-        let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let rate = largest(&self.rates[joint]);
-        let or = |given: f64, else_: f64| if given > 0.0 { given } else { else_ };
-        let coulomb = or(model.friction.coulomb[joint], FRICTION * rms);
-        let motors = model.motors.as_ref();
-        let mass: f64 = model.links.iter().map(|link| link.mass).sum();
-        Scale {
-            joint,
-            coulomb,
-            viscous: or(model.friction.viscous[joint], coulomb / rate.max(1e-3)),
-            rotor: motors.map_or(0.0, |motors| motors.reflected_inertia(joint)),
-            torque: [rms, largest(tau)],
-            rate,
-            ratio: motors.map_or(1.0, |motors| motors.ratio[joint]),
-            step: self.step(),
-            payload: PAYLOAD * mass,
-            link: model.links.get(joint).map_or((0.0, 0.0), |link| {
-                let about = link.com.norm_squared() * link.mass * 2.0 / 3.0;
-                (link.mass, link.inertia.trace() / 3.0 + about)
-            }),
         }
     }
 }

@@ -150,9 +150,8 @@ fn lagged(x: &[f64], lag: f64, closed: bool) -> Vec<f64> {
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-    use super::super::load;
     use super::*;
-    use crate::arm::robot::Model;
+    use crate::arm::robot::{Model, find};
 
     const STEP: f64 = 0.01;
     const ROWS: usize = 400;
@@ -181,7 +180,7 @@ mod tests {
     /// of an earlier moment.
     #[test]
     fn jumps_are_where_the_motor_turns_back() {
-        let model = load("IRB1600-6/1.45").unwrap();
+        let model = find("IRB1600-6/1.45").unwrap();
         let motion = motion(&model);
         let x: Vec<f64> = motion.t.iter().map(|t| torque(*t)).collect();
         let lag = 0.004;

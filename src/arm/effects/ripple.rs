@@ -3,9 +3,9 @@
 use crate::arm::robot::LawState;
 
 use super::effect::{
-    Channel, Coordinate, Effect, Form, Of, Role, Scale, Values, bounded, every, free, linear,
-    shaped,
+    Channel, Coordinate, Effect, Form, Of, Role, Values, bounded, every, free, linear, shaped,
 };
+use super::scale::Scale;
 use super::waves::AMPLITUDE_AND_PHASE;
 
 /// Ripple.

@@ -5,6 +5,7 @@
 //! x forward; tool0 z out of the flange, x down when all joints are at zero.
 
 mod clearance;
+mod closed_form;
 mod conf;
 mod error;
 mod fk;

@@ -12,8 +12,8 @@ use nalgebra::{Isometry3, Matrix6, Vector6};
 
 use crate::arm::robot::Model;
 
+use super::closed_form::wrap;
 use super::fk::fk;
-use super::inverse::wrap;
 use super::jacobian::jacobian;
 use super::radical_inverse::radical_inverse;
 

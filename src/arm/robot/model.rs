@@ -1,6 +1,5 @@
 //! The immutable model of one robot.
 
-use super::MAX_DOF;
 use super::calibration::Calibration;
 use super::controller::Controller;
 use super::drive::{Brakes, Drive, Standstill};
@@ -8,7 +7,7 @@ use super::effect::EffectParameters;
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::friction::Friction;
-use super::geometry::Geometry;
+use super::geometry::{Geometry, MAX_DOF};
 use super::law::Law;
 use super::limits::Limits;
 use super::link::{ArmLoad, Link};

@@ -4,12 +4,14 @@ use nalgebra::{Matrix3, Vector3};
 
 use serde::Deserialize;
 
-use super::fill::ARM;
 use super::rules::{self, Size};
 use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link::symmetric;
 use crate::arm::robot::model::Model;
 use crate::arm::robot::provenance::Provenance;
+
+/// Joints of an arm that a prior is made for.
+pub(super) const ARM: std::ops::RangeInclusive<usize> = 5..=7;
 
 /// The tables, with sources.
 const ROBOTS: &str = include_str!("robots.toml");

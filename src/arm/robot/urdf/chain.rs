@@ -4,8 +4,8 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use urdf_rs::{Joint, JointType, Pose};
 
 use super::document::Document;
-use crate::arm::robot::MAX_DOF;
 use crate::arm::robot::error::RobotError;
+use crate::arm::robot::geometry::MAX_DOF;
 
 /// Links that may be the end of the chain, the first that is there.
 const ENDS: [&str; 2] = ["tool0", "flange"];
