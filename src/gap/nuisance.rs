@@ -198,7 +198,7 @@ pub(super) fn nuisance(
 /// What one deviation of each parameter adds.
 fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, Vec<f64>)>> {
     let model = motion.model;
-    let (n, rows, count) = (model.dof, motion.len(), mixing.ncols());
+    let (n, rows, count) = (model.dof, motion.rows(), mixing.ncols());
     let mut scratch = Regressor::new();
     let mut regressor = DMatrix::zeros(n, count);
     let mut series: Vec<Vec<(usize, Vec<f64>)>> =

@@ -93,7 +93,7 @@ fn of_a_baseline_only_changes_are_told() {
         let left = |joint: usize| -> f64 {
             let squares = held.measured[joint].iter().zip(&said[joint]);
             let squares = squares.map(|(measured, said)| (measured - said).powi(2));
-            (squares.sum::<f64>() / held.motion.len() as f64).sqrt()
+            (squares.sum::<f64>() / held.motion.rows() as f64).sqrt()
                 / held.motion.scale(joint).torque[1]
         };
         assert!((0..nominal.dof).all(|joint| left(joint) < 0.01));

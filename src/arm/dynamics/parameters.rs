@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::arm::robot::{Link, Model};
 
-use super::friction::sign;
+use super::friction::sense;
 use super::load::Load;
 
 /// Parameters of a rigid body.
@@ -87,5 +87,5 @@ pub fn parameters(model: &Model, load: &Load, which: Parameters) -> Vec<f64> {
 
 /// What the parameters of joint `joint` are multiplied with in its torque.
 pub(super) fn joint_row(qd: f64, qdd: f64) -> [f64; JOINT] {
-    [qdd, qd, sign(qd), 1.0]
+    [qdd, qd, sense(qd), 1.0]
 }

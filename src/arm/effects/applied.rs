@@ -3,7 +3,7 @@
 use crate::arm::robot::prior::Plausible;
 use crate::arm::robot::{self, EffectParameters, Given, Law, Model, RobotError, nearest};
 
-use super::effect::{Effect, Form, Of, Parameter, padded};
+use super::effect::{Effect, Form, Parameter, Scope, padded};
 use super::motion::Motion;
 use super::register::{ALL, find};
 
@@ -71,7 +71,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
                 }
                 Form::Series(_) | Form::Elsewhere => {}
             }
-            if effect.of == Of::Robot {
+            if effect.scope == Scope::Robot {
                 break;
             }
         }
@@ -91,7 +91,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
 #[must_use]
 pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
     let model = motion.model;
-    let mut sum = vec![vec![0.0; motion.len()]; model.dof];
+    let mut sum = vec![vec![0.0; motion.rows()]; model.dof];
     for given in &model.effects {
         let Some(effect) = find(&given.id) else { continue };
         if !matches!(effect.form, Form::Series(_)) {
@@ -103,7 +103,7 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
                 sum[to].iter_mut().zip(added).for_each(|(sum, x)| *sum += x);
             }
             // One of the robot is not one of each joint.
-            if effect.of == Of::Robot {
+            if effect.scope == Scope::Robot {
                 break;
             }
         }
@@ -115,7 +115,7 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
 fn coordinates(effect: &Effect, given: &EffectParameters, joint: usize) -> Option<Vec<f64>> {
     let parameters: Vec<f64> =
         effect.parameters.iter().map(|parameter| value(given, parameter.name, joint)).collect();
-    let named = effect.of == Of::Robot || parameters.iter().any(|value| *value != 0.0);
+    let named = effect.scope == Scope::Robot || parameters.iter().any(|value| *value != 0.0);
     named.then(|| effect.coordinates_of(&parameters))
 }
 
@@ -140,11 +140,11 @@ fn check_names(effect: &Effect, given: &EffectParameters, dof: usize) -> Result<
                 known: effect.parameters.iter().map(|p| p.name.to_owned()).collect(),
             });
         }
-        let (found, expected) = match (effect.of, values) {
-            (Of::Joint, Given::Robot(_)) => {
+        let (found, expected) = match (effect.scope, values) {
+            (Scope::Joint, Given::Robot(_)) => {
                 ("a number".to_owned(), format!("{dof}, one for each joint, or `joint`"))
             }
-            (Of::Robot, Given::Joints(_)) => ("of joints".to_owned(), "a number".to_owned()),
+            (Scope::Robot, Given::Joints(_)) => ("of joints".to_owned(), "a number".to_owned()),
             _ => continue,
         };
         return Err(RobotError::Type { place: given.place.clone(), key, found, expected });

@@ -9,7 +9,7 @@ use crate::arm::robot::{GRAVITY, Link, Model};
 
 use super::bodies::added as with_body;
 use super::effect::{
-    Channel, Coordinate, Effect, Form, Of, Published, Role, bounded, free, linear, shaped,
+    Channel, Coordinate, Effect, Form, Published, Role, Scope, bounded, free, linear, shaped,
 };
 use super::motion::Motion;
 use super::scale::Scale;
@@ -18,7 +18,7 @@ use super::scale::Scale;
 pub(super) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "A force from outside",
     law: "τ = −Jᵀ·force·min(1, sin πx/sin(π·rise)) on the flange, x from 0 to 1 from t_start_s to \
           t_end_s, repeated every period_s",
@@ -69,13 +69,13 @@ const SIZE_AND_DIRECTION: Published = Published {
 fn added(motion: &Motion<'_>, _: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let n = motion.model.dof;
     let force = Vector3::new(values[0], values[1], values[2]);
-    let mut series = vec![vec![0.0; motion.len()]; n];
+    let mut series = vec![vec![0.0; motion.rows()]; n];
     let size = force.norm();
     if size > 0.0 {
         let pulled = pulled(motion.model, &force, size);
         let mut data = Data::new();
         let still = vec![0.0; n];
-        for row in 0..motion.len() {
+        for row in 0..motion.rows() {
             let share = share_of(motion.t[row], &values[3..]);
             if share == 0.0 {
                 continue;

@@ -17,9 +17,9 @@ pub enum Channel {
     Power,
 }
 
-/// Whose an effect is.
+/// What an effect is a property of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Of {
+pub enum Scope {
     /// Single joints.
     Joint,
     /// The robot as a whole.
@@ -97,8 +97,8 @@ pub struct Effect {
     pub id: &'static str,
     /// What shows it.
     pub channel: Channel,
-    /// Whose it is.
-    pub of: Of,
+    /// Whether single joints have it or the robot.
+    pub scope: Scope,
     /// Its name.
     pub title: &'static str,
     /// The law.
@@ -168,8 +168,8 @@ impl Effect {
             }
             Form::Law { dissipates, torque } => {
                 let values = padded(coordinates);
-                let of = |row: usize| torque(&motion.law_state(row, joint), &values);
-                let series = (0..motion.len()).map(of).collect();
+                let torque_at = |row: usize| torque(&motion.law_state(row, joint), &values);
+                let series = (0..motion.rows()).map(torque_at).collect();
                 if dissipates { motion.at_joints(joint, series) } else { vec![(joint, series)] }
             }
             Form::Series(added) => added(motion, joint, coordinates),

@@ -33,7 +33,6 @@ mod load_friction;
 mod motion;
 mod no_regeneration;
 mod nonlinear_viscous;
-mod page;
 mod payload;
 mod position_friction;
 mod presliding;
@@ -61,10 +60,9 @@ pub use applied::{
 };
 pub use bodies::added as with_body;
 pub use effect::{
-    Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Values,
+    Channel, Coordinate, Effect, Form, OfMotion, Parameter, Published, Role, Scope, Values,
 };
 pub use motion::Motion;
-pub use page::page;
 pub use register::{ALL, find};
 pub use response::Response;
 pub use scale::Scale;

@@ -127,21 +127,15 @@ impl<'a> Motion<'a> {
 
     /// Number of rows.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.t.len()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.t.is_empty()
     }
 
     /// Interval of the rows \[s\].
     #[must_use]
     pub fn step(&self) -> f64 {
         match self.t.as_slice() {
-            [first, .., last] => (last - first) / (self.len() - 1) as f64,
+            [first, .., last] => (last - first) / (self.rows() - 1) as f64,
             _ => 0.0,
         }
     }
@@ -173,9 +167,9 @@ impl<'a> Motion<'a> {
     #[must_use]
     pub fn torques_of(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
         let n = model.dof;
-        let mut torques = vec![Vec::with_capacity(self.len()); n];
+        let mut torques = vec![Vec::with_capacity(self.rows()); n];
         let mut data = Data::new();
-        for row in 0..self.len() {
+        for row in 0..self.rows() {
             let [mut q, qd, qdd] = self.state(row);
             for (q, offset) in q.iter_mut().zip(&model.sensors.position_offset) {
                 *q += offset;
@@ -210,9 +204,9 @@ impl<'a> Motion<'a> {
     #[must_use]
     pub fn rigid(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
         let n = model.dof;
-        let mut torques = vec![Vec::with_capacity(self.len()); n];
+        let mut torques = vec![Vec::with_capacity(self.rows()); n];
         let mut data = Data::new();
-        for row in 0..self.len() {
+        for row in 0..self.rows() {
             let [q, qd, qdd] = self.state(row);
             let tau = rigid_bodies(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
             torques.iter_mut().zip(tau).for_each(|(to, tau)| to.push(tau));
@@ -245,7 +239,7 @@ impl<'a> Motion<'a> {
             unit[joint] = 1.0;
             torque(&unit[..n]) - weight
         };
-        (0..self.len()).map(inertia).collect()
+        (0..self.rows()).map(inertia).collect()
     }
 
     /// A torque of a motor, over its gear ratio, at the joints that it turns.

@@ -38,12 +38,12 @@ impl Response {
     /// What the torques of all joints differ by behind it, or those of joint `only`, from 1; 0
     /// means all.
     pub(super) fn added(&self, motion: &Motion<'_>, only: f64) -> Vec<(usize, Vec<f64>)> {
-        let of = |joint: usize, tau: &[f64]| -> Vec<f64> {
+        let difference = |joint: usize, tau: &[f64]| -> Vec<f64> {
             self.behind(motion, joint, tau).iter().zip(tau).map(|(late, x)| late - x).collect()
         };
         (0..motion.torque.len())
             .filter(|joint| only == 0.0 || *joint as f64 + 1.0 == only)
-            .map(|joint| (joint, of(joint, &motion.torque[joint])))
+            .map(|joint| (joint, difference(joint, &motion.torque[joint])))
             .collect()
     }
 

@@ -36,8 +36,8 @@ pub fn implausible(model: &Model) -> Vec<String> {
         }
     }
     for joint in 0..model.dof {
-        let of = |list: &Option<Vec<f64>>| list.as_ref().and_then(|l| l.get(joint)).copied();
-        let (speed, acceleration) = (of(&limits.velocity), of(&limits.acceleration));
+        let figure = |list: &Option<Vec<f64>>| list.as_ref().and_then(|l| l.get(joint)).copied();
+        let (speed, acceleration) = (figure(&limits.velocity), figure(&limits.acceleration));
         if let Some(speed) = speed.filter(|speed| *speed > FASTEST) {
             found.push(format!(
                 "limits.velocity of joint {}: {speed} rad/s are {:.0} deg/s; give rad/s",

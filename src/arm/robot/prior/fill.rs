@@ -23,7 +23,7 @@ const RAMP_S: f64 = 0.1;
 /// stays. A chain that is no arm stays as it is.
 #[must_use]
 pub fn estimated(model: Model) -> Model {
-    let known = Known::of(&model);
+    let known = Known::from_model(&model);
     if !ARM.contains(&model.dof) {
         return model;
     }
@@ -143,7 +143,7 @@ impl Filling {
     fn friction(&mut self, size: Size) {
         let dof = self.model.dof;
         let speeds = self.model.limits.velocity.clone().unwrap_or_default();
-        let maker = Maker::of(type_name(&self.model));
+        let maker = Maker::from_name(type_name(&self.model));
         let source = match maker {
             Maker::Abb => {
                 "friction over the largest torque, as of eleven ABB configurations and two identifications"

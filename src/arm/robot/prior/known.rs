@@ -54,8 +54,8 @@ pub(super) struct Shape {
 }
 
 impl Known {
-    /// Of a robot.
-    pub(super) fn of(model: &Model) -> Known {
+    /// What is known of the robot by its type and its file.
+    pub(super) fn from_model(model: &Model) -> Known {
         let text = table(type_name(model));
         let mut known = text.map_or_else(Known::nothing, |text| Known::read(&text));
         if let Some(mass) = model.mass {
@@ -125,7 +125,7 @@ pub fn check_mass(model: &Model) -> Result<(), RobotError> {
     if !ARM.contains(&model.dof) {
         return Ok(());
     }
-    let known = Known { mass: None, ..Known::of(model) };
+    let known = Known { mass: None, ..Known::from_model(model) };
     let Size { mass: usual, reach, .. } = known.size(model);
     let refused = |key: &str, value: f64, what: &str, [low, high]: [f64; 2]| RobotError::Value {
         place: model.file.clone().unwrap_or_else(|| model.name.clone()),
@@ -165,7 +165,7 @@ pub fn type_name(model: &Model) -> &str {
 pub fn is_mass_known(model: &Model) -> bool {
     let provenance = |i| model.provenance_of(&format!("link {i}"), "mass");
     let is_stated = |i| provenance(i) != Some(Provenance::Estimated);
-    Known::of(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
+    Known::from_model(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
 }
 
 /// From axis 1 to the wrist's centre of the stretched arm \[m\].
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn arms_of_the_catalogue_have_their_table() {
         for name in names().filter(|name| !name.starts_with("IRB14000")) {
-            let known = Known::of(&find(name).expect("in the catalogue"));
+            let known = Known::from_model(&find(name).expect("in the catalogue"));
             assert!(known.mass.is_some() && known.payload.is_some(), "{name}");
             let shares: f64 = known.links.iter().map(|link| link.share).sum();
             assert!((shares - 1.0).abs() < 1e-3, "{name}: {shares}");

@@ -43,7 +43,7 @@ struct Line {
 }
 
 impl Line {
-    fn of(geometry: &Geometry) -> Line {
+    fn new(geometry: &Geometry) -> Line {
         let mut frames: Vec<(Matrix3<f64>, Point)> = Vec::new();
         let (mut turn, mut at) = (Rotation3::identity(), Point::zeros());
         for joint in &geometry.joints {
@@ -135,13 +135,13 @@ const LEAST_WAY: f64 = 0.003;
 /// Way that is left at the middle of each link over the whole line: what lies far out may be
 /// lighter or heavier as a whole.
 pub(super) fn middles(geometry: &Geometry) -> Vec<f64> {
-    let left = ways(&Line::of(geometry).points);
+    let left = ways(&Line::new(geometry).points);
     left.windows(2).skip(1).map(|pair| (0.5 * (pair[0] + pair[1])).max(LEAST_WAY)).collect()
 }
 
 /// The links of an arm by their share of the mass that moves, and the mass of its foot \[kg\].
 pub(super) fn shapes(geometry: &Geometry, size: Size) -> (Vec<Shape>, f64) {
-    let line = Line::of(geometry);
+    let line = Line::new(geometry);
     let points = &line.points;
     let count = points.len() - 1;
     let left = ways(points);
