@@ -1,5 +1,5 @@
-//! Kinetic and potential energy, summed body by body in the base frame: another
-//! way than that of the inverse dynamics, which they prove.
+//! Kinetic and potential energy, summed body by body in the base frame: independent of the inverse
+//! dynamics, which tests check against them.
 
 use nalgebra::{Matrix3, Vector3};
 

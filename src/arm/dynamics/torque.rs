@@ -1,4 +1,4 @@
-//! What the motors have to do: rigid bodies, rotors and friction.
+//! Torques of the motors: rigid bodies, rotors and friction.
 
 use crate::arm::robot::{MAX_DOF, Model};
 

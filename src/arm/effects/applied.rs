@@ -52,7 +52,8 @@ pub fn from_toml(file: &str, text: &str) -> Result<Model, RobotError> {
     applied(robot::from_toml(file, text)?)
 }
 
-/// The model with what its effects change. Those that its numbers can't hold stay listed.
+/// Applies the effects of a model to its numbers and laws; effects that are not numbers of the model
+/// stay in its list.
 ///
 /// # Errors
 /// An effect is not known or leads to what no robot has.
@@ -81,7 +82,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
             kept.push(given);
         }
     }
-    // Other effects change the Coulomb friction, before or behind.
+    // Last: other effects change the Coulomb friction.
     kept.iter().try_for_each(|given| check_breakaway(&model, given))?;
     model.effects = kept;
     Ok(model)
@@ -175,7 +176,7 @@ fn check_bounds(effect: &Effect, given: &EffectParameters, dof: usize) -> Result
     Ok(())
 }
 
-/// Friction below none at breakaway, with which a joint would move itself.
+/// Rejects friction below zero at breakaway: the joint would drive itself.
 fn check_breakaway(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     if given.id != "stribeck" {
         return Ok(());
@@ -203,7 +204,7 @@ fn value(given: &EffectParameters, name: &str, joint: usize) -> f64 {
     })
 }
 
-/// Numbers that no robot has.
+/// Rejects numbers that no robot has.
 fn check_model(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     let friction = &model.friction;
     for (name, list) in [("coulomb", &friction.coulomb), ("viscous", &friction.viscous)] {

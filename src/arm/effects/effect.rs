@@ -6,7 +6,7 @@ use crate::arm::robot::{Law, LawState, Model};
 use super::motion::Motion;
 use super::scale::Scale;
 
-/// What shows an effect.
+/// The measured channel in which an effect shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
     /// Torques of the joints.
@@ -50,12 +50,12 @@ impl Parameter {
     }
 }
 
-/// What the torque depends on: a coordinate in which it is linear or one that shapes it.
+/// A coordinate of the torque: one in which it is linear, or one that shapes it.
 #[derive(Clone, Copy)]
 pub struct Coordinate {
     /// How it acts.
     pub role: Role,
-    /// Size that is usual, of a joint: a standard deviation before anything was measured.
+    /// Prior standard deviation at a joint.
     pub usual: fn(&Scale) -> f64,
 }
 
@@ -85,17 +85,17 @@ pub enum Form {
         /// Torque \[Nm\].
         torque: fn(&LawState, &Values) -> f64,
     },
-    /// What a log shows beyond the torque, of the whole motion: by joint.
+    /// Torques that depend on the whole motion, by joint.
     Series(OfMotion),
-    /// Nothing of the torques.
+    /// It changes no torque.
     Elsewhere,
 }
 
-/// An effect: its law, what is usual of it, and what is written about it.
+/// An effect: its law, its prior and its documentation.
 pub struct Effect {
     /// Id in JSON, robot files and options.
     pub id: &'static str,
-    /// What shows it.
+    /// The channel in which it shows.
     pub channel: Channel,
     /// Whether single joints have it or the robot.
     pub scope: Scope,
@@ -113,11 +113,11 @@ pub struct Effect {
     pub published: Option<Published>,
     /// Joints that can have it, from 0, of a robot with so many.
     pub joints: fn(usize) -> Vec<usize>,
-    /// Ids whose coordinates come with it, because nothing tells them apart beforehand.
+    /// Ids whose coordinates are fitted with it, because they are not separable beforehand.
     pub brings: &'static [&'static str],
-    /// What it is taken for.
+    /// Ids of the effects that it is confused with.
     pub confused: &'static [&'static str],
-    /// What tells it from those: options of `joulepath excite`, and why.
+    /// An experiment that separates it from those: options of `joulepath excite`, and the reason.
     pub experiment: [&'static str; 2],
     /// How it works.
     pub form: Form,

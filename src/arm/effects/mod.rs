@@ -1,5 +1,5 @@
-//! What robots and their logs have beyond rigid bodies and plain friction: one effect a file,
-//! with its law, what is usual of it, and what is written about it.
+//! Effects beyond rigid bodies, Coulomb and viscous friction: one file for each, with its law, its
+//! prior and its documentation.
 //!
 //! [`ALL`] is the register. An effect that is in it can be written in a robot file, is in every
 //! prediction and simulation, and can be found by a diagnosis.

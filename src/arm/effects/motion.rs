@@ -1,4 +1,4 @@
-//! A motion, and what the model does in it.
+//! A motion, and the torques of the model in it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -33,7 +33,7 @@ pub struct Motion<'a> {
     pub gear: Vec<Vec<f64>>,
     /// Torques that a log shows, by the model \[Nm\].
     pub torque: Vec<Vec<f64>>,
-    /// The model with the bodies that are there, where these are others.
+    /// The model with the bodies of another model, where laws use these.
     carried: Option<Arc<Model>>,
     /// Torques that a log shows by that model, once they are asked for.
     shown: OnceLock<Vec<Vec<f64>>>,
@@ -96,26 +96,26 @@ impl<'a> Motion<'a> {
         motion
     }
 
-    /// Lets the gears carry what another model says.
+    /// Takes the torques through the gears from another model.
     pub fn carry(&mut self, other: &Model) {
         let series = [self.q.clone(), self.qd.clone(), self.qdd.clone()];
         self.gear = Motion::new(other, self.t.clone(), series, &self.rest, self.closed).gear;
     }
 
-    /// Lets all laws go by the bodies of another model.
+    /// Makes all laws use the bodies of another model.
     pub fn go_by(&mut self, other: &Model) {
         self.carry(other);
         self.carried = Some(Arc::new(Model { links: other.links.clone(), ..self.model.clone() }));
         (self.shown, self.bodies, self.inertia) = Default::default();
     }
 
-    /// Whether laws go by the bodies of another model.
+    /// Whether laws use the bodies of another model.
     #[must_use]
     pub fn has_other_bodies(&self) -> bool {
         self.carried.is_some()
     }
 
-    /// The model with the bodies that are there.
+    /// The model with the bodies that laws use.
     pub(super) fn there(&self) -> &Model {
         self.carried.as_deref().unwrap_or(self.model)
     }
@@ -214,7 +214,7 @@ impl<'a> Motion<'a> {
         torques
     }
 
-    /// Torques of the rigid bodies that are there without the rotors, of the motion as it was made \[Nm\].
+    /// Torques of the rigid bodies that laws use, without the rotors \[Nm\].
     pub(super) fn bodies(&self) -> &[Vec<f64>] {
         self.bodies.get_or_init(|| self.rigid(self.there(), &Load::none()))
     }

@@ -1,13 +1,13 @@
-//! Sizes that are usual at a joint in a motion.
+//! Typical sizes at a joint in a motion, from which effects take their priors.
 
 use super::motion::Motion;
 
-/// Friction that a joint may have where the robot states none, of its torque.
+/// Friction of a joint over its torque where the robot states none.
 const FRICTION: f64 = 0.05;
-/// Mass that a flange carries where nothing is known, of the links' masses.
+/// Mass that a flange may carry over that of all links.
 const PAYLOAD: f64 = 0.03;
 
-/// What is usual at a joint, in a motion.
+/// Typical sizes at a joint in a motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
     /// Coulomb friction, or what it may be \[Nm\].
@@ -31,7 +31,7 @@ pub struct Scale {
 }
 
 impl Motion<'_> {
-    /// What is usual at a joint.
+    /// Typical sizes at a joint.
     #[must_use]
     pub fn scale(&self, joint: usize) -> Scale {
         let model = self.model;

@@ -81,7 +81,7 @@ pub struct Opw {
     pub signs: [f64; 6],
 }
 
-/// An arm of the OPW form up to axis 5, which axis 6 passes at a distance.
+/// An arm of the OPW form up to axis 5, whose axis 6 does not meet the crossing of axes 4 and 5.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffsetWrist {
     /// The arm if its axis 6 went through the crossing of axes 4 and 5, and its flange
@@ -114,7 +114,7 @@ pub struct Geometry {
     /// The OPW parameters of the chain, where it has that form; a chain that is given
     /// joint by joint may have it too.
     pub opw: Option<Opw>,
-    /// What else is known of a chain of six joints without that form.
+    /// The form of a chain of six joints whose wrist axes do not meet in one point.
     pub offset_wrist: Option<OffsetWrist>,
     /// Coupling of joints 2 and 3.
     pub coupling: Coupling,
@@ -145,7 +145,7 @@ impl Geometry {
         rotations
     }
 
-    /// The same into memory that is there.
+    /// Writes [`rotations`](Self::rotations) at `q` \[rad\] into `rotations`.
     #[inline]
     pub fn turn(&self, q: &[f64], rotations: &mut Rotations) {
         let angles = self.to_serial(q);

@@ -127,9 +127,8 @@ pub(super) fn distance(a: &str, b: &str) -> usize {
 
 /// The name among `known` that is nearest to `text`, if one is near.
 pub fn nearest<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let (distance, name) = known
-        .map(|name| (distance(text, name), name))
-        .min_by_key(|(distance, _)| *distance)?;
+    let (distance, name) =
+        known.map(|name| (distance(text, name), name)).min_by_key(|(distance, _)| *distance)?;
     let longest = [text, name].map(|text| compact(text).chars().count()).into_iter().max()?;
     (distance as f64 <= NEAR * longest as f64).then_some(name)
 }

@@ -1,4 +1,4 @@
-//! Figures that no robot has, though each may stand in a file: most often wrong units.
+//! Values that no robot has, most often because of wrong units.
 
 use super::fields::is_endless;
 use super::link::Link;
@@ -15,7 +15,7 @@ const FARTHEST_TURN: f64 = 13.0;
 /// Length of the longest chain of joints \[m\].
 const LONGEST: f64 = 10.0;
 
-/// What is not plausible of a robot, each in words with the way out.
+/// Messages about the implausible values of a robot, each with a remedy.
 #[must_use]
 pub fn implausible(model: &Model) -> Vec<String> {
     let mut found = Vec::new();

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::dynamics::{
-    BaseParameters, JOINT, Load, Parameters, RIGID, base_parameters_among, link_of,
-    link_parameters, parameters, pseudo_inertia,
+    BaseParameters, JOINT, Load, RIGID, base_parameters_among, link_of, link_parameters,
+    parameters, pseudo_inertia,
 };
 use crate::arm::robot::{Model, Motors, Origin, Provenance};
 
@@ -53,7 +53,7 @@ pub struct Identified {
     pub fit: Fit,
     /// All free parameters of the model, in the order of `among`.
     pub parameters: Vec<f64>,
-    /// Their indices among all, as [`Parameters::name`] counts them.
+    /// Their indices among all, as [`parameter_name`](crate::arm::dynamics::parameter_name) counts them.
     pub among: Vec<usize>,
     /// The coupling of the wrist that was found in the data, where the model stated none.
     pub coupling: Option<f64>,
@@ -104,7 +104,7 @@ pub fn identify(
         Free::Payload => ((rigid - RIGID..rigid).collect(), Known::All),
     };
     let mut nominal = model.clone();
-    let among_base = |model: &Model| base_parameters_among(model, Parameters::WithJoints, &among);
+    let among_base = |model: &Model| base_parameters_among(model, &among);
     let mut coupling = None;
     if settings.free == Free::All && nominal.wrist.coupling == 0.0 {
         coupling = wrist_coupling(&nominal, &among_base(&nominal), training);
@@ -327,7 +327,7 @@ fn pieces(
     if free == Free::All {
         pieces.extend((0..n).map(|joint| Piece::Body(prior(model, joint))));
     }
-    let nominal = parameters(model, &Load::none(), Parameters::WithJoints);
+    let nominal = parameters(model, &Load::none());
     for index in among.iter().filter(|index| **index >= rigid) {
         // What the fit says where it says something of this parameter alone.
         let said = base.independent.iter().position(|known| known == index).and_then(|row| {

@@ -59,7 +59,7 @@ impl<'a> Body<'a> {
     #[must_use]
     pub fn margins(&self, q: &[f64]) -> [f64; 2] {
         let parts = self.parts(&Frames::at(self.model, q));
-        // The base column stands where it stands.
+        // The base column does not move.
         let to_obstacles = parts
             .iter()
             .skip(1)

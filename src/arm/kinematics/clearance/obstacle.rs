@@ -1,4 +1,4 @@
-//! What an arm has to keep clear of.
+//! Obstacles of an arm.
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
@@ -25,7 +25,7 @@ pub struct KeepOut {
     pub half: Vector3<f64>,
 }
 
-/// Either of them.
+/// A plane or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle {
     /// What lies beyond a plane.

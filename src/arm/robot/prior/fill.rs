@@ -19,8 +19,8 @@ const ENGAGE_S: f64 = 0.1;
 /// Time of the planner from one acceleration limit to the other \[s\].
 const RAMP_S: f64 = 0.1;
 
-/// The model with all that it lacks of dynamics, limits and power, estimated from its size. What it has
-/// stays. A chain that is no arm stays as it is.
+/// The model with its missing dynamics, limits and powers estimated from its size. Stated numbers stay.
+/// A chain of fewer than 5 joints is returned unchanged.
 #[must_use]
 pub fn estimated(model: Model) -> Model {
     let known = Known::from_model(&model);

@@ -1,7 +1,7 @@
-//! Draws that fill the space evenly: a Latin hypercube of standard normal numbers.
+//! A Latin hypercube of standard normal numbers.
 //!
-//! Each number takes each of the equally likely strata once, in an order by chance that is the same
-//! each time: what is added up of many numbers is known better than by as many independent draws.
+//! Each number takes each of the equally likely strata once, in a random order that is the same each
+//! time. Sums of many numbers have a smaller sampling error than with independent draws.
 
 /// Constants of the generator splitmix64 (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom
 /// number generators", OOPSLA 2014).

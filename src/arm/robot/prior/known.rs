@@ -103,7 +103,7 @@ impl Known {
 }
 
 impl Known {
-    /// The size of the robot: what is not known follows from the rest.
+    /// The size of the robot; unknown parts of it are estimated from the known ones.
     pub(super) fn size(&self, model: &Model) -> Size {
         let reach = self.reach.unwrap_or_else(|| reach(model));
         let payload = self.payload;
@@ -117,10 +117,11 @@ impl Known {
 /// lightest arms that are sold are a fifth of it.
 const ABSURD: f64 = 15.0;
 
-/// A mass that no arm of the robot's reach has is a mistake, of its unit for instance.
+/// Checks that the stated masses are possible for an arm of the robot's reach; those in a wrong unit
+/// are not.
 ///
 /// # Errors
-/// It is one.
+/// A mass is out of range.
 pub fn check_mass(model: &Model) -> Result<(), RobotError> {
     if !ARM.contains(&model.dof) {
         return Ok(());
@@ -177,7 +178,7 @@ fn reach(model: &Model) -> f64 {
     foot + arm
 }
 
-/// A table as it is written.
+/// A robot's table in the file.
 #[derive(Deserialize)]
 struct Table {
     mass: f64,

@@ -62,10 +62,10 @@ pub(super) enum Target {
     Spring,
 }
 
-/// A standard normal number that stands for something that is not known.
+/// A standard normal number that stands for an unknown of the robot.
 #[derive(Clone, Debug)]
 pub struct Latent {
-    /// What it is, as reports name it.
+    /// Name in reports.
     pub group: String,
     /// The group, with a number where it has several: `masses of link 2, 3`.
     pub name: String,
@@ -229,7 +229,8 @@ impl Latents {
     }
 }
 
-/// Deviations of the part that all have in common, and of the own one, for a share of the variance.
+/// Standard deviations of the common part and of the part of one joint, where the common part has the
+/// share `common` of the variance.
 fn parted(common: f64) -> (f64, f64) {
     (common.sqrt(), (1.0 - common).sqrt())
 }
@@ -243,7 +244,7 @@ fn stated(model: &Model, table: &str, key: &str, index: usize, scale: f64) -> Op
     (scale > 0.0).then(|| sd / scale)
 }
 
-/// How much of the deviation of an estimate a number has.
+/// Factor on the standard deviation of an estimate, by the provenance of a number.
 fn looseness(model: &Model, table: &str, key: &str) -> f64 {
     match model.provenance_of(table, key) {
         Some(Provenance::Estimated | Provenance::Assumed) => 1.0,

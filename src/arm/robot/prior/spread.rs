@@ -1,4 +1,4 @@
-//! How well the numbers of a model are known, and robots that are as plausible.
+//! The spread of a model's numbers, and draws of plausible robots.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ use crate::arm::robot::model::Model;
 /// Draws start here.
 const SEED: u64 = 27;
 
-/// How well a model is known.
+/// The prior of a model's numbers.
 #[derive(Clone, Debug)]
 pub struct Spread {
     /// What is not known, each independent of the others.
@@ -63,7 +63,7 @@ impl Spread {
         Spread { latents: latents(model), shared_mass: has_shared_mass(model) }
     }
 
-    /// So many plausible robots, the same each time; of a calibrated robot those that fit its log.
+    /// `count` plausible robots, the same each time; of a calibrated robot the draws of its calibration.
     #[must_use]
     pub fn draws(&self, model: &Model, count: usize) -> Draws {
         let latents = match &model.calibration {
@@ -78,7 +78,7 @@ impl Spread {
         Draws { latents, robots }
     }
 
-    /// The draws of a calibration; what it does not name is as it is.
+    /// The draws of a calibration; latent numbers that it does not name are 0.
     fn calibrated(&self, calibration: &Calibration) -> Vec<Vec<f64>> {
         let draws_of = |latent: &Latent| {
             let found = calibration.draws.iter().find(|(name, _)| *name == latent.name);
@@ -134,10 +134,10 @@ impl Spread {
     }
 }
 
-/// A calibration that names what the spread of its robot does not have belongs to another one.
+/// Checks that a calibration belongs to the robot: the spread has all latent numbers that it names.
 ///
 /// # Errors
-/// It does.
+/// It lacks one.
 pub fn check_calibration(model: &Model) -> Result<(), RobotError> {
     let Some(calibration) = &model.calibration else { return Ok(()) };
     let known: Vec<String> = Spread::new(model).latents.into_iter().map(|l| l.name).collect();
@@ -155,10 +155,11 @@ pub fn check_calibration(model: &Model) -> Result<(), RobotError> {
 /// Standard deviation of a logarithm beyond which nothing is known.
 const UNKNOWN: f64 = 3.0;
 
-/// A deviation of many times its figure says nothing of it, and sums over robots have no end.
+/// Checks the standard deviations: with one of many times its figure, means over robots do not
+/// converge.
 ///
 /// # Errors
-/// There is one.
+/// One is too large.
 pub fn check_deviations(model: &Model) -> Result<(), RobotError> {
     let is_scaled = |target: &Target| !matches!(target, Target::Centre(..));
     let spread = Spread::new(model);
@@ -179,8 +180,7 @@ pub fn check_deviations(model: &Model) -> Result<(), RobotError> {
 }
 
 impl Plausible {
-    /// The model with these numbers. What its effects do is worked out anew from the changed ones
-    /// (`effects::applied`).
+    /// The model with these numbers; its effects have to be applied again (`effects::applied`).
     #[must_use]
     pub fn applied(&self, model: &Model) -> Model {
         let mut new = model.clone();
