@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::arm::dynamics::{
     Data, Load, Regressor, crba, forward_dynamics, regressor, rnea, rnea_derivatives,
 };
-use joulepath::arm::kinematics::{fk, ik_all, jacobian, jacobian_dot};
+use joulepath::arm::kinematics::{Tcp, fk, ik_all, jacobian};
 use joulepath::arm::robot::find;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -51,7 +51,7 @@ fn robot_algorithms(c: &mut Criterion) {
     c.bench_function("ik_all", |b| b.iter(|| ik_all(&model, black_box(&pose))));
     c.bench_function("jacobian", |b| b.iter(|| jacobian(&model, black_box(&Q), &tool)));
     c.bench_function("jacobian_dot", |b| {
-        b.iter(|| jacobian_dot(&model, black_box(&Q), black_box(&QD), &tool));
+        b.iter(|| Tcp::Held(tool).jacobian_dot(&model, black_box(&Q), black_box(&QD)));
     });
 }
 

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, ensure};
-use joulepath::arm::dynamics::{Data, Load, Parameters, base_parameters, parameters, torque};
+use joulepath::arm::dynamics::{Data, Load, base_parameters, parameters, torque};
 use joulepath::arm::robot::find;
 use serde_json::Value;
 
@@ -74,8 +74,8 @@ fn main() -> anyhow::Result<()> {
 /// Table 2: what the torques tell of joints 1 to 3, beside what the robot was simulated with.
 fn show(found: &Value) -> anyhow::Result<()> {
     let model = find(ROBOT)?;
-    let base = base_parameters(&model, Parameters::WithJoints);
-    let truth = base.of_parameters(&parameters(&model, &Load::none(), Parameters::WithJoints));
+    let base = base_parameters(&model);
+    let truth = base.of_parameters(&parameters(&model, &Load::none()));
     println!("\n{:>10} {:>10} {:>8} {:>5}  base parameter", "simulated", "identified", "sd", "off");
     let number = |entry: &Value, key: &str| entry[key].as_f64().context("a number");
     for entry in found["base_parameters"].as_array().context("base parameters")? {

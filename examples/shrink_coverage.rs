@@ -95,7 +95,7 @@ fn squares(records: &[Record<'_>], models: [&Model; 3]) -> [f64; 3] {
         let is_known = beside_no_jump(record);
         let said = models.map(|model| predicted(record, model));
         for joint in 0..n {
-            for row in (0..record.motion.len()).filter(|row| is_known[*row]) {
+            for row in (0..record.motion.rows()).filter(|row| is_known[*row]) {
                 if !record.moves(joint, row) {
                     continue;
                 }

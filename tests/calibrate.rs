@@ -156,7 +156,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     let model = robot("IRB2600-20/1.65");
     let simulation = simulated(&model, &pick_place());
     let other = simulated(&model, &source(OTHER));
-    let spread = Spread::of(&model);
+    let spread = Spread::new(&model);
     let z = standard_normals(spread.latents.len(), TRUTHS, 4711);
     // Energy and motion energy of the program, motion energy of another one.
     let mut inside = [0; 3];
@@ -196,7 +196,7 @@ const BETWEEN: f64 = 1.02;
 /// Whether each run of a retrofit asks no more torque of the joints than the original cycle, robot by
 /// robot, each with its own dynamics.
 fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool {
-    let robots = Spread::of(model).draws(model, DRAWS).robots;
+    let robots = Spread::new(model).draws(model, DRAWS).robots;
     let robots: Vec<Model> = robots.iter().map(|robot| drawn(model, robot).unwrap()).collect();
     let peaks = |robot: &Model, event: &Event| {
         let mut most = [0.0_f64; 6];
@@ -235,7 +235,7 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
     {
         let model = robot(name);
         let simulation = simulated(&model, &files);
-        let spread = Spread::of(&model);
+        let spread = Spread::new(&model);
         let z = standard_normals(spread.latents.len(), 8, 99);
         let truth = drawn(&model, &spread.robot(&model, |k| z[k][3])).unwrap();
         let log = log(&truth, &simulation, &METER);
@@ -362,7 +362,7 @@ fn nothing_that_is_read_is_written_over() {
 fn torques_tell_more_than_power_alone() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
-    let spread = Spread::of(&model);
+    let spread = Spread::new(&model);
     let z = standard_normals(spread.latents.len(), 8, 5);
     let truth = drawn(&model, &spread.robot(&model, |k| z[k][2])).unwrap();
     let (log, torques) = recorded(&truth, &program, &METER);

@@ -118,7 +118,7 @@ fn load_acts_as_a_heavier_last_link() {
         * nalgebra::Isometry3::translation(0.0, 0.0, 0.1);
     let radius = tcp.translation.x * 0.2_f64.cos() + tcp.translation.y * 0.2_f64.sin();
     let added = held(&point)[1] - held(&Load::none())[1];
-    let expected = -10.0 * joulepath::arm::dynamics::GRAVITY * (radius - 0.15);
+    let expected = -10.0 * joulepath::arm::robot::GRAVITY * (radius - 0.15);
     assert!((added - expected).abs() < 1e-9, "{added} {expected}");
 
     let halves = Load { mass: 5.0, ..point.clone() };

@@ -41,7 +41,7 @@ fn sums_over_a_motion_tell_the_energy_of_each_robot() {
     let model = find("IRB1600-10/1.45").unwrap();
     let (simulation, own) = simulated(&model);
     let sums = moments(&model, &simulation);
-    let draws = Spread::of(&model).draws(&model, ROBOTS);
+    let draws = Spread::new(&model).draws(&model, ROBOTS);
     for robot in &draws.robots {
         let theirs = account(&robot.applied(&model), &simulation).total;
         let change = sums.changes(&model, &Changes::of_one(&model, robot))[0];
@@ -127,7 +127,7 @@ fn an_arm_without_dynamics_gets_them() {
             for link in &model.links {
                 assert!(link.impossible().is_none(), "{name}: {:?}", link.impossible());
             }
-            let spread = Spread::of(&model);
+            let spread = Spread::new(&model);
             for robot in &spread.draws(&model, ROBOTS).robots {
                 for link in &robot.links {
                     assert!(link.impossible().is_none(), "{name}: {:?}", link.impossible());
@@ -146,7 +146,7 @@ fn the_mean_robot_takes_the_mean_of_the_energies() {
     let (simulation, _) = simulated(&model);
     let robots = Robots::of(&model).unwrap();
     let mean = robots.mean(&model, &moments(&model, &simulation)).unwrap();
-    let draws = Spread::of(&model).draws(&model, DRAWS).robots;
+    let draws = Spread::new(&model).draws(&model, DRAWS).robots;
     let each = draws
         .iter()
         .map(|robot| account(&drawn(&model, robot).unwrap(), &simulation).total.motion_energy_j());

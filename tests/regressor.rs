@@ -4,7 +4,8 @@ mod arms;
 
 use arms::{ROBOTS, largest, load, robots, states};
 use joulepath::arm::dynamics::{
-    Data, Load, Parameters, Regressor, base_parameters, parameters, rnea, torque, write_rows,
+    BaseParameters, Data, Load, RIGID, Regressor, base_parameters, base_parameters_among,
+    parameter_count, parameters, rnea, torque, write_rows,
 };
 use joulepath::arm::robot::{MAX_DOF, Model, find};
 use nalgebra::{DMatrix, DVector};
@@ -13,13 +14,19 @@ use proptest::prelude::*;
 /// Relative error of two exact algorithms.
 const EXACT: f64 = 1e-10;
 
-fn rows(model: &Model, state: &[[f64; MAX_DOF]; 3], which: Parameters) -> DMatrix<f64> {
+fn rows(model: &Model, state: &[[f64; MAX_DOF]; 3]) -> DMatrix<f64> {
     let n = model.dof;
-    let mut rows = DMatrix::zeros(n, which.count(n));
+    let mut rows = DMatrix::zeros(n, parameter_count(n));
     let [q, qd, qdd] = state;
     let state = [&q[..n], &qd[..n], &qdd[..n]];
-    write_rows(model, &mut Regressor::new(), state, which, &mut rows, 0);
+    write_rows(model, &mut Regressor::new(), state, &mut rows, 0);
     rows
+}
+
+/// The base parameters of the rigid bodies alone.
+fn rigid_bodies(model: &Model) -> BaseParameters {
+    let among: Vec<usize> = (0..RIGID * model.dof).collect();
+    base_parameters_among(model, &among)
 }
 
 /// Without the laws that are not linear in four numbers a joint.
@@ -39,16 +46,16 @@ proptest! {
         let model = linear(robots()[which].clone());
         let n = model.dof;
         let [q, qd, qdd] = state.map(|v| v[..n].to_vec());
-        let all = Parameters::WithJoints;
-        let linear = rows(&model, &state, all) * DVector::from(parameters(&model, &load(), all));
+        let rows = rows(&model, &state);
+        let values = DVector::from(parameters(&model, &load()));
+        let linear = &rows * &values;
         let found = torque(&model, &mut Data::new(), &load(), &q, &qd, &qdd);
         let rotors_left_out = {
             let mut model = model.clone();
             model.motors = None;
             rnea(&model, &mut Data::new(), &load(), &q, &qd, &qdd)
         };
-        let rigid = Parameters::Rigid;
-        let bodies = rows(&model, &state, rigid) * DVector::from(parameters(&model, &load(), rigid));
+        let bodies = rows.columns(0, RIGID * n) * values.rows(0, RIGID * n);
         let scale = largest(&found.rigid);
         for i in 0..n {
             let expected = found.rigid[i] + found.friction[i];
@@ -60,10 +67,9 @@ proptest! {
     #[test]
     fn base_parameters_give_the_same_torque(state in states(), which in 0..ROBOTS) {
         let model = linear(robots()[which].clone());
-        let of = Parameters::WithJoints;
-        let base = base_parameters(&model, of);
-        let full = rows(&model, &state, of);
-        let values = parameters(&model, &load(), of);
+        let base = base_parameters(&model);
+        let full = rows(&model, &state);
+        let values = parameters(&model, &load());
         let picked = full.select_columns(&base.independent);
         let torque = &full * DVector::from(values.clone());
         let grouped = picked * DVector::from(base.of_parameters(&values));
@@ -75,9 +81,7 @@ proptest! {
 #[test]
 fn ranks_are_those_of_the_literature() {
     let [six, skew, rods, wrist, seven, one, tilted] = robots();
-    let ranks = |model: &Model| {
-        [Parameters::Rigid, Parameters::WithJoints].map(|of| base_parameters(model, of).rank())
-    };
+    let ranks = |model: &Model| [rigid_bodies(model), base_parameters(model)].map(|b| b.rank());
     assert_eq!(ranks(&six), [36, 58]);
     assert_eq!(ranks(&rods)[0], 36);
     assert_eq!(ranks(&wrist), [36, 58]);
@@ -92,8 +96,8 @@ fn ranks_are_those_of_the_literature() {
 #[test]
 fn base_parameters_have_names() {
     let model = find("IRB1600-10/1.45").expect("in the catalogue");
-    let base = base_parameters(&model, Parameters::Rigid);
+    let base = rigid_bodies(&model);
     let names: Vec<String> = (0..base.rank()).map(|row| base.name(row)).collect();
     insta::assert_snapshot!(names.join("\n"));
-    assert_eq!(base.of_parameters(&parameters(&model, &Load::none(), Parameters::Rigid)).len(), 36);
+    assert_eq!(base.of_parameters(&parameters(&model, &Load::none())).len(), 36);
 }

@@ -168,7 +168,7 @@ fn powers((name, motion, _): &Published, open: &Open) -> Vec<f64> {
     model.drive.base_w *= left_out(name);
     match motion {
         Motion::Engaged => {
-            let draws = Spread::of(&model).draws(&model, DRAWS).robots;
+            let draws = Spread::new(&model).draws(&model, DRAWS).robots;
             draws.iter().map(|robot| robot.base_w).collect()
         }
         Motion::Rest => of_program(&model, REST_PROGRAM).unwrap(),

@@ -60,7 +60,7 @@ pub(crate) fn held(truth: &Model, unknown: &Model, kind: Kind) -> Vec<bool> {
     };
     let states = states(truth);
     let truths: Vec<Vec<f64>> = states.iter().map(|state| of(truth, state)).collect();
-    let spread = Spread::of(unknown);
+    let spread = Spread::new(unknown);
     let draws = spread.draws(unknown, DRAWS).robots;
     let models: Vec<Model> = draws.iter().map(|robot| drawn(unknown, robot).unwrap()).collect();
     let mut held = Vec::new();

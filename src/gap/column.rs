@@ -116,9 +116,9 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
             })
             .collect();
     }
-    let of = match effect.of {
-        crate::arm::effects::Of::Joint => Some(joint),
-        crate::arm::effects::Of::Robot => None,
+    let of = match effect.scope {
+        crate::arm::effects::Scope::Joint => Some(joint),
+        crate::arm::effects::Scope::Robot => None,
     };
     let piece = |shape: Vec<f64>| Piece {
         owner: Owner::Effect(effect),

@@ -38,8 +38,8 @@ pub(super) fn gated(
 ) -> Vec<Piece> {
     let Some(first) = records.first() else { return Vec::new() };
     let motion = &first.motion;
-    let period = if motion.closed { motion.step() * motion.len() as f64 } else { 0.0 };
-    let lasts = motion.step() * motion.len() as f64;
+    let period = if motion.closed { motion.step() * motion.rows() as f64 } else { 0.0 };
+    let lasts = motion.step() * motion.rows() as f64;
     let part = lasts / PARTS as f64;
     let mut wanted: Vec<(&'static Effect, Option<usize>)> = Vec::new();
     let may = |id: &str| find(id).filter(|of| effects.iter().any(|other| other.id == of.id));
@@ -171,7 +171,7 @@ impl Search<'_, '_> {
             let lasts = self
                 .records
                 .first()
-                .map_or(0.0, |record| record.motion.step() * record.motion.len() as f64);
+                .map_or(0.0, |record| record.motion.step() * record.motion.rows() as f64);
             let part = lasts / PARTS as f64;
             let (start, end) = (count - 3, count - 2);
             let mut alone = vec![vec![(start, part)], vec![(end, part)]];

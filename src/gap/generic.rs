@@ -68,13 +68,13 @@ const KINDS: [Kind; 11] = [
     Kind {
         id: "time_and_sense",
         bumps: 20,
-        of: |m, j, i, _| [2.0 * i as f64 / m.len().max(1) as f64 - 1.0, m.senses[j][i]],
+        of: |m, j, i, _| [2.0 * i as f64 / m.rows().max(1) as f64 - 1.0, m.senses[j][i]],
         dense: false,
     },
     Kind {
         id: "time",
         bumps: 20,
-        of: |m, _, i, _| [2.0 * i as f64 / m.len().max(1) as f64 - 1.0, 1.0],
+        of: |m, _, i, _| [2.0 * i as f64 / m.rows().max(1) as f64 - 1.0, 1.0],
         dense: false,
     },
     Kind {
@@ -156,7 +156,7 @@ fn column(
                 let x = if kind.dense { x.signum() * x.abs().sqrt() } else { x };
                 size * factor * (-0.5 * ((x - centre) / (0.8 * width)).powi(2)).exp()
             };
-            vec![(joint, (0..motion.len()).map(of).collect())]
+            vec![(joint, (0..motion.rows()).map(of).collect())]
         })
         .collect();
     Column { series, mean: 0.0, sd: 1.0 }

@@ -57,7 +57,7 @@ pub fn shrink(records: &[Record<'_>], models: [&Model; 3]) -> Shrink {
     for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
         let predicted = models.map(|model| predicted(record, model));
         let is_known = beside_no_jump(record);
-        let rows = record.motion.len();
+        let rows = record.motion.rows();
         for block in 0..BLOCKS {
             let (from, to) = (rows * block / BLOCKS, rows * (block + 1) / BLOCKS);
             let used: Vec<usize> = (from..to).filter(|row| is_known[*row]).collect();
@@ -100,7 +100,7 @@ pub fn predicted(record: &Record<'_>, model: &Model) -> Vec<Vec<f64>> {
     let of = &record.motion;
     let rest: Vec<f64> = vec![0.0; model.dof];
     let series = [of.q.clone(), of.qd.clone(), of.qdd.clone()];
-    let mut sum = vec![vec![0.0; of.len()]; model.dof];
+    let mut sum = vec![vec![0.0; of.rows()]; model.dof];
     // Only warming up differs from repetition to repetition.
     let at = |later: f64| {
         let t = of.t.iter().map(|t| t + later).collect();
@@ -125,7 +125,7 @@ pub fn predicted(record: &Record<'_>, model: &Model) -> Vec<Vec<f64>> {
 /// not tell it, and torques belong to either side.
 #[must_use]
 pub fn beside_no_jump(record: &Record<'_>) -> Vec<bool> {
-    let count = record.motion.len();
+    let count = record.motion.rows();
     let mut is_known = vec![true; count];
     if !record.motion.closed {
         return is_known;

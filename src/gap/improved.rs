@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::dynamics::{JOINT, RIGID, link_of, link_parameters};
-use crate::arm::effects::{Effect, Of, applied};
+use crate::arm::effects::{Effect, Scope, applied};
 use crate::arm::robot::{EffectParameters, Friction, Given, Model};
 
 use super::effect_ids::{LOAD, OF_LOG};
@@ -174,9 +174,9 @@ fn carry(model: &mut Model, at: usize, fitted: &Fitted) {
 }
 
 fn empty(effect: &Effect, dof: usize) -> EffectParameters {
-    let given = match effect.of {
-        Of::Robot => Given::Robot(0.0),
-        Of::Joint => Given::Joints(vec![0.0; dof]),
+    let given = match effect.scope {
+        Scope::Robot => Given::Robot(0.0),
+        Scope::Joint => Given::Joints(vec![0.0; dof]),
     };
     let values = effect.parameters.iter().map(|p| (p.name.to_owned(), given.clone())).collect();
     EffectParameters { id: effect.id.to_owned(), values, place: "diagnosis".to_owned() }

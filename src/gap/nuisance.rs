@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use crate::arm::dynamics::{JOINT, Parameters, RIGID, Regressor, link_parameters, write_rows};
+use crate::arm::dynamics::{JOINT, RIGID, Regressor, link_parameters, parameter_count, write_rows};
 use crate::arm::effects::Motion;
 use crate::arm::robot::Link;
 
@@ -154,7 +154,7 @@ pub(super) fn nuisance(
     let model = motion.model;
     let n = model.dof;
     let spread = trust.spread();
-    let count = Parameters::WithJoints.count(n);
+    let count = parameter_count(n);
     let mut names = Vec::new();
     let mut deviations = Vec::new();
     // Parameters of the regressor for a change of one deviation.
@@ -198,7 +198,7 @@ pub(super) fn nuisance(
 /// What one deviation of each parameter adds.
 fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, Vec<f64>)>> {
     let model = motion.model;
-    let (n, rows, count) = (model.dof, motion.len(), mixing.ncols());
+    let (n, rows, count) = (model.dof, motion.rows(), mixing.ncols());
     let mut scratch = Regressor::new();
     let mut regressor = DMatrix::zeros(n, count);
     let mut series: Vec<Vec<(usize, Vec<f64>)>> =
@@ -209,7 +209,7 @@ fn of_parameters(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Vec<(usize, 
             *q += offset;
         }
         let state = [&q[..n], &qd[..n], &qdd[..n]];
-        write_rows(model, &mut scratch, state, Parameters::WithJoints, &mut regressor, 0);
+        write_rows(model, &mut scratch, state, &mut regressor, 0);
         for joint in 0..n {
             // A joint that counts as at rest has no sense.
             regressor[(joint, RIGID * n + JOINT * joint + 2)] = motion.senses[joint][row];

@@ -23,7 +23,7 @@ impl<'a> Pieces<'a> {
         let rows = |joint: usize| {
             records.iter().flat_map(move |record| {
                 let moves = move |row: &usize| record.moves(joint, *row);
-                (0..record.motion.len()).filter(moves).map(move |row| (*record, row))
+                (0..record.motion.rows()).filter(moves).map(move |row| (*record, row))
             })
         };
         let mut pieces =

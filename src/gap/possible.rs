@@ -10,8 +10,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, SymmetricEigen};
 
 use crate::arm::dynamics::{
-    BaseParameters, JOINT, Parameters, RIGID, base_parameters, body_parameters, link_of,
-    pseudo_inertia,
+    BaseParameters, JOINT, RIGID, base_parameters, body_parameters, link_of, pseudo_inertia,
 };
 use crate::arm::effects::{Effect, with_body};
 use crate::arm::robot::Model;
@@ -33,7 +32,7 @@ pub(super) fn possible(model: &Model, wanted: &DVector<f64>, sizes: &DVector<f64
     if at == *wanted {
         return at;
     }
-    let base = base_parameters(model, Parameters::WithJoints);
+    let base = base_parameters(model);
     let map = matrix(&base, wanted.len());
     let weights = sizes.map(|size| size * size);
     let mut weighted = map.transpose();

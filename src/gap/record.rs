@@ -128,7 +128,7 @@ impl<'a> Record<'a> {
         let turns = |coupling: f64, row: usize| {
             (qd[5][row] + (model.wrist.coupling + coupling) * qd[4][row]).abs() <= slow
         };
-        for row in 0..self.motion.len() {
+        for row in 0..self.motion.rows() {
             if turns(coupling, row) || turns(0.0, row) {
                 (self.window[4][row], self.window[5][row]) = (0.0, 0.0);
             }
@@ -155,15 +155,15 @@ struct Windows {
 
 impl Windows {
     fn new(motion: &Motion<'_>, rest: &[f64], highest: f64) -> Windows {
-        let fade: Vec<f64> = (0..motion.len()).map(|row| faded(row, motion)).collect();
+        let fade: Vec<f64> = (0..motion.rows()).map(|row| faded(row, motion)).collect();
         let of = |joint: usize| -> Vec<f64> {
             let moves = |row: usize| {
                 motion.qd[joint][row].abs() > rest[joint] && senses_known(motion, joint, row)
             };
-            (0..motion.len()).map(|row| if moves(row) { fade[row] } else { 0.0 }).collect()
+            (0..motion.rows()).map(|row| if moves(row) { fade[row] } else { 0.0 }).collect()
         };
         let window = (0..motion.model.dof).map(of).collect();
-        Windows { window, spectrum: Spectrum::new(motion.len(), motion.step(), highest) }
+        Windows { window, spectrum: Spectrum::new(motion.rows(), motion.step(), highest) }
     }
 
     fn rows(&self, joint: usize, x: &[f64]) -> Vec<f64> {
@@ -309,7 +309,7 @@ fn faded(row: usize, motion: &Motion<'_>) -> f64 {
     if motion.closed {
         return 1.0;
     }
-    let n = motion.len();
+    let n = motion.rows();
     let edge = (FADED * n as f64).max(1.0);
     let near = row.min(n - 1 - row) as f64;
     if near >= edge { 1.0 } else { 0.5 - 0.5 * (std::f64::consts::PI * near / edge).cos() }

@@ -48,7 +48,7 @@ fn found(records: &[Record<'_>], joint: usize, turned: f64) -> (Vec<f64>, usize)
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
         let motion = &record.motion;
-        let n = motion.len();
+        let n = motion.rows();
         let missed: Vec<f64> = record.measured[joint]
             .iter()
             .zip(&motion.torque[joint])

@@ -74,7 +74,7 @@ fn squares(search: &Search<'_, '_>, effect: &Effect, fitted: &[&Fitted]) -> [Vec
         }
         for joint in 0..motion.model.dof {
             sums[1][joint] += record.measured[joint].iter().map(|x| x * x).sum::<f64>();
-            sums[2][joint] += motion.len() as f64;
+            sums[2][joint] += motion.rows() as f64;
         }
     }
     sums

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::arm::effects::{self, Effect, Form, Of, Response};
+use crate::arm::effects::{self, Effect, Form, Response, Scope};
 
 use super::column::{Column, Owner, Piece, pieces};
 use super::evidence::{Evidence, Products};
@@ -72,7 +72,7 @@ impl Table {
             .filter(|e| !["current_sign", "time_delay", "filter_lag"].contains(&e.id))
             .flat_map(|effect| {
                 let joints = (effect.joints)(n);
-                let joints = if effect.of == Of::Robot {
+                let joints = if effect.scope == Scope::Robot {
                     joints.into_iter().take(1).collect()
                 } else {
                     joints

@@ -57,7 +57,7 @@ pub fn missed(records: &[Record<'_>], model: &Model) -> Torques {
 #[must_use]
 pub fn trace(records: &[Record<'_>], missed: &[Torques]) -> Option<Trace> {
     let means = records.iter().enumerate().filter(|(_, of)| of.kind == RecordKind::Mean);
-    let (number, record) = means.max_by_key(|(_, record)| record.motion.len())?;
+    let (number, record) = means.max_by_key(|(_, record)| record.motion.rows())?;
     let shown = |torques: &[Vec<f64>]| -> Vec<Vec<f64>> {
         let at = |joint: usize, (row, x): (usize, &f64)| {
             if record.moves(joint, row) { *x } else { f64::NAN }

@@ -7,7 +7,7 @@ mod excited;
 mod power;
 mod simulated;
 
-use joulepath::arm::dynamics::{JOINT, Parameters, RIGID, base_parameters, link_parameters};
+use joulepath::arm::dynamics::{JOINT, RIGID, base_parameters, link_parameters};
 use joulepath::arm::effects::{ALL, Effect, find as effect, with_body};
 use joulepath::arm::robot::{Given, Model};
 use joulepath::gap::{
@@ -93,7 +93,7 @@ fn of_a_baseline_only_changes_are_told() {
         let left = |joint: usize| -> f64 {
             let squares = held.measured[joint].iter().zip(&said[joint]);
             let squares = squares.map(|(measured, said)| (measured - said).powi(2));
-            (squares.sum::<f64>() / held.motion.len() as f64).sqrt()
+            (squares.sum::<f64>() / held.motion.rows() as f64).sqrt()
                 / held.motion.scale(joint).torque[1]
         };
         assert!((0..nominal.dof).all(|joint| left(joint) < 0.01));
@@ -474,7 +474,7 @@ fn bodies_that_cannot_be_keep_their_torques() {
     for (link, of) in found.links.iter().enumerate() {
         kept[RIGID * link..RIGID * (link + 1)].copy_from_slice(&link_parameters(of));
     }
-    let base = base_parameters(&nominal, Parameters::WithJoints);
+    let base = base_parameters(&nominal);
     let (wanted, kept) = (base.of_parameters(&wanted), base.of_parameters(&kept));
     let size: f64 = wanted.iter().map(|x| x * x).sum::<f64>().sqrt();
     let off: f64 = wanted.iter().zip(&kept).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use joulepath::arm::dynamics::{Load, Parameters, parameters};
+use joulepath::arm::dynamics::{Load, parameters};
 use joulepath::arm::robot::Model;
 use joulepath::learn::identify::{
     Free, Hints, Settings, Source, Weighting, identify, prepare, synchronised, torques,
@@ -71,7 +71,7 @@ fn parameters_come_back_from_phase_currents() {
     for (one, mean) in found.fit.cross_rms.iter().zip(&found.fit.rms) {
         assert!((1.8..3.6).contains(&(one / mean)), "{one} {mean}");
     }
-    let all = parameters(&model, &Load::none(), Parameters::WithJoints);
+    let all = parameters(&model, &Load::none());
     let expected = found.base.of_parameters(&all);
     let deviations: Vec<f64> = found
         .fit

@@ -9,7 +9,7 @@ mod excited;
 mod simulated;
 
 use joulepath::arm::dynamics::{
-    BaseParameters, Load, Parameters, Regressor, base_parameters, parameters, write_rows,
+    BaseParameters, Load, Regressor, base_parameters, parameters, write_rows,
 };
 use joulepath::arm::effects::from_toml;
 use joulepath::arm::robot::{Model, to_toml};
@@ -40,7 +40,7 @@ fn settings(free: Free, weighting: Weighting) -> Settings {
 }
 
 fn truth(model: &Model, base: &BaseParameters) -> Vec<f64> {
-    base.of_parameters(&parameters(model, &Load::none(), Parameters::WithJoints))
+    base.of_parameters(&parameters(model, &Load::none()))
 }
 
 fn fitted(model: &Model, base: &BaseParameters, samples: &Samples, weighting: Weighting) -> Fit {
@@ -50,7 +50,7 @@ fn fitted(model: &Model, base: &BaseParameters, samples: &Samples, weighting: We
 #[test]
 fn data_without_noise_give_the_robot_back() {
     let model = irb1600();
-    let base = base_parameters(&model, Parameters::WithJoints);
+    let base = base_parameters(&model);
     let mut random = fastrand::Rng::with_seed(1);
     let log = log(&model, &series(1), [10.0, 0.01], With::Rates, [0.0, 0.0], &mut random);
     let found = fitted(&model, &base, &samples(&log, &model), Weighting::Joint);
@@ -65,7 +65,7 @@ fn data_without_noise_give_the_robot_back() {
 #[test]
 fn ordinary_least_squares_are_those_of_a_dense_solver() {
     let model = irb1600();
-    let base = base_parameters(&model, Parameters::WithJoints);
+    let base = base_parameters(&model);
     let mut random = fastrand::Rng::with_seed(2);
     let log = log(&model, &series(2), [10.0, 0.05], With::Rates, [5.0, 0.0], &mut random);
     let found = fitted(&model, &base, &samples(&log, &model), Weighting::Ordinary);
@@ -79,7 +79,7 @@ fn ordinary_least_squares_are_those_of_a_dense_solver() {
         };
         let (q, qd, qdd) =
             (at(Channel::Position), at(Channel::Velocity), at(Channel::Acceleration));
-        write_rows(&model, &mut scratch, [&q, &qd, &qdd], base.of, &mut all, 6 * row);
+        write_rows(&model, &mut scratch, [&q, &qd, &qdd], &mut all, 6 * row);
         right.rows_mut(6 * row, 6).copy_from_slice(&at(Channel::Torque));
     }
     let dense = all.select_columns(&base.independent);
@@ -102,7 +102,7 @@ impl AtLeastOne for f64 {
 /// Share of the intervals that hold the truth over many simulated runs.
 fn coverage(runs: u64, simulate: impl Fn(&mut fastrand::Rng) -> Samples) -> (f64, f64) {
     let model = irb1600();
-    let base = base_parameters(&model, Parameters::WithJoints);
+    let base = base_parameters(&model);
     let truth = truth(&model, &base);
     let mut held = vec![0_u64; truth.len()];
     for run in 0..runs {
@@ -165,7 +165,7 @@ fn an_identified_model_is_written_and_read() {
     let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
     assert!(found.physically_consistent);
     let read = from_toml("identified.toml", &to_toml(&found.model)).unwrap();
-    let of = |model: &Model| parameters(model, &Load::none(), Parameters::WithJoints);
+    let of = |model: &Model| parameters(model, &Load::none());
     for (a, b) in of(&read).iter().zip(of(&found.model)) {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }

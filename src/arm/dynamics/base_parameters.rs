@@ -1,4 +1,4 @@
-//! Base parameters: the combinations of the parameters that torques can tell.
+//! Base parameters: the combinations of the parameters that torques determine.
 //!
 //! M. Gautier, "Numerical calculation of the base inertial parameters of robots",
 //! Journal of Robotic Systems 8, 1991: a QR decomposition of the regressor at many
@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 use crate::arm::robot::{MAX_DOF, Model};
 
 use super::motor_side::motor_rates;
-use super::parameters::{JOINT, Parameters, RIGID, joint_row};
+use super::parameters::{JOINT, RIGID, joint_row, parameter_count, parameter_name};
 use super::regressor::{Regressor, regressor};
 
 /// States at which the regressor is evaluated.
@@ -27,8 +27,6 @@ const CREEP: f64 = 1e-6;
 /// Which parameters stand for themselves, and how the others are grouped.
 #[derive(Clone, Debug)]
 pub struct BaseParameters {
-    /// Which parameters were asked for.
-    pub of: Parameters,
     /// Number of joints.
     pub dof: usize,
     /// Indices of the parameters that head a base parameter, ascending.
@@ -59,14 +57,14 @@ impl BaseParameters {
     /// A base parameter in words, such as `zz1 + yy2 + 0.49 m3`.
     #[must_use]
     pub fn name(&self, row: usize) -> String {
-        let mut text = self.of.name(self.dof, self.independent[row]);
+        let mut text = parameter_name(self.dof, self.independent[row]);
         for (k, from) in self.dependent.iter().enumerate() {
             let factor = self.grouping[(row, k)];
             if factor == 0.0 {
                 continue;
             }
             let sense = if factor < 0.0 { '-' } else { '+' };
-            let name = self.of.name(self.dof, *from);
+            let name = parameter_name(self.dof, *from);
             let size = (factor.abs() * 1e6).round() / 1e6;
             let factor = if size == 1.0 { String::new() } else { format!("{size} ") };
             let _ = write!(text, " {sense} {factor}{name}");
@@ -77,12 +75,11 @@ impl BaseParameters {
 
 /// Writes the rows of the regressor at one state into `rows` from row `first` on:
 /// one for each joint, with a column for each parameter in the order of
-/// [`Parameters::name`].
+/// [`parameter_name`](super::parameter_name).
 pub fn write_rows(
     model: &Model,
     scratch: &mut Regressor,
     state: [&[f64]; 3],
-    which: Parameters,
     rows: &mut DMatrix<f64>,
     first: usize,
 ) {
@@ -96,18 +93,16 @@ pub fn write_rows(
             }
         }
     }
-    if which == Parameters::WithJoints {
-        let (rates, accelerations) = (motor_rates(model, qd), motor_rates(model, qdd));
-        for motor in 0..n {
-            let values = joint_row(rates[motor], accelerations[motor]);
-            for joint in 0..n {
-                // C of the motor's angle: 1 of its own joint, the coupling of axis 5.
-                let mut unit = [0.0; MAX_DOF];
-                unit[joint] = 1.0;
-                let share = motor_rates(model, &unit)[motor];
-                for (k, value) in values.iter().enumerate() {
-                    rows[(first + joint, RIGID * n + JOINT * motor + k)] = share * value;
-                }
+    let (rates, accelerations) = (motor_rates(model, qd), motor_rates(model, qdd));
+    for motor in 0..n {
+        let values = joint_row(rates[motor], accelerations[motor]);
+        for joint in 0..n {
+            // C of the motor's angle: 1 of its own joint, the coupling of axis 5.
+            let mut unit = [0.0; MAX_DOF];
+            unit[joint] = 1.0;
+            let share = motor_rates(model, &unit)[motor];
+            for (k, value) in values.iter().enumerate() {
+                rows[(first + joint, RIGID * n + JOINT * motor + k)] = share * value;
             }
         }
     }
@@ -115,37 +110,33 @@ pub fn write_rows(
 
 /// The base parameters of a robot.
 #[must_use]
-pub fn base_parameters(model: &Model, which: Parameters) -> BaseParameters {
-    let all: Vec<usize> = (0..which.count(model.dof)).collect();
-    base_parameters_among(model, which, &all)
+pub fn base_parameters(model: &Model) -> BaseParameters {
+    let all: Vec<usize> = (0..parameter_count(model.dof)).collect();
+    base_parameters_among(model, &all)
 }
 
 /// The base parameters of those at the indices `among` (ascending), the others being known.
 #[must_use]
-pub fn base_parameters_among(model: &Model, which: Parameters, among: &[usize]) -> BaseParameters {
-    grouped(model, which, among, REACH)
+pub fn base_parameters_among(model: &Model, among: &[usize]) -> BaseParameters {
+    grouped(model, among, REACH)
 }
 
 /// The base parameters of motions so slow that only weight and the sense of friction count.
 #[must_use]
-pub fn base_parameters_at_rest(
-    model: &Model,
-    which: Parameters,
-    among: &[usize],
-) -> BaseParameters {
-    grouped(model, which, among, [REACH[0], CREEP, 0.0])
+pub fn base_parameters_at_rest(model: &Model, among: &[usize]) -> BaseParameters {
+    grouped(model, among, [REACH[0], CREEP, 0.0])
 }
 
-fn grouped(model: &Model, which: Parameters, among: &[usize], reach: [f64; 3]) -> BaseParameters {
+fn grouped(model: &Model, among: &[usize], reach: [f64; 3]) -> BaseParameters {
     let n = model.dof;
-    let count = which.count(n);
+    let count = parameter_count(n);
     let mut stacked = DMatrix::zeros(STATES * n, count);
     let mut scratch = Regressor::new();
     for state in 0..STATES {
         let [q, qd, qdd]: [Vec<f64>; 3] = std::array::from_fn(|kind| {
             (0..n).map(|joint| reach[kind] * spread(state, kind * MAX_DOF + joint)).collect()
         });
-        write_rows(model, &mut scratch, [&q, &qd, &qdd], which, &mut stacked, state * n);
+        write_rows(model, &mut scratch, [&q, &qd, &qdd], &mut stacked, state * n);
     }
     let mut stacked = stacked.select_columns(among);
     // Columns of one length each, so that units do not matter; a column of rounding
@@ -158,7 +149,7 @@ fn grouped(model: &Model, which: Parameters, among: &[usize], reach: [f64; 3]) -
         }
         column /= *length;
     }
-    let mut base = group(stacked, &lengths, which, n);
+    let mut base = group(stacked, &lengths, n);
     for index in base.independent.iter_mut().chain(&mut base.dependent) {
         *index = among[*index];
     }
@@ -167,7 +158,7 @@ fn grouped(model: &Model, which: Parameters, among: &[usize], reach: [f64; 3]) -
 
 /// Householder reflections from left to right; a column with nothing left below
 /// the pivots found so far gets none.
-fn group(mut w: DMatrix<f64>, lengths: &[f64], of: Parameters, dof: usize) -> BaseParameters {
+fn group(mut w: DMatrix<f64>, lengths: &[f64], dof: usize) -> BaseParameters {
     let (mut independent, mut dependent) = (Vec::new(), Vec::new());
     for column in 0..w.ncols() {
         let rank = independent.len();
@@ -203,7 +194,7 @@ fn group(mut w: DMatrix<f64>, lengths: &[f64], of: Parameters, dof: usize) -> Ba
             }
         }
     }
-    BaseParameters { of, dof, independent, dependent, grouping }
+    BaseParameters { dof, independent, dependent, grouping }
 }
 
 /// A number in (−1, 1) that fills the interval evenly over `index`, another way

@@ -17,9 +17,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::robot::{MAX_DOF, Model};
+use crate::arm::robot::{GRAVITY, MAX_DOF, Model};
 
-use super::GRAVITY;
 use super::data::Data;
 use super::joint_matrix::{self, JointMatrix};
 use super::load::Load;

@@ -1,11 +1,10 @@
-//! Kinetic and potential energy, summed body by body in the base frame: another
-//! way than that of the inverse dynamics, which they prove.
+//! Kinetic and potential energy, summed body by body in the base frame: independent of the inverse
+//! dynamics, which tests check against them.
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::robot::{Link, MAX_DOF, Model};
+use crate::arm::robot::{GRAVITY, Link, MAX_DOF, Model};
 
-use super::GRAVITY;
 use super::load::Load;
 use super::motor_side::motor_rates;
 

@@ -20,19 +20,7 @@ use super::motor_side::{joint_torques, motor_rates, motor_torques};
 /// sign(0) = 0.
 #[must_use]
 pub fn friction(model: &Model, qd: &[f64], load_torque: &[f64; MAX_DOF]) -> [f64; MAX_DOF] {
-    law(model, qd, load_torque, |_, velocity| sign(velocity))
-}
-
-/// The same, differentiable in the velocities: s = tanh(q̇ / `width`), with `width`
-/// > 0 in \[rad/s\].
-#[must_use]
-pub fn smooth_friction(
-    model: &Model,
-    qd: &[f64],
-    load_torque: &[f64; MAX_DOF],
-    width: f64,
-) -> [f64; MAX_DOF] {
-    law(model, qd, load_torque, |_, velocity| (velocity / width).tanh())
+    law(model, qd, load_torque, |_, velocity| sense(velocity))
 }
 
 /// The same with given senses of the motors: 0 for one that counts as at rest.
@@ -46,14 +34,9 @@ pub fn friction_of_senses(
     law(model, qd, load_torque, |joint, _| senses[joint])
 }
 
-/// The sense of a velocity: 1, −1, or 0 at 0.
+/// The sign of a velocity: 1, −1, or 0 at 0.
 #[must_use]
 pub fn sense(velocity: f64) -> f64 {
-    sign(velocity)
-}
-
-/// 1, −1, or 0 at 0.
-pub(super) fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
@@ -61,7 +44,7 @@ fn law(
     model: &Model,
     qd: &[f64],
     load_torque: &[f64; MAX_DOF],
-    sign: impl Fn(usize, f64) -> f64,
+    sense_of: impl Fn(usize, f64) -> f64,
 ) -> [f64; MAX_DOF] {
     let friction = &model.friction;
     let rates = motor_rates(model, qd);
@@ -69,7 +52,7 @@ fn law(
     let mut tau = [0.0; MAX_DOF];
     for joint in 0..model.dof {
         let velocity = rates[joint];
-        let s = sign(joint, velocity);
+        let s = sense_of(joint, velocity);
         let mut dry = friction.coulomb[joint];
         if let Some(law) = &friction.stribeck {
             dry += law.stiction[joint] * (-(velocity / law.velocity[joint]).powi(2)).exp();

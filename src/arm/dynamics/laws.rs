@@ -1,4 +1,4 @@
-//! Torques of the laws that a model has beyond its own.
+//! Torques of the laws that effects add to a model.
 
 use crate::arm::robot::{LawState, MAX_DOF, Model};
 

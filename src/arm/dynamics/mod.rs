@@ -1,5 +1,4 @@
-//! What moving costs in torque: inverse dynamics with its
-//! derivatives and regressor, mass matrix, forward dynamics, friction, energies.
+//! Inverse dynamics with its derivatives and regressor, mass matrix, forward dynamics, friction, energies.
 //!
 //! Algorithms read a [`Model`](crate::arm::robot::Model), write into a scratch
 //! [`Data`] and return values; none allocates. Results have [`MAX_DOF`]
@@ -34,16 +33,13 @@ pub use data::Data;
 pub use derivatives::{Derivatives, rnea_derivatives};
 pub use energy::{kinetic_energy, potential_energy};
 pub use forward::forward_dynamics;
-pub use friction::{friction, friction_of_senses, sense, smooth_friction};
+pub use friction::{friction, friction_of_senses, sense};
 pub use joint_matrix::JointMatrix;
 pub use laws::laws;
 pub use load::Load;
 pub use motor_side::{apparent_torques, motor_rates, motor_torques};
-pub use parameters::{JOINT, Parameters, RIGID, link_parameters, parameters};
+pub use parameters::{JOINT, RIGID, link_parameters, parameter_count, parameter_name, parameters};
 pub use pseudo_inertia::{body_parameters, link_of, pseudo_inertia};
 pub use regressor::{Regressor, regressor};
 pub use rnea::{gravity, rigid_bodies, rnea, rnea_each};
 pub use torque::{Torque, torque, torque_each};
-
-/// Acceleration of free fall \[m/s²\].
-pub const GRAVITY: f64 = 9.81;

@@ -1,4 +1,4 @@
-//! What turns with the motors: rotors and friction.
+//! Rotors and friction, which turn with the motors.
 //!
 //! Where the gears of a wrist are coupled, motor 6 turns with axis 5 as well:
 //! with φ = C q the motor angles (divided by the gear ratios) of the joint
@@ -48,8 +48,7 @@ pub(super) fn rotor_torques(model: &Model, qdd: &[f64]) -> [f64; MAX_DOF] {
     joint_torques(model, tau)
 }
 
-/// Torques that the robot's sensors show beyond its own, in proportion to accelerations and
-/// rates of the motors \[Nm\].
+/// Apparent torques that a log adds in proportion to accelerations and rates of the motors \[Nm\].
 #[must_use]
 pub fn apparent_torques(model: &Model, qd: &[f64], qdd: &[f64]) -> [f64; MAX_DOF] {
     let sensors = &model.sensors;

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::arm::robot::{Link, Model};
 
-use super::friction::sign;
+use super::friction::sense;
 use super::load::Load;
 
 /// Parameters of a rigid body.
@@ -18,35 +18,21 @@ const RIGID_NAMES: [&str; RIGID] = ["m", "mx", "my", "mz", "xx", "yy", "zz", "xy
 /// Names of the parameters of a joint, in order: \[kg m²\], \[Nm s/rad\], \[Nm\], \[Nm\].
 const JOINT_NAMES: [&str; JOINT] = ["ia", "fv", "fc", "offset"];
 
-/// Which parameters are asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameters {
-    /// Those of the rigid bodies.
-    Rigid,
-    /// And of each joint rotor inertia, viscous and Coulomb friction, offset.
-    WithJoints,
+/// Number of parameters of a robot of `dof` joints: those of the rigid bodies link by link, then
+/// those of the joints.
+#[must_use]
+pub fn parameter_count(dof: usize) -> usize {
+    (RIGID + JOINT) * dof
 }
 
-impl Parameters {
-    /// Number for a robot of `dof` joints: the rigid ones of all links, then
-    /// those of all joints.
-    #[must_use]
-    pub fn count(self, dof: usize) -> usize {
-        match self {
-            Parameters::Rigid => RIGID * dof,
-            Parameters::WithJoints => (RIGID + JOINT) * dof,
-        }
-    }
-
-    /// Name of the parameter `index`, such as `xx3` or `fc6`.
-    #[must_use]
-    pub fn name(self, dof: usize, index: usize) -> String {
-        let rigid = RIGID * dof;
-        if index < rigid {
-            format!("{}{}", RIGID_NAMES[index % RIGID], index / RIGID + 1)
-        } else {
-            format!("{}{}", JOINT_NAMES[(index - rigid) % JOINT], (index - rigid) / JOINT + 1)
-        }
+/// Name of the parameter `index` of a robot of `dof` joints, such as `xx3` or `fc6`.
+#[must_use]
+pub fn parameter_name(dof: usize, index: usize) -> String {
+    let rigid = RIGID * dof;
+    if index < rigid {
+        format!("{}{}", RIGID_NAMES[index % RIGID], index / RIGID + 1)
+    } else {
+        format!("{}{}", JOINT_NAMES[(index - rigid) % JOINT], (index - rigid) / JOINT + 1)
     }
 }
 
@@ -70,22 +56,20 @@ pub fn link_parameters(link: &Link) -> [f64; RIGID] {
 }
 
 /// All parameters of a robot with `load` at its flange, in the order of
-/// [`Parameters::name`]; empty where it has no dynamics. Offsets are 0.
+/// [`parameter_name`]; empty where it has no dynamics. Offsets are 0.
 #[must_use]
-pub fn parameters(model: &Model, load: &Load, which: Parameters) -> Vec<f64> {
+pub fn parameters(model: &Model, load: &Load) -> Vec<f64> {
     let Some(loaded) = load.on(model) else { return Vec::new() };
     let (_, before) = model.links.split_last().unwrap_or((&loaded, &[]));
     let mut values: Vec<f64> = before.iter().chain([&loaded]).flat_map(link_parameters).collect();
-    if which == Parameters::WithJoints {
-        for j in 0..model.dof {
-            let rotor = model.motors.as_ref().map_or(0.0, |m| m.reflected_inertia(j));
-            values.extend([rotor, model.friction.viscous[j], model.friction.coulomb[j], 0.0]);
-        }
+    for j in 0..model.dof {
+        let rotor = model.motors.as_ref().map_or(0.0, |m| m.reflected_inertia(j));
+        values.extend([rotor, model.friction.viscous[j], model.friction.coulomb[j], 0.0]);
     }
     values
 }
 
-/// What the parameters of joint `joint` are multiplied with in its torque.
+/// Factors of a joint's parameters in its torque at the rate `qd` and acceleration `qdd` of the motor.
 pub(super) fn joint_row(qd: f64, qdd: f64) -> [f64; JOINT] {
-    [qdd, qd, sign(qd), 1.0]
+    [qdd, qd, sense(qd), 1.0]
 }

@@ -1,4 +1,5 @@
-//! A rigid body as one matrix, in which what is added adds up and what can be is positive definite.
+//! The pseudo-inertia of a rigid body: it adds up over bodies, and is positive definite for a
+//! physically consistent body.
 //!
 //! ```text
 //! P = ⎡ Σ   h ⎤    Σ = ∫ r rᵀ dm = ½ tr(I) 1 − I,  h = m c
@@ -68,8 +69,8 @@ fn ten(parameters: &[f64]) -> [f64; RIGID] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::parameters::link_parameters;
     use super::*;
-    use crate::arm::dynamics::link_parameters;
 
     #[test]
     fn a_link_becomes_a_pseudo_inertia_and_back() {

@@ -7,9 +7,8 @@
 
 use nalgebra::Vector3;
 
-use crate::arm::robot::{Coupling, MAX_DOF, Model};
+use crate::arm::robot::{Coupling, GRAVITY, MAX_DOF, Model};
 
-use super::GRAVITY;
 use super::parameters::RIGID;
 
 /// One row of ten numbers for each joint and link.

@@ -5,9 +5,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::robot::{Link, MAX_DOF, Model, Rotations};
+use crate::arm::robot::{GRAVITY, Link, MAX_DOF, Model, Rotations};
 
-use super::GRAVITY;
 use super::data::Data;
 use super::load::Load;
 use super::motor_side::rotor_torques;

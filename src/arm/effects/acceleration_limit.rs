@@ -1,12 +1,12 @@
 //! Acceleration that is higher or lower.
 
-use super::effect::{Channel, Effect, Form, Of, bounded};
+use super::effect::{Channel, Effect, Form, Scope, bounded};
 
 /// Acceleration that is higher or lower.
 pub(super) const ACCELERATION_LIMIT: Effect = Effect {
     id: "acceleration_limit",
     channel: Channel::Motion,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Acceleration that is higher or lower",
     law: "acceleration × factor",
     source: "docs/controller.md",

@@ -2,13 +2,13 @@
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
 /// Apparent torque.
 pub(super) const APPARENT_TORQUE: Effect = Effect {
     id: "apparent_torque",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Apparent torque",
     law: "τ = inertia·q̈ + viscous·q̇",
     source: "docs/identification.md",

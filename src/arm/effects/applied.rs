@@ -3,7 +3,7 @@
 use crate::arm::robot::prior::Plausible;
 use crate::arm::robot::{self, EffectParameters, Given, Law, Model, RobotError, nearest};
 
-use super::effect::{Effect, Form, Of, Parameter, padded};
+use super::effect::{Effect, Form, Parameter, Scope, padded};
 use super::motion::Motion;
 use super::register::{ALL, find};
 
@@ -52,7 +52,8 @@ pub fn from_toml(file: &str, text: &str) -> Result<Model, RobotError> {
     applied(robot::from_toml(file, text)?)
 }
 
-/// The model with what its effects change. Those that its numbers can't hold stay listed.
+/// Applies the effects of a model to its numbers and laws; effects that are not numbers of the model
+/// stay in its list.
 ///
 /// # Errors
 /// An effect is not known or leads to what no robot has.
@@ -71,7 +72,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
                 }
                 Form::Series(_) | Form::Elsewhere => {}
             }
-            if effect.of == Of::Robot {
+            if effect.scope == Scope::Robot {
                 break;
             }
         }
@@ -81,7 +82,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
             kept.push(given);
         }
     }
-    // Other effects change the Coulomb friction, before or behind.
+    // Last: other effects change the Coulomb friction.
     kept.iter().try_for_each(|given| check_breakaway(&model, given))?;
     model.effects = kept;
     Ok(model)
@@ -91,7 +92,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
 #[must_use]
 pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
     let model = motion.model;
-    let mut sum = vec![vec![0.0; motion.len()]; model.dof];
+    let mut sum = vec![vec![0.0; motion.rows()]; model.dof];
     for given in &model.effects {
         let Some(effect) = find(&given.id) else { continue };
         if !matches!(effect.form, Form::Series(_)) {
@@ -103,7 +104,7 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
                 sum[to].iter_mut().zip(added).for_each(|(sum, x)| *sum += x);
             }
             // One of the robot is not one of each joint.
-            if effect.of == Of::Robot {
+            if effect.scope == Scope::Robot {
                 break;
             }
         }
@@ -115,7 +116,7 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
 fn coordinates(effect: &Effect, given: &EffectParameters, joint: usize) -> Option<Vec<f64>> {
     let parameters: Vec<f64> =
         effect.parameters.iter().map(|parameter| value(given, parameter.name, joint)).collect();
-    let named = effect.of == Of::Robot || parameters.iter().any(|value| *value != 0.0);
+    let named = effect.scope == Scope::Robot || parameters.iter().any(|value| *value != 0.0);
     named.then(|| effect.coordinates_of(&parameters))
 }
 
@@ -140,11 +141,11 @@ fn check_names(effect: &Effect, given: &EffectParameters, dof: usize) -> Result<
                 known: effect.parameters.iter().map(|p| p.name.to_owned()).collect(),
             });
         }
-        let (found, expected) = match (effect.of, values) {
-            (Of::Joint, Given::Robot(_)) => {
+        let (found, expected) = match (effect.scope, values) {
+            (Scope::Joint, Given::Robot(_)) => {
                 ("a number".to_owned(), format!("{dof}, one for each joint, or `joint`"))
             }
-            (Of::Robot, Given::Joints(_)) => ("of joints".to_owned(), "a number".to_owned()),
+            (Scope::Robot, Given::Joints(_)) => ("of joints".to_owned(), "a number".to_owned()),
             _ => continue,
         };
         return Err(RobotError::Type { place: given.place.clone(), key, found, expected });
@@ -175,7 +176,7 @@ fn check_bounds(effect: &Effect, given: &EffectParameters, dof: usize) -> Result
     Ok(())
 }
 
-/// Friction below none at breakaway, with which a joint would move itself.
+/// Rejects friction below zero at breakaway: the joint would drive itself.
 fn check_breakaway(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     if given.id != "stribeck" {
         return Ok(());
@@ -203,7 +204,7 @@ fn value(given: &EffectParameters, name: &str, joint: usize) -> f64 {
     })
 }
 
-/// Numbers that no robot has.
+/// Rejects numbers that no robot has.
 fn check_model(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     let friction = &model.friction;
     for (name, list) in [("coulomb", &friction.coulomb), ("viscous", &friction.viscous)] {

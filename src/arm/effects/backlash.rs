@@ -1,6 +1,8 @@
 //! A gear with a gap, which the motor crosses where the load changes sides.
 
-use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, bounded, every, shape, shaped};
+use super::effect::{
+    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+};
 use super::elasticity::displaced;
 use super::motion::Motion;
 
@@ -8,7 +10,7 @@ use super::motion::Motion;
 pub(super) const BACKLASH: Effect = Effect {
     id: "backlash",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Backlash",
     law: "width, stiffness 0: τ = −τ_L until the motor has turned by gap after each change of the sign of τ_L; \
           width > 0: q_link = q − gap/2·tanh(τ_L/width); stiffness k > 0: q_link = q − δ, \
@@ -71,7 +73,7 @@ fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)
     let gear = &motion.gear[joint];
     let mut side = gear.first().map_or(1.0, |tau| tau.signum());
     let mut crossed = gap;
-    let mut series = vec![0.0; motion.len()];
+    let mut series = vec![0.0; motion.rows()];
     for _ in 0..if motion.closed { 2 } else { 1 } {
         for (row, to) in series.iter_mut().enumerate() {
             if gear[row] * side < 0.0 {

@@ -1,12 +1,12 @@
 //! Controller, fans, brakes.
 
-use super::effect::{Channel, Effect, Form, Of, free};
+use super::effect::{Channel, Effect, Form, Scope, free};
 
 /// Controller, fans, brakes.
 pub(super) const BASE_LOAD: Effect = Effect {
     id: "base_load",
     channel: Channel::Power,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Controller, fans, brakes",
     law: "P = power",
     source: "docs/energy.md",

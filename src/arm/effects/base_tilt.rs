@@ -4,14 +4,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, bounded, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, bounded, free, linear};
 use super::waves::AMPLITUDE_AND_PHASE;
 
 /// Tilt of the base.
 pub(super) const BASE_TILT: Effect = Effect {
     id: "base_tilt",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Tilt of the base",
     law: "gravity turned by angle about (−sin direction, cos direction, 0)",
     source: "ABB: Gravity Alpha and Beta of the base",

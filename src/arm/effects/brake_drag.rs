@@ -4,14 +4,14 @@ use crate::arm::robot::LawState;
 
 use super::contact::within;
 use super::effect::{
-    Channel, Coordinate, Effect, Form, Of, Role, Values, bounded, every, free, linear, shaped,
+    Channel, Coordinate, Effect, Form, Role, Scope, Values, bounded, every, free, linear, shaped,
 };
 
 /// Drag of a brake.
 pub(super) const BRAKE_DRAG: Effect = Effect {
     id: "brake_drag",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Drag of a brake",
     law: "τ = drag·s, from t_start_s to t_end_s where these are given",
     source: "ABB product manuals: brake release check",

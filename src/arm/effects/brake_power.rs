@@ -2,13 +2,13 @@
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, free};
+use super::effect::{Channel, Effect, Form, Scope, free};
 
 /// Coils of the brakes.
 pub(super) const BRAKE_POWER: Effect = Effect {
     id: "brake_power",
     channel: Channel::Power,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Coils of the brakes",
     law: "P = power while they are released",
     source: "docs/energy.md",

@@ -1,13 +1,13 @@
 //! A dress pack that pulls a joint towards a middle.
 
-use super::effect::{Channel, Effect, Form, Of, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 
 /// Hose or cable.
 pub(super) const CABLE: Effect = Effect {
     id: "cable",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Hose or cable",
     law: "τ = stiffness·(q − centre)",
     source: "FloBaRoID simulation of joint springs",

@@ -5,19 +5,20 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::arm::dynamics::{Data, Load, rigid_bodies};
-use crate::arm::robot::{Link, Model};
+use crate::arm::robot::{GRAVITY, Link, Model};
 
 use super::bodies::added as with_body;
 use super::effect::{
-    Channel, Coordinate, Effect, Form, Of, Published, Role, bounded, free, linear, shaped,
+    Channel, Coordinate, Effect, Form, Published, Role, Scope, bounded, free, linear, shaped,
 };
 use super::motion::Motion;
+use super::scale::Scale;
 
 /// A force from outside.
 pub(super) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "A force from outside",
     law: "τ = −Jᵀ·force·min(1, sin πx/sin(π·rise)) on the flange, x from 0 to 1 from t_start_s to \
           t_end_s, repeated every period_s",
@@ -48,11 +49,8 @@ pub(super) const CONTACT: Effect = Effect {
     form: Form::Series(added),
 };
 
-/// Acceleration of gravity of the unit mass whose weight is the force \[m/s²\].
-const WEIGHT: f64 = 9.81;
-
-fn usual(of: &super::effect::Scale) -> f64 {
-    WEIGHT * of.payload
+fn usual(of: &Scale) -> f64 {
+    GRAVITY * of.payload
 }
 
 /// Coordinates are the components of the force, how it grows, then the window.
@@ -71,13 +69,13 @@ const SIZE_AND_DIRECTION: Published = Published {
 fn added(motion: &Motion<'_>, _: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let n = motion.model.dof;
     let force = Vector3::new(values[0], values[1], values[2]);
-    let mut series = vec![vec![0.0; motion.len()]; n];
+    let mut series = vec![vec![0.0; motion.rows()]; n];
     let size = force.norm();
     if size > 0.0 {
         let pulled = pulled(motion.model, &force, size);
         let mut data = Data::new();
         let still = vec![0.0; n];
-        for row in 0..motion.len() {
+        for row in 0..motion.rows() {
             let share = share_of(motion.t[row], &values[3..]);
             if share == 0.0 {
                 continue;
@@ -115,7 +113,7 @@ fn pulled(model: &Model, force: &Vector3<f64>, size: f64) -> Model {
     let nothing = Link { mass: 0.0, com: Vector3::zeros(), inertia: Matrix3::zeros() };
     pulled.links = vec![nothing; model.dof];
     let mut body = [0.0; 10];
-    body[0] = size / WEIGHT;
+    body[0] = size / GRAVITY;
     if let Some(last) = pulled.links.last_mut() {
         *last = with_body(last, &model.kinematics.flange, &body);
     }

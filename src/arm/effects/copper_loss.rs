@@ -2,13 +2,13 @@
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, every, free};
+use super::effect::{Channel, Effect, Form, Scope, every, free};
 
 /// Loss in the windings.
 pub(super) const COPPER_LOSS: Effect = Effect {
     id: "copper_loss",
     channel: Channel::Power,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Loss in the windings",
     law: "P = loss·τ²",
     source: "docs/energy.md",

@@ -1,13 +1,13 @@
 //! Torque that lags behind the current where the iron saturates.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, linear, shape};
+use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use super::motion::Motion;
 
 /// Saturation of the motor.
 pub(super) const CURRENT_SATURATION: Effect = Effect {
     id: "current_saturation",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Saturation of the motor",
     law: "τ = τ·(1 + error·(|τ|/τ_max)^exponent), logged; τ_max: the limit, else of the motion",
     source: "G. Terzic, M. Jadric, IEEE T-IE 48, 2001",

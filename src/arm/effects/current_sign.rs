@@ -1,13 +1,13 @@
 //! A current whose sign is the other one.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every};
+use super::effect::{Channel, Effect, Form, Scope, bounded, every};
 use super::motion::Motion;
 
 /// Sign of the current.
 pub(super) const CURRENT_SIGN: Effect = Effect {
     id: "current_sign",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Sign of the current",
     law: "τ = −τ, logged",
     source: "docs/identification.md",

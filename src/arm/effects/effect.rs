@@ -4,8 +4,9 @@ use crate::arm::dynamics::Load;
 use crate::arm::robot::{Law, LawState, Model};
 
 use super::motion::Motion;
+use super::scale::Scale;
 
-/// What shows an effect.
+/// The measured channel in which an effect shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
     /// Torques of the joints.
@@ -16,9 +17,9 @@ pub enum Channel {
     Power,
 }
 
-/// Whose an effect is.
+/// What an effect is a property of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Of {
+pub enum Scope {
     /// Single joints.
     Joint,
     /// The robot as a whole.
@@ -49,12 +50,12 @@ impl Parameter {
     }
 }
 
-/// What the torque depends on: a coordinate in which it is linear or one that shapes it.
+/// A coordinate of the torque: one in which it is linear, or one that shapes it.
 #[derive(Clone, Copy)]
 pub struct Coordinate {
     /// How it acts.
     pub role: Role,
-    /// Size that is usual, of a joint: a standard deviation before anything was measured.
+    /// Prior standard deviation at a joint.
     pub usual: fn(&Scale) -> f64,
 }
 
@@ -67,31 +68,6 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// An integer or the like: no value between those that are tried.
     Choice(fn(&Scale) -> Vec<f64>),
-}
-
-/// What is usual at a joint, in a motion.
-#[derive(Clone, Copy, Debug)]
-pub struct Scale {
-    /// Joint, from 0.
-    pub joint: usize,
-    /// Coulomb friction, or what it may be \[Nm\].
-    pub coulomb: f64,
-    /// Viscous friction, or what it may be \[Nm s/rad\].
-    pub viscous: f64,
-    /// Inertia that the motor sees: rotor \[kg m²\].
-    pub rotor: f64,
-    /// Root mean square and largest of the torque \[Nm\].
-    pub torque: [f64; 2],
-    /// Largest rate \[rad/s\].
-    pub rate: f64,
-    /// Gear ratio; 1 where it is not known.
-    pub ratio: f64,
-    /// Interval of the rows \[s\].
-    pub step: f64,
-    /// Mass that the flange may carry \[kg\].
-    pub payload: f64,
-    /// Mass of the joint's link \[kg\], and its mean moment about the joint's origin \[kg m²\].
-    pub link: (f64, f64),
 }
 
 /// Torques by joint \[Nm\] in a motion, of the coordinates of a joint, from 0.
@@ -109,20 +85,20 @@ pub enum Form {
         /// Torque \[Nm\].
         torque: fn(&LawState, &Values) -> f64,
     },
-    /// What a log shows beyond the torque, of the whole motion: by joint.
+    /// Torques that depend on the whole motion, by joint.
     Series(OfMotion),
-    /// Nothing of the torques.
+    /// It changes no torque.
     Elsewhere,
 }
 
-/// An effect: its law, what is usual of it, and what is written about it.
+/// An effect: its law, its prior and its documentation.
 pub struct Effect {
     /// Id in JSON, robot files and options.
     pub id: &'static str,
-    /// What shows it.
+    /// The channel in which it shows.
     pub channel: Channel,
-    /// Whose it is.
-    pub of: Of,
+    /// Whether single joints have it or the robot.
+    pub scope: Scope,
     /// Its name.
     pub title: &'static str,
     /// The law.
@@ -137,11 +113,11 @@ pub struct Effect {
     pub published: Option<Published>,
     /// Joints that can have it, from 0, of a robot with so many.
     pub joints: fn(usize) -> Vec<usize>,
-    /// Ids whose coordinates come with it, because nothing tells them apart beforehand.
+    /// Ids whose coordinates are fitted with it, because they are not separable beforehand.
     pub brings: &'static [&'static str],
-    /// What it is taken for.
+    /// Ids of the effects that it is confused with.
     pub confused: &'static [&'static str],
-    /// What tells it from those: options of `joulepath excite`, and why.
+    /// An experiment that separates it from those: options of `joulepath excite`, and the reason.
     pub experiment: [&'static str; 2],
     /// How it works.
     pub form: Form,
@@ -192,8 +168,8 @@ impl Effect {
             }
             Form::Law { dissipates, torque } => {
                 let values = padded(coordinates);
-                let of = |row: usize| torque(&motion.law_state(row, joint), &values);
-                let series = (0..motion.len()).map(of).collect();
+                let torque_at = |row: usize| torque(&motion.law_state(row, joint), &values);
+                let series = (0..motion.rows()).map(torque_at).collect();
                 if dissipates { motion.at_joints(joint, series) } else { vec![(joint, series)] }
             }
             Form::Series(added) => added(motion, joint, coordinates),

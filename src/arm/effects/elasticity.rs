@@ -2,14 +2,14 @@
 
 use crate::arm::dynamics::Load;
 
-use super::effect::{Channel, Effect, Form, Of, Published, bounded, every, linear};
+use super::effect::{Channel, Effect, Form, Published, Scope, bounded, every, linear};
 use super::motion::Motion;
 
 /// Elasticity of a joint.
 pub(super) const ELASTICITY: Effect = Effect {
     id: "elasticity",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Elasticity of a joint",
     law: "q_link = q − τ_L/stiffness",
     source: "M. Spong, Modeling and control of elastic joint robots, ASME JDSMC 109, 1987",

@@ -1,12 +1,12 @@
 //! An angle that is not where the log says: calibration, a revolution counter that slipped.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, linear};
+use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
 /// Offset of an angle.
 pub(super) const ENCODER_OFFSET: Effect = Effect {
     id: "encoder_offset",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Offset of an angle",
     law: "τ = τ(q + offset)",
     source: "FACTS of calibration: fine calibration is within 0.5 mrad, one motor turn is 2π/n",

@@ -1,6 +1,8 @@
 //! Torques behind a filter.
 
-use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, bounded, every, shape, shaped};
+use super::effect::{
+    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+};
 use super::motion::Motion;
 use super::response::Response;
 
@@ -8,7 +10,7 @@ use super::response::Response;
 pub(super) const FILTER_LAG: Effect = Effect {
     id: "filter_lag",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Lag of a filter",
     law: "lag·dτ/dt + τ_logged = τ",
     source: "docs/identification.md",

@@ -1,13 +1,13 @@
 //! A torque constant that falls at speed.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, linear, shape};
+use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use super::motion::Motion;
 
 /// Flux weakening.
 pub(super) const FLUX_WEAKENING: Effect = Effect {
     id: "flux_weakening",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Flux weakening",
     law: "τ = τ·(1 + error·(|q̇| − velocity)/(q̇_max − velocity)) above the velocity, logged; q̇_max: the limit, else of the motion",
     source: "T. Jahns, Flux-weakening regime operation of an interior permanent-magnet synchronous motor drive, IEEE T-IA 23, 1987",

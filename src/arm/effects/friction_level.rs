@@ -2,13 +2,13 @@
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
 /// Level of friction.
 pub(super) const FRICTION_LEVEL: Effect = Effect {
     id: "friction_level",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Level of friction",
     law: "τ = coulomb·s + viscous·q̇",
     source: "J. Swevers et al., Dynamic model identification for industrial robots, IEEE CSM 27, 2007",

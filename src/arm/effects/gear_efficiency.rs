@@ -2,13 +2,13 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, linear};
+use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
 /// Efficiency of the gear.
 pub(super) const GEAR_EFFICIENCY: Effect = Effect {
     id: "gear_efficiency",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Efficiency of the gear",
     law: "τ = motoring·|τ_L|·s where τ_L·q̇ > 0, generating·|τ_L|·s elsewhere",
     source: "A. Abedinnasab et al.; harmonic drives lose more when driven back: T. Tuttle, W. Seering, IEEE T-RA 12, 1996",

@@ -1,13 +1,13 @@
 //! A spring or balancer that the model does not have.
 
-use super::effect::{Channel, Effect, Form, Of, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 
 /// Spring or balancer.
 pub(super) const GRAVITY_SPRING: Effect = Effect {
     id: "gravity_spring",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Spring or balancer",
     law: "τ = stiffness·(q − centre)",
     source: "A. Klimchik et al., Advanced robot calibration using partial pose measurements and gravity compensators, arXiv 1311.6674",

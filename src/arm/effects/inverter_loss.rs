@@ -1,12 +1,12 @@
 //! Loss of inverter and cables.
 
-use super::effect::{Channel, Effect, Form, Of, free};
+use super::effect::{Channel, Effect, Form, Scope, free};
 
 /// Loss of inverter and cables.
 pub(super) const INVERTER_LOSS: Effect = Effect {
     id: "inverter_loss",
     channel: Channel::Power,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Loss of inverter and cables",
     law: "P = per_current·Σ|τ|/(n k_t)",
     source: "docs/energy.md",

@@ -1,12 +1,12 @@
 //! Loss in the iron.
 
-use super::effect::{Channel, Effect, Form, Of, every, free};
+use super::effect::{Channel, Effect, Form, Scope, every, free};
 
 /// Loss in the iron.
 pub(super) const IRON_LOSS: Effect = Effect {
     id: "iron_loss",
     channel: Channel::Power,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Loss in the iron",
     law: "P = loss·q̇²",
     source: "docs/energy.md",

@@ -5,13 +5,14 @@ use nalgebra::Isometry3;
 use crate::arm::robot::Model;
 
 use super::bodies::added;
-use super::effect::{Channel, Effect, Form, Of, Scale, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
+use super::scale::Scale;
 
 /// Masses, centres and inertias of the links.
 pub(super) const LINK_PARAMETERS: Effect = Effect {
     id: "link_parameters",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Masses, centres and inertias of the links",
     law: "τ = Y(q, q̇, q̈)·Δπ",
     source: "docs/identification.md",

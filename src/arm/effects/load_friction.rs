@@ -2,13 +2,13 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, linear};
+use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
 /// Friction of the load.
 pub(super) const LOAD_FRICTION: Effect = Effect {
     id: "load_friction",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Friction of the load",
     law: "τ = mu·|τ_L|·s",
     source: "P. Hamon et al., Dynamic identification of robot with a dry friction model depending on load and velocity, ICRA 2010; A. Bittencourt, S. Gunnarsson, 2012",

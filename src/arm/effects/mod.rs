@@ -1,5 +1,5 @@
-//! What robots and their logs have beyond rigid bodies and plain friction: one effect a file,
-//! with its law, what is usual of it, and what is written about it.
+//! Effects beyond rigid bodies, Coulomb and viscous friction: one file for each, with its law, its
+//! prior and its documentation.
 //!
 //! [`ALL`] is the register. An effect that is in it can be written in a robot file, is in every
 //! prediction and simulation, and can be found by a diagnosis.
@@ -33,7 +33,6 @@ mod load_friction;
 mod motion;
 mod no_regeneration;
 mod nonlinear_viscous;
-mod page;
 mod payload;
 mod position_friction;
 mod presliding;
@@ -42,6 +41,7 @@ mod register;
 mod response;
 mod ripple;
 mod rotor_inertia;
+mod scale;
 mod speed_limit;
 mod springs;
 mod stribeck;
@@ -60,9 +60,9 @@ pub use applied::{
 };
 pub use bodies::added as with_body;
 pub use effect::{
-    Channel, Coordinate, Effect, Form, Of, OfMotion, Parameter, Published, Role, Scale, Values,
+    Channel, Coordinate, Effect, Form, OfMotion, Parameter, Published, Role, Scope, Values,
 };
 pub use motion::Motion;
-pub use page::page;
 pub use register::{ALL, find};
 pub use response::Response;
+pub use scale::Scale;

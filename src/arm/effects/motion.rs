@@ -1,4 +1,4 @@
-//! A motion, and what the model does in it.
+//! A motion, and the torques of the model in it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -7,13 +7,6 @@ use crate::arm::dynamics::{
     rigid_bodies, rnea, sense,
 };
 use crate::arm::robot::{LawState, MAX_DOF, Model};
-
-use super::effect::Scale;
-
-/// Friction that a joint may have where the robot states none, of its torque.
-const FRICTION: f64 = 0.05;
-/// Mass that a flange carries where nothing is known, of the links' masses.
-const PAYLOAD: f64 = 0.03;
 
 /// Rows of a motion with the model's torques. Series are by joint, then by row.
 #[derive(Clone, Debug)]
@@ -40,7 +33,7 @@ pub struct Motion<'a> {
     pub gear: Vec<Vec<f64>>,
     /// Torques that a log shows, by the model \[Nm\].
     pub torque: Vec<Vec<f64>>,
-    /// The model with the bodies that are there, where these are others.
+    /// The model with the bodies of another model, where laws use these.
     carried: Option<Arc<Model>>,
     /// Torques that a log shows by that model, once they are asked for.
     shown: OnceLock<Vec<Vec<f64>>>,
@@ -103,26 +96,26 @@ impl<'a> Motion<'a> {
         motion
     }
 
-    /// Lets the gears carry what another model says.
+    /// Takes the torques through the gears from another model.
     pub fn carry(&mut self, other: &Model) {
         let series = [self.q.clone(), self.qd.clone(), self.qdd.clone()];
         self.gear = Motion::new(other, self.t.clone(), series, &self.rest, self.closed).gear;
     }
 
-    /// Lets all laws go by the bodies of another model.
+    /// Makes all laws use the bodies of another model.
     pub fn go_by(&mut self, other: &Model) {
         self.carry(other);
         self.carried = Some(Arc::new(Model { links: other.links.clone(), ..self.model.clone() }));
         (self.shown, self.bodies, self.inertia) = Default::default();
     }
 
-    /// Whether laws go by the bodies of another model.
+    /// Whether laws use the bodies of another model.
     #[must_use]
     pub fn has_other_bodies(&self) -> bool {
         self.carried.is_some()
     }
 
-    /// The model with the bodies that are there.
+    /// The model with the bodies that laws use.
     pub(super) fn there(&self) -> &Model {
         self.carried.as_deref().unwrap_or(self.model)
     }
@@ -134,21 +127,15 @@ impl<'a> Motion<'a> {
 
     /// Number of rows.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.t.len()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.t.is_empty()
     }
 
     /// Interval of the rows \[s\].
     #[must_use]
     pub fn step(&self) -> f64 {
         match self.t.as_slice() {
-            [first, .., last] => (last - first) / (self.len() - 1) as f64,
+            [first, .., last] => (last - first) / (self.rows() - 1) as f64,
             _ => 0.0,
         }
     }
@@ -180,9 +167,9 @@ impl<'a> Motion<'a> {
     #[must_use]
     pub fn torques_of(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
         let n = model.dof;
-        let mut torques = vec![Vec::with_capacity(self.len()); n];
+        let mut torques = vec![Vec::with_capacity(self.rows()); n];
         let mut data = Data::new();
-        for row in 0..self.len() {
+        for row in 0..self.rows() {
             let [mut q, qd, qdd] = self.state(row);
             for (q, offset) in q.iter_mut().zip(&model.sensors.position_offset) {
                 *q += offset;
@@ -217,9 +204,9 @@ impl<'a> Motion<'a> {
     #[must_use]
     pub fn rigid(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
         let n = model.dof;
-        let mut torques = vec![Vec::with_capacity(self.len()); n];
+        let mut torques = vec![Vec::with_capacity(self.rows()); n];
         let mut data = Data::new();
-        for row in 0..self.len() {
+        for row in 0..self.rows() {
             let [q, qd, qdd] = self.state(row);
             let tau = rigid_bodies(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
             torques.iter_mut().zip(tau).for_each(|(to, tau)| to.push(tau));
@@ -227,7 +214,7 @@ impl<'a> Motion<'a> {
         torques
     }
 
-    /// Torques of the rigid bodies that are there without the rotors, of the motion as it was made \[Nm\].
+    /// Torques of the rigid bodies that laws use, without the rotors \[Nm\].
     pub(super) fn bodies(&self) -> &[Vec<f64>] {
         self.bodies.get_or_init(|| self.rigid(self.there(), &Load::none()))
     }
@@ -252,7 +239,7 @@ impl<'a> Motion<'a> {
             unit[joint] = 1.0;
             torque(&unit[..n]) - weight
         };
-        (0..self.len()).map(inertia).collect()
+        (0..self.rows()).map(inertia).collect()
     }
 
     /// A torque of a motor, over its gear ratio, at the joints that it turns.
@@ -290,35 +277,6 @@ impl<'a> Motion<'a> {
             vec![4, 5]
         } else {
             vec![joint]
-        }
-    }
-
-    /// What is usual at a joint.
-    #[must_use]
-    pub fn scale(&self, joint: usize) -> Scale {
-        let model = self.model;
-        let tau = &self.torque[joint];
-        let rms = (tau.iter().map(|x| x * x).sum::<f64>() / tau.len().max(1) as f64).sqrt();
-        let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let rate = largest(&self.rates[joint]);
-        let or = |given: f64, else_: f64| if given > 0.0 { given } else { else_ };
-        let coulomb = or(model.friction.coulomb[joint], FRICTION * rms);
-        let motors = model.motors.as_ref();
-        let mass: f64 = model.links.iter().map(|link| link.mass).sum();
-        Scale {
-            joint,
-            coulomb,
-            viscous: or(model.friction.viscous[joint], coulomb / rate.max(1e-3)),
-            rotor: motors.map_or(0.0, |motors| motors.reflected_inertia(joint)),
-            torque: [rms, largest(tau)],
-            rate,
-            ratio: motors.map_or(1.0, |motors| motors.ratio[joint]),
-            step: self.step(),
-            payload: PAYLOAD * mass,
-            link: model.links.get(joint).map_or((0.0, 0.0), |link| {
-                let about = link.com.norm_squared() * link.mass * 2.0 / 3.0;
-                (link.mass, link.inertia.trace() / 3.0 + about)
-            }),
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Braking energy that is lost.
 
-use super::effect::{Channel, Effect, Form, Of};
+use super::effect::{Channel, Effect, Form, Scope};
 
 /// Braking energy that is lost.
 pub(super) const NO_REGENERATION: Effect = Effect {
     id: "no_regeneration",
     channel: Channel::Power,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Braking energy that is lost",
     law: "P = max(P, 0)",
     source: "docs/energy.md",

@@ -2,13 +2,13 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, free, linear, shape};
+use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
 /// Nonlinear viscous friction.
 pub(super) const NONLINEAR_VISCOUS: Effect = Effect {
     id: "nonlinear_viscous",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Nonlinear viscous friction",
     law: "τ = coefficient·|q̇|^exponent·s",
     source: "A. Waiboer, R. Aarts, B. Jonker, Velocity dependence of joint friction in robotic manipulators with gear transmissions, 2005",

@@ -3,13 +3,13 @@
 use crate::arm::robot::Model;
 
 use super::bodies::{about_centre, about_origin, added};
-use super::effect::{Channel, Effect, Form, Of, Published, free, linear};
+use super::effect::{Channel, Effect, Form, Published, Scope, free, linear};
 
 /// Payload.
 pub(super) const PAYLOAD: Effect = Effect {
     id: "payload",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Payload",
     law: "τ = Y_flange·(mass, mass·com, inertia)",
     source: "C. Atkeson, C. An, J. Hollerbach, Estimation of inertial parameters of manipulator loads and links, IJRR 5, 1986",

@@ -2,14 +2,14 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear};
 use super::waves::AMPLITUDE_AND_PHASE;
 
 /// Friction over the angle.
 pub(super) const POSITION_FRICTION: Effect = Effect {
     id: "position_friction",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Friction over the angle",
     law: "τ = amplitude·cos(q − phase)·s",
     source: "B. Armstrong-Hélouvry, Control of Machines with Friction, 1991: friction over position",

@@ -1,13 +1,13 @@
 //! Friction that builds up over a distance after each reversal.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, shape};
+use super::effect::{Channel, Effect, Form, Scope, bounded, every, shape};
 use super::motion::Motion;
 
 /// Pre-sliding.
 pub(super) const PRESLIDING: Effect = Effect {
     id: "presliding",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Pre-sliding",
     law: "dz/dq = (1 − s z)/distance, τ = coulomb·(z − s)",
     source: "P. Dahl, A solid friction model, 1968",
@@ -31,7 +31,7 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     let step = motion.step();
     let (senses, rates) = (&motion.senses[joint], &motion.rates[joint]);
     let mut z = senses.first().copied().unwrap_or(0.0);
-    let mut series = vec![0.0; motion.len()];
+    let mut series = vec![0.0; motion.rows()];
     // What was before the first row is known after one round.
     for _ in 0..if motion.closed { 2 } else { 1 } {
         let mut before = if motion.closed { rates.last() } else { rates.first() };
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn ways_do_not_depend_on_the_step() {
         for (first, last) in [(0.2, 0.5), (0.2, -0.5), (-0.1, 0.0), (0.0, 0.3)] {
-            let of =
+            let totals =
                 |count: usize| {
                     let at = |k: usize| first + (last - first) * k as f64 / count as f64;
                     let all = (0..count).flat_map(|k| paths(at(k), at(k + 1), 1.0 / count as f64));
@@ -73,7 +73,7 @@ mod tests {
                         if rate < 0.0 { [back + path, on] } else { [back, on + path] }
                     })
                 };
-            let [one, many] = [of(1), of(1000)];
+            let [one, many] = [totals(1), totals(1000)];
             for (one, many) in one.into_iter().zip(many) {
                 assert!((one - many).abs() < 1e-9, "{first} {last}: {one} {many}");
             }

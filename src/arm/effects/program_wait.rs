@@ -1,12 +1,12 @@
 //! A wait that the model does not know.
 
-use super::effect::{Channel, Effect, Form, Of, free};
+use super::effect::{Channel, Effect, Form, Scope, free};
 
 /// A wait that the model does not know.
 pub(super) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
     channel: Channel::Motion,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "A wait that the model does not know",
     law: "wait between two movements",
     source: "docs/controller.md",

@@ -1,4 +1,4 @@
-//! Series behind a delay or a lag, friction's jumps between rows among them.
+//! Response of a series to a delay or a lag, with the jumps of friction between rows.
 
 use super::motion::Motion;
 
@@ -6,12 +6,12 @@ use super::motion::Motion;
 const ROUNDS: usize = 2;
 /// Rows at rest that a reversal may take.
 const TURNING: isize = 6;
-/// Time constants after which nothing is left of a jump.
+/// Time constants after which a jump has settled.
 const SETTLED: f64 = 12.0;
 /// Least ratio of a time constant that counts to the interval of the rows.
 const LEAST: f64 = 1e-6;
 
-/// What a series goes through: a delay, then a pole \[s\].
+/// A delay, then a first-order lag \[s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response {
     /// Torques come so much later than positions \[s\].
@@ -21,8 +21,8 @@ pub struct Response {
 }
 
 impl Response {
-    /// A torque of a joint behind it. A jump at a reversal is where the motor stands still, not
-    /// spread over the rows beside it.
+    /// The response to a torque of a joint. A jump at a reversal lies where the motor stands still and
+    /// is not spread over the neighbouring rows.
     #[must_use]
     pub fn behind(&self, motion: &Motion<'_>, joint: usize, x: &[f64]) -> Vec<f64> {
         let mut late = self.of_lines(x, motion.step(), motion.closed);
@@ -35,19 +35,19 @@ impl Response {
         late
     }
 
-    /// What the torques of all joints differ by behind it, or those of joint `only`, from 1; 0
-    /// means all.
+    /// Difference that the response makes to the torques of all joints (`only` = 0), or of the joint
+    /// `only`, from 1.
     pub(super) fn added(&self, motion: &Motion<'_>, only: f64) -> Vec<(usize, Vec<f64>)> {
-        let of = |joint: usize, tau: &[f64]| -> Vec<f64> {
+        let difference = |joint: usize, tau: &[f64]| -> Vec<f64> {
             self.behind(motion, joint, tau).iter().zip(tau).map(|(late, x)| late - x).collect()
         };
         (0..motion.torque.len())
             .filter(|joint| only == 0.0 || *joint as f64 + 1.0 == only)
-            .map(|joint| (joint, of(joint, &motion.torque[joint])))
+            .map(|joint| (joint, difference(joint, &motion.torque[joint])))
             .collect()
     }
 
-    /// Behind it, on lines between rows.
+    /// The response to a series that is linear between rows.
     fn of_lines(&self, x: &[f64], step: f64, closed: bool) -> Vec<f64> {
         let late = if self.delay == 0.0 { x.to_vec() } else { later(x, self.delay / step, closed) };
         if self.lag > LEAST * step { lagged(&late, self.lag / step, closed) } else { late }
@@ -150,9 +150,8 @@ fn lagged(x: &[f64], lag: f64, closed: bool) -> Vec<f64> {
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-    use super::super::load;
     use super::*;
-    use crate::arm::robot::Model;
+    use crate::arm::robot::{Model, find};
 
     const STEP: f64 = 0.01;
     const ROWS: usize = 400;
@@ -181,7 +180,7 @@ mod tests {
     /// of an earlier moment.
     #[test]
     fn jumps_are_where_the_motor_turns_back() {
-        let model = load("IRB1600-6/1.45").unwrap();
+        let model = find("IRB1600-6/1.45").unwrap();
         let motion = motion(&model);
         let x: Vec<f64> = motion.t.iter().map(|t| torque(*t)).collect();
         let lag = 0.004;

@@ -3,16 +3,16 @@
 use crate::arm::robot::LawState;
 
 use super::effect::{
-    Channel, Coordinate, Effect, Form, Of, Role, Scale, Values, bounded, every, free, linear,
-    shaped,
+    Channel, Coordinate, Effect, Form, Role, Scope, Values, bounded, every, free, linear, shaped,
 };
+use super::scale::Scale;
 use super::waves::AMPLITUDE_AND_PHASE;
 
 /// Ripple.
 pub(super) const RIPPLE: Effect = Effect {
     id: "ripple",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Ripple",
     law: "τ = amplitude·cos(order·q − phase)",
     source: "C. Kennedy, J. Desai, Modeling and control of the Mitsubishi PA-10 robot arm harmonic drive system, IEEE T-Mech 10, 2005",

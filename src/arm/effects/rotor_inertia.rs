@@ -2,13 +2,13 @@
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
 /// Inertia of the rotor.
 pub(super) const ROTOR_INERTIA: Effect = Effect {
     id: "rotor_inertia",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Inertia of the rotor",
     law: "τ = inertia·q̈_motor",
     source: "M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters, IEEE T-RA 6, 1990: of axes 1 and 2 grouped with the links",

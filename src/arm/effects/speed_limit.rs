@@ -1,12 +1,12 @@
 //! Speed that is limited.
 
-use super::effect::{Channel, Effect, Form, Of, bounded};
+use super::effect::{Channel, Effect, Form, Scope, bounded};
 
 /// Speed that is limited.
 pub(super) const SPEED_LIMIT: Effect = Effect {
     id: "speed_limit",
     channel: Channel::Motion,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Speed that is limited",
     law: "speed × factor",
     source: "docs/controller.md",

@@ -2,13 +2,13 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, free, linear, shape};
+use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
 /// Stribeck friction.
 pub(super) const STRIBECK: Effect = Effect {
     id: "stribeck",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Stribeck friction",
     law: "τ = stiction·exp(−(q̇/velocity)²)·s",
     source: "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994",

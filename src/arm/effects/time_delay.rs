@@ -1,6 +1,8 @@
 //! Torques that are logged later than the positions.
 
-use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, bounded, every, shape, shaped};
+use super::effect::{
+    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+};
 use super::motion::Motion;
 use super::response::Response;
 
@@ -8,7 +10,7 @@ use super::response::Response;
 pub(super) const TIME_DELAY: Effect = Effect {
     id: "time_delay",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Delay",
     law: "τ = τ(t − delay), logged",
     source: "docs/identification.md",

@@ -1,12 +1,12 @@
 //! A torque constant or a gain of a current sensor that is not as stated.
 
-use super::effect::{Channel, Effect, Form, Of, bounded, every, linear};
+use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
 /// Torque constant.
 pub(super) const TORQUE_CONSTANT: Effect = Effect {
     id: "torque_constant",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Torque constant",
     law: "τ = (1 + error) τ",
     source: "M. Gautier, S. Briot, Global identification of drive gains parameters of robots using a known payload, ICRA 2011",

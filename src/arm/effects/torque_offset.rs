@@ -1,12 +1,12 @@
 //! A constant of amplifier or sensor, or another Coulomb friction forwards than backwards.
 
-use super::effect::{Channel, Effect, Form, Of, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
 /// Offset of the torque.
 pub(super) const TORQUE_OFFSET: Effect = Effect {
     id: "torque_offset",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Offset of the torque",
     law: "τ = offset",
     source: "B. Armstrong-Hélouvry et al., Automatica 30, 1994: asymmetric Coulomb friction is the same while a joint moves",

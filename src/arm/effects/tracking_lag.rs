@@ -1,12 +1,12 @@
 //! Lag of the servos.
 
-use super::effect::{Channel, Effect, Form, Of, free};
+use super::effect::{Channel, Effect, Form, Scope, free};
 
 /// Lag of the servos.
 pub(super) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",
     channel: Channel::Motion,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Lag of the servos",
     law: "q(t) = q_ref(t − lag)",
     source: "docs/controller.md",

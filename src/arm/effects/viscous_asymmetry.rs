@@ -2,13 +2,13 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, every, free, linear};
+use super::effect::{Channel, Effect, Form, Scope, Values, every, free, linear};
 
 /// Asymmetry of viscous friction.
 pub(super) const VISCOUS_ASYMMETRY: Effect = Effect {
     id: "viscous_asymmetry",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Asymmetry of viscous friction",
     law: "τ = asymmetry·|q̇|",
     source: "J. Hollerbach, W. Khalil, M. Gautier, Model identification, Springer Handbook of Robotics, 2016",

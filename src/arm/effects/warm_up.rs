@@ -2,13 +2,13 @@
 
 use crate::arm::robot::LawState;
 
-use super::effect::{Channel, Effect, Form, Of, Values, bounded, every, free, linear, shape};
+use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
 /// Warming up.
 pub(super) const WARM_UP: Effect = Effect {
     id: "warm_up",
     channel: Channel::Torque,
-    of: Of::Joint,
+    scope: Scope::Joint,
     title: "Warming up",
     law: "τ = (coulomb·s + viscous·q̇)·exp(−t/time_constant)",
     source: "A. Bittencourt, E. Wernholt, S. Sander-Tavallaey, T. Brogårdh, An extended friction model to capture load and temperature effects in robot joints, IROS 2010",

@@ -2,13 +2,13 @@
 
 use crate::arm::robot::Model;
 
-use super::effect::{Channel, Coordinate, Effect, Form, Of, Role, free, linear, shaped};
+use super::effect::{Channel, Coordinate, Effect, Form, Role, Scope, free, linear, shaped};
 
 /// Coupling of the wrist.
 pub(super) const WRIST_COUPLING: Effect = Effect {
     id: "wrist_coupling",
     channel: Channel::Torque,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Coupling of the wrist",
     law: "motor 6 turns with q̇₆ + coupling·q̇₅",
     source: "E. Villani/thanhndv212, figaroh examples: identification of the TX40",

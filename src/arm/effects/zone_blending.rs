@@ -1,12 +1,12 @@
 //! Corners that are cut more or less.
 
-use super::effect::{Channel, Effect, Form, Of, bounded};
+use super::effect::{Channel, Effect, Form, Scope, bounded};
 
 /// Corners that are cut more or less.
 pub(super) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",
     channel: Channel::Motion,
-    of: Of::Robot,
+    scope: Scope::Robot,
     title: "Corners that are cut more or less",
     law: "zone radius × factor",
     source: "docs/controller.md",

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::conf::Conf;
 
-/// Degrees from which on the digits are no longer worth reading.
+/// Degrees from which on angles are shown with an exponent.
 const HUGE: f64 = 1e9;
 
 fn degrees(angle: f64) -> String {

@@ -24,11 +24,11 @@ pub(super) struct Frames {
 
 impl Frames {
     pub(super) fn at(model: &Model, q: &[f64]) -> Frames {
-        Frames::of(model, &model.kinematics.rotations(q))
+        Frames::from_rotations(model, &model.kinematics.rotations(q))
     }
 
     /// With the rotation of each joint's frame in its parent's.
-    pub(super) fn of(model: &Model, rotations: &Rotations) -> Frames {
+    pub(super) fn from_rotations(model: &Model, rotations: &Rotations) -> Frames {
         let mut origin = [Vector3::zeros(); MAX_DOF];
         let mut axis = [Vector3::zeros(); MAX_DOF];
         let mut rotation = Matrix3::identity();

@@ -33,7 +33,7 @@ pub(super) fn twist(
     qd: &[f64],
     tool: &Isometry3<f64>,
 ) -> Vector6<f64> {
-    let frames = Frames::of(model, rotations);
+    let frames = Frames::from_rotations(model, rotations);
     let rates = model.kinematics.to_serial(qd);
     let tip = frames.point(model, &tool.translation.vector);
     let mut moving = Vector3::zeros();
@@ -46,19 +46,6 @@ pub(super) fn twist(
     Vector6::new(moving.x, moving.y, moving.z, turning.x, turning.y, turning.z)
 }
 
-/// Change of [`jacobian`] along the motion with joint velocities `qd`: J' with
-/// x'' = J q'' + J' q'. `qd` may be per second or per unit of a path, J' is
-/// then per the same.
-#[must_use]
-pub fn jacobian_dot<const N: usize>(
-    model: &Model,
-    q: &[f64; N],
-    qd: &[f64; N],
-    tool: &Isometry3<f64>,
-) -> SMatrix<f64, 6, N> {
-    rate_of(model, q, qd, Tip::Held(tool))
-}
-
 /// A point that a Jacobian is taken at.
 #[derive(Clone, Copy)]
 pub(super) enum Tip<'a> {
@@ -68,8 +55,9 @@ pub(super) enum Tip<'a> {
     Fixed(Vector3<f64>),
 }
 
-/// [`jacobian_dot`] at either kind of point.
-pub(super) fn rate_of<const N: usize>(
+/// Change of [`jacobian`] along the motion with joint velocities `qd`: J' with x'' = J q'' + J' q'.
+/// `qd` may be per second or per unit of a path, J' is then per the same.
+pub(super) fn jacobian_dot<const N: usize>(
     model: &Model,
     q: &[f64; N],
     qd: &[f64; N],

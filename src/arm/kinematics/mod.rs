@@ -5,6 +5,7 @@
 //! x forward; tool0 z out of the flange, x down when all joints are at zero.
 
 mod clearance;
+mod closed_form;
 mod conf;
 mod error;
 mod fk;
@@ -18,12 +19,12 @@ mod select;
 mod singularity;
 mod tcp;
 
-pub use clearance::{Body, Capsule, KeepOut, Nearest, Obstacle, Plane};
+pub use clearance::{Body, Capsule, KeepOut, Obstacle, Plane};
 pub use conf::{Conf, conf_of};
 pub use error::{IkError, LimitViolation, Side};
 pub use fk::fk;
 pub use inverse::ik_all;
-pub use jacobian::{jacobian, jacobian_dot};
+pub use jacobian::jacobian;
 pub use limits::limits_ok;
 pub use radical_inverse::radical_inverse;
 pub use select::{ik_conf, ik_near};

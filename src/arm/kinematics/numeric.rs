@@ -12,8 +12,8 @@ use nalgebra::{Isometry3, Matrix6, Vector6};
 
 use crate::arm::robot::Model;
 
+use super::closed_form::wrap;
 use super::fk::fk;
-use super::inverse::wrap;
 use super::jacobian::jacobian;
 use super::radical_inverse::radical_inverse;
 
@@ -28,7 +28,7 @@ const NEARLY_MET: f64 = 1e-9;
 /// Difference of angles below which two solutions are one \[rad\].
 const SAME: f64 = 1e-5;
 
-/// The solution of the pose that the steps from `start` lead to, if they do.
+/// The solution of the pose to which the steps from `start` converge, if they do.
 pub(super) fn refine(model: &Model, pose: &Isometry3<f64>, start: &[f64; 6]) -> Option<[f64; 6]> {
     let mut q = *start;
     let mut error = miss(model, pose, &q);
@@ -81,7 +81,7 @@ pub(super) fn add(found: &mut Vec<[f64; 6]>, q: &[f64; 6]) {
     }
 }
 
-/// What lacks to the pose: displacement over rotation vector, in the base frame.
+/// Error of the pose at `q`: displacement \[m\] over rotation vector \[rad\], in the base frame.
 fn miss(model: &Model, pose: &Isometry3<f64>, q: &[f64; 6]) -> Vector6<f64> {
     let now = fk(model, q);
     let linear = pose.translation.vector - now.translation.vector;

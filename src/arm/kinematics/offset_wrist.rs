@@ -11,7 +11,7 @@ use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::arm::robot::{Joint, Model, OffsetWrist};
 
-use super::inverse::{Arm, facings, forearm, to_joints};
+use super::closed_form::{Arm, facings, forearm, to_joints};
 use super::numeric::{add, refine};
 
 /// Places of q6 over a turn at which the arms are computed.

@@ -6,9 +6,10 @@ use nalgebra::Isometry3;
 
 use crate::arm::robot::{Coupling, Model};
 
+use super::closed_form::{Branch, Locked, near};
 use super::conf::{Conf, conf_of};
 use super::error::IkError;
-use super::inverse::{Branch, Locked, branches, near};
+use super::inverse::branches;
 use super::limits::limits_ok;
 use super::numeric::refine;
 

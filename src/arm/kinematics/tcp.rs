@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, Vector6};
 use crate::arm::robot::{Model, Rotations};
 
 use super::fk::fk;
-use super::jacobian::{Tip, jacobian, rate_of, twist};
+use super::jacobian::{Tip, jacobian, jacobian_dot, twist};
 
 /// Where the TCP is fixed. Its pose is seen from the other side: from the base frame where
 /// the robot holds the tool, from tool0 where the tool stands still and the robot holds the
@@ -89,7 +89,7 @@ impl Tcp {
         qd: &[f64; N],
     ) -> SMatrix<f64, 6, N> {
         match self {
-            Tcp::Held(tool) => rate_of(model, q, qd, Tip::Held(tool)),
+            Tcp::Held(tool) => jacobian_dot(model, q, qd, Tip::Held(tool)),
             Tcp::Stationary(tool) => {
                 // J = −Rᵀ J_b, where J_b is that of the point of the work at the tool, and
                 // R' = ω × R.
@@ -97,7 +97,7 @@ impl Tcp {
                 let into = flange.rotation.inverse().to_rotation_matrix().into_inner();
                 let own = jacobian(model, q, &(flange.inverse() * tool));
                 let turning = own.fixed_rows::<3>(3) * SVector::<f64, N>::from_column_slice(qd);
-                let rate = rate_of(model, q, qd, Tip::Fixed(tool.translation.vector));
+                let rate = jacobian_dot(model, q, qd, Tip::Fixed(tool.translation.vector));
                 turned(&(into * turning.cross_matrix()), &own) - turned(&into, &rate)
             }
         }

@@ -1,17 +1,17 @@
-//! Robots that are as plausible as a calibrated one: `[calibration]`.
+//! The draws of a calibrated robot: `[calibration]`.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 
-/// Most robots of a calibration.
+/// Largest number of robots of a calibration.
 const MOST: f64 = 4096.0;
-/// Latent numbers are standard normal: none lies beyond these.
+/// Largest size of a latent number, which is standard normal.
 const FARTHEST: f64 = 20.0;
 
-/// Draws that fit what was measured.
+/// Draws of the robot that fit the measured log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// How many.
+    /// Number of draws.
     pub robots: usize,
     /// Name of each latent number, and its difference from the model in each draw, in standard
     /// deviations of the estimate.

@@ -1,8 +1,6 @@
 //! The robots that come with the crate, one TOML file each.
 
 use super::error::RobotError;
-use super::load::resolve;
-use super::model::Model;
 use super::names::{Name, distance, nearest, nearest_kind};
 use super::tree::{self, Node};
 
@@ -91,17 +89,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     ROBOTS.iter().map(|(name, _)| *name)
 }
 
-/// The robot of the catalogue that `name` means; see the crate's list in
-/// [`names`]. Case, spaces and punctuation do not matter, `ROB1_1600_1.45_10` is
-/// understood, and payload or reach may be left out where only one robot fits.
-///
-/// # Errors
-/// No robot fits, or several do.
-pub fn find(name: &str) -> Result<Model, RobotError> {
-    Model::read(resolve(document(name)?, None, 0)?)
-}
-
-/// The document of that robot.
+/// The document of the robot that `name` means.
 pub(super) fn document(name: &str) -> Result<Node, RobotError> {
     let asked = Name::parse(name);
     let fits: Vec<_> = ROBOTS

@@ -1,8 +1,8 @@
-//! Why a robot could not be had.
+//! Errors of reading a robot.
 
 use thiserror::Error;
 
-/// Wrong input on the way to a [`Model`](super::Model).
+/// Wrong input of a [`Model`](super::Model).
 #[derive(Debug, Error)]
 pub enum RobotError {
     /// The catalogue has no such robot.
@@ -42,7 +42,7 @@ pub enum RobotError {
         /// The system's reason.
         reason: String,
     },
-    /// The robot that a file extends is not to be had.
+    /// The robot that a file extends cannot be read.
     #[error("{place}: extends = \"{name}\": {reason}")]
     Base {
         /// `file:line`.
@@ -66,7 +66,7 @@ pub enum RobotError {
         /// What is wrong with it and the way out.
         message: String,
     },
-    /// A controller's configuration that tells no robot.
+    /// A controller's configuration without a usable robot.
     #[error("{place}: {message}")]
     Configuration {
         /// `file`, or `file:line`.
@@ -91,10 +91,10 @@ pub enum RobotError {
         key: String,
         /// Its table.
         table: String,
-        /// What may stand there.
+        /// The keys of the table.
         known: Vec<String>,
     },
-    /// A key that must be there is not.
+    /// A required key is missing.
     #[error(
         "{place}: {table} lacks \"{key}\"; {}",
         .instead.as_ref().map_or("add it".into(), |i| format!(
@@ -108,7 +108,7 @@ pub enum RobotError {
         table: String,
         /// The missing key.
         key: String,
-        /// A key there that is written much like it.
+        /// A similar key of the table, if there is one.
         instead: Option<String>,
     },
     /// A value of another type than the key's.
@@ -118,7 +118,7 @@ pub enum RobotError {
         place: String,
         /// The key with its table.
         key: String,
-        /// What stands there.
+        /// The value found.
         found: String,
         /// What is expected.
         expected: String,
@@ -142,7 +142,7 @@ pub enum RobotError {
         place: String,
         /// The key with its table.
         key: String,
-        /// What stands there.
+        /// The value found.
         value: String,
         /// What it must be.
         must: String,

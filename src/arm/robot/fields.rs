@@ -1,5 +1,5 @@
-//! Typed reading of one table of a robot file. What is asked for is known,
-//! what is left at the end is an error.
+//! Typed reading of one table of a robot file. Keys that nobody asked for are an error at the
+//! end.
 
 use std::collections::BTreeMap;
 
@@ -142,7 +142,7 @@ impl Fields {
         self.entries.keys().cloned().collect()
     }
 
-    /// An error unless `value` is there.
+    /// The value, or an error that the key is missing.
     pub(super) fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, RobotError> {
         value.ok_or_else(|| RobotError::Missing {
             place: self.place(),

@@ -1,4 +1,4 @@
-//! Laws of torque that a model has beyond its own: those of effects.
+//! Torque laws that effects add to a model.
 
 /// The state that a law depends on.
 #[derive(Clone, Copy, Debug)]

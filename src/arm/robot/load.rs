@@ -29,7 +29,17 @@ pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     if path.is_file() {
         return Err(RobotError::Format { path: name_or_path.to_owned() });
     }
-    catalogue::find(name_or_path)
+    find(name_or_path)
+}
+
+/// The robot of the catalogue that `name` means; see the crate's list in
+/// [`names`](super::names). Case, spaces and punctuation do not matter, `ROB1_1600_1.45_10` is
+/// understood, and payload or reach may be left out where only one robot fits.
+///
+/// # Errors
+/// No robot fits, or several do.
+pub fn find(name: &str) -> Result<Model, RobotError> {
+    Model::read(resolve(catalogue::document(name)?, None, 0)?)
 }
 
 /// The robot of a Robot TOML text; `file` names it in messages, and `extends` can

@@ -9,11 +9,11 @@ use std::fmt::Write;
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
-use super::catalogue;
 use super::error::RobotError;
 use super::fields::{Accepts, LENGTH, TURN, is_turn};
 use super::limits::TCP_SPEED;
 use super::link::{Link, MASS};
+use super::load::find as find_robot;
 use super::system_parameters::{Entry, break_off, section};
 use super::toml_text::{list, pose, quoted};
 
@@ -45,7 +45,7 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
     configuration.check_whole()?;
     let (index, robot) = configuration.robot(unit)?;
     let kind = configuration.text(&robot, "use_robot_type", "ROBOT")?;
-    let model = catalogue::find(kind).map_err(|error| {
+    let model = find_robot(kind).map_err(|error| {
         configuration.error_at(robot.line_of("use_robot_type"), error.to_string())
     })?;
 

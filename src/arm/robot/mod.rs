@@ -14,6 +14,7 @@ mod error;
 mod fields;
 mod friction;
 mod geometry;
+mod geometry_file;
 mod law;
 mod limits;
 mod link;
@@ -37,17 +38,17 @@ mod wrist;
 mod write;
 
 pub use calibration::Calibration;
-pub use catalogue::{find, names};
+pub use catalogue::names;
 pub use controller::Controller;
 pub use drive::{Brakes, Drive, Sharing, Standstill};
 pub use effect::{EffectParameters, Given};
 pub use error::RobotError;
 pub use friction::{Friction, Stribeck};
-pub use geometry::{Coupling, Geometry, Joint, OffsetWrist, Opw, Rotations};
+pub use geometry::{Coupling, GRAVITY, Geometry, Joint, MAX_DOF, OffsetWrist, Opw, Rotations};
 pub use law::{Law, LawState};
 pub use limits::{Limits, PositionIf};
 pub use link::Link;
-pub use load::{from_toml, load};
+pub use load::{find, from_toml, load};
 pub use moc::import_moc;
 pub use model::Model;
 pub use motors::Motors;
@@ -60,6 +61,3 @@ pub use sensors::Sensors;
 pub use urdf::import_urdf;
 pub use wrist::Wrist;
 pub use write::to_toml;
-
-/// The largest number of joints a model may have.
-pub const MAX_DOF: usize = 7;

@@ -1,6 +1,5 @@
 //! The immutable model of one robot.
 
-use super::MAX_DOF;
 use super::calibration::Calibration;
 use super::controller::Controller;
 use super::drive::{Brakes, Drive, Standstill};
@@ -8,7 +7,7 @@ use super::effect::EffectParameters;
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::friction::Friction;
-use super::geometry::Geometry;
+use super::geometry::{Geometry, MAX_DOF};
 use super::law::Law;
 use super::limits::Limits;
 use super::link::{ArmLoad, Link};
@@ -156,58 +155,25 @@ impl Model {
 
         let limits = robot.table("limits")?;
         let limits = Limits::read(robot.required("limits", limits)?, dof, &mut origins)?;
-        let mut links: Vec<Link> = Vec::new();
-        let place = robot.place_of("link");
-        for table in robot.tables("link")? {
-            links.push(Link::read(table, &mut origins)?);
-        }
-        if !links.is_empty() && links.len() != dof {
-            return Err(RobotError::Length {
-                place,
-                key: "link".into(),
-                found: links.len(),
-                expected: format!("{dof}, one for each joint, or none"),
-            });
-        }
-        for table in robot.tables("arm_load")? {
-            let load = ArmLoad::read(table, dof, &mut origins)?;
-            if let Some(link) = links.get_mut(load.joint) {
-                *link = link.joined(&load.body);
-            }
-        }
-        let friction = match robot.table("friction")? {
-            Some(table) => Friction::read(table, dof, &mut origins)?,
-            None => Friction::none(dof),
-        };
-        let motors = match robot.table("motors")? {
-            Some(table) => Some(Motors::read(table, dof, &mut origins)?),
-            None => None,
-        };
-        let wrist = match robot.table("wrist")? {
-            Some(table) => Wrist::read(table, dof, &mut origins)?,
-            None => Wrist::uncoupled(),
-        };
-        let drive = match robot.table("drive")? {
-            Some(table) => Drive::read(table, &mut origins)?,
-            None => Drive::lossless(),
-        };
-        let brakes = match robot.table("brakes")? {
-            Some(table) => Some(Brakes::read(table, &mut origins)?),
-            None => None,
-        };
-        let standstill = match robot.table("standstill")? {
-            Some(table) => Standstill::read(table, dof, &mut origins)?,
-            None => Standstill::none(dof),
-        };
-        let controller = match robot.table("controller")? {
-            Some(table) => Controller::read(table, dof, &mut origins)?,
-            None => Controller::default(),
-        };
-        let effects = match robot.table("effects")? {
-            Some(table) => EffectParameters::read_all(table, dof, &mut origins)?,
-            None => Vec::new(),
-        };
-        let calibration = robot.table("calibration")?.map(Calibration::read).transpose()?;
+        let links = read_links(&mut robot, dof, &mut origins)?;
+        let friction = part(&mut robot, "friction", |t| Friction::read(t, dof, &mut origins))?
+            .unwrap_or_else(|| Friction::none(dof));
+        let motors = part(&mut robot, "motors", |t| Motors::read(t, dof, &mut origins))?;
+        let wrist = part(&mut robot, "wrist", |t| Wrist::read(t, dof, &mut origins))?
+            .unwrap_or_else(Wrist::uncoupled);
+        let drive = part(&mut robot, "drive", |t| Drive::read(t, &mut origins))?
+            .unwrap_or_else(Drive::lossless);
+        let brakes = part(&mut robot, "brakes", |t| Brakes::read(t, &mut origins))?;
+        let standstill =
+            part(&mut robot, "standstill", |t| Standstill::read(t, dof, &mut origins))?
+                .unwrap_or_else(|| Standstill::none(dof));
+        let controller =
+            part(&mut robot, "controller", |t| Controller::read(t, dof, &mut origins))?
+                .unwrap_or_default();
+        let effects =
+            part(&mut robot, "effects", |t| EffectParameters::read_all(t, dof, &mut origins))?
+                .unwrap_or_default();
+        let calibration = part(&mut robot, "calibration", Calibration::read)?;
         // How an identification came to its numbers is for people; nothing is computed from it.
         robot.take("identification");
         origins.extend(robot.finish()?);
@@ -235,4 +201,40 @@ impl Model {
             origins,
         })
     }
+}
+
+/// A part of a robot in a table of its own, where the table is there.
+fn part<T>(
+    robot: &mut Fields,
+    key: &str,
+    read: impl FnOnce(Fields) -> Result<T, RobotError>,
+) -> Result<Option<T>, RobotError> {
+    robot.table(key)?.map(read).transpose()
+}
+
+/// The links with the arm loads mounted on them; none, or one for each joint.
+fn read_links(
+    robot: &mut Fields,
+    dof: usize,
+    origins: &mut Vec<Origin>,
+) -> Result<Vec<Link>, RobotError> {
+    let place = robot.place_of("link");
+    let tables = robot.tables("link")?.into_iter();
+    let mut links =
+        tables.map(|table| Link::read(table, origins)).collect::<Result<Vec<_>, _>>()?;
+    if !links.is_empty() && links.len() != dof {
+        return Err(RobotError::Length {
+            place,
+            key: "link".into(),
+            found: links.len(),
+            expected: format!("{dof}, one for each joint, or none"),
+        });
+    }
+    for table in robot.tables("arm_load")? {
+        let load = ArmLoad::read(table, dof, origins)?;
+        if let Some(link) = links.get_mut(load.joint) {
+            *link = link.joined(&load.body);
+        }
+    }
+    Ok(links)
 }

@@ -3,6 +3,8 @@
 //! `IRB 1600-10/1.45`, `irb1600_10_145` and the controller's `ROB1_1600_1.45_10`
 //! are one robot: a type, and a payload and a reach, of which one may be missing.
 
+use strsim::osa_distance;
+
 /// Largest share of letters that may differ in a suggestion.
 const NEAR: f64 = 0.5;
 
@@ -118,18 +120,16 @@ pub(super) fn nearest_kind(asked: &Name, known: impl Iterator<Item = Name>) -> O
     nearest(&asked.kind, kinds.iter().map(String::as_str)).map(str::to_owned)
 }
 
-/// Letters by which two names differ.
+/// Letters to insert, delete, replace or exchange with their neighbour to make one name the other.
 pub(super) fn distance(a: &str, b: &str) -> usize {
-    edit_distance(&compact(a), &compact(b))
+    osa_distance(&compact(a), &compact(b))
 }
 
 /// The name among `known` that is nearest to `text`, if one is near.
 pub fn nearest<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let asked = compact(text);
-    let (distance, name) = known
-        .map(|name| (edit_distance(&asked, &compact(name)), name))
-        .min_by_key(|(distance, _)| *distance)?;
-    let longest = asked.len().max(compact(name).len());
+    let (distance, name) =
+        known.map(|name| (distance(text, name), name)).min_by_key(|(distance, _)| *distance)?;
+    let longest = [text, name].map(|text| compact(text).chars().count()).into_iter().max()?;
     (distance as f64 <= NEAR * longest as f64).then_some(name)
 }
 
@@ -165,25 +165,6 @@ fn reach(text: &str) -> Option<i64> {
     Some((metres * 1e4).round() as i64)
 }
 
-fn compact(text: &str) -> Vec<char> {
+fn compact(text: &str) -> String {
     text.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect()
-}
-
-/// Letters to insert, delete, replace or exchange with their neighbour.
-fn edit_distance(a: &[char], b: &[char]) -> usize {
-    let mut before: Vec<usize> = Vec::new();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut next = vec![i + 1];
-        for (j, y) in b.iter().enumerate() {
-            let replaced = row[j] + usize::from(x != y);
-            let mut least = replaced.min(row[j + 1] + 1).min(next[j] + 1);
-            if i > 0 && j > 0 && a[i - 1] == *y && b[j - 1] == *x {
-                least = least.min(before[j - 1] + 1);
-            }
-            next.push(least);
-        }
-        before = std::mem::replace(&mut row, next);
-    }
-    row[b.len()]
 }

@@ -1,4 +1,4 @@
-//! Figures that no robot has, though each may stand in a file: most often wrong units.
+//! Values that no robot has, most often because of wrong units.
 
 use super::fields::is_endless;
 use super::link::Link;
@@ -15,7 +15,7 @@ const FARTHEST_TURN: f64 = 13.0;
 /// Length of the longest chain of joints \[m\].
 const LONGEST: f64 = 10.0;
 
-/// What is not plausible of a robot, each in words with the way out.
+/// Messages about the implausible values of a robot, each with a remedy.
 #[must_use]
 pub fn implausible(model: &Model) -> Vec<String> {
     let mut found = Vec::new();
@@ -36,8 +36,8 @@ pub fn implausible(model: &Model) -> Vec<String> {
         }
     }
     for joint in 0..model.dof {
-        let of = |list: &Option<Vec<f64>>| list.as_ref().and_then(|l| l.get(joint)).copied();
-        let (speed, acceleration) = (of(&limits.velocity), of(&limits.acceleration));
+        let figure = |list: &Option<Vec<f64>>| list.as_ref().and_then(|l| l.get(joint)).copied();
+        let (speed, acceleration) = (figure(&limits.velocity), figure(&limits.acceleration));
         if let Some(speed) = speed.filter(|speed| *speed > FASTEST) {
             found.push(format!(
                 "limits.velocity of joint {}: {speed} rad/s are {:.0} deg/s; give rad/s",

@@ -26,7 +26,7 @@ pub struct PoseAcceleration {
     pub axis_3: [f64; 3],
 }
 
-/// What an axis can do in a pose.
+/// Acceleration of an axis in a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capability {
     /// Largest acceleration without weight \[rad/s²\].

@@ -42,15 +42,15 @@ impl fmt::Display for Provenance {
 /// The origin of one number or list of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
-    /// The table it stands in, such as `limits` or `link 3`.
+    /// Its table, such as `limits` or `link 3`.
     pub table: String,
     /// Its key, such as `torque`.
     pub key: String,
     /// How it is known; `None` where the file does not say.
     pub provenance: Option<Provenance>,
-    /// Who says so; `None` where the file does not say.
+    /// The source; `None` where the file does not say.
     pub source: Option<String>,
-    /// Standard deviation of each number, in its unit, or one for all; `None` where nobody says.
+    /// Standard deviation of each number, in its unit, or one for all; `None` where the file states none.
     pub sd: Option<Vec<f64>>,
 }
 

@@ -91,8 +91,8 @@ impl fmt::Display for Lack {
 
 /// What the robot lacks for one use; nothing where it can be used.
 #[must_use]
-pub fn lacking(model: &Model, of: Use) -> Vec<Lack> {
-    let needs: &[Lack] = match of {
+pub fn lacking(model: &Model, purpose: Use) -> Vec<Lack> {
+    let needs: &[Lack] = match purpose {
         // Accelerations are assumed where there are none.
         Use::Simulate => &[Lack::SixJoints, Lack::Speeds],
         Use::Excite => &[Lack::SixJoints, Lack::Speeds, Lack::Accelerations],
@@ -131,18 +131,20 @@ fn lacks(model: &Model, what: Lack) -> bool {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotReady {
     /// Another number of joints.
-    #[error("{robot} has {joints} joints; {of} is for robots with 6: name another with --robot")]
+    #[error(
+        "{robot} has {joints} joints; {purpose} is for robots with 6: name another with --robot"
+    )]
     Joints {
         /// The robot.
         robot: String,
         /// Its joints.
         joints: usize,
         /// What for.
-        of: Use,
+        purpose: Use,
     },
     /// Missing figures.
     #[error(
-        "{robot} has no {}: {of} needs {}; give a robot file that adds what is missing \
+        "{robot} has no {}: {purpose} needs {}; give a robot file that adds what is missing \
          (--robot FILE.toml with extends = \"{base}\")",
         words(lacks), if lacks.len() == 1 { "it" } else { "them" }
     )]
@@ -154,7 +156,7 @@ pub enum NotReady {
         /// What it lacks.
         lacks: Vec<Lack>,
         /// What for.
-        of: Use,
+        purpose: Use,
     },
 }
 
@@ -162,17 +164,17 @@ pub enum NotReady {
 ///
 /// # Errors
 /// What is missing, and how it can be given.
-pub fn ready(model: &Model, of: Use) -> Result<(), NotReady> {
-    let lacks = lacking(model, of);
+pub fn ready(model: &Model, purpose: Use) -> Result<(), NotReady> {
+    let lacks = lacking(model, purpose);
     let robot = model.name.clone();
     if lacks.contains(&Lack::SixJoints) {
-        return Err(NotReady::Joints { robot, joints: model.dof, of });
+        return Err(NotReady::Joints { robot, joints: model.dof, purpose });
     }
     if lacks.is_empty() {
         return Ok(());
     }
     let base = model.file.clone().unwrap_or_else(|| robot.clone());
-    Err(NotReady::Figures { robot, base, lacks, of })
+    Err(NotReady::Figures { robot, base, lacks, purpose })
 }
 
 fn words(lacks: &[Lack]) -> String {

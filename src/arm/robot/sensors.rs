@@ -1,6 +1,6 @@
-//! How a log differs from the robot itself.
+//! Errors of the logged positions and torques.
 
-/// Differences that a diagnosis found; a log of the robot has them, the robot has not.
+/// Differences between logged and true values that a diagnosis found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensors {
     /// True minus logged position of each joint \[rad\].

@@ -7,10 +7,15 @@ use nalgebra::Isometry3;
 /// Below this cosine the pitch is a quarter turn, and roll and yaw are one angle.
 const UPRIGHT: f64 = 1e-9;
 
-/// Numbers in the shortest form that reads back as the same.
-pub(super) fn list(values: &[f64]) -> String {
+/// A number in the shortest form that reads back as the same.
+pub(super) fn number(value: f64) -> String {
     // Adding 0 takes the sign off a zero.
-    let values: Vec<String> = values.iter().map(|value| format!("{:?}", value + 0.0)).collect();
+    format!("{:?}", value + 0.0)
+}
+
+/// Numbers in that form.
+pub(super) fn list(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("[{}]", values.join(", "))
 }
 
@@ -30,8 +35,8 @@ pub(super) fn quoted(text: &str) -> String {
     quoted
 }
 
-/// The keys `origin` and `rpy` of a pose.
-pub(super) fn pose(pose: &Isometry3<f64>) -> String {
+/// The entries `origin` \[m\] and `rpy` \[rad\] of a pose.
+pub(super) fn pose_entries(pose: &Isometry3<f64>) -> [(&'static str, String); 2] {
     let r = pose.rotation.to_rotation_matrix();
     let level = r[(0, 0)].hypot(r[(1, 0)]);
     let pitch = (-r[(2, 0)]).atan2(level);
@@ -40,9 +45,10 @@ pub(super) fn pose(pose: &Isometry3<f64>) -> String {
     } else {
         (r[(2, 1)].atan2(r[(2, 2)]), r[(1, 0)].atan2(r[(0, 0)]))
     };
-    format!(
-        "origin = {}\nrpy = {}\n",
-        list(pose.translation.vector.as_slice()),
-        list(&[roll, pitch, yaw])
-    )
+    [("origin", list(pose.translation.vector.as_slice())), ("rpy", list(&[roll, pitch, yaw]))]
+}
+
+/// The lines of these entries.
+pub(super) fn pose(pose: &Isometry3<f64>) -> String {
+    pose_entries(pose).map(|(key, value)| format!("{key} = {value}\n")).concat()
 }

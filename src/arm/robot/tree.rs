@@ -14,7 +14,7 @@ use super::provenance::Provenance;
 /// Depth of nesting that a robot file may have; the format itself needs four.
 const MAX_DEPTH: usize = 16;
 
-/// Keys that say the same in two ways: an overlay's one replaces the other too.
+/// Alternative keys of one quantity: a key of an overlay replaces its alternative, too.
 const ALTERNATIVES: [[&str; 2]; 1] = [["loss_constant", "resistance"]];
 
 /// A line of a file.

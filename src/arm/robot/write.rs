@@ -9,7 +9,7 @@ use super::effect::Given;
 use super::geometry::{Coupling, Joint};
 use super::model::Model;
 use super::provenance::{Origin, Provenance};
-use super::toml_text::{list, pose, quoted};
+use super::toml_text::{list, number, pose_entries, quoted};
 
 /// The text of a model; reading it gives the same one.
 #[must_use]
@@ -40,54 +40,12 @@ pub fn to_toml(model: &Model) -> String {
         );
     }
     friction(model, &mut out);
-    if let Some(motors) = &model.motors {
-        let mut entries = vec![("ratio", list(&motors.ratio))];
-        entries.extend(motors.torque_constant.as_ref().map(|x| ("torque_constant", list(x))));
-        entries.push(("rotor_inertia", list(&motors.rotor_inertia)));
-        entries.push(("loss_constant", list(&motors.loss_constant)));
-        entries.extend(motors.peak_current.as_ref().map(|x| ("peak_current", list(x))));
-        entries.extend(motors.rated_current.as_ref().map(|x| ("rated_current", list(x))));
-        out.table("[motors]", "motors", &entries);
-    }
+    motors(model, &mut out);
     if model.wrist.coupling != 0.0 {
         out.table("[wrist]", "wrist", &[("coupling", number(model.wrist.coupling))]);
     }
     power(model, &mut out);
-    for effect in &model.effects {
-        let table = format!("effects.{}", effect.id);
-        let entries: Vec<(&str, String)> = effect
-            .values
-            .iter()
-            .map(|(name, given)| {
-                let value = match given {
-                    Given::Robot(value) => number(*value),
-                    Given::Joints(values) => list(values),
-                };
-                (name.as_str(), value)
-            })
-            .collect();
-        out.table(&format!("[{table}]"), &table, &entries);
-    }
-    // Those of the log are in the model's numbers.
-    let sensors = &model.sensors;
-    let (inertia, viscous) = (&sensors.apparent_inertia, &sensors.apparent_viscous);
-    for (id, parameters) in [
-        ("apparent_torque", vec![("inertia", inertia), ("viscous", viscous)]),
-        ("encoder_offset", vec![("offset", &sensors.position_offset)]),
-        ("torque_offset", vec![("offset", &sensors.torque_offset)]),
-        ("torque_constant", vec![("error", &sensors.torque_error)]),
-    ] {
-        let given = |values: &Vec<f64>| values.iter().any(|value| *value != 0.0);
-        let entries: Vec<(&str, String)> = parameters
-            .into_iter()
-            .filter(|(_, values)| given(values))
-            .map(|(key, values)| (key, list(values)))
-            .collect();
-        if !entries.is_empty() {
-            let table = format!("effects.{id}");
-            out.table(&format!("[{table}]"), &table, &entries);
-        }
-    }
+    effects(model, &mut out);
     if let Some(calibration) = &model.calibration {
         let _ = writeln!(out.text, "\n[calibration]\nrobots = {}", calibration.robots);
         let _ = writeln!(out.text, "\n[calibration.draws]");
@@ -108,8 +66,8 @@ impl Writer<'_> {
     fn table(&mut self, header: &str, name: &str, entries: &[(&str, String)]) {
         let origins = self.origins;
         let origin = |key: &str| {
-            let of = origins.iter().find(|o| o.table == name && o.key == key);
-            of.map_or((None, None), |o| (o.provenance, o.source.as_deref()))
+            let found = origins.iter().find(|o| o.table == name && o.key == key);
+            found.map_or((None, None), |o| (o.provenance, o.source.as_deref()))
         };
         let first = entries.first().map_or((None, None), |(key, _)| origin(key));
         let shared = entries.iter().all(|(key, _)| origin(key) == first);
@@ -130,19 +88,14 @@ impl Writer<'_> {
         }
     }
 
-    fn origin(&mut self, prefix: &str, of: (Option<Provenance>, Option<&str>)) {
-        if let Some(source) = of.1 {
+    fn origin(&mut self, prefix: &str, (provenance, source): (Option<Provenance>, Option<&str>)) {
+        if let Some(source) = source {
             let _ = writeln!(self.text, "{prefix}source = {}", quoted(source));
         }
-        if let Some(provenance) = of.0 {
+        if let Some(provenance) = provenance {
             let _ = writeln!(self.text, "{prefix}provenance = \"{provenance}\"");
         }
     }
-}
-
-fn number(x: f64) -> String {
-    // Adding 0 takes the sign off a zero.
-    format!("{:?}", x + 0.0)
 }
 
 fn geometry(model: &Model, out: &mut Writer<'_>) {
@@ -151,7 +104,7 @@ fn geometry(model: &Model, out: &mut Writer<'_>) {
         out.table("[kinematics]", "kinematics", &[("coupling", quoted("parallelogram"))]);
     }
     if geometry.base != Isometry3::identity() {
-        out.table("[kinematics.base]", "kinematics.base", &placed(&geometry.base));
+        out.table("[kinematics.base]", "kinematics.base", &pose_entries(&geometry.base));
     }
     // An OPW form that was recognised in a chain has rounding errors, the chain has none.
     let as_opw = geometry.opw.as_ref().filter(|opw| {
@@ -168,10 +121,10 @@ fn geometry(model: &Model, out: &mut Writer<'_>) {
         return;
     }
     if geometry.flange != Isometry3::identity() {
-        out.table("[kinematics.flange]", "kinematics.flange", &placed(&geometry.flange));
+        out.table("[kinematics.flange]", "kinematics.flange", &pose_entries(&geometry.flange));
     }
     for (i, joint) in geometry.joints.iter().enumerate() {
-        let mut entries = placed(&frame(joint));
+        let mut entries = pose_entries(&frame(joint)).to_vec();
         entries.push(("axis", list(joint.axis.as_slice())));
         out.table("[[joint]]", &format!("joint {}", i + 1), &entries);
     }
@@ -182,16 +135,6 @@ fn frame(joint: &Joint) -> Isometry3<f64> {
         Translation3::from(joint.translation),
         UnitQuaternion::from_rotation_matrix(&joint.rotation),
     )
-}
-
-/// The keys `origin` and `rpy`.
-fn placed(at: &Isometry3<f64>) -> Vec<(&'static str, String)> {
-    let text = pose(at);
-    let value = |key: &str| {
-        let line = text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));
-        line.unwrap_or_default().to_owned()
-    };
-    vec![("origin", value("origin")), ("rpy", value("rpy"))]
 }
 
 fn limits(model: &Model, out: &mut Writer<'_>) {
@@ -236,6 +179,55 @@ fn friction(model: &Model, out: &mut Writer<'_>) {
     ] {
         if let Some(values) = values {
             out.table(&format!("[{table}]"), table, &[(key, list(values))]);
+        }
+    }
+}
+
+fn motors(model: &Model, out: &mut Writer<'_>) {
+    let Some(motors) = &model.motors else { return };
+    let mut entries = vec![("ratio", list(&motors.ratio))];
+    entries.extend(motors.torque_constant.as_ref().map(|x| ("torque_constant", list(x))));
+    entries.push(("rotor_inertia", list(&motors.rotor_inertia)));
+    entries.push(("loss_constant", list(&motors.loss_constant)));
+    entries.extend(motors.peak_current.as_ref().map(|x| ("peak_current", list(x))));
+    entries.extend(motors.rated_current.as_ref().map(|x| ("rated_current", list(x))));
+    out.table("[motors]", "motors", &entries);
+}
+
+fn effects(model: &Model, out: &mut Writer<'_>) {
+    for effect in &model.effects {
+        let table = format!("effects.{}", effect.id);
+        let entries: Vec<(&str, String)> = effect
+            .values
+            .iter()
+            .map(|(name, given)| {
+                let value = match given {
+                    Given::Robot(value) => number(*value),
+                    Given::Joints(values) => list(values),
+                };
+                (name.as_str(), value)
+            })
+            .collect();
+        out.table(&format!("[{table}]"), &table, &entries);
+    }
+    // Those of the log are in the model's numbers.
+    let sensors = &model.sensors;
+    let (inertia, viscous) = (&sensors.apparent_inertia, &sensors.apparent_viscous);
+    for (id, parameters) in [
+        ("apparent_torque", vec![("inertia", inertia), ("viscous", viscous)]),
+        ("encoder_offset", vec![("offset", &sensors.position_offset)]),
+        ("torque_offset", vec![("offset", &sensors.torque_offset)]),
+        ("torque_constant", vec![("error", &sensors.torque_error)]),
+    ] {
+        let given = |values: &Vec<f64>| values.iter().any(|value| *value != 0.0);
+        let entries: Vec<(&str, String)> = parameters
+            .into_iter()
+            .filter(|(_, values)| given(values))
+            .map(|(key, values)| (key, list(values)))
+            .collect();
+        if !entries.is_empty() {
+            let table = format!("effects.{id}");
+            out.table(&format!("[{table}]"), &table, &entries);
         }
     }
 }

@@ -121,8 +121,8 @@ pub fn calibrate(
     }
     let before = plausibility(model, simulation, &account(model, simulation));
     let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
-    let spread = Spread::of(model);
-    let own = Changes::of_one(model, &Plausible::of(model));
+    let spread = Spread::new(model);
+    let own = Changes::of_one(model, &Plausible::nominal(model));
     let cycle = Cycle::new(model, simulation)?;
     let rough = Folded::new(model, &cycle, log, torques)?;
     let data = Data::new(&rough.along, &rough.windows);

@@ -10,8 +10,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
 use crate::arm::dynamics::{
-    BaseParameters, Load, Parameters, RIGID, base_parameters, base_parameters_among,
-    base_parameters_at_rest,
+    BaseParameters, Load, RIGID, base_parameters, base_parameters_among, base_parameters_at_rest,
 };
 use crate::arm::kinematics::{Body, Obstacle};
 use crate::arm::robot::Model;
@@ -219,10 +218,10 @@ impl<'a> Problem<'a> {
             limits.acceleration.as_ref().ok_or_else(|| lacks("joint accelerations"))?;
         let n = model.dof;
         let base = match settings.focus {
-            Focus::All => base_parameters(model, Parameters::WithJoints),
+            Focus::All => base_parameters(model),
             Focus::Payload => {
                 let last: Vec<usize> = (RIGID * (n - 1)..RIGID * n).collect();
-                base_parameters_among(model, Parameters::WithJoints, &last)
+                base_parameters_among(model, &last)
             }
             Focus::Gravity => {
                 // First moments, masses, Coulomb friction, offsets: what weight and the sense of
@@ -233,7 +232,7 @@ impl<'a> Problem<'a> {
                     [first + 2, first + 3]
                 });
                 let among: Vec<usize> = weights.chain(joints).collect();
-                base_parameters_at_rest(model, Parameters::WithJoints, &among)
+                base_parameters_at_rest(model, &among)
             }
         };
         let fastest = settings.harmonics.iter().copied().max().unwrap_or(1);

@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::arm::dynamics::{JOINT, Load, Parameters, RIGID, link_parameters, parameters};
+use crate::arm::dynamics::{JOINT, Load, RIGID, link_parameters, parameters};
 use crate::arm::robot::{Link, Model};
 
 use super::fit::root_mean;
@@ -53,7 +53,7 @@ pub fn by_descent(guess: &Model, found: &Identified) -> Option<Descent> {
         return None;
     }
     let links: Vec<Link> = (0..n).map(|joint| first_guess(guess, joint)).collect();
-    let all = parameters(guess, &Load::none(), Parameters::WithJoints);
+    let all = parameters(guess, &Load::none());
     let joints = all.get(RIGID * n..).map_or_else(|| vec![0.0; JOINT * n], <[f64]>::to_vec);
     // The base parameters as a linear function of all parameters.
     let mut unit = vec![0.0; found.among.len()];

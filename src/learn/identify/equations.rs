@@ -7,8 +7,7 @@
 //! their band.
 
 use crate::arm::dynamics::{
-    BaseParameters, Data, JOINT, Load, Parameters, RIGID, Regressor, motor_rates, regressor, rnea,
-    torque,
+    BaseParameters, Data, JOINT, Load, RIGID, Regressor, motor_rates, regressor, rnea, torque,
 };
 use crate::arm::robot::{MAX_DOF, Model};
 use crate::learn::log::LowPass;
@@ -255,7 +254,6 @@ pub(super) fn thinning(step: f64, cutoff: f64) -> usize {
 /// The regressor at one state, by joint and parameter.
 struct Rows<'a> {
     model: &'a Model,
-    of: Parameters,
     regressor: Regressor,
     data: Data,
     /// Coefficients of the parameters of each motor.
@@ -275,7 +273,6 @@ impl Rows<'_> {
         }
         Rows {
             model,
-            of: equations.base.of,
             regressor: Regressor::new(),
             data: Data::new(),
             motors: [[0.0; JOINT]; MAX_DOF],
@@ -285,14 +282,11 @@ impl Rows<'_> {
 
     fn write(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) {
         regressor(self.model, &mut self.regressor, q, qd, qdd);
-        if self.of == Parameters::WithJoints {
-            let (rates, accelerations) =
-                (motor_rates(self.model, qd), motor_rates(self.model, qdd));
-            for (motor, row) in self.motors.iter_mut().enumerate() {
-                let rate = rates[motor];
-                let sign = if rate == 0.0 { 0.0 } else { rate.signum() };
-                *row = [accelerations[motor], rate, sign, 1.0];
-            }
+        let (rates, accelerations) = (motor_rates(self.model, qd), motor_rates(self.model, qdd));
+        for (motor, row) in self.motors.iter_mut().enumerate() {
+            let rate = rates[motor];
+            let sign = if rate == 0.0 { 0.0 } else { rate.signum() };
+            *row = [accelerations[motor], rate, sign, 1.0];
         }
     }
 

@@ -21,7 +21,7 @@ pub struct Identified {
     pub fit: Fit,
     /// All free parameters of the model, in the order of `among`.
     pub parameters: Vec<f64>,
-    /// Their indices among all, as [`Parameters::name`] counts them.
+    /// Their indices among all, as [`parameter_name`](crate::arm::dynamics::parameter_name) counts them.
     pub among: Vec<usize>,
     /// The coupling of the wrist that was found in the data, where the model stated none.
     pub coupling: Option<f64>,

@@ -179,7 +179,7 @@ fn pieces(
     if free == Free::All {
         pieces.extend((0..n).map(|joint| Piece::Body(prior(model, joint))));
     }
-    let nominal = parameters(model, &Load::none(), Parameters::WithJoints);
+    let nominal = parameters(model, &Load::none());
     for index in among.iter().filter(|index| **index >= rigid) {
         // Value and standard deviation, where this parameter is determined by itself.
         let estimate = base.independent.iter().position(|known| known == index).and_then(|row| {

@@ -34,7 +34,7 @@ pub fn identify(
     }
     let (among, known) = free_parameters(settings.free, model.dof);
     let mut nominal = model.clone();
-    let among_base = |model: &Model| base_parameters_among(model, Parameters::WithJoints, &among);
+    let among_base = |model: &Model| base_parameters_among(model, &among);
     let mut coupling = None;
     if settings.free == Free::All && nominal.wrist.coupling == 0.0 {
         coupling = wrist_coupling(&nominal, &among_base(&nominal), training);

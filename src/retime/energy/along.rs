@@ -120,7 +120,7 @@ impl<'a> Along<'a> {
             let power = power_at(model, &mut data, load, state);
             supplies.push(supply_w(model, &mut data, load, state, &power));
         }
-        let own = Changes::of_one(model, &Plausible::of(model));
+        let own = Changes::of_one(model, &Plausible::nominal(model));
         let (terms, _) = along.terms(&own);
         along.rest_w = supplies.iter().zip(terms).map(|(all, term)| all - term).collect();
         along

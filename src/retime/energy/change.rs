@@ -30,7 +30,7 @@ pub(super) struct ChangesOfJoint {
 impl Changes {
     /// Of plausible robots.
     pub fn of(model: &Model, robots: &[Plausible]) -> Changes {
-        let own = Plausible::of(model);
+        let own = Plausible::nominal(model);
         let parameters = |robot: &Plausible| -> Vec<[f64; RIGID]> {
             robot.links.iter().map(link_parameters).collect()
         };

@@ -78,7 +78,7 @@ impl Robots {
         if !model.has_dynamics() {
             return None;
         }
-        let spread = Spread::of(model);
+        let spread = Spread::new(model);
         if spread.latents.is_empty() {
             return None;
         }

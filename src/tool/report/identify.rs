@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use crate::arm::dynamics::{JOINT, RIGID};
+use crate::arm::dynamics::{JOINT, RIGID, parameter_name};
 use crate::arm::robot::to_toml;
 use crate::learn::identify::{
     Descent, Grade, Identified, Misses, Source, Whiteness, collinear, essential,
@@ -161,7 +161,7 @@ pub fn undetermined(found: &Identified) -> Vec<Value> {
             } else {
                 let with: Vec<String> = parts
                     .iter()
-                    .map(|(of, _)| found.base.of.name(found.base.dof, found.base.independent[*of]))
+                    .map(|(of, _)| parameter_name(found.base.dof, found.base.independent[*of]))
                     .collect();
                 format!("the motion does not tell it from {}", with.join(", "))
             };

@@ -4,6 +4,6 @@ mod body;
 mod capsule;
 mod obstacle;
 
-pub use body::{Body, Nearest};
+pub use body::Body;
 pub use capsule::Capsule;
 pub use obstacle::{KeepOut, Obstacle, Plane};

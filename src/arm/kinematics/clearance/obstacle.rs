@@ -1,4 +1,4 @@
-//! What an arm has to keep clear of.
+//! Obstacles of an arm.
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
@@ -6,9 +6,6 @@ use super::capsule::Capsule;
 
 /// Steps of the search along a line: the golden section leaves 10⁻¹⁰ of it.
 const STEPS: usize = 48;
-
-/// Share of a line at which the faces on either side of a point are told apart.
-const BESIDE: f64 = 1e-6;
 
 /// A half space that every point of arm and tool stays in: n · x ≥ d, in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,24 +25,13 @@ pub struct KeepOut {
     pub half: Vector3<f64>,
 }
 
-/// Either of them.
+/// A plane or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle {
     /// What lies beyond a plane.
     Plane(Plane),
     /// A box.
     KeepOut(KeepOut),
-}
-
-/// A point of a capsule's line that is nearest to an obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Witness {
-    /// Distance from the obstacle, negative inside \[m\].
-    pub(super) distance: f64,
-    /// The point.
-    pub(super) point: Point3<f64>,
-    /// Change of the distance with the point.
-    pub(super) away: Vector3<f64>,
 }
 
 impl KeepOut {
@@ -59,47 +45,34 @@ impl KeepOut {
         }
     }
 
-    /// Distance of a point, negative inside, and the unit vector away from the box.
-    fn of_point(&self, point: &Point3<f64>) -> (f64, Vector3<f64>) {
+    /// Distance of a point, negative inside \[m\].
+    fn distance(&self, point: &Point3<f64>) -> f64 {
         let p = self.pose.inverse_transform_point(point).coords;
         let beyond = p.abs() - self.half;
-        let outside = beyond.map(|x| x.max(0.0));
-        let distance = outside.norm();
-        let sign = p.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
-        let (distance, away) = if distance > 0.0 {
-            (distance, outside.component_mul(&sign) / distance)
-        } else {
-            let axis = beyond.imax();
-            let mut away = Vector3::zeros();
-            away[axis] = sign[axis];
-            (beyond[axis], away)
-        };
-        (distance, self.pose.rotation * away)
+        let outside = beyond.map(|x| x.max(0.0)).norm();
+        if outside > 0.0 { outside } else { beyond.max() }
     }
-}
 
-impl KeepOut {
-    /// Where along a capsule's line the distance is least: that of a convex body is convex
-    /// there, also inside.
-    fn nearest_share(&self, capsule: &Capsule) -> f64 {
+    /// Least distance of the points of a capsule's line \[m\], by the golden section: that of a
+    /// convex body is convex along a line, also inside.
+    fn line_distance(&self, capsule: &Capsule) -> f64 {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let of = |share: f64| self.of_point(&capsule.at(share)).0;
+        let at = |share: f64| self.distance(&capsule.at(share));
         let [mut low, mut high] = [0.0, 1.0];
         let mut inner = [1.0 - golden, golden];
-        let mut values = inner.map(of);
+        let mut values = inner.map(at);
         for _ in 0..STEPS {
             if values[0] < values[1] {
                 high = inner[1];
                 inner = [high - golden * (high - low), inner[0]];
-                values = [of(inner[0]), values[0]];
+                values = [at(inner[0]), values[0]];
             } else {
                 low = inner[0];
                 inner = [inner[1], low + golden * (high - low)];
-                values = [values[1], of(inner[1])];
+                values = [values[1], at(inner[1])];
             }
         }
-        let ends = [0.0, 0.5 * (low + high), 1.0].into_iter();
-        ends.min_by(|a, b| of(*a).total_cmp(&of(*b))).unwrap_or(0.0)
+        [0.0, 0.5 * (low + high), 1.0].map(at).into_iter().fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -107,37 +80,14 @@ impl Obstacle {
     /// Distance of a capsule's surface, negative where they overlap \[m\].
     #[must_use]
     pub fn room(&self, capsule: &Capsule) -> f64 {
-        self.witness(capsule).distance - capsule.radius
-    }
-
-    /// The point of a capsule's line that is nearest.
-    pub(super) fn witness(&self, capsule: &Capsule) -> Witness {
-        match self {
+        let distance = match self {
             Obstacle::Plane(plane) => {
                 let height = |point: &Point3<f64>| plane.normal.dot(&point.coords) - plane.distance;
-                let (from, to) = (height(&capsule.from), height(&capsule.to));
-                let (distance, point) =
-                    if from < to { (from, capsule.from) } else { (to, capsule.to) };
-                Witness { distance, point, away: plane.normal }
+                height(&capsule.from).min(height(&capsule.to))
             }
-            Obstacle::KeepOut(keep_out) => {
-                let share = keep_out.nearest_share(capsule);
-                let point = capsule.at(share);
-                let (distance, mut away) = keep_out.of_point(&point);
-                // Deep inside two faces may be equally near, one on either side of the point:
-                // the distance changes by the mean of both that is level along the line.
-                let along = capsule.to - capsule.from;
-                let beside = [share - BESIDE, share + BESIDE].map(|share| {
-                    let (_, away) = keep_out.of_point(&capsule.at(share.clamp(0.0, 1.0)));
-                    (away, away.dot(&along))
-                });
-                let [(before, falling), (after, rising)] = beside;
-                if falling < 0.0 && rising > 0.0 {
-                    away = (before * rising - after * falling) / (rising - falling);
-                }
-                Witness { distance, point, away }
-            }
-        }
+            Obstacle::KeepOut(keep_out) => keep_out.line_distance(capsule),
+        };
+        distance - capsule.radius
     }
 }
 
@@ -183,8 +133,6 @@ mod tests {
                 .fold(f64::INFINITY, f64::min);
             let found = Obstacle::KeepOut(keep_out).room(&capsule) + capsule.radius;
             assert!(found <= least + SAME && least - found < GRID, "{found} {least}");
-            let at = Obstacle::KeepOut(keep_out).witness(&capsule);
-            assert!((brute(&keep_out, &at.point) - at.distance).abs() < SAME);
         }
     }
 }

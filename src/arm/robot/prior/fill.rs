@@ -1,10 +1,11 @@
 //! A model with estimates in place of what it lacks.
 
-use super::bodies::{links, rated_inertia};
-use super::known::{Known, type_name};
+use super::bodies::{links, rated_inertia, stretched_moment};
+use super::known::{ARM, Known, type_name};
 use super::rules::{self, Maker, Rough, Size};
 use crate::arm::robot::drive::{Brakes, Drive, Sharing};
 use crate::arm::robot::effect::{EffectParameters, Given};
+use crate::arm::robot::geometry::GRAVITY;
 use crate::arm::robot::model::Model;
 use crate::arm::robot::motors::Motors;
 use crate::arm::robot::provenance::{Origin, Provenance};
@@ -18,14 +19,11 @@ const ENGAGE_S: f64 = 0.1;
 /// Time of the planner from one acceleration limit to the other \[s\].
 const RAMP_S: f64 = 0.1;
 
-/// Joints of an arm that a prior is made for.
-pub(super) const ARM: std::ops::RangeInclusive<usize> = 5..=7;
-
-/// The model with all that it lacks of dynamics, limits and power, estimated from its size. What it has
-/// stays. A chain that is no arm stays as it is.
+/// The model with its missing dynamics, limits and powers estimated from its size. Stated numbers stay.
+/// A chain of fewer than 5 joints is returned unchanged.
 #[must_use]
 pub fn estimated(model: Model) -> Model {
-    let known = Known::of(&model);
+    let known = Known::from_model(&model);
     if !ARM.contains(&model.dof) {
         return model;
     }
@@ -118,8 +116,7 @@ impl Filling {
 
     /// Gravity torque about axis 2 of the stretched arm with its upper arm level \[Nm\].
     fn stretched_gravity(&self) -> f64 {
-        let gravity = super::bodies::stretched_moment(&self.model);
-        9.81 * gravity
+        GRAVITY * stretched_moment(&self.model)
     }
 
     fn speeds(&mut self, known: &Known, size: Size) {
@@ -146,7 +143,7 @@ impl Filling {
     fn friction(&mut self, size: Size) {
         let dof = self.model.dof;
         let speeds = self.model.limits.velocity.clone().unwrap_or_default();
-        let maker = Maker::of(type_name(&self.model));
+        let maker = Maker::from_name(type_name(&self.model));
         let source = match maker {
             Maker::Abb => {
                 "friction over the largest torque, as of eleven ABB configurations and two identifications"

@@ -4,12 +4,14 @@ use nalgebra::{Matrix3, Vector3};
 
 use serde::Deserialize;
 
-use super::fill::ARM;
 use super::rules::{self, Size};
 use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link::symmetric;
 use crate::arm::robot::model::Model;
 use crate::arm::robot::provenance::Provenance;
+
+/// Joints of an arm that a prior is made for.
+pub(super) const ARM: std::ops::RangeInclusive<usize> = 5..=7;
 
 /// The tables, with sources.
 const ROBOTS: &str = include_str!("robots.toml");
@@ -52,8 +54,8 @@ pub(super) struct Shape {
 }
 
 impl Known {
-    /// Of a robot.
-    pub(super) fn of(model: &Model) -> Known {
+    /// What is known of the robot by its type and its file.
+    pub(super) fn from_model(model: &Model) -> Known {
         let text = table(type_name(model));
         let mut known = text.map_or_else(Known::nothing, |text| Known::read(&text));
         if let Some(mass) = model.mass {
@@ -101,7 +103,7 @@ impl Known {
 }
 
 impl Known {
-    /// The size of the robot: what is not known follows from the rest.
+    /// The size of the robot; unknown parts of it are estimated from the known ones.
     pub(super) fn size(&self, model: &Model) -> Size {
         let reach = self.reach.unwrap_or_else(|| reach(model));
         let payload = self.payload;
@@ -115,15 +117,16 @@ impl Known {
 /// lightest arms that are sold are a fifth of it.
 const ABSURD: f64 = 15.0;
 
-/// A mass that no arm of the robot's reach has is a mistake, of its unit for instance.
+/// Checks that the stated masses are possible for an arm of the robot's reach; those in a wrong unit
+/// are not.
 ///
 /// # Errors
-/// It is one.
+/// A mass is out of range.
 pub fn check_mass(model: &Model) -> Result<(), RobotError> {
     if !ARM.contains(&model.dof) {
         return Ok(());
     }
-    let known = Known { mass: None, ..Known::of(model) };
+    let known = Known { mass: None, ..Known::from_model(model) };
     let Size { mass: usual, reach, .. } = known.size(model);
     let refused = |key: &str, value: f64, what: &str, [low, high]: [f64; 2]| RobotError::Value {
         place: model.file.clone().unwrap_or_else(|| model.name.clone()),
@@ -163,7 +166,7 @@ pub fn type_name(model: &Model) -> &str {
 pub fn is_mass_known(model: &Model) -> bool {
     let provenance = |i| model.provenance_of(&format!("link {i}"), "mass");
     let is_stated = |i| provenance(i) != Some(Provenance::Estimated);
-    Known::of(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
+    Known::from_model(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
 }
 
 /// From axis 1 to the wrist's centre of the stretched arm \[m\].
@@ -175,7 +178,7 @@ fn reach(model: &Model) -> f64 {
     foot + arm
 }
 
-/// A table as it is written.
+/// A robot's table in the file.
 #[derive(Deserialize)]
 struct Table {
     mass: f64,
@@ -209,7 +212,7 @@ mod tests {
     #[test]
     fn arms_of_the_catalogue_have_their_table() {
         for name in names().filter(|name| !name.starts_with("IRB14000")) {
-            let known = Known::of(&find(name).expect("in the catalogue"));
+            let known = Known::from_model(&find(name).expect("in the catalogue"));
             assert!(known.mass.is_some() && known.payload.is_some(), "{name}");
             let shares: f64 = known.links.iter().map(|link| link.share).sum();
             assert!((shares - 1.0).abs() < 1e-3, "{name}: {shares}");

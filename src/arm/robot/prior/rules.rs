@@ -15,7 +15,7 @@ pub(super) enum Maker {
 
 impl Maker {
     /// By the name of the robot: ABB's have IRB or CRB before their number.
-    pub(super) fn of(name: &str) -> Maker {
+    pub(super) fn from_name(name: &str) -> Maker {
         let name = name.to_uppercase();
         let is_number = |text: &str| {
             text.trim_start_matches([' ', '_', '-']).starts_with(|c: char| c.is_ascii_digit())
@@ -179,10 +179,10 @@ mod tests {
     fn makers_are_known_by_the_name() {
         for name in ["IRB1600-10/1.45 of line 4", "abb_irb_2400", "ABB IRB 120", "CRB15000-5/0.95"]
         {
-            assert_eq!(Maker::of(name), Maker::Abb, "{name}");
+            assert_eq!(Maker::from_name(name), Maker::Abb, "{name}");
         }
         for name in ["Kirby 3", "IRB", "an arm", ""] {
-            assert_eq!(Maker::of(name), Maker::Other, "{name}");
+            assert_eq!(Maker::from_name(name), Maker::Other, "{name}");
         }
     }
 }

@@ -43,7 +43,7 @@ struct Line {
 }
 
 impl Line {
-    fn of(geometry: &Geometry) -> Line {
+    fn new(geometry: &Geometry) -> Line {
         let mut frames: Vec<(Matrix3<f64>, Point)> = Vec::new();
         let (mut turn, mut at) = (Rotation3::identity(), Point::zeros());
         for joint in &geometry.joints {
@@ -118,7 +118,7 @@ fn tube(mass: f64, at: Point, way: &Point, link: f64) -> Body {
     }
 }
 
-/// Ways that are left from the bearings to the flange over the whole line, the foot first.
+/// Path length from each bearing to the flange over that of the whole line, the foot first.
 fn ways(points: &[Point]) -> Vec<f64> {
     let mut left = vec![0.0; points.len()];
     for i in (0..points.len() - 1).rev() {
@@ -128,20 +128,20 @@ fn ways(points: &[Point]) -> Vec<f64> {
     left.iter().map(|way| way / whole).collect()
 }
 
-/// Way that is left at the middle of a link over the whole line, at least: a flange has a length, also
-/// where a file has it in the last joint.
+/// Least path length from the middle of a link to the flange over that of the whole line: a flange has a
+/// length, also where a file places it in the last joint.
 const LEAST_WAY: f64 = 0.003;
 
-/// Way that is left at the middle of each link over the whole line: what lies far out may be
-/// lighter or heavier as a whole.
+/// Path length from the middle of each link to the flange over that of the whole line: the outer links
+/// may be lighter or heavier together.
 pub(super) fn middles(geometry: &Geometry) -> Vec<f64> {
-    let left = ways(&Line::of(geometry).points);
+    let left = ways(&Line::new(geometry).points);
     left.windows(2).skip(1).map(|pair| (0.5 * (pair[0] + pair[1])).max(LEAST_WAY)).collect()
 }
 
 /// The links of an arm by their share of the mass that moves, and the mass of its foot \[kg\].
 pub(super) fn shapes(geometry: &Geometry, size: Size) -> (Vec<Shape>, f64) {
-    let line = Line::of(geometry);
+    let line = Line::new(geometry);
     let points = &line.points;
     let count = points.len() - 1;
     let left = ways(points);
@@ -202,7 +202,7 @@ mod tests {
     use super::*;
     use crate::arm::robot::find;
 
-    /// Worked out by another program of the same rule.
+    /// Expected values are those of an independent implementation of the rule.
     #[test]
     fn masses_are_those_of_the_rule() {
         for (name, payload, reach, masses) in [

@@ -1,10 +1,10 @@
 //! The moving bodies: the links behind a moving joint, up to the next one.
 
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
-use urdf_rs::{JointType, Link};
 
-use super::chain::{Chain, isometry};
+use super::chain::Chain;
 use super::document::Document;
+use super::elements::{Inertial, Kind, Link};
 use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link;
 
@@ -16,25 +16,25 @@ pub(super) fn merged(
     document: &Document,
     chain: &Chain<'_>,
 ) -> Result<Vec<link::Link>, RobotError> {
-    for link in &document.robot.links {
+    for link in &document.links {
         stated(document, link)?;
     }
     let mut bodies = Vec::with_capacity(chain.joints.len());
     for joint in &chain.joints {
-        bodies.push(body(document, &joint.child.link)?);
+        bodies.push(body(document, &joint.child)?);
     }
     if bodies.iter().all(Option::is_none) {
         return Ok(Vec::new());
     }
     let mut links = Vec::with_capacity(bodies.len());
     for (joint, body) in chain.joints.iter().zip(bodies) {
-        let link = &joint.child.link;
+        let link = &joint.child;
         links.push(body.ok_or_else(|| {
             let message = format!(
                 "link \"{link}\" has no <inertial> while others have; add it, or leave it out of \
                  every link"
             );
-            document.error("link", link, message)
+            document.error(document.link(link).map_or(1, |link| link.line), message)
         })?);
     }
     Ok(links)
@@ -46,47 +46,39 @@ fn body(document: &Document, link: &str) -> Result<Option<link::Link>, RobotErro
     let mut sum: Option<link::Link> = None;
     let mut open = vec![(link.to_owned(), Isometry3::identity())];
     while let Some((name, placed)) = open.pop() {
-        if let Some(link) = document.link(&name).filter(|link| document.has_inertial(&link.name)) {
-            let own = stated(document, link)?.placed(&placed);
+        let link = document.link(&name).map(|link| stated(document, link)).transpose()?;
+        if let Some(own) = link.flatten().map(|own| own.placed(&placed)) {
             sum = Some(match sum {
                 Some(sum) => sum.joined(&own),
                 None => own,
             });
         }
-        for joint in document.joints_of(&name).filter(|j| j.joint_type == JointType::Fixed) {
-            open.push((joint.child.link.clone(), placed * isometry(&joint.origin)));
+        for joint in document.joints_of(&name).filter(|joint| joint.kind == Kind::Fixed) {
+            open.push((joint.child.clone(), placed * joint.placement));
         }
     }
     Ok(sum)
 }
 
-/// The inertia that a link states, in its own frame.
-fn stated(document: &Document, link: &Link) -> Result<link::Link, RobotError> {
-    let mass = link.inertial.mass.value;
-    let fail = |message: String| Err(document.error("link", &link.name, message));
-    if !(mass >= 0.0 && mass.is_finite()) {
-        return fail(format!("link \"{}\" has the mass {mass} kg; give 0 or more", link.name));
-    }
-    let i = &link.inertial.inertia;
-    let inertia = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
-    if !inertia.iter().all(|entry| entry.is_finite()) {
-        return fail(format!("link \"{}\" has an inertia that is not finite", link.name));
-    }
-    let least = SymmetricEigen::new(inertia).eigenvalues.min();
-    // All zero is a point: what small parts are given.
-    if inertia != Matrix3::zeros() && least <= 0.0 {
+/// The body that a link states, in the link's frame.
+fn stated(document: &Document, link: &Link) -> Result<Option<link::Link>, RobotError> {
+    let Some(Inertial { placement, mass, inertia }) = &link.inertial else { return Ok(None) };
+    let fail = |message: String| Err(document.error(link.line, message));
+    let least = SymmetricEigen::new(*inertia).eigenvalues.min();
+    // Small parts are given an inertia of zero: a point.
+    if *inertia != Matrix3::zeros() && least <= 0.0 {
         return fail(format!(
             "the inertia of link \"{}\" is not positive definite (a principal moment is {least:.3e} \
              kg m2); correct it",
             link.name
         ));
     }
-    let at_com = link::Link { mass, com: Vector3::zeros(), inertia };
+    let at_com = link::Link { mass: *mass, com: Vector3::zeros(), inertia: *inertia };
     if let Some(why) = at_com.impossible() {
         return fail(format!(
             "the inertia of link \"{}\": {why}; correct it, or leave <inertial> out of every link",
             link.name
         ));
     }
-    Ok(at_com.placed(&isometry(&link.inertial.origin)))
+    Ok(Some(at_com.placed(placement)))
 }

@@ -1,11 +1,11 @@
 //! The chain of moving joints from the root to the flange.
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-use urdf_rs::{Joint, JointType, Pose};
+use nalgebra::Isometry3;
 
 use super::document::Document;
-use crate::arm::robot::MAX_DOF;
+use super::elements::{Joint, Kind, Link};
 use crate::arm::robot::error::RobotError;
+use crate::arm::robot::geometry::MAX_DOF;
 
 /// Links that may be the end of the chain, the first that is there.
 const ENDS: [&str; 2] = ["tool0", "flange"];
@@ -23,13 +23,13 @@ pub(super) struct Chain<'d> {
 impl<'d> Chain<'d> {
     pub(super) fn find(document: &'d Document) -> Result<Chain<'d>, RobotError> {
         let root = root(document)?;
-        let path = path(document, root)?;
+        let path = path(document, &root.name)?;
         let mut chain =
             Chain { joints: Vec::new(), placements: Vec::new(), flange: Isometry3::identity() };
         let mut fixed = Isometry3::identity();
         for joint in path {
-            let placed = fixed * isometry(&joint.origin);
-            if joint.joint_type == JointType::Fixed {
+            let placed = fixed * joint.placement;
+            if joint.kind == Kind::Fixed {
                 fixed = placed;
                 continue;
             }
@@ -40,7 +40,7 @@ impl<'d> Chain<'d> {
                      modelled: make the others fixed, or name the end of the arm tool0",
                     joint.name
                 );
-                return Err(document.error("joint", &joint.name, message));
+                return Err(document.error(joint.line, message));
             }
             chain.placements.push(placed);
             chain.joints.push(joint);
@@ -48,10 +48,10 @@ impl<'d> Chain<'d> {
         }
         if chain.joints.is_empty() {
             let message = "the chain has no moving joint; name the end of the arm tool0".into();
-            return Err(document.error("link", root, message));
+            return Err(document.error(root.line, message));
         }
         chain.flange = fixed;
-        for joint in &document.robot.joints {
+        for joint in &document.joints {
             beside(document, &chain, joint)?;
         }
         Ok(chain)
@@ -59,58 +59,58 @@ impl<'d> Chain<'d> {
 }
 
 /// The link that is no joint's child; every other one is exactly one's.
-fn root(document: &Document) -> Result<&str, RobotError> {
-    let robot = &document.robot;
-    for joint in &robot.joints {
-        for link in [&joint.parent.link, &joint.child.link] {
+fn root(document: &Document) -> Result<&Link, RobotError> {
+    for joint in &document.joints {
+        for link in [&joint.parent, &joint.child] {
             if document.link(link).is_none() {
                 let message = format!(
                     "joint \"{}\" names the link \"{link}\", which is not there; add it",
                     joint.name
                 );
-                return Err(document.error("joint", &joint.name, message));
+                return Err(document.error(joint.line, message));
             }
         }
-        let first = robot.joints.iter().find(|other| other.child.link == joint.child.link);
+        let first = document.joints.iter().find(|other| other.child == joint.child);
         if let Some(first) = first.filter(|first| first.name != joint.name) {
             let message = format!(
                 "a loop: link \"{}\" hangs from joint \"{}\" and from joint \"{}\"; remove one, \
                  only trees are modelled",
-                joint.child.link, first.name, joint.name
+                joint.child, first.name, joint.name
             );
-            return Err(document.error("joint", &joint.name, message));
+            return Err(document.error(joint.line, message));
         }
     }
-    let is_child = |link: &str| robot.joints.iter().any(|joint| joint.child.link == link);
-    let mut roots =
-        robot.links.iter().map(|link| link.name.as_str()).filter(|link| !is_child(link));
+    let is_child = |link: &str| document.joints.iter().any(|joint| joint.child == link);
+    let mut roots = document.links.iter().filter(|link| !is_child(&link.name));
     let Some(root) = roots.next() else {
-        let name = robot.joints.first().map_or("", |joint| joint.name.as_str());
+        let line = document.joints.first().map_or(1, |joint| joint.line);
         let message =
             "a loop: every link hangs from a joint, so there is no base; remove one joint";
-        return Err(document.error("joint", name, message.into()));
+        return Err(document.error(line, message.into()));
     };
     if let Some(other) = roots.next() {
-        let message =
-            format!("link \"{other}\" does not hang from the base \"{root}\"; add a joint to it");
-        return Err(document.error("link", other, message));
+        let message = format!(
+            "link \"{}\" does not hang from the base \"{}\"; add a joint to it",
+            other.name, root.name
+        );
+        return Err(document.error(other.line, message));
     }
     // Every link has one parent and there is one root: links that cannot be reached form
     // a loop of their own.
-    let mut reached = vec![root];
+    let mut reached = vec![root.name.as_str()];
     let mut next = 0;
     while next < reached.len() {
         let link = reached[next];
-        reached.extend(document.joints_of(link).map(|joint| joint.child.link.as_str()));
+        reached.extend(document.joints_of(link).map(|joint| joint.child.as_str()));
         next += 1;
     }
-    let lost = robot.joints.iter().find(|joint| !reached.contains(&joint.child.link.as_str()));
+    let lost = document.joints.iter().find(|joint| !reached.contains(&joint.child.as_str()));
     if let Some(joint) = lost {
         let message = format!(
             "a loop: link \"{}\" hangs from itself by joint \"{}\"; remove one joint of the loop",
-            joint.child.link, joint.name
+            joint.child, joint.name
         );
-        return Err(document.error("joint", &joint.name, message));
+        return Err(document.error(joint.line, message));
     }
     Ok(root)
 }
@@ -120,10 +120,9 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
     let up = |link: &str| {
         let mut path = Vec::new();
         let mut link = link.to_owned();
-        while let Some(joint) = document.robot.joints.iter().find(|joint| joint.child.link == link)
-        {
+        while let Some(joint) = document.joints.iter().find(|joint| joint.child == link) {
             path.push(joint);
-            link.clone_from(&joint.parent.link);
+            link.clone_from(&joint.parent);
         }
         path.reverse();
         path
@@ -132,26 +131,26 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
         return Ok(up(end));
     }
     // The last moving joint that no other moves.
-    let moves = |joint: &&&Joint| joint.joint_type != JointType::Fixed;
-    let depth = |joint: &Joint| up(&joint.child.link).iter().filter(moves).count();
-    let moving: Vec<&Joint> = document.robot.joints.iter().filter(|j| moves(&j)).collect();
+    let moves = |joint: &&&Joint| joint.kind != Kind::Fixed;
+    let depth = |joint: &Joint| up(&joint.child).iter().filter(moves).count();
+    let moving: Vec<&Joint> = document.joints.iter().filter(|j| moves(&j)).collect();
     let most = moving.iter().map(|joint| depth(joint)).max().unwrap_or(0);
     let mut last = moving.iter().filter(|joint| depth(joint) == most);
     match (last.next(), last.next()) {
         (Some(a), Some(b)) => {
             let message = format!(
                 "the arm may end in \"{}\" or in \"{}\"; name its end tool0",
-                a.child.link, b.child.link
+                a.child, b.child
             );
-            Err(document.error("joint", &b.name, message))
+            Err(document.error(b.line, message))
         }
         (Some(only), None) => {
             // Along what is fixed to it, as long as there is one way.
-            let mut end = only.child.link.as_str();
+            let mut end = only.child.as_str();
             loop {
                 let mut next = document.joints_of(end);
                 match (next.next(), next.next()) {
-                    (Some(joint), None) => end = &joint.child.link,
+                    (Some(joint), None) => end = &joint.child,
                     _ => return Ok(up(end)),
                 }
             }
@@ -162,19 +161,19 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
 
 fn is_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
     is_no_mimic(document, joint)?;
-    if !matches!(joint.joint_type, JointType::Revolute | JointType::Continuous) {
+    if !matches!(joint.kind, Kind::Revolute | Kind::Continuous) {
         let message = format!(
             "joint \"{}\" is neither revolute nor continuous; only turning joints are modelled: \
              make it fixed",
             joint.name
         );
-        return Err(document.error("joint", &joint.name, message));
+        return Err(document.error(joint.line, message));
     }
     Ok(())
 }
 
 fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
-    if joint.mimic.is_none() {
+    if !joint.is_mimic {
         return Ok(());
     }
     let message = format!(
@@ -182,39 +181,30 @@ fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
          it of <mimic>",
         joint.name
     );
-    Err(document.error("joint", &joint.name, message))
+    Err(document.error(joint.line, message))
 }
 
 /// A joint that is not of the chain may not move any mass.
 fn beside(document: &Document, chain: &Chain<'_>, joint: &Joint) -> Result<(), RobotError> {
     is_no_mimic(document, joint)?;
     let of_chain = chain.joints.iter().any(|own| own.name == joint.name);
-    if of_chain || joint.joint_type == JointType::Fixed {
+    if of_chain || joint.kind == Kind::Fixed {
         return Ok(());
     }
-    let mut links = vec![joint.child.link.as_str()];
+    let mut links = vec![joint.child.as_str()];
     let mut next = 0;
     while next < links.len() {
         let link = links[next];
-        if document.has_inertial(link) {
+        if document.link(link).is_some_and(|link| link.inertial.is_some()) {
             let message = format!(
                 "joint \"{}\" moves the mass of link \"{link}\" beside the arm; make it fixed, or \
                  leave the mass out",
                 joint.name
             );
-            return Err(document.error("joint", &joint.name, message));
+            return Err(document.error(joint.line, message));
         }
-        links.extend(document.joints_of(link).map(|joint| joint.child.link.as_str()));
+        links.extend(document.joints_of(link).map(|joint| joint.child.as_str()));
         next += 1;
     }
     Ok(())
-}
-
-/// A pose of a URDF.
-pub(super) fn isometry(pose: &Pose) -> Isometry3<f64> {
-    let [roll, pitch, yaw] = pose.rpy.0;
-    Isometry3::from_parts(
-        Translation3::from(Vector3::from(pose.xyz.0)),
-        UnitQuaternion::from_euler_angles(roll, pitch, yaw),
-    )
 }

@@ -1,29 +1,28 @@
-//! A URDF read twice: by `urdf-rs` for its content, and as XML for the lines, for what
-//! is there at all, and for the transmissions, which `urdf-rs` leaves out.
+//! A URDF as its links, joints and gear ratios, with the line of each.
 
 use std::collections::BTreeMap;
 
-use urdf_rs::{Joint, Link, Robot};
+use roxmltree::Node;
 
-use super::values::{Wrong, check_joint, check_link, too_deep};
+use super::elements::{Joint, Link, Wrong, child, line, read_joint, read_link};
 use crate::arm::robot::error::RobotError;
 
-/// A URDF with the places of its elements.
+/// Deepest nesting of elements; a URDF needs five.
+const MAX_DEPTH: usize = 64;
+
+/// The parts of a URDF that a robot is made of.
 pub(super) struct Document {
     pub(super) file: String,
-    pub(super) robot: Robot,
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<Joint>,
     /// Gear ratio by the name of the joint.
     pub(super) reductions: BTreeMap<String, f64>,
-    lines: BTreeMap<(String, String), usize>,
-    with_inertial: Vec<String>,
 }
 
 impl Document {
     pub(super) fn read(file: &str, text: &str) -> Result<Document, RobotError> {
-        let fail = |line: usize, message: String| RobotError::Urdf {
-            place: format!("{file}:{line}"),
-            message,
-        };
+        let fail = |line: usize, message: String| error(file, line, message);
         if let Some(at) = text.find("<xacro:") {
             let line = 1 + text[..at].matches('\n').count();
             let message = "it has xacro macros; expand them first: xacro FILE > robot.urdf";
@@ -39,103 +38,123 @@ impl Document {
             };
             fail(line.max(1), format!("not valid XML: {error}; export it again"))
         })?;
-        let line =
-            |node: &roxmltree::Node<'_, '_>| xml.text_pos_at(node.range().start).row as usize;
-        let root = xml.root_element();
-        if root.tag_name().name() != "robot" {
-            return Err(fail(line(&root), "not a URDF: the first element is not <robot>".into()));
-        }
-        if root.attribute("name").is_none_or(|name| name.trim().is_empty()) {
-            return Err(fail(line(&root), "the <robot> has no name; give it one".into()));
-        }
-        if child(&root, "link").is_none() {
-            return Err(fail(line(&root), "the robot has no <link>; export it again".into()));
-        }
-        let wrong = |(node, message): Wrong<'_, '_>| fail(line(&node), message);
-        let mut lines = BTreeMap::new();
-        let mut with_inertial = Vec::new();
-        let mut reductions = BTreeMap::new();
-        let mut transmissions = Vec::new();
-        for node in root.children().filter(roxmltree::Node::is_element) {
-            let tag = node.tag_name().name();
-            let name = node.attribute("name").unwrap_or_default();
-            let known = lines.insert((tag.to_owned(), name.to_owned()), line(&node));
-            if let (Some(first), "link" | "joint") = (known, tag) {
-                let message =
-                    format!("a second {tag} \"{name}\", the first is in line {first}; rename one");
-                return Err(fail(line(&node), message));
+        Document::read_robot(file, xml.root_element())
+            .map_err(|(node, message)| fail(line(node), message))
+    }
+
+    fn read_robot<'a, 'i>(file: &str, root: Node<'a, 'i>) -> Result<Document, Wrong<'a, 'i>> {
+        let name = root.attribute("name").unwrap_or_default();
+        for (is_wrong, message) in [
+            (root.tag_name().name() != "robot", "not a URDF: the first element is not <robot>"),
+            (name.trim().is_empty(), "the <robot> has no name; give it one"),
+            (child(root, "link").is_none(), "the robot has no <link>; export it again"),
+        ] {
+            if is_wrong {
+                return Err((root, message.into()));
             }
-            match tag {
+        }
+        let mut document = Document {
+            file: file.to_owned(),
+            name: name.to_owned(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            reductions: BTreeMap::new(),
+        };
+        let mut transmissions = Vec::new();
+        for node in root.children().filter(Node::is_element) {
+            let name = node.attribute("name").unwrap_or_default();
+            match node.tag_name().name() {
                 "link" => {
-                    check_link(node).map_err(wrong)?;
-                    if child(&node, "inertial").is_some() {
-                        with_inertial.push(name.to_owned());
-                    }
+                    is_first(node, document.link(name).map(|link| link.line))?;
+                    document.links.push(read_link(node)?);
                 }
-                "joint" => check_joint(node).map_err(wrong)?,
+                "joint" => {
+                    is_first(node, document.joint(name).map(|joint| joint.line))?;
+                    document.joints.push(read_joint(node)?);
+                }
                 "transmission" => {
-                    if let Some((joint, ratio)) = reduction(&node) {
-                        let value: f64 = ratio.parse().unwrap_or(f64::NAN);
-                        if !value.is_finite() || value <= 0.0 {
-                            let message = format!(
-                                "mechanicalReduction \"{ratio}\" of joint \"{joint}\": give a number \
-                                 above 0; the sense belongs into the joint's axis"
-                            );
-                            return Err(fail(line(&node), message));
-                        }
-                        transmissions.push((joint, line(&node)));
-                        reductions.insert(joint.to_owned(), value);
+                    if let Some((joint, ratio)) = reduction(node)? {
+                        transmissions.push((joint, node));
+                        document.reductions.insert(joint.to_owned(), ratio);
                     }
                 }
                 _ => {}
             }
         }
-        let is_joint = |name: &str| lines.contains_key(&("joint".to_owned(), name.to_owned()));
-        if let Some((joint, line)) = transmissions.iter().find(|(joint, _)| !is_joint(joint)) {
-            let message = format!(
-                "a transmission of the joint \"{joint}\", which is not there; correct its name or \
-                 remove the transmission"
-            );
-            return Err(fail(*line, message));
+        match transmissions.into_iter().find(|(joint, _)| document.joint(joint).is_none()) {
+            Some((joint, node)) => {
+                let message = format!(
+                    "a transmission of the joint \"{joint}\", which is not there; correct its name \
+                     or remove the transmission"
+                );
+                Err((node, message))
+            }
+            None => Ok(document),
         }
-        let robot = urdf_rs::read_from_string(text).map_err(|error| {
-            let message = format!("not a sound URDF: {error}; correct it or export it again");
-            fail(line(&root), message)
-        })?;
-        Ok(Document { file: file.to_owned(), robot, reductions, lines, with_inertial })
     }
 
-    /// An error at the element.
-    pub(super) fn error(&self, tag: &str, name: &str, message: String) -> RobotError {
-        let line = self.lines.get(&(tag.to_owned(), name.to_owned())).copied().unwrap_or(1);
-        RobotError::Urdf { place: format!("{}:{line}", self.file), message }
-    }
-
-    /// Whether the link states its inertia.
-    pub(super) fn has_inertial(&self, link: &str) -> bool {
-        self.with_inertial.iter().any(|name| name == link)
+    /// An error in a line.
+    pub(super) fn error(&self, line: usize, message: String) -> RobotError {
+        error(&self.file, line, message)
     }
 
     pub(super) fn link(&self, name: &str) -> Option<&Link> {
-        self.robot.links.iter().find(|link| link.name == name)
+        self.links.iter().find(|link| link.name == name)
     }
 
-    /// The joints that hang from a link.
+    fn joint(&self, name: &str) -> Option<&Joint> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+
+    /// The joints whose parent is the link.
     pub(super) fn joints_of<'a>(&'a self, link: &'a str) -> impl Iterator<Item = &'a Joint> {
-        self.robot.joints.iter().filter(move |joint| joint.parent.link == link)
+        self.joints.iter().filter(move |joint| joint.parent == link)
     }
 }
 
-fn child<'a, 'i>(node: &roxmltree::Node<'a, 'i>, tag: &str) -> Option<roxmltree::Node<'a, 'i>> {
-    node.children().find(|child| child.tag_name().name() == tag)
+fn error(file: &str, line: usize, message: String) -> RobotError {
+    RobotError::Urdf { place: format!("{file}:{line}"), message }
 }
 
-/// Joint and ratio of a transmission: the ratio stands in the actuator, or in the joint.
-fn reduction<'a>(node: &roxmltree::Node<'a, '_>) -> Option<(&'a str, &'a str)> {
-    let joint = child(node, "joint")?;
-    let reduces = |node: &roxmltree::Node<'_, '_>| {
-        node.tag_name().name().eq_ignore_ascii_case("mechanicalReduction")
-    };
-    let ratio = node.descendants().find(reduces)?.text()?;
-    Some((joint.attribute("name")?, ratio.trim()))
+/// An error where a link or joint of that name was read before, in line `first`.
+fn is_first<'a, 'i>(node: Node<'a, 'i>, first: Option<usize>) -> Result<(), Wrong<'a, 'i>> {
+    let Some(first) = first else { return Ok(()) };
+    let (tag, name) = (node.tag_name().name(), node.attribute("name").unwrap_or_default());
+    Err((node, format!("a second {tag} \"{name}\", the first is in line {first}; rename one")))
+}
+
+/// Joint and gear ratio of a transmission: the ratio stands in the actuator, or in the joint.
+fn reduction<'a, 'i>(node: Node<'a, 'i>) -> Result<Option<(&'a str, f64)>, Wrong<'a, 'i>> {
+    let reduces =
+        |node: &Node<'_, '_>| node.tag_name().name().eq_ignore_ascii_case("mechanicalReduction");
+    let joint = child(node, "joint").and_then(|joint| joint.attribute("name"));
+    let text = node.descendants().find(reduces).and_then(|node| node.text());
+    let (Some(joint), Some(text)) = (joint, text.map(str::trim)) else { return Ok(None) };
+    match text.parse::<f64>() {
+        Ok(ratio) if ratio.is_finite() && ratio > 0.0 => Ok(Some((joint, ratio))),
+        _ => {
+            let message = format!(
+                "mechanicalReduction \"{text}\" of joint \"{joint}\": give a number above 0; the \
+                 sense belongs into the joint's axis"
+            );
+            Err((node, message))
+        }
+    }
+}
+
+/// The line at which elements are nested too deep: the XML parser recurses over them.
+fn too_deep(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let mut depth = 0_usize;
+    for (i, byte) in bytes.iter().enumerate() {
+        match (byte, bytes.get(i + 1)) {
+            (b'<', Some(b'/')) | (b'/', Some(b'>')) => depth = depth.saturating_sub(1),
+            (b'<', Some(next)) if next.is_ascii_alphabetic() => depth += 1,
+            _ => {}
+        }
+        if depth > MAX_DEPTH {
+            return Some(1 + text[..i].matches('\n').count());
+        }
+    }
+    None
 }

@@ -6,7 +6,7 @@
 mod bodies;
 mod chain;
 mod document;
-mod values;
+mod elements;
 mod write;
 
 use super::error::RobotError;

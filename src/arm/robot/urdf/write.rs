@@ -1,14 +1,11 @@
 //! The chain as Robot TOML.
 
-use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use nalgebra::Vector3;
-use urdf_rs::JointType;
-
 use super::chain::Chain;
 use super::document::Document;
+use super::elements::{Joint, Kind, Limit};
 use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link::Link;
 use crate::arm::robot::toml_text::{list, pose, quoted};
@@ -23,17 +20,12 @@ pub(super) fn toml(
 ) -> Result<String, RobotError> {
     let source = quoted(&document.file);
     let mut text =
-        format!("name = {}\n\n[kinematics]\nsource = {source}\n", quoted(&document.robot.name));
+        format!("name = {}\n\n[kinematics]\nsource = {source}\n", quoted(&document.name));
     let _ = write!(text, "\n[kinematics.flange]\n{}", pose(&chain.flange));
     for (joint, placement) in chain.joints.iter().zip(&chain.placements) {
-        let axis = joint.axis.xyz.0;
-        if Vector3::from(axis).norm() == 0.0 {
-            let message = format!("the axis of joint \"{}\" is 0; give a direction", joint.name);
-            return Err(document.error("joint", &joint.name, message));
-        }
         let _ =
             write!(text, "\n[[joint]] # {}\nsource = {source}\n", joint.name.replace('\n', " "));
-        let _ = writeln!(text, "{}axis = {}", pose(placement), list(&axis));
+        let _ = writeln!(text, "{}axis = {}", pose(placement), list(&joint.axis));
     }
     limits(document, chain, &mut text)?;
     for link in links {
@@ -55,25 +47,24 @@ pub(super) fn toml(
 fn limits(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(), RobotError> {
     let _ = write!(text, "\n[limits]\nsource = {}\nposition = [\n", quoted(&document.file));
     for joint in &chain.joints {
-        let [low, high] = match joint.joint_type {
-            JointType::Continuous => [-CONTINUOUS, CONTINUOUS],
-            _ => [joint.limit.lower, joint.limit.upper],
+        let [low, high] = match joint.kind {
+            Kind::Continuous => [-CONTINUOUS, CONTINUOUS],
+            _ => joint.limit.range,
         };
         let (low, high) = (low.max(-CONTINUOUS), high.min(CONTINUOUS));
-        // Not a number is not smaller either.
-        if low.partial_cmp(&high) != Some(Ordering::Less) {
+        if low >= high {
             let message = format!(
                 "joint \"{}\" has the range {low} to {high} rad; give <limit lower=\"…\" \
                  upper=\"…\"> with lower < upper",
                 joint.name
             );
-            return Err(document.error("joint", &joint.name, message));
+            return Err(document.error(joint.line, message));
         }
         let _ = writeln!(text, "  {},", list(&[low, high]));
     }
     text.push_str("]\n");
-    let figures = |of: fn(&urdf_rs::JointLimit) -> f64| -> Vec<f64> {
-        chain.joints.iter().map(|joint| of(&joint.limit)).collect()
+    let figures = |figure: fn(&Limit) -> f64| -> Vec<f64> {
+        chain.joints.iter().map(|joint| figure(&joint.limit)).collect()
     };
     // 0 and no limit stand for what is not known.
     for (key, values) in [
@@ -90,22 +81,19 @@ fn limits(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(
 }
 
 fn friction(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(), RobotError> {
-    if chain.joints.iter().all(|joint| joint.dynamics.is_none()) {
+    if chain.joints.iter().all(|joint| joint.friction.is_none()) {
         return Ok(());
     }
     let mut coulomb = Vec::new();
     let mut viscous = Vec::new();
     for joint in &chain.joints {
-        let [friction, damping] = joint
-            .dynamics
-            .as_ref()
-            .map_or([0.0; 2], |dynamics| [dynamics.friction, dynamics.damping]);
-        if !(friction >= 0.0 && damping >= 0.0) {
+        let [friction, damping] = joint.friction.unwrap_or_default();
+        if friction < 0.0 || damping < 0.0 {
             let message = format!(
                 "joint \"{}\" has the friction {friction} and the damping {damping}; give 0 or more",
                 joint.name
             );
-            return Err(document.error("joint", &joint.name, message));
+            return Err(document.error(joint.line, message));
         }
         coulomb.push(friction);
         viscous.push(damping);
@@ -121,7 +109,7 @@ fn friction(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result
 }
 
 fn motors(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(), RobotError> {
-    let ratio = |joint: &&urdf_rs::Joint| document.reductions.get(&joint.name).copied();
+    let ratio = |joint: &&Joint| document.reductions.get(&joint.name).copied();
     if chain.joints.iter().all(|joint| ratio(joint).is_none()) {
         return Ok(());
     }
@@ -132,7 +120,7 @@ fn motors(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(
                 "joint \"{}\" has no <mechanicalReduction> while others have; add its transmission",
                 joint.name
             );
-            document.error("joint", &joint.name, message)
+            document.error(joint.line, message)
         })?);
     }
     let _ = write!(

@@ -118,8 +118,8 @@ fn figures(model: &Model) -> Vec<Figure> {
     if !model.has_dynamics() {
         return Vec::new();
     }
-    let robots = Spread::of(model).draws(model, DRAWS).robots;
-    let own = Plausible::of(model);
+    let robots = Spread::new(model).draws(model, DRAWS).robots;
+    let own = Plausible::nominal(model);
     let figure = |what: String, table: &str, key: &str, of: &dyn Fn(&Plausible) -> f64| {
         let values: Vec<f64> = robots.iter().map(of).collect();
         let value = of(&own);
