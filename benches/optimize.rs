@@ -7,7 +7,6 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::retime::motion::stream::DOF;
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::time_optimal;
-use joulepath::retime::optimize::energy_program::minimize_energy;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing};
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
@@ -50,7 +49,7 @@ fn energy(c: &mut Criterion) {
             let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
             let time = 1.1 * fastest.duration();
             c.bench_function(&format!("energy {n} {name}"), |b| {
-                b.iter(|| minimize_energy(black_box(&grid), &limits, &model, &fastest, time));
+                b.iter(|| arm::least_energy(black_box(&grid), &limits, &model, &fastest, time));
             });
         }
     }

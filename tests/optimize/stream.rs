@@ -5,7 +5,6 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use joulepath::retime::motion::stream::{DOF, Joints, Piece, Stream};
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::time_optimal;
-use joulepath::retime::optimize::energy_program::minimize_energy;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::retime::optimize::plant::{PathShares, Plant, realise};
 use joulepath::retime::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
@@ -231,7 +230,7 @@ fn pipeline(seed: u64, factor: f64, model: &EnergyModel) -> (f64, f64, Reference
     let grid = arm::grid(&path, 60, 1.0);
     let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
     let time = factor * fastest.duration();
-    let best = minimize_energy(&grid, &limits, model, &fastest, time).into_optimum().unwrap();
+    let best = arm::least_energy(&grid, &limits, model, &fastest, time).into_optimum().unwrap();
     let reference = motion(&path, &best.profile);
     let spacing = Spacing { tolerance: 5e-4, ..Spacing::default() };
     let intervals = adaptive_intervals(&reference, time, &spacing);

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::along::{Along, Instant};
-use super::plausible::{Interval, Robots};
+use super::change::Changes;
 use crate::arm::dynamics::{Data, torque};
 use crate::arm::robot::{MAX_DOF, Model};
 use crate::retime::motion::Simulation;
@@ -20,15 +20,15 @@ const APART: f64 = 0.1;
 /// Instants that may lie within that time of each other.
 const NEAR: usize = 12;
 
-/// Largest torques in a simulation by joint \[Nm\]; 0 where nothing moves.
-pub(super) fn peaks(model: &Model, robots: &Robots, simulation: &Simulation) -> Vec<Interval> {
+/// Largest torques in a simulation \[Nm\], by joint and robot; 0 where nothing moves.
+pub(super) fn peaks(model: &Model, robots: &Changes, simulation: &Simulation) -> Vec<Vec<f64>> {
     let instants = largest(model, simulation);
     let along = Along::of(model, &instants, Vec::new());
-    let torques = along.torques(robots.drawn());
+    let torques = along.torques(robots);
     let largest = |torques: DMatrix<f64>| -> Vec<f64> {
         torques.column_iter().map(|of_robot| of_robot.amax()).collect()
     };
-    torques.into_iter().map(|torques| Interval::of(&largest(torques))).collect()
+    torques.into_iter().map(largest).collect()
 }
 
 /// A look at a run of a simulation.

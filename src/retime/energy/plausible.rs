@@ -206,10 +206,11 @@ pub fn plausibility(
         changes.iter().map(|change| part(&account.total) + part(change)).collect()
     };
     let energy = of(&EnergyParts::energy_j);
+    let torques = peaks(model, robots.drawn(), simulation);
     Some(Plausibility {
         energy_j: Interval::of(&energy),
         motion_energy_j: Interval::of(&of(&EnergyParts::motion_energy_j)),
-        torque_nm: peaks(model, &robots, simulation),
+        torque_nm: torques.iter().map(|largest| Interval::of(largest)).collect(),
         contributions: robots.contributions(&energy),
     })
 }

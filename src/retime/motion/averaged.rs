@@ -10,8 +10,8 @@
 //! a little earlier than the average would.
 
 use super::controller::Average;
+use super::joint_state::JointState;
 use super::quintics::Quintics;
-use super::timed::JointState;
 use super::timing::profile::Profile;
 use crate::retime::path::JointPath;
 use crate::retime::path::joint_path::{DOF, Joints, Piece};
@@ -95,11 +95,6 @@ impl Averaged {
         }
         averaged.knots = averaged.smooth_between();
         averaged
-    }
-
-    /// The speed profile before averaging.
-    pub fn profile(&self) -> &Profile {
-        &self.profile
     }
 
     /// s.

@@ -1,6 +1,5 @@
 //! Constants of the controller's motion planner under the settings in force.
 
-use super::planner::MotionLimits;
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::Settings;
 use crate::retime::path::joint_path::Joints;
@@ -58,9 +57,7 @@ impl Planning {
             settling_s: controller.settling_s.unwrap_or(closing),
         }
     }
-}
 
-impl Planning {
     /// The same with a motion that ends as the average does, and the rest behind it shorter.
     #[must_use]
     pub fn complete(self) -> Planning {
@@ -68,6 +65,15 @@ impl Planning {
         let settling_s = (settling_s - average.closing).max(0.0);
         Planning { average: Average { closing: 0.0, ..average }, settling_s }
     }
+}
+
+/// What a path may not exceed under the settings in force.
+#[derive(Clone, Debug)]
+pub struct MotionLimits {
+    /// rad/s².
+    pub acceleration: Joints,
+    /// Nm, infinite where the robot has no dynamics.
+    pub torque: Joints,
 }
 
 /// The limits of the robot with a share of its accelerations. Where its file has none they are

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::averaged::Averaged;
-use super::controller::Planning;
+use super::controller::{MotionLimits, Planning};
 use super::leg_times::{TimedLeg, in_time};
 use super::pace::{Pace, pace};
 use super::sampling::{self, Loaded, SpeedCap};
@@ -17,19 +17,9 @@ use super::timing::limits::PathLimits;
 use super::timing::profile::Profile;
 use super::timing::reachability::time_optimal;
 use crate::retime::path::JointPath;
-use crate::retime::path::joint_path::Joints;
 
 /// Intervals of the grid for one path, besides those of its zones.
 const INTERVALS: usize = 48;
-
-/// What a path may not exceed under the settings in force.
-#[derive(Clone, Debug)]
-pub struct MotionLimits {
-    /// rad/s².
-    pub acceleration: Joints,
-    /// Nm, infinite where the robot has no dynamics.
-    pub torque: Joints,
-}
 
 /// Why a path has no timing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

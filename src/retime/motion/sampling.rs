@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
-use super::timing::limits::Row;
+use super::timing::row::Row;
 use crate::arm::dynamics::{Load, rnea_each};
 use crate::arm::kinematics::Tcp;
 use crate::arm::robot::Model;

@@ -3,8 +3,8 @@
 use super::check::Check;
 use super::margins::Margins;
 use super::reason::Reason;
-use super::retime::Work;
 use super::run_plant::RunPlant;
+use super::run_problem::RunProblem;
 use super::stream_fit::{StreamFit, fit_stream};
 use super::stream_polish::{Corridor, polish_stream};
 use super::stream_reference::Reference;
@@ -40,7 +40,7 @@ pub(super) struct Intended {
     stream: Stream,
 }
 
-impl Work<'_> {
+impl RunProblem<'_> {
     /// Where the margins leave no room on the path, the motion of the run itself is what polishing
     /// begins with: it is within all limits and takes this time.
     pub(super) fn as_before(
@@ -125,8 +125,11 @@ impl Work<'_> {
     /// The stream polished, rounded as it will be emitted and checked.
     pub(super) fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
         let Intended { reference, stream } = intended;
-        let plant =
-            RunPlant { work: self, margins, ceilings: self.corridor.eased(margins.reach, EASING) };
+        let plant = RunPlant {
+            problem: self,
+            margins,
+            ceilings: self.corridor.eased(margins.reach, EASING),
+        };
         let corridor = Corridor { tolerance: self.looseness(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)

@@ -1,6 +1,7 @@
 //! What a stream really does, against every limit.
 
-use super::allowed::{Ceiling, Loads, speeds};
+use super::allowed::Loads;
+use super::ceilings::{Ceiling, speeds};
 use super::corridor::{Corridor, Offset};
 use super::keep_out::least_room;
 use super::plant::STILL;
@@ -37,7 +38,7 @@ pub struct Check {
     pub polygon_m: f64,
     /// The same in units of what is allowed at each place.
     pub polygon: f64,
-    /// Distance of the end from the programmed one, rad.
+    /// Distance of the end from the programmed one, rad; 0 outside of a corridor.
     pub endpoint_error_rad: f64,
     /// True if every joint stays in its range.
     pub in_range: bool,
@@ -114,20 +115,19 @@ pub enum Room<'a> {
     Free(&'a Loads),
 }
 
-/// Checks the realised motion of a stream in its room, towards where it is to end, and with the arm
-/// among what the cell keeps free.
+/// Checks the realised motion of a stream against every limit, in its room; `body` is the arm among
+/// the keep-out zones of the cell.
 pub fn check(
     model: &Model,
     load: &Load,
     tool: &Tcp,
     stream: &Stream,
     room: Room<'_>,
-    end: &Joints,
     body: Option<&Body<'_>>,
 ) -> Check {
     let velocity = speeds(model);
     let (corridor, loads) = match room {
-        Room::Corridor(corridor) => (Some(corridor), &corridor.allowed.loads),
+        Room::Corridor(corridor) => (Some(corridor), &corridor.ceilings.loads),
         Room::Free(loads) => (None, loads),
     };
     let share = |values: &[f64], limit: &Joints| {
@@ -138,7 +138,10 @@ pub fn check(
         velocity: share(&stream.max_velocity(), &velocity),
         acceleration: share(&stream.max_acceleration(), &loads.acceleration),
         jerk: share(&stream.max_jerk(), &loads.jerk),
-        endpoint_error_rad: (0..DOF).map(|j| (stream.end()[j] - end[j]).abs()).fold(0.0, f64::max),
+        endpoint_error_rad: corridor.map_or(0.0, |corridor| {
+            let error = |j: usize| (stream.end()[j] - corridor.end[j]).abs();
+            (0..DOF).map(error).fold(0.0, f64::max)
+        }),
         intrusion_m: body.map_or(0.0, |body| (-least_room(model, body, stream)).max(0.0)),
         ..Check::none()
     };

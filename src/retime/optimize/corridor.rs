@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Vector4};
 
-use super::allowed::{Allowed, Ceiling};
+use super::ceilings::{Ceiling, Ceilings};
 use super::freedom::Freedom;
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
@@ -49,7 +49,9 @@ struct Place {
 pub struct Corridor {
     places: Vec<Place>,
     /// What a stream in it may ask of the robot.
-    pub(super) allowed: Allowed,
+    pub(super) ceilings: Ceilings,
+    /// Where the run ends, rad.
+    pub(super) end: Joints,
 }
 
 /// How a pose lies to the corridor.
@@ -78,7 +80,7 @@ fn near_stops(places: &mut [Place]) {
 impl Corridor {
     /// The corridor of a run along one path; `None` for streams.
     pub fn new(model: &Model, run: &Run, freedom: &Freedom) -> Option<Corridor> {
-        let allowed = Allowed::new(model, run, freedom);
+        let ceilings = Ceilings::new(model, run, freedom);
         let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return None };
         let mut places = Vec::new();
         for piece in path.pieces() {
@@ -86,7 +88,7 @@ impl Corridor {
             let zone = &run.legs[piece.leg].zone;
             let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
             // A piece of a zone belongs to the leg before or after its corner: so does its ceiling.
-            let ceiling = allowed.moves[piece.leg];
+            let ceiling = ceilings.moves[piece.leg];
             let tolerance = match piece.kind {
                 PieceKind::Joint => JOINT_TOLERANCE,
                 PieceKind::Cartesian => LINE_TOLERANCE,
@@ -106,9 +108,11 @@ impl Corridor {
             };
             let other = corner.and_then(|leg| run.moves.get(leg)).map(|record| &record.movement);
             let movements = std::iter::once(movement).chain(other);
-            let free = movements.map(|movement| freedom.of(movement)).fold(f64::INFINITY, f64::min);
+            let free = movements
+                .map(|movement| freedom.free_deviation(movement))
+                .fold(f64::INFINITY, f64::min);
             // In a corner joints come from the one speed to the other.
-            let beyond = corner.and_then(|leg| allowed.moves.get(leg)).unwrap_or(&ceiling);
+            let beyond = corner.and_then(|leg| ceilings.moves.get(leg)).unwrap_or(&ceiling);
             let tcp = if corner.is_some() { ceiling.corner } else { ceiling.tcp };
             let ceiling = Ceiling { tcp, joints: ceiling.max(beyond).joints, ..ceiling };
             let tolerance = tolerance.max(free);
@@ -135,7 +139,7 @@ impl Corridor {
             places.extend(poses.into_iter().map(place));
         }
         near_stops(&mut places);
-        Some(Corridor { places, allowed })
+        Some(Corridor { places, ceilings, end: run.end })
     }
 
     /// The offset of a pose, searched near the place `from`, which is moved on.

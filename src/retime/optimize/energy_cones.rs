@@ -28,8 +28,9 @@ use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::path_energy::{EnergyModel, Sharing, evaluate};
 use crate::retime::motion::stream::DOF;
 use crate::retime::motion::timing::grid::PathGrid;
-use crate::retime::motion::timing::limits::{PathLimits, Row, rows};
+use crate::retime::motion::timing::limits::{PathLimits, rows};
 use crate::retime::motion::timing::profile::Profile;
+use crate::retime::motion::timing::row::Row;
 
 /// What stands for √b where it is concave.
 #[derive(Clone, Copy)]

@@ -70,20 +70,6 @@ const SLOW: f64 = 4.0;
 /// Bisection steps for a slow profile by a speed cap.
 const CAP_STEPS: usize = 40;
 
-/// The profile of least energy that takes at most `duration` (s, may be infinite) from rest to
-/// rest and keeps the limits at both ends of each interval. `fastest` is the fastest profile on
-/// the same grid.
-pub fn minimize_energy(
-    grid: &PathGrid,
-    limits: &PathLimits,
-    model: &EnergyModel,
-    fastest: &Profile,
-    duration: f64,
-) -> EnergyOutcome {
-    let bound = energy_bound(grid, limits, model, fastest, duration);
-    minimize_energy_from(grid, limits, model, fastest, duration, bound.as_ref())
-}
-
 /// What the relaxation says of a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyBound {
@@ -116,9 +102,11 @@ pub fn energy_bound(
     Some(EnergyBound { lower_bound, b: relaxed.b })
 }
 
-/// As [`minimize_energy`], with the relaxation of this problem or of one on the same nodes with
-/// wider limits.
-pub fn minimize_energy_from(
+/// The profile of least energy that takes at most `duration` (s, may be infinite) from rest to
+/// rest and keeps the limits at both ends of each interval. `fastest` is the fastest profile on
+/// the same grid; `relaxed` the relaxation of this problem, or of one on the same nodes with wider
+/// limits.
+pub fn minimize_energy(
     grid: &PathGrid,
     limits: &PathLimits,
     model: &EnergyModel,

@@ -48,12 +48,6 @@ impl Freedom {
         }
     }
 
-    /// All that the robot can do on the path.
-    pub fn of_the_robot() -> Freedom {
-        let robot = Bound::Robot;
-        Freedom { tcp: robot, joints: robot, ..Freedom::none() }
-    }
-
     /// What the joints of a robot may bear.
     pub fn loads(&self, model: &Model) -> Loads {
         self.loads.unwrap_or_else(|| Loads::limits(model))
@@ -74,7 +68,7 @@ impl Freedom {
     }
 
     /// How far a movement may leave its path, m, more than the least that is always allowed.
-    pub fn of(&self, movement: &Movement) -> f64 {
+    pub fn free_deviation(&self, movement: &Movement) -> f64 {
         let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
         let free = joint || self.freed.contains(&movement.span);
         if free { self.deviation } else { 0.0 }

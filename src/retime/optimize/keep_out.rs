@@ -11,7 +11,7 @@ use super::freedom::Freedom;
 /// Arm and tool of a run among what the cell keeps free; `None` where nothing is to be kept free, or
 /// where the run keeps to a path that comes into it, which is the program's own choice.
 pub fn body<'a>(model: &'a Model, run: &Run, freedom: &Freedom) -> Option<Body<'a>> {
-    let free = run.moves.iter().any(|record| freedom.of(&record.movement) > 0.0);
+    let free = run.moves.iter().any(|record| freedom.free_deviation(&record.movement) > 0.0);
     let body = around(model, &run.legs.first()?.tool, freedom)?;
     (free || !enters(&body, run)).then_some(body)
 }

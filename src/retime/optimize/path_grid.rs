@@ -3,7 +3,7 @@
 use crate::arm::robot::Model;
 use crate::retime::motion::sampling::{self, Loaded, SpeedCap};
 use crate::retime::motion::timing::grid::{GridError, PathGrid, PathPoint};
-use crate::retime::path::joint_path::{DOF, JointPath, Piece, PieceKind};
+use crate::retime::path::joint_path::{DOF, JointPath, Piece};
 
 /// Parts of a piece in which one turn of a joint is looked for.
 const PARTS: usize = 4;
@@ -37,30 +37,6 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
             (_, true) if next < last => nodes[next] = turn,
             (false, false) => nodes.insert(next, turn),
             _ => {}
-        }
-    }
-    nodes
-}
-
-/// The same with every edge of a zone, however near to another: way points that nearly coincide
-/// make zones shorter than the least distance of the nodes, in which a path bends all the same.
-pub fn nodes_with_edges(
-    model: &Model,
-    path: &JointPath,
-    caps: &[SpeedCap],
-    count: usize,
-) -> Vec<f64> {
-    let mut nodes = nodes(model, path, caps, count);
-    let nearest = LEAST_DISTANCE * path.length();
-    let edges = path
-        .pieces()
-        .iter()
-        .filter(|piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone));
-    for edge in edges.flat_map(|piece| [piece.s, piece.s + piece.length]) {
-        let next = nodes.partition_point(|node| *node < edge);
-        let inside = next > 0 && next < nodes.len();
-        if inside && edge - nodes[next - 1] > nearest && nodes[next] - edge > nearest {
-            nodes.insert(next, edge);
         }
     }
     nodes

@@ -7,7 +7,7 @@
 //!
 //! m = M q', c = RNEA(q, q', q'') − g: Bobrow, Dubowsky, Gibson (1985); Verscheure et al. (2009).
 
-use super::limits::Row;
+use super::row::Row;
 use crate::retime::motion::stream::Joints;
 
 /// Fewest intervals of a path that starts and ends at rest: one cannot move from 0 to 0.
@@ -170,14 +170,6 @@ impl PathPoint {
         ];
         self.v_max > 0.0 && rows.as_flattened().iter().all(|x| x.is_finite())
     }
-}
-
-/// n + 1 nodes on [0, length], denser toward the ends: s = L (3x² − 2x³). The speed of a motion
-/// from rest grows as √s, so that equal intervals waste time at both ends: on random paths with
-/// N = 100 the time over that of a fine grid falls by half.
-pub fn rest_to_rest_nodes(length: f64, n: usize) -> Vec<f64> {
-    let share = |k: usize| k as f64 / n as f64;
-    (0..=n).map(|k| length * share(k).powi(2) * (3.0 - 2.0 * share(k))).collect()
 }
 
 /// A path from rest to rest on nodes s₀ < … < sₙ. Each interval has its own values at both ends,

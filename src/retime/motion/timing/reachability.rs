@@ -11,8 +11,9 @@
 //! are repeated until the profile stays.
 
 use super::grid::PathGrid;
-use super::limits::{PathLimits, Row, binding_rows, worst_ratio};
+use super::limits::{PathLimits, binding_rows, worst_ratio};
 use super::profile::Profile;
+use super::row::Row;
 
 /// How the search for the fastest profile ended.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use super::load::gripping;
-use super::{Options, VirtualController};
+use super::options::Options;
+use super::state::VirtualController;
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::Machine;
 use crate::rapid::ir::movement::{Movement, Output, Wait};
