@@ -25,11 +25,12 @@ use joulepath::retime::optimize::energy_program::{energy_bound, minimize_energy}
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::path_grid;
 use joulepath::retime::optimize::plant::{Plant, realise};
+use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::retime::{Goal, Task, retime};
 use joulepath::retime::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::retime::optimize::stream_polish::polish_stream;
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::path::joint_path::DOF;
 use serde_json::{Value, json};
@@ -218,7 +219,7 @@ fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     })
     .unwrap();
     let arm = Arm(case);
-    let corridor = Corridor { tolerance: f64::INFINITY, lever: [1.0; DOF] };
+    let corridor = PathPenalty { tolerance: f64::INFINITY, lever: [1.0; DOF] };
     let intervals = vec![duration / FREE_POINTS as f64; FREE_POINTS];
     let work = || -> Option<[Stream; 2]> {
         let fit = fit_stream(&reference, intervals.clone(), &joint_limits, &[1.0; DOF]).ok()?;

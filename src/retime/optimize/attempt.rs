@@ -2,11 +2,12 @@
 
 use super::check::Check;
 use super::margins::Margins;
+use super::polish_problem::PathPenalty;
 use super::reason::Reason;
 use super::run_plant::RunPlant;
 use super::run_problem::RunProblem;
 use super::stream_fit::{StreamFit, fit_stream};
-use super::stream_polish::{Corridor, polish_stream};
+use super::stream_polish::polish_stream;
 use super::stream_reference::Reference;
 use super::stream_rounding::{round_down, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
@@ -130,9 +131,9 @@ impl RunProblem<'_> {
             margins,
             ceilings: self.corridor.eased(margins.reach, EASING),
         };
-        let corridor = Corridor { tolerance: self.looseness(), lever: self.lever };
+        let penalty = PathPenalty { tolerance: self.looseness(), lever: self.lever };
         let polished =
-            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
+            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &penalty)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;

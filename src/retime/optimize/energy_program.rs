@@ -4,7 +4,8 @@
 //! viscous terms then lower the energy step by step (difference of convex functions). A solver's
 //! answer counts only after the profile itself has been verified and evaluated.
 
-use super::energy_cones::{Programs, Root, Step};
+use super::energy_cones::{Programs, Step};
+use super::energy_costs::Root;
 use super::path_energy::{EnergyModel, EnergyParts, evaluate};
 use crate::retime::motion::stream::DOF;
 use crate::retime::motion::timing::grid::{PathGrid, PathPoint};
