@@ -10,10 +10,10 @@ use crate::retime::path::joint_path::{DOF, Joints};
 /// Step of the samples of a run, s: half a period of the interpolator.
 const STEP: f64 = 0.002;
 
-/// Share of a limit that a joint has at least: one that stands still in the program still holds, and
-/// turns by what is rounding.
+/// Least share of a limit that a joint gets: a joint at rest in the program still holds, and moves by
+/// rounding.
 const LEAST: f64 = 0.02;
-/// Share of assumed limits that ways may use that the program does not have.
+/// Share of assumed limits for motions that the program does not have.
 const OTHER_WAYS: f64 = 0.5;
 
 /// Joint loads.
@@ -42,8 +42,8 @@ impl Loads {
         }
     }
 
-    /// What streams in the place of a program's movements may ask: where the limits of the robot
-    /// are assumed, no more of any joint than the program asks today. The robot has shown that.
+    /// Loads that streams may use in the place of a program's movements: where the limits of the robot
+    /// are assumed, no more than the program itself uses, which the robot has proved.
     pub fn shown(model: &Model, simulation: &Simulation) -> Loads {
         let mut most = Loads { acceleration: NONE, jerk: NONE, torque: NONE };
         for event in &simulation.events {
@@ -64,8 +64,8 @@ impl Loads {
         }
     }
 
-    /// The same for ways that the program does not have, in which other joints may move: at least
-    /// half of the limits, however far the program stays below.
+    /// The same for motions that the program does not have, in which other joints may move: at least
+    /// [`OTHER_WAYS`] of the limits.
     #[must_use]
     pub fn for_other_ways(&self, model: &Model) -> Loads {
         let limits = Loads::limits(model);

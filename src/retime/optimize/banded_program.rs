@@ -7,7 +7,7 @@
 
 use super::banded::{Banded, Cholesky};
 
-/// min ½ xᵀ H x + gᵀ x + Σ price · (what a row is broken by) subject to the rows.
+/// min ½ xᵀ H x + gᵀ x + Σ price · (violation of a row) subject to the rows.
 pub(super) struct BandedProgram {
     /// H, positive definite, with a band that holds the terms of each row.
     pub(super) matrix: Banded,
@@ -24,7 +24,7 @@ pub(super) struct Row {
     pub(super) terms: Vec<(usize, f64)>,
     /// The bound.
     pub(super) bound: f64,
-    /// What breaking the row by one costs; infinite for a row that has to be kept.
+    /// Price of a violation by one; infinite for a hard row.
     pub(super) price: f64,
 }
 
@@ -45,12 +45,12 @@ pub(super) struct Optimum {
 const MAX_ITERATIONS: usize = 60;
 /// Share of the way to the boundary that a step goes.
 const TO_BOUNDARY: f64 = 0.995;
-/// Least room and multiplier at the begin.
+/// Least slack and multiplier at first.
 const BEGIN: f64 = 1e-2;
 /// Residual of the rows and of the gradient at the end, relative to their size.
 const RESIDUAL: f64 = 1e-7;
 
-/// Room w ≥ 0 of a row, what it is broken by s ≥ 0, and their multipliers λ and price − λ.
+/// Slack w ≥ 0 of a row, its violation s ≥ 0, and their multipliers λ and price − λ.
 #[derive(Clone, Copy)]
 struct State {
     w: f64,
@@ -91,7 +91,7 @@ impl BandedProgram {
                 .rows
                 .iter()
                 .zip(&states)
-                .map(|(row, state)| (state.lambda * state.w, state.broken(row)))
+                .map(|(row, state)| (state.lambda * state.w, state.violation(row)))
                 .collect();
             let mut direction = self.direction(&factor, &states, &residuals, &reductions);
             if !self.rows.is_empty() {
@@ -132,7 +132,7 @@ impl BandedProgram {
     fn factor(&self, states: &[State]) -> Option<Cholesky> {
         let mut matrix = self.matrix.clone();
         for (row, state) in self.rows.iter().zip(states) {
-            let weight = 1.0 / state.give(row);
+            let weight = 1.0 / state.compliance(row);
             for (n, (i, a)) in row.terms.iter().enumerate() {
                 for (j, b) in &row.terms[..=n] {
                     matrix.add(*i.max(j), *i.min(j), weight * a * b);
@@ -157,7 +157,7 @@ impl BandedProgram {
             .zip(reductions.iter().zip(&residuals.primal))
             .map(|((row, state), ((c_w, c_s), primal))| {
                 let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
-                (primal + soft - c_w / state.lambda) / state.give(row)
+                (primal + soft - c_w / state.lambda) / state.compliance(row)
             })
             .collect();
         let mut right: Vec<f64> = residuals.dual.iter().map(|r| -r).collect();
@@ -173,7 +173,7 @@ impl BandedProgram {
             .zip(states)
             .zip(reductions.iter().zip(&shifts))
             .map(|((row, state), ((c_w, c_s), shift))| {
-                let lambda = row.value(&x) / state.give(row) + shift;
+                let lambda = row.value(&x) / state.compliance(row) + shift;
                 let w = (-c_w - state.w * lambda) / state.lambda;
                 let soft = row.is_soft();
                 let s = if soft { (state.s * lambda - c_s) / state.mu(row) } else { 0.0 };
@@ -266,16 +266,16 @@ impl State {
         row.price - self.lambda
     }
 
-    fn broken(&self, row: &Row) -> f64 {
+    fn violation(&self, row: &Row) -> f64 {
         if row.is_soft() { self.mu(row) * self.s } else { 0.0 }
     }
 
     fn complement(&self, row: &Row) -> f64 {
-        self.lambda * self.w + self.broken(row)
+        self.lambda * self.w + self.violation(row)
     }
 
-    /// How far a row gives way per multiplier.
-    fn give(&self, row: &Row) -> f64 {
+    /// Compliance of a row: change of its value per multiplier.
+    fn compliance(&self, row: &Row) -> f64 {
         let soft = if row.is_soft() { self.s / self.mu(row) } else { 0.0 };
         soft + self.w / self.lambda
     }
@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_contradict_each_other_have_no_optimum() {
+    fn contradictory_rows_have_no_optimum() {
         let row = |sign: f64| Row { terms: vec![(0, sign)], bound: -1.0, price: f64::INFINITY };
         let program = BandedProgram { rows: vec![row(1.0), row(-1.0)], ..random(3, 4) };
         assert!(program.solve(1e-8).is_none());

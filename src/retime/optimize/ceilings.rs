@@ -8,14 +8,14 @@ use crate::retime::motion::timeline::{MoveRecord, Run};
 use crate::retime::path::Leg;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Speed that a joint has at least, rad/s: one that all but stands still in the program would leave no
-/// stream for what is rounding. That is 0.06 degrees/s.
+/// Least speed ceiling of a joint, rad/s (0.06 degrees/s): the ceiling of a joint that hardly moves in
+/// the program must leave room for rounding.
 const LEAST_SPEED: f64 = 1e-3;
 
-/// Largest values of the stream of a run.
+/// Largest loads and speeds of the stream of a run.
 #[derive(Clone, Debug)]
 pub(super) struct Ceilings {
-    /// What joints bear.
+    /// Joint loads.
     pub(super) loads: Loads,
     /// Speeds along the part that stands for each movement.
     pub(super) moves: Vec<Ceiling>,
@@ -26,8 +26,8 @@ pub(super) struct Ceilings {
 pub struct Ceiling {
     /// Of the TCP, m/s.
     pub tcp: f64,
-    /// The same within the corner zones at its ends, where the controller itself comes from the
-    /// speed of one movement to that of the next.
+    /// The same within the corner zones at its ends, where the controller changes from the speed of
+    /// one movement to that of the next.
     pub corner: f64,
     /// Of the joints, rad/s.
     pub joints: Joints,

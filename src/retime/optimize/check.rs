@@ -1,4 +1,4 @@
-//! What a stream really does, against every limit.
+//! Check of the realised motion of a stream against every limit.
 
 use super::allowed::Loads;
 use super::ceilings::{Ceiling, speeds};
@@ -16,7 +16,7 @@ use crate::retime::path::joint_path::{DOF, Joints};
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
 
-/// Shares of the limits that a stream uses, and how far it strays.
+/// Shares of the limits that a stream uses, and its distance from the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Check {
     /// Of the joint speeds.
@@ -33,8 +33,8 @@ pub struct Check {
     pub deviation_m: f64,
     /// The same in units of what is allowed at each place.
     pub deviation: f64,
-    /// Largest distance of the polygon of the points from the programmed path, m: where the robot goes
-    /// if it stops at each of them.
+    /// Largest distance of the polygon of the points from the programmed path, m: the path of a robot
+    /// that stops at each of them.
     pub polygon_m: f64,
     /// The same in units of what is allowed at each place.
     pub polygon: f64,
@@ -42,8 +42,7 @@ pub struct Check {
     pub endpoint_error_rad: f64,
     /// True if every joint stays in its range.
     pub in_range: bool,
-    /// By how much arm and tool come into what the cell keeps free, m; only of what may leave its
-    /// path.
+    /// Depth to which arm and tool enter the keep-out zones, m; only where the path may be left.
     pub intrusion_m: f64,
 }
 
@@ -60,7 +59,7 @@ impl Check {
         self.worst() <= 1.0 && self.in_range && self.intrusion_m <= 0.0
     }
 
-    /// What is exceeded most, in words; for a check that does not hold.
+    /// The limit that is exceeded most, in words; for a check that does not hold.
     pub fn fault(&self) -> String {
         let figures = [
             ("joint speed", self.velocity),
@@ -106,12 +105,12 @@ impl Check {
     }
 }
 
-/// Where and how a stream may move.
+/// The space in which a stream may move.
 #[derive(Clone, Copy)]
 pub enum Room<'a> {
     /// In the corridor of the movements that it stands for.
     Corridor(&'a Corridor),
-    /// Anywhere, if joints bear no more than this.
+    /// Anywhere, with at most these joint loads.
     Free(&'a Loads),
 }
 
@@ -190,10 +189,11 @@ pub fn check(
 /// Steps on the way from one point to the next.
 const EDGE_STEPS: usize = 16;
 
-/// Distance from the time at which a joint turns, s: dry friction jumps there.
+/// Time beside a reversal of a joint, s: dry friction jumps at the reversal.
 const BESIDE: f64 = 1e-6;
 
-/// Times in a piece, s, rising: not far apart, and on both sides of where a joint turns.
+/// Sample times in a piece, s, rising: at most a step apart, and on both sides of each reversal of a
+/// joint.
 fn samples(piece: &Piece) -> Vec<f64> {
     let steps = (piece.length / STEP).ceil().max(1.0) as usize;
     let turns = (0..DOF).map(|j| -piece.qd[j] / piece.qdd[j]);

@@ -19,8 +19,8 @@
 //!
 //! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
 //! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
-//! those that come near their bound are in a program, and it is solved again when others turn up.
-//! The rest at both ends is eliminated: there the cones would have no interior.
+//! rows near their bound are in a program, and it is solved again when others are violated. The rest
+//! at both ends is eliminated: there the cones would have no interior.
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::energy_costs::{IntervalCost, Layout, Root, Scale, mean_root};
@@ -49,7 +49,7 @@ pub(super) struct Step {
 const MARGIN: f64 = 1e-5;
 /// Share of its limit from which a row is part of the first program.
 const NEAR_AT_FIRST: f64 = 0.6;
-/// Share of its limit from which a row is added when another one is broken.
+/// Share of its limit from which a row is added when another one is violated.
 const NEAR: f64 = 0.85;
 /// Rounds in which rows are added.
 const MAX_ROUNDS: usize = 8;
@@ -64,7 +64,7 @@ struct Limit {
     active: bool,
 }
 
-/// The programs of one problem, with the rows that have turned out to matter.
+/// The programs of one problem, with the rows that have become active.
 pub(super) struct Programs<'a> {
     grid: &'a PathGrid,
     duration: f64,
@@ -142,7 +142,7 @@ impl<'a> Programs<'a> {
         self.convex
     }
 
-    /// Solves the program, adding rows until none is broken. None if the solver fails.
+    /// Solves the program, adding rows until none is violated. None if the solver fails.
     pub(super) fn solve(&mut self, root: Root<'_>) -> Option<Step> {
         for _ in 0..MAX_ROUNDS {
             let layout = Layout::new(&self.costs, root);
@@ -196,7 +196,7 @@ impl<'a> Programs<'a> {
         self.costs.iter().enumerate().flat_map(of).sum()
     }
 
-    /// Whether a row that is not in the program is broken by the profile b.
+    /// Whether the profile b violates a row that is not in the program.
     fn broken(&self, b: &[f64], root: Root<'_>) -> bool {
         let limit = |l: &Limit| !l.active && self.value(l, b) > 1.0;
         let speed = |(k, (max, active)): (usize, &(f64, bool))| {

@@ -1,4 +1,4 @@
-//! The curve of least energy over time of a run, and what is read from it.
+//! The curve of least energy over time of a run.
 
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
@@ -12,7 +12,7 @@ use crate::retime::motion::timing::profile::Profile;
 
 /// The curve begins at the least time times this, where programs have room.
 const RESERVE_OF_CURVE: f64 = 1.001;
-/// And goes on to this many times that, at least.
+/// And ends at this multiple of that, at least.
 const CURVE: f64 = 2.0;
 
 /// A stream needs this much more time than the fastest profile, at least.
@@ -21,7 +21,7 @@ const RESERVE: f64 = 1.05;
 const COARSE: usize = 20;
 /// Share of a time within which a curve is known well enough.
 const NEAR: f64 = 0.03;
-/// Share by which a profile is made longer to see what that costs.
+/// Share by which a profile is lengthened for a finite difference of its energy.
 const LONGER: f64 = 1e-3;
 
 /// A point of the curve of energy over time.
@@ -67,8 +67,8 @@ pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     curve().unwrap_or_default()
 }
 
-/// What a run takes over the time that it gets, settling included: energies of the motion alone,
-/// known at some times and learnt at others.
+/// Least energy of the motion of a run over its time (settling included), computed at the times that
+/// are asked for.
 pub struct Curve<'a> {
     problem: RunProblem<'a>,
     grid: PathGrid,
@@ -86,7 +86,7 @@ impl<'a> Curve<'a> {
         let problem = RunProblem::new(task).ok()?;
         let (grid, limits) = problem.grid_of(&Margins::first(problem.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        // What is known to be possible may be below what the coarse grid says.
+        // The shortest possible time may be below that of the coarse grid.
         let reserve = RESERVE * fast.duration() + task.run.settling;
         let shortest = if shortest > 0.0 { shortest } else { reserve };
         let range = (shortest, longest.max(shortest));
@@ -94,8 +94,8 @@ impl<'a> Curve<'a> {
         curve.learn(task.run.duration()).then_some(curve)
     }
 
-    /// Finds out what the run takes in a time, s, where that is not known well enough. Whether
-    /// there was something to learn.
+    /// Computes the energy of the run in a time, s, unless it is known near that time. Returns
+    /// whether a point was added.
     pub fn learn(&mut self, time: f64) -> bool {
         let least = RESERVE * self.fast.duration() + self.problem.task.run.settling;
         let time = time.clamp(self.range.0, self.range.1).max(least);
@@ -112,7 +112,7 @@ impl<'a> Curve<'a> {
         is_new
     }
 
-    /// What the run takes in a time, s; beyond the one of least energy that one too.
+    /// The point of the curve at a time, s; for a time beyond that of least energy, both points.
     fn at(&self, time: f64) -> Vec<(Known, Vec<f64>)> {
         let settling = self.problem.task.run.settling;
         let moving = time - settling;
@@ -150,7 +150,7 @@ impl<'a> Curve<'a> {
         found
     }
 
-    /// What is known of it by now.
+    /// The curve through the points so far.
     pub fn trade_off(&self) -> Option<TradeOff> {
         let known: Vec<Known> = self.known.iter().map(|(known, _)| *known).collect();
         TradeOff::through(&known, self.range)

@@ -13,7 +13,7 @@ use crate::retime::motion::timing::limits::{PathLimits, worst_ratio};
 use crate::retime::motion::timing::profile::Profile;
 use crate::retime::motion::timing::reachability::{speed_range, time_optimal};
 
-/// A profile and what is known of its quality.
+/// A profile with its energy and a lower bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyOptimum {
     /// The profile, with all limits and the time verified.
@@ -66,12 +66,12 @@ const MAX_TANGENTS: usize = 8;
 const SLOWEST: f64 = 1e3;
 /// Steps of the search for the best time of the start.
 const PACE_STEPS: usize = 16;
-/// Time over that of the fastest profile beyond which it says little about speeds.
+/// Time over that of the fastest profile beyond which the speed range is not worth computing.
 const SLOW: f64 = 4.0;
 /// Bisection steps for a slow profile by a speed cap.
 const CAP_STEPS: usize = 40;
 
-/// What the relaxation says of a problem.
+/// The solution of the relaxation of a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyBound {
     /// No profile on the grid gets below this in the time, J.
@@ -191,7 +191,7 @@ impl Search<'_> {
 }
 
 /// The time up to `duration` in which the uniformly slowed fastest profile costs least, s: holding
-/// the arm up and the base power can make slowness dear. It sets the scales of the programs.
+/// and base power may make slow motions expensive. It sets the scales of the programs.
 fn best_pace(grid: &PathGrid, model: &EnergyModel, fastest: &Profile, duration: f64) -> f64 {
     let cost = |log: f64| {
         let slower = fastest.scaled_to(fastest.duration() * log.exp());

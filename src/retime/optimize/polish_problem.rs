@@ -27,17 +27,17 @@ const VIOLATION_PRICE: f64 = 5.0;
 const NEAR: f64 = 0.75;
 /// Unit of the variables, rad.
 pub(super) const UNIT: f64 = 0.01;
-/// Smallest tolerance that is taken literally.
+/// Smallest tolerance.
 const TIGHTEST: f64 = 1e-7;
 /// Steps to the nearest point of the path.
 const NEAREST_STEPS: usize = 6;
 /// Speed below which a path has no direction.
 const SLOWEST: f64 = 1e-6;
-/// Share of the peak power about which the loss of braking is rounded.
+/// Rounding of the braking loss, as a share of the peak power.
 const ROUND_POWER: f64 = 0.02;
-/// Share of the peak speed about which dry friction is rounded.
+/// Rounding of dry friction, as a share of the peak speed.
 const ROUND_SPEED: f64 = 0.02;
-/// Peak power below which a stream is taken to need no rounding finer, W.
+/// Least peak power for the rounding, W.
 const LEAST_POWER: f64 = 1.0;
 /// Steps of Simpson's rule on a piece.
 const SIMPSON: usize = 2;
@@ -51,9 +51,9 @@ pub(super) struct PolishProblem<'a, P> {
     pub(super) points: Points,
     /// Energy of the stream at the beginning, J: the unit of the merit.
     unit: f64,
-    /// Power about which the loss of braking is rounded, W.
+    /// Rounding of the braking loss, W.
     round_power: f64,
-    /// Speed about which dry friction is rounded, rad/s.
+    /// Rounding of dry friction, rad/s.
     round_speed: f64,
     /// Dry friction, Nm.
     dry: Joints,
@@ -289,8 +289,8 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         }
     }
 
-    /// What rounding changes of the dry friction of a joint at a velocity, Nm, and the slope of the
-    /// rounded friction, Nms: without them no step would take a joint over the kink in its work.
+    /// Rounded less exact dry friction of a joint at a velocity, Nm, and the slope of the rounded
+    /// friction, Nms: without the rounding no step would cross the kink of its work at rest.
     fn rounded_friction(&self, joint: usize, velocity: f64) -> (f64, f64) {
         let root = velocity.hypot(self.round_speed);
         let dry = self.dry[joint];
@@ -377,7 +377,7 @@ fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
     stream.pieces().enumerate().flat_map(of).collect()
 }
 
-/// What a variable does at a place, per unit of it.
+/// Change of the quantities at a place per unit of a variable.
 struct Column {
     index: usize,
     joint: usize,

@@ -1,4 +1,4 @@
-//! A wait of known length spent at a pose nearby that is cheaper to hold: there, standing, back.
+//! A wait of known length at a nearby pose with less holding power: the way there, the wait, the way back.
 //!
 //! Holding power as in Paes et al. 2014, table 3; the way there and back has to cost less than it
 //! saves.
@@ -29,9 +29,9 @@ pub struct Standstill<'a> {
     pub q: Joints,
     /// How long, s.
     pub duration: f64,
-    /// What the joints may bear.
+    /// Largest loads of the joints.
     pub loads: &'a Loads,
-    /// Arm and tool among what the cell keeps free.
+    /// Arm and tool among the keep-out zones.
     pub body: Option<&'a Body<'a>>,
 }
 
@@ -46,7 +46,7 @@ pub struct Rest {
     pub back: Stream,
     /// Energy of the whole wait.
     pub energy: EnergyParts,
-    /// What it takes without moving, J.
+    /// Energy without moving, J.
     pub energy_before_j: f64,
 }
 
@@ -82,7 +82,7 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
         let mut time = POINTS.0 as f64 * spacing;
         while 2.0 * time <= MOVING * duration {
             match trip(standstill, &low, time, spacing) {
-                // Slower ways leave less time at the pose: beyond the best one it only gets worse.
+                // Slower ways leave less time at the pose: beyond the best time the energy only rises.
                 Ok(found) if best.as_ref().is_some_and(|best| taken(best) <= taken(&found)) => {
                     break;
                 }

@@ -47,7 +47,7 @@ pub struct Retiming {
     pub path: PathUse,
 }
 
-/// What a stream makes of the path of its run.
+/// Whether a stream keeps to the path of its run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PathUse {
     /// It keeps to it, within the tolerance.
@@ -66,7 +66,7 @@ const BOUND_ROUNDING: f64 = 1e-5;
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
-/// Share of the energy that more polishing is not expected to take off a stream.
+/// Share of the energy that more polishing may still be expected to save.
 const HOPELESS: f64 = 0.05;
 /// Where a motion is slow, the ramp time is a short step: at least this share of its time.
 const SLOW_STEP: f64 = 0.02;
@@ -82,7 +82,7 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     if !moves.any(|record| task.freedom.free_deviation(&record.movement) > 0.0) {
         return on_path(task, goal);
     }
-    // What is free is never worse than what keeps to the path.
+    // The free stream is used only if it is better than the one on the path.
     let strict = task.freedom.strict();
     let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
     let body = keep_out::body(task.model, task.run, task.freedom);
@@ -111,8 +111,8 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     }
 }
 
-/// No motion between the ends of a run in this time (s) takes less, J: what it gains in height,
-/// dry friction over the way, and viscous friction of the same speed all the time.
+/// Lower bound of the energy of any motion between the ends of a run in this time (s), J: potential
+/// energy, dry friction over the distance, and viscous friction at constant speed.
 fn free_bound(task: &Task<'_>, time: f64) -> f64 {
     let Task { model, run, .. } = task;
     let height = |q: &Joints| potential_energy(model, &run.load, q);
@@ -151,7 +151,7 @@ pub fn fastest(task: &Task<'_>) -> Option<f64> {
     RunProblem::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
 }
 
-/// A run is made slower by this factor at most.
+/// Largest factor by which a run is slowed.
 pub const SLOWEST: f64 = 10.0;
 
 impl RunProblem<'_> {
@@ -182,7 +182,7 @@ impl RunProblem<'_> {
                     return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
                 }
                 Ok(attempt) => {
-                    // Tighter margins do not make it cheaper, more polishing a little.
+                    // Tighter margins do not lower the energy; more polishing lowers it a little.
                     let energy = self.moving(&attempt.stream).motion_energy_j();
                     if energy - HOPELESS * energy.abs() >= worth {
                         return Err(Reason::NoSaving);
@@ -220,11 +220,11 @@ impl RunProblem<'_> {
         let (mut grid, limits) = self.grid(margins)?;
         let mut fast = fastest_profile(&grid, &limits)?;
         if fast.duration() > budget {
-            // Too short a time for a shaped motion: polishing shapes it.
+            // The time is too short for a shaped motion; the polishing has to shape it.
             (grid, _) = self.bare_grid(margins)?;
             fast = fastest_profile(&grid, &limits)?;
         }
-        // The relaxation of another cost says nothing of this one.
+        // The relaxation bounds the electrical energy only.
         let bound = bound.filter(|_| self.model == self.electrical);
         let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
@@ -239,7 +239,7 @@ impl RunProblem<'_> {
         energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
 
-    /// Least time: the fastest profile, given as much longer as the jerk limit needs.
+    /// Least time: the fastest profile, lengthened as far as the jerk limit needs.
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
@@ -271,7 +271,7 @@ impl RunProblem<'_> {
         Err(problem)
     }
 
-    /// The fastest stream made as slow, where the time is too short for more.
+    /// The fastest stream, slowed to the given time, where no better stream was found.
     fn within(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
         if retiming.duration_s > time + quantum() {
@@ -290,7 +290,7 @@ impl RunProblem<'_> {
         }
     }
 
-    /// A stream with all its intervals longer, if it still holds: friction and weight don't fall
+    /// A stream with all its intervals lengthened, if it still holds: friction and weight do not fall
     /// with the speed.
     fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
         let longer = duration / stream.duration();

@@ -44,11 +44,11 @@ pub struct Task<'a> {
     pub energy_before: EnergyParts,
     /// Least time between two points, s.
     pub spacing_s: f64,
-    /// The same where the polygon of the points would be too far from the path otherwise, s.
+    /// The same where the polygon of the points would otherwise be too far from the path, s.
     pub closest_s: f64,
-    /// What the stream may do that the run did not.
+    /// Freedoms of the stream beyond the run.
     pub freedom: &'a Freedom,
-    /// What is minimised.
+    /// The cost that is minimised.
     pub cost: Cost,
 }
 
@@ -59,9 +59,9 @@ pub(super) struct RunProblem<'a> {
     pub(super) corridor: Corridor,
     pub(super) body: Option<Body<'a>>,
     pub(super) limits: StreamLimits,
-    /// What the robot takes.
+    /// The electrical energy.
     pub(super) electrical: EnergyModel,
-    /// What is minimised.
+    /// The cost that is minimised.
     pub(super) model: EnergyModel,
     pub(super) lever: Joints,
 }
@@ -82,7 +82,7 @@ impl<'a> RunProblem<'a> {
         Ok(RunProblem { task, path, corridor, body, limits, electrical, model, lever })
     }
 
-    /// What a stream does as the controller will realise it.
+    /// Check of a stream as the controller will realise it.
     pub(super) fn check(&self, stream: &Stream) -> Check {
         let Task { model, run, .. } = self.task;
         let tool = &run.legs[0].tool;
@@ -90,7 +90,7 @@ impl<'a> RunProblem<'a> {
         check(model, &run.load, tool, stream, room, self.body.as_ref())
     }
 
-    /// How far the motion may leave the path somewhere, m, before the polishing minds.
+    /// Distance from the path that the polishing does not penalise noticeably, m.
     pub(super) fn looseness(&self) -> f64 {
         let moves = self.task.run.moves.iter();
         let free = moves

@@ -1,4 +1,4 @@
-//! Lower energy for a stream at its own intervals, within all limits: the realised motion counts.
+//! Lowers the energy of the realised motion of a stream at fixed intervals, within all limits.
 //!
 //! Sequential quadratic programming on the points. The copper loss is a sum of squares of torques
 //! that are linearised in the points (Gauss–Newton). The loss of a power that is braked away is
@@ -31,7 +31,7 @@ pub struct Polished {
     pub stream: Stream,
     /// How the polishing ended.
     pub status: PolishStatus,
-    /// What its motion costs and how near it comes to the limits.
+    /// Cost of its motion and shares of the limits.
     pub realised: Realised,
     /// Largest distance of the realised motion from the path of the reference, in the units of
     /// the levers.
@@ -42,9 +42,9 @@ pub struct Polished {
 const MAX_STEPS: usize = 80;
 /// Relative fall of the merit at which the steps end.
 const CONVERGED: f64 = 3e-5;
-/// Gap of the programs: a step is judged by what it does, not by what it promises.
+/// Gap of the programs: a step is accepted by its effect on the merit, so a rough solution suffices.
 const ROUGH_GAP: f64 = 1e-5;
-/// Price of a step of one unit in every variable at the begin, in energies; and its bounds.
+/// Price of a step of one unit in every variable at first, in energies; and its bounds.
 const DAMPING: f64 = 1e-3;
 const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 /// Factor on the damping after a good or a bad step.
@@ -55,7 +55,7 @@ const PARTS: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 /// Lowers the energy of `stream`, which starts and ends as `reference` and keeps `limits`.
 ///
 /// # Errors
-/// None for a stream that exists; the same as of making one.
+/// None for a valid stream; those of [`Stream::new`].
 pub fn polish_stream(
     stream: &Stream,
     reference: &Reference,
@@ -142,8 +142,8 @@ impl<P: Plant> Polish<'_, P> {
         self.problem.quadratic(&best.stream, best.realised.excess)
     }
 
-    /// The largest tried part of a step that lowers the merit, and the stream there. The joint
-    /// limits are convex: what keeps them at both ends keeps them between.
+    /// Line search: the largest part of a step that lowers the merit, and the stream there. The joint
+    /// limits are convex: a part of a feasible step keeps them.
     fn along(
         &self,
         best: &Candidate,
@@ -172,7 +172,7 @@ impl<P: Plant> Polish<'_, P> {
         for i in 0..size {
             matrix.add(i, i, price);
         }
-        // What is at its limit already has to stay there only.
+        // A row beyond its limit must not get worse.
         let kept = self.rows.iter().filter(|row| !row.terms.is_empty()).map(|row| Row {
             terms: row.terms.iter().map(|(i, weight)| (*i, UNIT * weight)).collect(),
             bound: (1.0 - ROOM - row.value(&variables)).max(0.0),

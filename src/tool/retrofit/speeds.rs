@@ -103,7 +103,7 @@ pub(super) fn retrofit(
     let mut ways = ways(sites);
     let slots = slots(&before, settings, &mut ways);
     let rounds = FACTORS.len() + HALVINGS + 1;
-    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    let robots = if settings.point_estimate { None } else { Robots::new(model) };
     let mean = mean_robot(model, robots.as_ref(), &before.simulation);
     let aim = mean.as_ref().unwrap_or(model);
     let found = search(&before, aim, settings, &slots, &ways, &|done| progress(done, rounds));

@@ -43,8 +43,9 @@ pub(super) fn uncertain_ways(
     sites: &[Site],
     ways: &[Way],
 ) -> Vec<(usize, Reason)> {
-    let sums =
-        |side: Side<'_>, event: usize| Some(Moments::of(model, side.simulation.events.get(event)?));
+    let sums = |side: Side<'_>, event: usize| {
+        Some(Moments::from_event(model, side.simulation.events.get(event)?))
+    };
     let own = |side: Side<'_>, event: usize| -> Option<f64> {
         Some(side.account.events.get(event)?.iter().map(EnergyParts::motion_energy_j).sum())
     };
@@ -103,7 +104,7 @@ pub(super) fn uncertainty(
         let pairs = original[i].iter().zip(&optimized[i]);
         pairs.map(|(a, b)| if *a > 0.0 { 100.0 * (a - b) / a } else { 0.0 }).collect()
     });
-    let interval = |values: [Vec<f64>; 2]| values.map(|values| Interval::of(&values));
+    let interval = |values: [Vec<f64>; 2]| values.map(|values| Interval::from_values(&values));
     Uncertainty {
         contributions: robots.contributions(&saving[1]),
         original: interval(original),

@@ -284,7 +284,7 @@ pub fn retrofit(
         };
         return speeds::retrofit(before, model, settings, progress);
     }
-    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    let robots = if settings.point_estimate { None } else { Robots::new(model) };
     let mean = mean_robot(model, robots.as_ref(), &simulation);
     let (aim, of_aim) = match &mean {
         Some(mean) => (mean, account(mean, &simulation)),

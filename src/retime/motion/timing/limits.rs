@@ -88,7 +88,7 @@ pub(crate) fn binding_rows(
 ) {
     let accelerations: [Row; DOF] = std::array::from_fn(|j| acceleration_row(point, limits, j));
     let bounds = accelerations.iter().map(|row| acceleration_bound(row, b_max));
-    // A hair of room for the tolerance on the others.
+    // Slightly more, for the tolerance of the solver.
     let u_max = bounds.fold(f64::INFINITY, f64::min) * 1.001;
     let root = b_max.sqrt();
     let mut see = |row: &Row| {

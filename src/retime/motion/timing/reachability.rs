@@ -47,7 +47,7 @@ const STAGE_SLACK: f64 = 1e-8;
 const TIME_TOLERANCE: f64 = 1e-5;
 /// Passes before the help of friction in braking is given up.
 const MAX_PASSES: usize = 25;
-/// Factor on the tangent points while they leave no profile at all.
+/// Factor on the tangent points while no profile is feasible.
 const TANGENT_RETREAT: f64 = 0.25;
 /// Retreats before the limits count as infeasible.
 const MAX_RETREATS: usize = 12;

@@ -10,8 +10,8 @@ use crate::rapid::ir::movement::{Movement, Stop, Wait};
 use crate::retime::motion::run_plan::Planned;
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
 
-/// Drafts that are planned together: they share the processors, and an endless program does not
-/// run far beyond the time at which it is stopped.
+/// Drafts that are planned together: enough for all processors, few enough that an endless program
+/// does not run far beyond its largest time.
 const BATCH: usize = 256;
 
 /// Time constant with which the error of the servos dies away at a stop point, s. Chosen: position
@@ -38,7 +38,7 @@ impl VirtualController<'_> {
         }
     }
 
-    /// Plans what is kept, runs side by side, and lays it on the time line.
+    /// Plans the drafts, runs in parallel, and lays them on the time line.
     pub(super) fn lay_out(&mut self) {
         let model = self.model;
         let drafts = std::mem::take(&mut self.drafts);
@@ -105,7 +105,7 @@ impl VirtualController<'_> {
         };
         // An output between fly-by movements was noted when the run was not planned yet: it
         // keeps its place in the order before the run's event.
-        // Wherever the first movement comes from, it ends where it is told to.
+        // The first movement ends at its target, wherever it starts.
         let first = !self.events.iter().any(|event| matches!(event.what, What::Run(_)));
         self.certain = run.problem.is_none() || (first && self.options.start.is_none());
         if t > 0.0 {
@@ -161,7 +161,7 @@ impl VirtualController<'_> {
     }
 
     fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
-        // What the logic does while a movement with \Conc is under way takes no time of its own.
+        // Logic that runs during a movement with \Conc takes no time of its own.
         let begin = self.time - self.ahead;
         self.waited_last = Waited::Ended;
         let (length, basis) = match (wait.duration, self.input_at(&wait)) {

@@ -1,5 +1,5 @@
-//! Movements, waits and outputs that were executed before, laid on a time line again: what another
-//! zone, speed or order of some of them would change, without running the program.
+//! Lays given movements, waits and outputs on a time line: the effect of another zone, speed or order
+//! of some of them, without executing the program.
 
 use std::collections::BTreeMap;
 

@@ -21,13 +21,13 @@ pub(super) struct Pending {
 pub(super) struct VirtualController<'a> {
     pub(super) model: &'a Model,
     pub(super) options: &'a Options,
-    /// Where the robot stands, or will once the pending movements are done.
+    /// Joints after all movements so far, pending ones included, rad.
     pub(super) q: Joints,
-    /// False after something that may have moved the robot elsewhere, as far as laid out.
+    /// False where the position of the robot is not known, at the end of the time line.
     pub(super) certain: bool,
     /// How long the robot rests after the last run before it can move on, s.
     pub(super) settling: f64,
-    /// True once what is laid out lasts too long.
+    /// True once the time line is longer than the largest time.
     pub(super) late: bool,
     pub(super) moved: bool,
     /// Tool of the last movement.
@@ -41,9 +41,9 @@ pub(super) struct VirtualController<'a> {
     pub(super) ahead: f64,
     /// How the wait that was laid out last ended.
     pub(super) waited_last: Waited,
-    /// What was assumed about the controller on the way.
+    /// Assumptions about the controller.
     pub(super) assumed: Vec<String>,
-    /// What is not on the time line yet: each becomes one event.
+    /// Items that are not on the time line yet: each becomes one event.
     pub(super) drafts: Vec<Draft>,
     pub(super) notes: Vec<Note>,
     pub(super) repeats_from: Option<usize>,
@@ -51,7 +51,7 @@ pub(super) struct VirtualController<'a> {
     pub(super) waited: BTreeMap<String, f64>,
     /// Lower-case names of the inputs that were waited for.
     pub(super) asked: BTreeSet<String>,
-    /// Movements that were told.
+    /// Number of movements of the program so far.
     pub(super) moves: usize,
 }
 
