@@ -7,11 +7,11 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use joulepath::retime::motion::stream::DOF;
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::time_optimal;
-use joulepath::retime::optimize::energy_program::minimize_energy;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing};
+use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::retime::optimize::stream_polish::polish_stream;
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -50,7 +50,7 @@ fn energy(c: &mut Criterion) {
             let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
             let time = 1.1 * fastest.duration();
             c.bench_function(&format!("energy {n} {name}"), |b| {
-                b.iter(|| minimize_energy(black_box(&grid), &limits, &model, &fastest, time));
+                b.iter(|| arm::least_energy(black_box(&grid), &limits, &model, &fastest, time));
             });
         }
     }
@@ -82,7 +82,7 @@ fn stream(c: &mut Criterion) {
     let (sharing, regeneration) = (Sharing::Bus, 0.0);
     let model =
         EnergyModel { work: 1.0, speed: 0.0, loss: arm::LOSS, base_w: 0.0, sharing, regeneration };
-    let corridor = Corridor { tolerance: 1e-3, lever: [1.0; DOF] };
+    let corridor = PathPenalty { tolerance: 1e-3, lever: [1.0; DOF] };
     c.bench_function("stream polish", |b| {
         let stream = black_box(&fitted.stream);
         b.iter(|| {

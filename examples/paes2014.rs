@@ -12,7 +12,7 @@ use joulepath::retime::energy::{EnergyParts, account};
 use joulepath::retime::motion::timeline::{Run, What};
 use joulepath::retime::motion::{Options, Simulation, simulate};
 use joulepath::retime::optimize::cost::Cost;
-use joulepath::retime::optimize::freedom::Freedom;
+use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::retime::{Goal, Task, retime};
 use joulepath::retime::optimize::standstill::standing;
 use joulepath::tool::retrofit::{Source, read_program};
@@ -119,7 +119,12 @@ fn points(moves: &[Vec<Measured<'_>>]) -> Vec<Point> {
 
 /// The time-optimal move on the path of D, and C at its times.
 fn computed(model: &Model, d: &Measured<'_>, fastest: Point) -> (Point, Vec<Option<Point>>) {
-    let freedom = |deviation: f64| Freedom { deviation, ..Freedom::of_the_robot() };
+    let freedom = |deviation: f64| Freedom {
+        deviation,
+        tcp: Bound::Robot,
+        joints: Bound::Robot,
+        ..Freedom::none()
+    };
     let (kept, free) = (freedom(0.0), freedom(ANYWHERE));
     let solve = |freedom: &Freedom, goal: Goal| {
         let task = Task {

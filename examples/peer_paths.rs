@@ -21,15 +21,16 @@ use joulepath::retime::motion::timing::grid::PathGrid;
 use joulepath::retime::motion::timing::limits::PathLimits;
 use joulepath::retime::motion::timing::reachability::time_optimal;
 use joulepath::retime::optimize::cost::Cost;
-use joulepath::retime::optimize::energy_program::minimize_energy;
+use joulepath::retime::optimize::energy_program::{energy_bound, minimize_energy};
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::path_grid;
 use joulepath::retime::optimize::plant::{Plant, realise};
+use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::retime::{Goal, Task, retime};
 use joulepath::retime::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::retime::optimize::stream_polish::polish_stream;
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::path::joint_path::DOF;
 use serde_json::{Value, json};
@@ -140,7 +141,8 @@ fn path(case: &Case) -> Value {
             least_s(FEW, || {
                 let grid = set_up();
                 let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
-                minimize_energy(&grid, &limits, &model, &fastest, time)
+                let bound = energy_bound(&grid, &limits, &model, &fastest, time);
+                minimize_energy(&grid, &limits, &model, &fastest, time, bound.as_ref())
             })
         });
         sizes.push(json!({
@@ -163,8 +165,8 @@ fn coefficients(grid: &PathGrid) -> Value {
 /// The time of the fastest stream, less settling, with its path; `None` without one.
 fn fastest_stream(case: &Case) -> Option<Value> {
     let (path, run) = (case.path()?, case.run());
-    let cap = |leg| SpeedCap { tcp: case.movement(leg).line_speed(), ..SpeedCap::NONE };
-    let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
+    let moves = run.moves.iter().map(|record| record.movement.line_speed());
+    let caps: Vec<SpeedCap> = moves.map(|tcp| SpeedCap { tcp, ..SpeedCap::NONE }).collect();
     let loaded = Loaded { model: &case.model, load: &run.load };
     let nodes = path_grid::nodes(&case.model, path, &caps, JERK_INTERVALS);
     let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
@@ -217,7 +219,7 @@ fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     })
     .unwrap();
     let arm = Arm(case);
-    let corridor = Corridor { tolerance: f64::INFINITY, lever: [1.0; DOF] };
+    let corridor = PathPenalty { tolerance: f64::INFINITY, lever: [1.0; DOF] };
     let intervals = vec![duration / FREE_POINTS as f64; FREE_POINTS];
     let work = || -> Option<[Stream; 2]> {
         let fit = fit_stream(&reference, intervals.clone(), &joint_limits, &[1.0; DOF]).ok()?;

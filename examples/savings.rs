@@ -15,10 +15,12 @@ use joulepath::retime::energy::power::motion_energy;
 use joulepath::retime::motion::controller::motion_limits;
 use joulepath::retime::motion::sampling::{Loaded, SpeedCap};
 use joulepath::retime::motion::timed::TimedMotion;
+use joulepath::retime::motion::timing::grid::PathGrid;
 use joulepath::retime::motion::timing::limits::PathLimits;
-use joulepath::retime::motion::timing::refined::{Refined, time_optimal_between};
+use joulepath::retime::motion::timing::profile::Profile;
+use joulepath::retime::motion::timing::reachability::time_optimal;
 use joulepath::retime::optimize::cost::Cost;
-use joulepath::retime::optimize::energy_program::minimize_energy;
+use joulepath::retime::optimize::energy_program::{energy_bound, minimize_energy};
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::path_energy::evaluate;
 use joulepath::retime::optimize::path_grid;
@@ -95,24 +97,24 @@ fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
     }
 }
 
-/// The fastest profile on the path of a case, without a limit on jerk.
-fn fastest(case: &Case) -> Option<(PathLimits, Refined)> {
+/// The fastest profile on the path of a case, without a limit on jerk, with its grid and limits.
+fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
     let (path, run) = (case.path()?, case.run());
     let limits = motion_limits(&case.model, 1.0);
     let limits = PathLimits::new(limits.acceleration, limits.torque).ok()?;
-    let cap = |leg| SpeedCap { tcp: case.movement(leg).line_speed(), ..SpeedCap::NONE };
-    let caps: Vec<SpeedCap> = (0..run.moves.len()).map(cap).collect();
+    let moves = run.moves.iter().map(|record| record.movement.line_speed());
+    let caps: Vec<SpeedCap> = moves.map(|tcp| SpeedCap { tcp, ..SpeedCap::NONE }).collect();
     let loaded = Loaded { model: &case.model, load: &run.load };
-    let nodes = path_grid::nodes_with_edges(&case.model, path, &caps, INTERVALS);
-    let refined =
-        time_optimal_between(nodes, &limits, |nodes| path_grid::grid(loaded, path, nodes, &caps));
-    Some((limits, refined.ok()?.held()?))
+    let nodes = path_grid::nodes(&case.model, path, &caps, INTERVALS);
+    let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
+    let profile = time_optimal(&grid, &limits).into_profile()?;
+    Some((grid, limits, profile))
 }
 
 /// Time of the fastest stream over the least of its path without a limit on jerk: more than what
 /// the limit costs any controller.
 fn slowness(case: &Case) -> Option<f64> {
-    let least = fastest(case)?.1.profile.duration();
+    let least = fastest(case)?.2.duration();
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
@@ -120,14 +122,15 @@ fn slowness(case: &Case) -> Option<f64> {
 
 fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let run = case.run();
-    let (limits, refined) = fastest(case)?;
-    let (grid, fastest) = (&refined.grid, &refined.profile);
+    let (grid, limits, fastest) = fastest(case)?;
     let model = Cost::Electrical.model(&case.model);
     let time = factor * fastest.duration();
-    let first = evaluate(grid, fastest, &model).total();
+    let first = evaluate(&grid, &fastest, &model).total();
     let saved = |energy: f64| (first - energy) / first;
-    let uniform = evaluate(grid, &fastest.scaled_to(time)?, &model).total();
-    let best = minimize_energy(grid, &limits, &model, fastest, time).into_optimum()?;
+    let uniform = evaluate(&grid, &fastest.scaled_to(time)?, &model).total();
+    let bound = energy_bound(&grid, &limits, &model, &fastest, time);
+    let best = minimize_energy(&grid, &limits, &model, &fastest, time, bound.as_ref());
+    let best = best.into_optimum()?;
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let stream = retime(&task(case, &freedom), Goal::Exactly(time + run.settling)).ok();
     let realised = stream.map(|retiming| {

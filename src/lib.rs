@@ -147,7 +147,7 @@
 //!         columns[1 + 3 * j].push(q[j]);
 //!         columns[2 + 3 * j].push(qd[j]);
 //!         columns[3 + 3 * j].push(qdd[j]);
-//!         tau[j].push(torques.joint[j]);
+//!         tau[j].push(torques.rigid[j] + torques.friction[j]);
 //!     }
 //! }
 //! let named: Vec<(&str, &[f64])> =
@@ -245,9 +245,9 @@ pub mod kinematics {
 /// Inverse and forward dynamics, mass matrix, regressor, base parameters, friction.
 pub mod dynamics {
     pub use crate::arm::dynamics::{
-        BaseParameters, Data, Derivatives, JointMatrix, Load, Parameters, Regressor, Torque,
-        base_parameters, crba, forward_dynamics, friction, gravity, link_parameters, regressor,
-        rigid_bodies, rnea, rnea_derivatives, torque,
+        BaseParameters, Data, Derivatives, JointMatrix, Load, Regressor, Torque, base_parameters,
+        crba, forward_dynamics, friction, gravity, link_parameters, regressor, rigid_bodies, rnea,
+        rnea_derivatives, torque,
     };
 }
 
@@ -268,9 +268,10 @@ pub mod energy {
 /// The fastest motion on a given path within limits of speed, acceleration and torque.
 pub mod timing {
     pub use crate::retime::motion::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound};
-    pub use crate::retime::motion::timing::limits::{LimitError, PathLimits, Row, worst_ratio};
+    pub use crate::retime::motion::timing::limits::{LimitError, PathLimits, worst_ratio};
     pub use crate::retime::motion::timing::profile::{Profile, ProfilePiece};
     pub use crate::retime::motion::timing::reachability::{Reachability, time_optimal};
+    pub use crate::retime::motion::timing::row::Row;
 }
 
 /// Measured logs as columns in SI units.

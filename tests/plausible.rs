@@ -144,7 +144,7 @@ const MEAN_OFF: f64 = 0.01;
 fn the_mean_robot_takes_the_mean_of_the_energies() {
     let model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let (simulation, _) = simulated(&model);
-    let robots = Robots::of(&model).unwrap();
+    let robots = Robots::new(&model).unwrap();
     let mean = robots.mean(&model, &moments(&model, &simulation)).unwrap();
     let draws = Spread::new(&model).draws(&model, DRAWS).robots;
     let each = draws

@@ -118,7 +118,7 @@ fn by_robot(figures: &[Published], spread: &Open) -> Vec<[bool; 2]> {
         print!("| {name} | {motion} | {watts:.0} |");
         let of_robot = held.entry(name).or_insert([true; 2]);
         for (open, of_robot) in [&ONE, spread].into_iter().zip(of_robot) {
-            let Interval { low, high, .. } = Interval::of(&powers(figure, open));
+            let Interval { low, high, .. } = Interval::from_values(&powers(figure, open));
             let holds = (low..=high).contains(watts);
             *of_robot &= holds;
             print!(" {low:.0} to {high:.0} | {} |", if holds { "yes" } else { "no" });
@@ -206,7 +206,7 @@ fn of_program(model: &Model, text: &str) -> Option<Vec<f64>> {
         return None;
     }
     let own = account(model, &simulation).total.energy_j();
-    let changes = Robots::of(model)?.changes(model, &moments(model, &simulation));
+    let changes = Robots::new(model)?.changes(model, &moments(model, &simulation));
     let of_robot = |energy_j: f64| (own + energy_j) / simulation.cycle_s;
     Some(changes.iter().map(|change| of_robot(change.energy_j())).collect())
 }

@@ -69,7 +69,7 @@ pub(crate) fn held(truth: &Model, unknown: &Model, kind: Kind) -> Vec<bool> {
         for (state, tau) in states.iter().zip(&truths) {
             if tau[j].abs() > SMALL * largest && largest > 1e-6 {
                 let values: Vec<f64> = models.par_iter().map(|model| of(model, state)[j]).collect();
-                let Interval { low, high, .. } = Interval::of(&values);
+                let Interval { low, high, .. } = Interval::from_values(&values);
                 held.push((low..=high).contains(&tau[j]));
             }
         }

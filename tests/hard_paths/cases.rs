@@ -5,7 +5,6 @@ use std::fmt::Write;
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::arm::kinematics::{fk, ik_near};
 use joulepath::arm::robot::{Model, find, from_toml};
-use joulepath::rapid::ir::movement::Movement;
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::timeline::{Run, What};
 use joulepath::retime::motion::{Options, Simulation, simulate};
@@ -74,10 +73,6 @@ impl Case {
             [(_, joulepath::retime::motion::timed::TimedMotion::Path(path, _))] => Some(path),
             _ => None,
         }
-    }
-
-    pub(crate) fn movement(&self, leg: usize) -> &Movement {
-        &self.run().moves[leg].movement
     }
 }
 

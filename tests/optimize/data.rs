@@ -1,11 +1,10 @@
 //! Grids, limits, profiles and references as plain data; scales and degenerate paths.
 
 use joulepath::retime::motion::stream::DOF;
-use joulepath::retime::motion::timing::grid::{GridError, PathGrid, PathPoint, rest_to_rest_nodes};
+use joulepath::retime::motion::timing::grid::{GridError, PathGrid, PathPoint};
 use joulepath::retime::motion::timing::limits::{PathLimits, worst_ratio};
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::{Reachability, time_optimal};
-use joulepath::retime::optimize::energy_program::minimize_energy;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::retime::optimize::stream_reference::{Reference, ReferenceError};
 
@@ -64,7 +63,7 @@ fn wrong_references_are_refused() {
 fn a_profile_is_evaluated_as_it_integrates() {
     const STEPS: usize = 100_000;
     const TOLERANCE: f64 = 1e-6;
-    let s = rest_to_rest_nodes(2.0, 9);
+    let s = arm::rest_to_rest_nodes(2.0, 9);
     let b = s.iter().map(|s| s * (2.0 - s)).collect();
     let profile = Profile::new(s, b).unwrap();
     let dt = profile.duration() / STEPS as f64;
@@ -125,7 +124,7 @@ fn the_unit_of_the_path_does_not_matter() {
     let solve = |grid: &PathGrid| {
         let fastest = time_optimal(grid, &limits).into_profile().unwrap();
         let time = 1.2 * fastest.duration();
-        let best = minimize_energy(grid, &limits, &MODEL, &fastest, time).into_optimum().unwrap();
+        let best = arm::least_energy(grid, &limits, &MODEL, &fastest, time).into_optimum().unwrap();
         (fastest.duration(), best.energy.total())
     };
     let wanted = solve(&grid);
@@ -153,7 +152,7 @@ fn unlimited_time_ends_where_slowness_costs() {
     let grid = arm::grid(&arm::Path::random(2), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
     let of = |time: f64| {
-        let outcome = minimize_energy(&grid, &arm::limits(), &MODEL, &fastest, time);
+        let outcome = arm::least_energy(&grid, &arm::limits(), &MODEL, &fastest, time);
         outcome.into_optimum().unwrap()
     };
     let (enough, endless) = (of(20.0 * fastest.duration()), of(f64::INFINITY));
@@ -168,11 +167,11 @@ fn short_and_long_moves_solve() {
     for seed in 0..6 {
         let path = arm::Path::random(seed);
         for share in [1e-4, 1e-3, 1e-2, 0.1] {
-            let s: Vec<f64> = rest_to_rest_nodes(share * path.length, 40);
+            let s: Vec<f64> = arm::rest_to_rest_nodes(share * path.length, 40);
             let grid = arm::with_turns(&path, s, 1.0);
             let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
             let time = 1.3 * fastest.duration();
-            let outcome = minimize_energy(&grid, &limits, &MODEL, &fastest, time);
+            let outcome = arm::least_energy(&grid, &limits, &MODEL, &fastest, time);
             let best = outcome.into_optimum().unwrap();
             let uniform = evaluate(&grid, &fastest.scaled_to(time).unwrap(), &MODEL).total();
             assert!(best.energy.total() < uniform, "seed {seed} {share}");
@@ -206,7 +205,7 @@ fn arbitrary_numbers_end_in_a_status() {
             Reachability::Optimal(fastest) => {
                 solved += 1;
                 let time = 1.5 * fastest.duration();
-                let outcome = minimize_energy(&grid, &limits, &MODEL, &fastest, time);
+                let outcome = arm::least_energy(&grid, &limits, &MODEL, &fastest, time);
                 let best = outcome.into_optimum().unwrap();
                 assert!(worst_ratio(&grid, &limits, best.profile.b()) <= 1.0 + 2e-6);
             }

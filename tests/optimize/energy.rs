@@ -5,7 +5,7 @@ use joulepath::retime::motion::timing::grid::PathGrid;
 use joulepath::retime::motion::timing::limits::{PathLimits, worst_ratio};
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::{speed_range, time_optimal};
-use joulepath::retime::optimize::energy_program::{EnergyOptimum, EnergyOutcome, minimize_energy};
+use joulepath::retime::optimize::energy_program::{EnergyOptimum, EnergyOutcome};
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 
 use crate::analytic::single_joint;
@@ -35,7 +35,7 @@ fn converged(
     time: impl Fn(f64) -> f64,
 ) -> EnergyOptimum {
     let fastest = time_optimal(grid, limits).into_profile().unwrap();
-    let outcome = minimize_energy(grid, limits, model, &fastest, time(fastest.duration()));
+    let outcome = arm::least_energy(grid, limits, model, &fastest, time(fastest.duration()));
     match outcome {
         EnergyOutcome::Converged(optimum) => optimum,
         other => panic!("{other:?}"),
@@ -231,7 +231,7 @@ fn a_time_below_the_fastest_is_refused() {
     let grid = arm::grid(&arm::Path::random(1), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
     for time in [0.9 * fastest.duration(), 0.0, -1.0, f64::NAN] {
-        let outcome = minimize_energy(&grid, &arm::limits(), &models()[0], &fastest, time);
+        let outcome = arm::least_energy(&grid, &arm::limits(), &models()[0], &fastest, time);
         assert_eq!(outcome, EnergyOutcome::TooShort { fastest: fastest.duration() });
     }
 }
@@ -241,7 +241,7 @@ fn at_the_fastest_time_the_fastest_profile_is_kept() {
     let grid = arm::grid(&arm::Path::random(1), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
     let time = fastest.duration();
-    let outcome = minimize_energy(&grid, &arm::limits(), &models()[0], &fastest, time);
+    let outcome = arm::least_energy(&grid, &arm::limits(), &models()[0], &fastest, time);
     let EnergyOutcome::Kept(best) = outcome else { panic!("{outcome:?}") };
     assert_eq!(best.profile, fastest);
 }
@@ -253,7 +253,7 @@ fn a_time_just_above_the_fastest_gives_a_verified_profile() {
             let grid = arm::grid(&arm::Path::random(seed), 60, 1.0);
             let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
             let time = factor * fastest.duration();
-            let outcome = minimize_energy(&grid, &arm::limits(), &models()[1], &fastest, time);
+            let outcome = arm::least_energy(&grid, &arm::limits(), &models()[1], &fastest, time);
             let best = outcome.into_optimum().unwrap();
             assert!(worst_ratio(&grid, &arm::limits(), best.profile.b()) <= 1.0 + 2e-6);
             assert!(best.profile.duration() <= time * (1.0 + 1e-9));

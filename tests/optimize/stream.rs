@@ -5,12 +5,12 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use joulepath::retime::motion::stream::{DOF, Joints, Piece, Stream};
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::time_optimal;
-use joulepath::retime::optimize::energy_program::minimize_energy;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
 use joulepath::retime::optimize::plant::{PathShares, Plant, realise};
+use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::{Corridor, polish_stream};
+use joulepath::retime::optimize::stream_polish::polish_stream;
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -231,7 +231,7 @@ fn pipeline(seed: u64, factor: f64, model: &EnergyModel) -> (f64, f64, Reference
     let grid = arm::grid(&path, 60, 1.0);
     let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
     let time = factor * fastest.duration();
-    let best = minimize_energy(&grid, &limits, model, &fastest, time).into_optimum().unwrap();
+    let best = arm::least_energy(&grid, &limits, model, &fastest, time).into_optimum().unwrap();
     let reference = motion(&path, &best.profile);
     let spacing = Spacing { tolerance: 5e-4, ..Spacing::default() };
     let intervals = adaptive_intervals(&reference, time, &spacing);
@@ -251,7 +251,7 @@ const BUS: EnergyModel = EnergyModel {
 
 #[test]
 fn polished_streams_realise_most_of_the_promised_saving() {
-    const CORRIDOR: Corridor = Corridor { tolerance: 1e-3, lever: LEVER };
+    const CORRIDOR: PathPenalty = PathPenalty { tolerance: 1e-3, lever: LEVER };
     let mut shares = Vec::new();
     for seed in 0..10 {
         let (spent, promised, reference, fit) = pipeline(seed, 1.1, &BUS);
@@ -284,7 +284,7 @@ fn a_free_path_costs_less() {
     for seed in 0..4 {
         let (_, _, reference, fit) = pipeline(seed, 1.2, &BUS);
         let [bound, free] = [1e-3, f64::INFINITY].map(|tolerance| {
-            let corridor = Corridor { tolerance, lever: LEVER };
+            let corridor = PathPenalty { tolerance, lever: LEVER };
             let arm = arm::SyntheticArm;
             polish_stream(&fit, &reference, &arm, &arm_limits(), &BUS, &corridor).unwrap()
         });
@@ -355,7 +355,7 @@ fn copper_alone_gives_the_parabola_of_speed_in_the_points() {
         sharing: Sharing::Bus,
         regeneration: 1.0,
     };
-    let corridor = Corridor { tolerance: 1e-3, lever: LEVER };
+    let corridor = PathPenalty { tolerance: 1e-3, lever: LEVER };
     let polish = |ceiling: f64| {
         let plant = Flywheel { inertia: m, ceiling };
         polish_stream(&fit, &reference, &plant, &FREE, &model, &corridor).unwrap()

@@ -101,7 +101,7 @@ impl<'a> Folded<'a> {
         }
         check_alike(cycle, log, &aligned.passes)?;
         let instants: Vec<Instant> = windows.times.iter().map(|t| cycle.at(*t)).collect();
-        let along = Along::of(model, &instants, windows.ranges.clone());
+        let along = Along::new(model, &instants, windows.ranges.clone());
         Ok(Folded { aligned, windows, along })
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::arm::dynamics::{
-    BaseParameters, JOINT, Load, Parameters, RIGID, link_parameters, parameters, pseudo_inertia,
+    BaseParameters, JOINT, Load, RIGID, link_parameters, parameters, pseudo_inertia,
 };
 use crate::arm::robot::Model;
 

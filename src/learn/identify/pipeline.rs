@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::arm::dynamics::{JOINT, Parameters, RIGID, base_parameters_among, link_parameters};
+use crate::arm::dynamics::{JOINT, RIGID, base_parameters_among, link_parameters};
 use crate::arm::robot::Model;
 
 use super::consistent::{BODY, margin};

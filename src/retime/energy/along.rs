@@ -44,11 +44,11 @@ pub struct Along<'a> {
     features: Vec<DMatrix<f64>>,
     rates: Vec<Joints>,
     rests: Vec<bool>,
-    /// What the model takes beside the terms below \[W\].
+    /// Power of the model besides the terms of [`Along::terms`] \[W\].
     rest_w: Vec<f64>,
 }
 
-/// Slopes of what differs in a robot by its latent numbers.
+/// Derivatives of the parameter differences by the latent numbers.
 pub struct Slopes {
     joints: Vec<DMatrix<f64>>,
     loss: DMatrix<f64>,
@@ -97,8 +97,8 @@ impl Slopes {
 }
 
 impl<'a> Along<'a> {
-    /// Of instants, and the windows that they make.
-    pub fn of(model: &'a Model, instants: &[Instant], windows: Vec<Range<usize>>) -> Along<'a> {
+    /// Features of the instants; each window is a range of them.
+    pub fn new(model: &'a Model, instants: &[Instant], windows: Vec<Range<usize>>) -> Along<'a> {
         let mut data = Data::new();
         let mut regressor = Regressor::new();
         let rows = instants.len();
@@ -131,7 +131,7 @@ impl<'a> Along<'a> {
         self.features.iter().zip(&robots.joints).map(|(phi, of)| phi * &of.values).collect()
     }
 
-    /// Power of each instant that goes with joints \[W\], and torques by joint \[Nm\].
+    /// Power of each instant from copper, work and braking \[W\], and torques by joint \[Nm\].
     fn terms(&self, robot: &Changes) -> (Vec<f64>, Vec<DMatrix<f64>>) {
         let torques = self.torques(robot);
         let terms = (0..self.rates.len()).map(|i| {

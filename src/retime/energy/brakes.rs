@@ -1,4 +1,4 @@
-//! What closed brakes spare while the robot stands.
+//! Power that closed brakes save while the robot stands.
 //!
 //! At rest with open brakes a robot takes base power, holding power, and the power of the coils
 //! that keep the brakes open. With closed brakes the base power is left. Break-even after Paes et
@@ -7,8 +7,8 @@
 
 use crate::arm::robot::Model;
 
-/// From which length of a dwell on closing the brakes pays, s, where holding takes `holding_w`;
-/// `None` where nothing is spared or no brake is known.
+/// Break-even time of the brakes, s: the dwell from which closing them saves energy, where holding
+/// takes `holding_w`; `None` where nothing is saved or no brake is known.
 pub fn break_even_s(model: &Model, holding_w: f64) -> Option<f64> {
     let brakes = model.brakes.as_ref()?;
     let spared_w = holding_w + brakes.power_released_w;
@@ -16,8 +16,8 @@ pub fn break_even_s(model: &Model, holding_w: f64) -> Option<f64> {
     (spared_w > 0.0).then(|| brakes.energy_per_release_j / spared_w + delay)
 }
 
-/// What closing the brakes spares in a dwell of `duration` (s) where holding takes `holding_w`,
-/// J: nothing up to the break-even, or where no brake is known.
+/// Energy that closing the brakes saves in a dwell of `duration` (s) where holding takes `holding_w`,
+/// J: 0 up to the break-even time, or where no brake is known.
 pub fn spared_j(model: &Model, holding_w: f64, duration: f64) -> f64 {
     let Some(brakes) = &model.brakes else { return 0.0 };
     let spared_w = holding_w + brakes.power_released_w;

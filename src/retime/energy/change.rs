@@ -1,4 +1,4 @@
-//! What differs from the model in plausible robots, as the features of its torques take it.
+//! Parameter differences between plausible robots and the model, for the features of the torques.
 
 use nalgebra::DMatrix;
 
@@ -7,10 +7,10 @@ use crate::arm::dynamics::{RIGID, link_parameters};
 use crate::arm::robot::Model;
 use crate::arm::robot::prior::Plausible;
 
-/// What differs from the model in some robots.
+/// Parameter differences of some robots from the model.
 #[derive(Clone, Debug)]
 pub struct Changes {
-    pub(super) joints: Vec<ChangesOfJoint>,
+    pub(super) joints: Vec<JointChanges>,
     /// By robot, W.
     pub(super) base_w: Vec<f64>,
     /// By robot, W.
@@ -18,9 +18,9 @@ pub struct Changes {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct ChangesOfJoint {
-    /// Differences of the features' parameters, a column for each robot; the first of a column is 1, for
-    /// the model's own torque.
+pub(super) struct JointChanges {
+    /// Parameter differences, one column per robot; the first entry of a column is 1, for the torque of
+    /// the model itself.
     pub(super) values: DMatrix<f64>,
     /// By robot.
     pub(super) loss: Vec<f64>,
@@ -28,8 +28,8 @@ pub(super) struct ChangesOfJoint {
 }
 
 impl Changes {
-    /// Of plausible robots.
-    pub fn of(model: &Model, robots: &[Plausible]) -> Changes {
+    /// The differences of plausible robots.
+    pub fn new(model: &Model, robots: &[Plausible]) -> Changes {
         let own = Plausible::nominal(model);
         let parameters = |robot: &Plausible| -> Vec<[f64; RIGID]> {
             robot.links.iter().map(link_parameters).collect()
@@ -51,7 +51,7 @@ impl Changes {
                 column.iter_mut().zip(all).for_each(|(value, x)| *value = x);
             }
             let loss = robots.iter().map(|robot| robot.loss[j]).collect();
-            ChangesOfJoint { values, loss, model_loss: own.loss[j] }
+            JointChanges { values, loss, model_loss: own.loss[j] }
         };
         Changes {
             joints: (0..model.dof).map(joint).collect(),
@@ -60,8 +60,8 @@ impl Changes {
         }
     }
 
-    /// Of one.
+    /// The difference of one robot.
     pub fn of_one(model: &Model, robot: &Plausible) -> Changes {
-        Changes::of(model, std::slice::from_ref(robot))
+        Changes::new(model, std::slice::from_ref(robot))
     }
 }

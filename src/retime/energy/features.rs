@@ -1,4 +1,4 @@
-//! What the torque of each joint is linear in.
+//! The features in which the torque of each joint is linear.
 
 use nalgebra::DMatrix;
 
@@ -10,8 +10,8 @@ use crate::arm::robot::{MAX_DOF, Model};
 /// Parameters of a joint: rotor, viscous and Coulomb friction, spring.
 pub(super) const OF_JOINT: usize = 4;
 
-/// Features of the joint `joint`: the model's own torque, the parameters of the links from the joint
-/// on, those of the joint.
+/// Number of features of a joint: the torque of the model, the parameters of the links from the joint
+/// on, those of the joint itself.
 pub(super) fn count(model: &Model, joint: usize) -> usize {
     1 + RIGID * (model.dof - joint) + OF_JOINT
 }

@@ -1,4 +1,4 @@
-//! Where the joules go: by motion, by movement, by wait.
+//! The energy of a cycle by cause, movement and wait.
 //!
 //! Electrical energy is the sum of six parts (docs/energy.md): rigid-body work,
 //! friction, copper loss, drive loss, idle, brakes. The first four are the

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! so the copper loss is quadratic in them and everything else is linear: a few sums over the motion
-//! tell the energy of any robot. What a drive loses of braking is summed where the model itself
-//! brakes: where that ends the power is zero, so that a shift of the end changes little.
+//! give the energy of any robot. The drive loss is summed over the times at which the model itself
+//! brakes: at their ends the power is zero, so that a shift of an end changes little.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -34,7 +34,7 @@ const COLUMNS: usize = 64;
 /// Sums over motions and rests.
 #[derive(Clone, Debug)]
 pub struct Moments {
-    joints: Vec<OfJoint>,
+    joints: Vec<JointSums>,
     /// Time with open brakes, s.
     open_s: f64,
 }
@@ -42,7 +42,7 @@ pub struct Moments {
 /// Sums of one joint; the first entry is the model's own torque, then come the parameters of the
 /// links from the joint on, then those of the joint.
 #[derive(Clone, Debug)]
-struct OfJoint {
+struct JointSums {
     /// ∫ φ φᵀ dt in motion, and at rest.
     moving: DMatrix<f64>,
     resting: DMatrix<f64>,
@@ -53,11 +53,11 @@ struct OfJoint {
 }
 
 impl Moments {
-    /// Of nothing.
+    /// Sums over nothing.
     pub fn none(model: &Model) -> Moments {
         let joint = |j: usize| {
             let n = features::count(model, j);
-            OfJoint {
+            JointSums {
                 moving: DMatrix::zeros(n, n),
                 resting: DMatrix::zeros(n, n),
                 work: DVector::zeros(n),
@@ -67,8 +67,8 @@ impl Moments {
         Moments { joints: (0..model.dof).map(joint).collect(), open_s: 0.0 }
     }
 
-    /// Of an event of a simulation.
-    pub fn of(model: &Model, event: &Event) -> Moments {
+    /// The sums of one event of a simulation.
+    pub fn from_event(model: &Model, event: &Event) -> Moments {
         let mut moments = Moments::none(model);
         moments.event(model, event);
         moments
@@ -83,7 +83,7 @@ impl Moments {
         }
     }
 
-    /// Adds others, `times` as often.
+    /// Adds other sums, `times` times.
     pub fn add(&mut self, other: &Moments, times: f64) {
         for (sum, joint) in self.joints.iter_mut().zip(&other.joints) {
             let more = |sum: &mut f64, x: f64| *sum += times * x;

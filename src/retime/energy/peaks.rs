@@ -4,35 +4,35 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::along::{Along, Instant};
-use super::plausible::{Interval, Robots};
+use super::change::Changes;
 use crate::arm::dynamics::{Data, torque};
 use crate::arm::robot::{MAX_DOF, Model};
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Event, Run, What};
 
-/// Time between two instants that are looked at \[s\], and parts of it that are looked at around a peak.
+/// Time between two samples \[s\], and its parts around a peak.
 const STEP: f64 = 0.02;
 const PARTS: i32 = 8;
-/// Instants of a joint at which plausible robots are looked at: those with the model's largest torques,
-/// each the largest within this time \[s\].
+/// Instants of a joint at which plausible robots are evaluated: those with the largest torques of the
+/// model, each the largest within this time \[s\].
 const MOST: usize = 6;
 const APART: f64 = 0.1;
 /// Instants that may lie within that time of each other.
 const NEAR: usize = 12;
 
-/// Largest torques in a simulation by joint \[Nm\]; 0 where nothing moves.
-pub(super) fn peaks(model: &Model, robots: &Robots, simulation: &Simulation) -> Vec<Interval> {
+/// Largest torques in a simulation \[Nm\], by joint and robot; 0 where nothing moves.
+pub(super) fn peaks(model: &Model, robots: &Changes, simulation: &Simulation) -> Vec<Vec<f64>> {
     let instants = largest(model, simulation);
-    let along = Along::of(model, &instants, Vec::new());
-    let torques = along.torques(robots.drawn());
+    let along = Along::new(model, &instants, Vec::new());
+    let torques = along.torques(robots);
     let largest = |torques: DMatrix<f64>| -> Vec<f64> {
         torques.column_iter().map(|of_robot| of_robot.amax()).collect()
     };
-    torques.into_iter().map(|torques| Interval::of(&largest(torques))).collect()
+    torques.into_iter().map(largest).collect()
 }
 
-/// A look at a run of a simulation.
-struct Look<'s> {
+/// A sample of a run of a simulation.
+struct Sample<'s> {
     event: &'s Event,
     run: &'s Run,
     /// Time in the run \[s\].
@@ -41,12 +41,17 @@ struct Look<'s> {
     torque: [f64; MAX_DOF],
 }
 
-impl<'s> Look<'s> {
-    fn at(model: &Model, data: &mut Data, (event, run): (&'s Event, &'s Run), t: f64) -> Look<'s> {
+impl<'s> Sample<'s> {
+    fn at(
+        model: &Model,
+        data: &mut Data,
+        (event, run): (&'s Event, &'s Run),
+        t: f64,
+    ) -> Sample<'s> {
         let state = run.at(t);
         let tau = torque(model, data, &run.load, &state.q, &state.qd, &state.qdd);
         let torque = std::array::from_fn(|j| (tau.rigid[j] + tau.friction[j]).abs());
-        Look { event, run, t, torque }
+        Sample { event, run, t, torque }
     }
 
     /// Time in the simulation \[s\].
@@ -54,12 +59,12 @@ impl<'s> Look<'s> {
         self.event.t_start + self.t
     }
 
-    /// The instant of the joint's largest torque around this look.
+    /// The instant of the joint's largest torque around this sample.
     fn peak(&self, model: &Model, data: &mut Data, joint: usize) -> Instant {
         let around = (1 - PARTS..PARTS).map(|i| self.t + STEP * f64::from(i) / f64::from(PARTS));
         let (mut t, mut most) = (self.t, self.torque[joint]);
         for near in around.filter(|t| (0.0..=self.event.duration).contains(t)) {
-            let torque = Look::at(model, data, (self.event, self.run), near).torque[joint];
+            let torque = Sample::at(model, data, (self.event, self.run), near).torque[joint];
             if torque > most {
                 (t, most) = (near, torque);
             }
@@ -71,33 +76,33 @@ impl<'s> Look<'s> {
 
 /// Instants at which some joint has one of its largest torques.
 fn largest(model: &Model, simulation: &Simulation) -> Vec<Instant> {
-    let looks: Vec<Look> =
-        simulation.events.par_iter().flat_map_iter(|event| looks(model, event)).collect();
+    let samples: Vec<Sample> =
+        simulation.events.par_iter().flat_map_iter(|event| samples(model, event)).collect();
     let mut data = Data::new();
     let mut instants = Vec::new();
     for j in 0..model.dof {
-        let mut order: Vec<&Look> = looks.iter().collect();
-        let larger = |a: &&Look, b: &&Look| b.torque[j].total_cmp(&a.torque[j]);
+        let mut order: Vec<&Sample> = samples.iter().collect();
+        let larger = |a: &&Sample, b: &&Sample| b.torque[j].total_cmp(&a.torque[j]);
         if order.len() > MOST * NEAR {
             order.select_nth_unstable_by(MOST * NEAR, larger);
             order.truncate(MOST * NEAR);
         }
         order.sort_by(larger);
-        let mut own: Vec<&Look> = Vec::new();
-        for look in order {
-            if own.len() < MOST && own.iter().all(|it| (it.time() - look.time()).abs() > APART) {
-                own.push(look);
+        let mut own: Vec<&Sample> = Vec::new();
+        for sample in order {
+            if own.len() < MOST && own.iter().all(|it| (it.time() - sample.time()).abs() > APART) {
+                own.push(sample);
             }
         }
-        instants.extend(own.into_iter().map(|look| look.peak(model, &mut data, j)));
+        instants.extend(own.into_iter().map(|sample| sample.peak(model, &mut data, j)));
     }
     instants
 }
 
-fn looks<'s>(model: &Model, event: &'s Event) -> Vec<Look<'s>> {
+fn samples<'s>(model: &Model, event: &'s Event) -> Vec<Sample<'s>> {
     let What::Run(run) = &event.what else { return Vec::new() };
     let mut data = Data::new();
     let steps = (event.duration / STEP).ceil().max(1.0);
     let times = (0..=steps as usize).map(|i| event.duration * i as f64 / steps);
-    times.map(|t| Look::at(model, &mut data, (event, run), t)).collect()
+    times.map(|t| Sample::at(model, &mut data, (event, run), t)).collect()
 }

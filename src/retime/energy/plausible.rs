@@ -21,7 +21,7 @@ pub const DRAWS: usize = 256;
 const WITHIN: f64 = 0.9;
 /// Groups that a report lists, at most.
 const LISTED: usize = 5;
-/// Parts of a simulation whose sums are worked out beside each other; each takes memory.
+/// Parts of a simulation that are summed in parallel; each takes memory.
 const PARTS: usize = 4;
 /// Share of the variance below which a group is not listed.
 pub const LEAST: f64 = 0.02;
@@ -38,8 +38,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Of the values of all draws.
-    pub fn of(values: &[f64]) -> Interval {
+    /// The interval of the values of all draws.
+    pub fn from_values(values: &[f64]) -> Interval {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let at = |share: f64| {
@@ -53,19 +53,18 @@ impl Interval {
     }
 }
 
-/// Something that is not known of the robot, with the share of the variance of a result that would go
-/// if it were known.
+/// A group of uncertain parameters, with its share of the variance of a result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
-    /// What it is.
+    /// Name of the group.
     pub group: String,
     /// Share of the variance.
     pub share: f64,
-    /// What would tell.
+    /// The measurement that would reduce it.
     pub narrowed_by: &'static str,
 }
 
-/// Robots as plausible as a model, ready for sums.
+/// Draws of plausible robots with their parameter differences from the model.
 pub struct Robots {
     spread: Spread,
     pub(super) draws: Draws,
@@ -73,8 +72,8 @@ pub struct Robots {
 }
 
 impl Robots {
-    /// Of a model; `None` where it is known, or has no dynamics.
-    pub fn of(model: &Model) -> Option<Robots> {
+    /// Draws for a model; `None` where all parameters are known, or it has no dynamics.
+    pub fn new(model: &Model) -> Option<Robots> {
         if !model.has_dynamics() {
             return None;
         }
@@ -83,7 +82,7 @@ impl Robots {
             return None;
         }
         let draws = spread.draws(model, DRAWS);
-        let changes = Changes::of(model, &draws.robots);
+        let changes = Changes::new(model, &draws.robots);
         Some(Robots { spread, draws, changes })
     }
 
@@ -92,18 +91,18 @@ impl Robots {
         &self.draws.robots
     }
 
-    /// What differs in the robots.
+    /// Their parameter differences from the model.
     pub fn drawn(&self) -> &Changes {
         &self.changes
     }
 
-    /// What each of the robots takes more than the model, J.
+    /// Energy of each robot less that of the model.
     pub fn changes(&self, model: &Model, moments: &Moments) -> Vec<EnergyParts> {
         moments.changes(model, &self.changes)
     }
 
-    /// What the variance of a result comes from, the largest first. Each group has the part that those
-    /// before it leave: of a calibrated robot groups are correlated, and several may tell the same.
+    /// Contributions to the variance of a result, the largest first. Each group explains part of what
+    /// the groups before it leave: the groups of a calibrated robot are correlated.
     pub fn contributions(&self, values: &[f64]) -> Vec<Contribution> {
         let mut groups: BTreeMap<&str, Vec<&Vec<f64>>> = BTreeMap::new();
         for (latent, z) in self.spread.latents.iter().zip(&self.draws.latents) {
@@ -117,7 +116,7 @@ impl Robots {
         while parts.len() < LISTED {
             let explained = groups.iter().map(|(group, latents)| {
                 let part = explained(latents, &rest);
-                // By chance, too, a group explains something.
+                // Less what a group explains by chance.
                 let chance = latents.len() as f64 / count * rest.norm_squared();
                 let share = (part.norm_squared() - chance) / variance;
                 (*group, share, part)
@@ -135,7 +134,7 @@ impl Robots {
     }
 }
 
-/// The linear function of a group's latent numbers that is nearest to some values, draw by draw.
+/// Least-squares fit of some values by the latent numbers of a group, draw by draw.
 fn explained(latents: &[&Vec<f64>], values: &DVector<f64>) -> DVector<f64> {
     let columns: Vec<DVector<f64>> =
         latents.iter().map(|z| DVector::from_column_slice(z)).collect();
@@ -144,10 +143,10 @@ fn explained(latents: &[&Vec<f64>], values: &DVector<f64>) -> DVector<f64> {
     slopes.map_or_else(|_| DVector::zeros(values.len()), |slopes| z * slopes)
 }
 
-/// Singular values of latent numbers below this are none.
+/// Singular values below this count as zero.
 const SINGULAR: f64 = 1e-9;
 
-/// The measurement that would tell most of a group.
+/// The measurement that would reduce the uncertainty of a group most.
 fn narrowed_by(group: &str) -> &'static str {
     match group {
         "base power" | "brake coils" => "the cabinet's power at standstill, brakes closed and open",
@@ -186,7 +185,7 @@ pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     };
     let length = simulation.events.len().div_ceil(PARTS).max(1);
     let parts: Vec<Moments> = simulation.events.par_chunks(length).map(of).collect();
-    // In their order, so that the same input has the same digits.
+    // In order, so that the same input gives the same digits.
     let sum = |mut all: Moments, part: Moments| {
         all.add(&part, 1.0);
         all
@@ -194,22 +193,23 @@ pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     parts.into_iter().reduce(sum).unwrap_or_else(|| Moments::none(model))
 }
 
-/// How far the energies of a simulation are known.
+/// The intervals of the energies of a simulation; `None` where all parameters are known.
 pub fn plausibility(
     model: &Model,
     simulation: &Simulation,
     account: &Account,
 ) -> Option<Plausibility> {
-    let robots = Robots::of(model)?;
+    let robots = Robots::new(model)?;
     let changes = robots.changes(model, &moments(model, simulation));
     let of = |part: &dyn Fn(&EnergyParts) -> f64| -> Vec<f64> {
         changes.iter().map(|change| part(&account.total) + part(change)).collect()
     };
     let energy = of(&EnergyParts::energy_j);
+    let torques = peaks(model, robots.drawn(), simulation);
     Some(Plausibility {
-        energy_j: Interval::of(&energy),
-        motion_energy_j: Interval::of(&of(&EnergyParts::motion_energy_j)),
-        torque_nm: peaks(model, &robots, simulation),
+        energy_j: Interval::from_values(&energy),
+        motion_energy_j: Interval::from_values(&of(&EnergyParts::motion_energy_j)),
+        torque_nm: torques.iter().map(|largest| Interval::from_values(largest)).collect(),
         contributions: robots.contributions(&energy),
     })
 }

@@ -48,7 +48,7 @@ pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3])
     of_torque(model, qd, &torque(model, data, load, q, qd, qdd))
 }
 
-/// [`power`] in several states: takes less than one after the other.
+/// [`power`] in several states at once, which is faster.
 #[inline]
 fn power_each<const N: usize>(model: &Model, load: &Load, states: &[JointState; N]) -> [Power; N] {
     let lists = states.each_ref().map(|s| -> [&[f64]; 3] { [&s.q, &s.qd, &s.qdd] });
@@ -116,8 +116,8 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
     })
 }
 
-/// Kinks nearer to each other than this are integrated over, s: on such a stretch they change the
-/// acceleration by too little to matter.
+/// Kinks nearer to each other than this are ignored, s: they change the acceleration too little to
+/// matter.
 const MIN_STEP: f64 = 0.004;
 
 /// The motion energy (without idle and brake parts) between two times of a motion.
@@ -138,7 +138,7 @@ pub fn motion_energy(
     }
     knots.push(to);
     reversals(motion, &mut knots);
-    // The rigid work is what the robot has gained; the rest is integrated.
+    // The rigid work is the change of kinetic and potential energy; the rest is integrated.
     let ends = [from, to].map(|t| motion.at(t));
     let [before, after] = ends.map(|JointState { q, qd, .. }| {
         kinetic_energy(model, load, &q, &qd) + potential_energy(model, load, &q)
@@ -167,15 +167,15 @@ impl Powers<4> for Drawn<'_> {
     }
 }
 
-/// Longest step of the search for moments at which a joint turns, s: between two kinks no joint
-/// turns twice in it by a way that counts.
+/// Longest step of the search for reversals of a joint, s: between two kinks no joint reverses twice
+/// within it by a distance that matters.
 const LOOK: f64 = 0.06;
 /// Most steps between two kinks: a motion so slow changes little in each.
 const MOST_LOOKS: f64 = 2000.0;
-/// Halvings of the search for such a moment: it is known to 0.1 µs.
+/// Bisections of that search, down to 0.1 µs.
 const HALVINGS: usize = 18;
 
-/// Adds the moments at which a joint turns, where dry friction jumps.
+/// Adds the times at which a joint reverses, where dry friction jumps.
 fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
     let mut found = Vec::new();
     let mut before = motion.rates(knots[0]);

@@ -1,8 +1,7 @@
 //! Integrals over time of powers that are smooth but for a few kinks.
 //!
-//! Gauss-Legendre rules on intervals that are as long as the powers are even. The rule with five
-//! points holds three that make a rule of degree 3; the difference of both tells whether an
-//! interval is too long.
+//! Gauss-Legendre rules on intervals of adaptive length. Three of the five points make a rule of
+//! degree 3; the difference of both rules tells whether an interval is too long.
 
 /// Longest interval at first, s: a kink near its end may be passed over.
 const FIRST: f64 = 0.06;
@@ -15,7 +14,7 @@ const QUIET_J: f64 = 4.0;
 const MOST: f64 = 2000.0;
 /// An interval that is not halved, s.
 const FINE: f64 = 0.024;
-/// An interval that two points do for, s.
+/// An interval for which two points suffice, s.
 const SHORT: f64 = 0.01;
 /// Difference of the two rules above which an interval is halved, J: that of the finer rule from
 /// the integral is far smaller.
@@ -62,7 +61,7 @@ pub(super) fn integral<const N: usize>(from: f64, to: f64, powers: &impl Powers<
             add(&mut sum, &part);
             length *= 2.0;
         } else {
-            let Judged { part, off, change } = judged(begin, h, powers);
+            let Estimate { part, off, change } = estimate(begin, h, powers);
             if off > UNEVEN_J {
                 length = 0.5 * h;
                 continue;
@@ -96,17 +95,17 @@ fn rule<const N: usize, const K: usize>(
     sum
 }
 
-/// What the rule with five points says.
-struct Judged<const N: usize> {
+/// The integrals by the rule with five points, and their error estimate.
+struct Estimate<const N: usize> {
     /// The integrals, J.
     part: [f64; N],
-    /// By how much the other rule differs, J.
+    /// Difference of the other rule, J.
     off: f64,
     /// The largest change of a power between the points, W.
     change: f64,
 }
 
-fn judged<const N: usize>(begin: f64, h: f64, powers: &impl Powers<N>) -> Judged<N> {
+fn estimate<const N: usize>(begin: f64, h: f64, powers: &impl Powers<N>) -> Estimate<N> {
     let mut part = [0.0; N];
     let mut off = [0.0; N];
     let mut least = [f64::INFINITY; N];
@@ -122,7 +121,7 @@ fn judged<const N: usize>(begin: f64, h: f64, powers: &impl Powers<N>) -> Judged
     }
     let off = off.iter().map(|off| off.abs()).sum();
     let change = (0..N).map(|i| most[i] - least[i]).fold(0.0, f64::max);
-    Judged { part, off, change }
+    Estimate { part, off, change }
 }
 
 #[cfg(test)]
@@ -161,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn kinks_are_looked_at_closely() {
+    fn kinks_shorten_the_intervals() {
         // What is lost of a power that turns from braking to driving at 10 kW/s.
         for kink in [0.11, 0.29, 0.437, 0.5, 0.7723] {
             let driving = |t: f64| 1e4 * (t - kink);
@@ -173,14 +172,14 @@ mod tests {
     }
 
     #[test]
-    fn vibration_is_not_passed_over() {
+    fn vibration_is_resolved() {
         let (sum, _) = counted(0.0, 2.0, |t| 300.0 * (60.0 * t).sin().powi(2));
         let exact = 300.0 * (1.0 - (240.0_f64).sin() / 240.0);
         assert!((sum - exact).abs() < 0.05, "{sum} {exact}");
     }
 
     #[test]
-    fn nothing_is_the_integral_over_no_time() {
+    fn an_empty_interval_has_no_integral() {
         assert_eq!(counted(0.3, 0.3, |_| 7.0), (0.0, 0));
     }
 }

@@ -10,8 +10,8 @@
 //! a little earlier than the average would.
 
 use super::controller::Average;
+use super::joint_state::JointState;
 use super::quintics::Quintics;
-use super::timed::JointState;
 use super::timing::profile::Profile;
 use crate::retime::path::JointPath;
 use crate::retime::path::joint_path::{DOF, Joints, Piece};
@@ -25,11 +25,11 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// Change of the path's acceleration, share of its largest, that makes a kink worth a knot.
+/// Jump of the path acceleration, as a share of the largest acceleration, from which a knot is set.
 const KINK: f64 = 0.02;
 
-/// Joint speed (rad/s) and acceleration (rad/s²) that are rounding of none. Dry friction would
-/// take its sign for that of a motion.
+/// Joint speed (rad/s) and acceleration (rad/s²) below which a value is rounding. The sign of such a
+/// speed must not reach the dry friction.
 const STILL: f64 = 1e-9;
 
 /// Difference of a stretch's polynomial from the joints in its middle above which it is halved,
@@ -48,7 +48,7 @@ pub struct Averaged {
     edges: [(f64, f64); 4],
     /// Joints at both ends, rad.
     ends: [Joints; 2],
-    /// ∫ (q − q₀) before averaging, rad s, one after the other.
+    /// ∫ (q − q₀) before averaging, rad s, in order of time.
     stretches: Vec<Quintics>,
     /// Where they begin, s.
     begins: Vec<f64>,
@@ -97,11 +97,6 @@ impl Averaged {
         averaged
     }
 
-    /// The speed profile before averaging.
-    pub fn profile(&self) -> &Profile {
-        &self.profile
-    }
-
     /// s.
     pub fn duration(&self) -> f64 {
         self.duration
@@ -148,7 +143,7 @@ impl Averaged {
         state
     }
 
-    /// The rates of the joints at `t`, rad/s: as of [`Averaged::at`] without the rest.
+    /// Joint velocities at `t`, rad/s: those of [`Averaged::at`] alone.
     pub fn rates(&self, t: f64) -> Joints {
         if t <= 0.0 || t >= self.duration || self.window == 0.0 || t >= self.closing.begin() {
             return self.at(t).qd;
@@ -191,8 +186,8 @@ impl Averaged {
         &self.knots
     }
 
-    /// Where the acceleration before averaging changes by a share that counts, and the edges of
-    /// the average later.
+    /// Times at which the acceleration before averaging jumps by more than [`KINK`], and these times
+    /// delayed by the edges of the average.
     fn smooth_between(&self) -> Vec<f64> {
         let pieces: Vec<f64> = self.profile.pieces().map(|piece| piece.acceleration).collect();
         let largest = pieces.iter().fold(0.0, |max: f64, a| max.max(a.abs()));

@@ -1,11 +1,10 @@
 //! Constants of the controller's motion planner under the settings in force.
 
-use super::planner::MotionLimits;
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::Settings;
 use crate::retime::path::joint_path::Joints;
 
-/// Window of the average where the robot's file has none, s. Runs of an IRC5 with an IRB6640: the
+/// Window of the average where the robot's file states none, s. Runs of an IRC5 with an IRB6640: the
 /// speed changes by Δv with the acceleration Δv/0.1 s at v300 to v1000; a window of 0.1 s also
 /// gives the least error of the joints over the runs that constants were chosen by.
 const RAMP_S: f64 = 0.10;
@@ -19,11 +18,11 @@ const CLOSING: f64 = 0.33;
 /// `std_servo_queue_time` of 0.193536 s is 48 periods.
 const INTERPOLATION_S: f64 = 0.004_032;
 
-/// Time in which each joint gets to its largest speed where the robot's file has no accelerations,
-/// s. An IRB6640-180/2.55 takes that: its measured accelerations over the speeds of its data sheet.
+/// Time in which each joint reaches its largest speed where the robot's file has no accelerations,
+/// s: that of an IRB6640-180/2.55, from its measured accelerations and the speeds of its data sheet.
 const TO_FULL_SPEED_S: Joints = [0.34, 0.36, 0.17, 0.08, 0.07, 0.07];
 
-/// Figures of the planner under the settings in force.
+/// Constants of the planner under the settings in force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planning {
     /// How the joints are averaged.
@@ -58,10 +57,8 @@ impl Planning {
             settling_s: controller.settling_s.unwrap_or(closing),
         }
     }
-}
 
-impl Planning {
-    /// The same with a motion that ends as the average does, and the rest behind it shorter.
+    /// The same with the average carried out to its end, and a shorter rest behind it.
     #[must_use]
     pub fn complete(self) -> Planning {
         let Planning { average, settling_s } = self;
@@ -70,8 +67,17 @@ impl Planning {
     }
 }
 
-/// The limits of the robot with a share of its accelerations. Where its file has none they are
-/// those with which an IRB6640 gets to its speeds.
+/// Limits of the joints under the settings in force.
+#[derive(Clone, Debug)]
+pub struct MotionLimits {
+    /// rad/s².
+    pub acceleration: Joints,
+    /// Nm, infinite where the robot has no dynamics.
+    pub torque: Joints,
+}
+
+/// The limits of the robot with a share of its accelerations. Where its file has none they follow
+/// from [`TO_FULL_SPEED_S`].
 pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
     let list = |values: &Option<Vec<f64>>, factor: f64| -> Joints {
         std::array::from_fn(|j| {

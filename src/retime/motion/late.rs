@@ -1,8 +1,8 @@
-//! What becomes of a stream that asks for more than the robot can do.
+//! A stream that exceeds the limits of the robot is executed later than its times say.
 //!
-//! `\T` is a wish: a controller that cannot get from one point to the next in time takes longer
-//! there, and keeps the times of the points that it can reach in time. So intervals are lengthened
-//! where the motion exceeds a limit, each a little, until none is exceeded.
+//! A controller that cannot reach a point within its `\T` takes longer there, and keeps the times of the
+//! other points. So the intervals in which the motion exceeds a limit are lengthened, each a little,
+//! until no limit is exceeded.
 
 use super::sampling::Loaded;
 use super::stream::{Piece, Stream};
@@ -10,13 +10,13 @@ use crate::arm::dynamics::{Data, torque};
 use crate::arm::robot::Model;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Excess over a limit that is rounding of emitted figures and no reason to be late.
+/// Excess over a limit that the rounding of emitted figures explains.
 const ROUNDING: f64 = 1e-3;
 /// Share by which an interval gets longer in one round, at most.
 const STEP: f64 = 0.03;
-/// Rounds, at most: the last resort is a stream that is slower as a whole.
+/// Rounds, at most.
 const ROUNDS: usize = 300;
-/// Longest a stream gets in all, times.
+/// Largest duration over that of the given stream.
 const SLOWEST: f64 = 20.0;
 
 /// The stream as the robot can run it; the same one where it is within all limits.
@@ -93,7 +93,7 @@ mod tests {
     use crate::arm::dynamics::Load;
     use crate::arm::robot;
 
-    /// Joint 1 goes 1 rad and back in such intervals, s.
+    /// Joint 1 moves by 1 rad in 20 equal intervals (s).
     fn stream(interval: f64) -> Stream {
         let place = |i: usize| 0.5 - 0.5 * (i as f64 * std::f64::consts::PI / 20.0).cos();
         let point = |i: usize| std::array::from_fn(|j| if j == 0 { place(i) } else { 0.3 });
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_asks_for_too_much_takes_longer() {
+    fn only_intervals_beyond_the_limits_get_longer() {
         let model = robot::find("IRB1600-10/1.45").unwrap();
         let load = Load::none();
         let loaded = Loaded { model: &model, load: &load };

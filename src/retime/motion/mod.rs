@@ -2,6 +2,7 @@
 
 pub mod averaged;
 pub mod controller;
+mod joint_state;
 mod late;
 mod leg_times;
 pub mod pace;

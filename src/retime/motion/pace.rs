@@ -1,4 +1,4 @@
-//! What sets the pace of a movement.
+//! The limit that determines the speed of a movement.
 
 use std::ops::Range;
 

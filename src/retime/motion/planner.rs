@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::averaged::Averaged;
-use super::controller::Planning;
+use super::controller::{MotionLimits, Planning};
 use super::leg_times::{TimedLeg, in_time};
 use super::pace::{Pace, pace};
 use super::sampling::{self, Loaded, SpeedCap};
@@ -17,19 +17,9 @@ use super::timing::limits::PathLimits;
 use super::timing::profile::Profile;
 use super::timing::reachability::time_optimal;
 use crate::retime::path::JointPath;
-use crate::retime::path::joint_path::Joints;
 
 /// Intervals of the grid for one path, besides those of its zones.
 const INTERVALS: usize = 48;
-
-/// What a path may not exceed under the settings in force.
-#[derive(Clone, Debug)]
-pub struct MotionLimits {
-    /// rad/s².
-    pub acceleration: Joints,
-    /// Nm, infinite where the robot has no dynamics.
-    pub torque: Joints,
-}
 
 /// Why a path has no timing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -66,7 +56,7 @@ pub fn plan(
             break;
         }
         for (i, leg) in path.legs().enumerate() {
-            // A corner is made by both of its legs.
+            // Both legs of a corner cause its acceleration.
             let around = [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten();
             let Some(worst) = around.filter_map(excess).max_by(f64::total_cmp) else { continue };
             let factor = (1.0 - TIGHTER) / worst;
@@ -79,11 +69,11 @@ pub fn plan(
     Ok(planned)
 }
 
-/// Times that the limits on the TCP's acceleration are tightened.
+/// Rounds in which the limits on the TCP acceleration are tightened.
 const TIGHTENINGS: usize = 6;
-/// By how much more than needed they are, so that few rounds do.
+/// Additional tightening in each round, so that few rounds suffice.
 const TIGHTER: f64 = 0.01;
-/// Accepted excess of the TCP's acceleration over its limit, share.
+/// Accepted excess of the TCP acceleration over its limit, share.
 const TCP_TOLERANCE: f64 = 1e-3;
 
 struct Task<'a> {
@@ -131,7 +121,7 @@ impl Task<'_> {
         Ok((TimedMotion::Path((*path).clone(), Box::new(timing)), paces))
     }
 
-    /// What the average adds to the time of a leg, s: it begins at rest and ends there.
+    /// Time that the average adds to a leg that begins or ends at rest, s.
     fn smoothing(&self, leg: usize) -> f64 {
         let average = &self.planning.average;
         let legs = self.path.legs();

@@ -18,7 +18,7 @@ use crate::retime::path::{Leg, LegKind, build};
 pub(super) struct Planned {
     /// Motions with their start in the run, s.
     pub motions: Vec<(f64, TimedMotion)>,
-    /// Duration of each movement (s) and what sets its pace.
+    /// Duration of each movement (s) and the limit that determines it.
     pub pieces: Vec<(f64, Pace)>,
     /// What went wrong at which leg.
     pub problem: Option<(usize, String)>,
@@ -60,7 +60,7 @@ fn as_stream(legs: &[Leg], movements: &[Movement], times: &[Option<f64>]) -> Opt
 }
 
 fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
-    // What the controller can't reach in time it does later.
+    // Points that cannot be reached in time are reached later.
     let asked = stream.duration();
     let stream = within_limits(loaded, stream);
     let pace = if stream.duration() > asked { Pace::Acceleration } else { Pace::Time };
@@ -74,7 +74,7 @@ fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
         (end - begin, pace)
     });
     let pieces = pieces.collect();
-    // The law of a stream says nothing of its end: what follows waits as after other movements.
+    // The law of a stream does not describe its end: the settling is that of other movements.
     let settling_s = if count > 1 { planning.settling_s } else { settling_after(pace, &planning) };
     let motions = vec![(0.0, TimedMotion::Stream(stream))];
     Planned { motions, pieces, problem: None, settling_s }
@@ -98,7 +98,7 @@ fn plan_paths(
     let (paths, mut problem) = match build(model, legs) {
         Ok(paths) => (paths, None),
         Err(error) => {
-            // For the time alone: the same points joint by joint.
+            // An estimate of the time: joint movements to the same points.
             let joint: Vec<Leg> =
                 legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
             let hint = "its time is estimated joint by joint, the real one is longer";

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::controller::interpolation_s;
 use super::timing::grid::{GridError, PathGrid, PathPoint, SpeedBound, TCP_ROWS};
-use super::timing::limits::Row;
+use super::timing::row::Row;
 use crate::arm::dynamics::{Load, rnea_each};
 use crate::arm::kinematics::Tcp;
 use crate::arm::robot::Model;
@@ -57,13 +57,13 @@ pub struct Loaded<'a> {
 const LEG_INTERVALS: usize = 4;
 /// Intervals of a zone.
 const ZONE_INTERVALS: usize = 8;
-/// Halvings of the first and the last interval: a slow motion gets to its speed early.
+/// Halvings of the first and the last interval: a slow motion reaches its speed early.
 const END_HALVINGS: i32 = 8;
 /// Nodes nearer to each other than this are one, m of the path or share of a short one.
 const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
 /// Nodes in s: about `count` intervals in all, closer towards the ends of the legs, where speeds
-/// change; the edges and kinks of the zones; and places between where joints are the fastest.
+/// change; nodes of the zones; and nodes at narrow peaks of joint speeds.
 pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
     let length = path.length();
     let mut nodes = vec![0.0];
@@ -82,7 +82,7 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
         let [first, last] = ends.map(|interval| interval * 0.5_f64.powi(k));
         nodes.extend([first, length - last]);
     }
-    // Evenly in each zone, whatever pieces it happens to be made of.
+    // Evenly in each zone, whatever pieces it consists of.
     nodes.extend(zones(path).into_iter().flat_map(zone_nodes));
     nodes.sort_by(f64::total_cmp);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * length);
@@ -193,7 +193,7 @@ pub fn grid(
     PathGrid::new(nodes.to_vec(), stretches.concat())
 }
 
-/// Intervals that are worked out one after the other: fewer are not worth another thread.
+/// Intervals of one parallel task: fewer are not worth another thread.
 const TOGETHER: usize = 128;
 
 /// Begin and end of each interval between some nodes.
@@ -219,7 +219,7 @@ fn ends(
             extent: path.extent(piece.leg),
             zone: zone.map(|(begin, end)| end - begin),
         };
-        // Within a leg and a zone a path is smooth: a node looks the same from both sides.
+        // Within a leg and a zone a path is smooth: both sides of a node have the same values.
         let stretch = (piece.leg, piece.kind, limits.zone);
         let begin = match ends.last() {
             Some([_, end]) if before == Some(stretch) => *end,
@@ -341,7 +341,7 @@ fn tcp_rows(
         ..Row::default()
     };
     if up.is_finite() || down.is_finite() {
-        // One side without a limit is as good as a very large one.
+        // A side without a limit has a very large one.
         let [up, down] = [up, down].map(|x| x.min(NO_ACCELERATION_LIMIT));
         let half = 0.5 * (up + down);
         rows[0] = row(1.0, 0.0, half, 0.5 * (down - up) / half);
@@ -359,10 +359,10 @@ fn tcp_rows(
 /// An acceleration that no robot has, m/s².
 const NO_ACCELERATION_LIMIT: f64 = 1e3;
 
-/// Turn of a joint on the path that is rounding of none, rad per unit of s.
+/// Joint rate on the path below which it is rounding, rad per unit of s.
 const STILL: f64 = 1e-9;
 
-/// The sign of a joint's motion, 0 where it stands.
+/// The sign of a joint rate, 0 at rest.
 fn sign(rate: f64) -> f64 {
     if rate.abs() < STILL { 0.0 } else { rate.signum() }
 }

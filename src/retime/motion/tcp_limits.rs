@@ -1,14 +1,14 @@
 //! `PathAccLim` and `WorldAccLim` on the averaged motion.
 //!
-//! The average keeps bounds on the joints but not on the TCP, whose way is no linear function of
-//! them: what it leaves over the limit in corners is found on the motion itself.
+//! The average keeps bounds on the joints but not on the TCP, whose position is not linear in them:
+//! the excess in corners is found by sampling the averaged motion.
 
 use super::sampling::SpeedCap;
 use super::timed::TimedMotion;
 use crate::arm::robot::Model;
 use crate::retime::path::JointPath;
 
-/// Longest step between two looks at the motion, s.
+/// Longest step between two samples, s.
 const STEP: f64 = 0.002;
 /// A TCP slower than this has no direction, m/s.
 const SLOW: f64 = 1e-4;

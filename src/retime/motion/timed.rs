@@ -3,27 +3,10 @@
 use std::sync::Arc;
 
 use super::averaged::Averaged;
+pub use super::joint_state::JointState;
 use super::stream::Stream;
 use crate::retime::path::JointPath;
-use crate::retime::path::joint_path::{DOF, Joints};
-
-/// q, q̇, q̈ at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointState {
-    /// rad.
-    pub q: Joints,
-    /// rad/s.
-    pub qd: Joints,
-    /// rad/s².
-    pub qdd: Joints,
-}
-
-impl JointState {
-    /// Standing at `q`.
-    pub fn rest(q: Joints) -> JointState {
-        JointState { q, qd: [0.0; DOF], qdd: [0.0; DOF] }
-    }
-}
+use crate::retime::path::joint_path::Joints;
 
 /// A motion from rest to rest.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ use crate::retime::path::joint_path::Joints;
 /// One cycle of a program.
 #[derive(Debug)]
 pub struct Simulation {
-    /// What happened, in order; the durations add up to the cycle.
+    /// The events in order; their durations add up to the cycle.
     pub events: Vec<Event>,
     /// s.
     pub cycle_s: f64,
@@ -54,7 +54,7 @@ pub enum What {
     Wait(Box<WaitRecord>),
     /// A change of an output, and the number of fly-by movements that were under way.
     Output(Output, usize),
-    /// A movement that could not be worked out; the robot may stand elsewhere afterwards.
+    /// A movement that could not be simulated; the robot may stand elsewhere afterwards.
     Left(Unresolved),
 }
 
@@ -75,7 +75,7 @@ pub struct Run {
     pub end: Joints,
     /// Time at rest at the end, s.
     pub settling: f64,
-    /// False if the robot may have started from elsewhere.
+    /// False if its start is not known.
     pub start_known: bool,
     /// Why the path could not be followed as programmed.
     pub problem: Option<String>,

@@ -2,11 +2,12 @@
 
 use super::check::Check;
 use super::margins::Margins;
+use super::polish_problem::PathPenalty;
 use super::reason::Reason;
-use super::retime::Work;
 use super::run_plant::RunPlant;
+use super::run_problem::RunProblem;
 use super::stream_fit::{StreamFit, fit_stream};
-use super::stream_polish::{Corridor, polish_stream};
+use super::stream_polish::polish_stream;
 use super::stream_reference::Reference;
 use super::stream_rounding::{round_down, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
@@ -17,20 +18,20 @@ use crate::retime::path::joint_path::Joints;
 
 /// Points of a stream, at least.
 const LEAST_POINTS: usize = 2;
-/// Acceleration of the TCP that a motion may be expected to have between ceilings, m/s².
+/// Acceleration of the TCP that a motion is expected to have between ceilings, m/s².
 const EASING: f64 = 10.0;
-/// Share of the reach of the zones that two points may use up.
+/// Largest distance of two points, as a share of the reach of their zones.
 const ZONE_SHARE: f64 = 0.95;
-/// The share that is asked for where they would not keep that: they are placed by other rules too.
+/// The share that is asked for where that is exceeded: other rules shift the points, too.
 const CLOSER: f64 = 0.6;
 /// Step of the samples of an intended motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
-/// A realised stream with its faults.
+/// A realised stream with its check.
 pub(super) struct Attempt {
     pub(super) stream: Stream,
     pub(super) check: Check,
-    /// What more polishing may begin with.
+    /// The start for more polishing.
     pub(super) intended: Intended,
 }
 
@@ -40,9 +41,9 @@ pub(super) struct Intended {
     stream: Stream,
 }
 
-impl Work<'_> {
-    /// Where the margins leave no room on the path, the motion of the run itself is what polishing
-    /// begins with: it is within all limits and takes this time.
+impl RunProblem<'_> {
+    /// Where the margins leave no timing on the path, the polishing starts from the motion of the run
+    /// itself, which keeps all limits and takes this time.
     pub(super) fn as_before(
         &self,
         reason: Reason,
@@ -102,7 +103,7 @@ impl Work<'_> {
             spacing.longest = CLOSER * reach;
             intervals = adaptive_intervals(&reference, duration, &spacing);
         }
-        // A stop after one point alone comes without settling in the controller's law.
+        // In the model of the controller a stop after a single point has no settling.
         if intervals.len() < LEAST_POINTS {
             let interval = duration / LEAST_POINTS as f64;
             if interval < self.task.spacing_s {
@@ -125,11 +126,14 @@ impl Work<'_> {
     /// The stream polished, rounded as it will be emitted and checked.
     pub(super) fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
         let Intended { reference, stream } = intended;
-        let plant =
-            RunPlant { work: self, margins, ceilings: self.corridor.eased(margins.reach, EASING) };
-        let corridor = Corridor { tolerance: self.looseness(), lever: self.lever };
+        let plant = RunPlant {
+            problem: self,
+            margins,
+            ceilings: self.corridor.eased(margins.reach, EASING),
+        };
+        let penalty = PathPenalty { tolerance: self.looseness(), lever: self.lever };
         let polished =
-            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &corridor)
+            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &penalty)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;

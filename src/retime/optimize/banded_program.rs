@@ -5,9 +5,9 @@
 //! matrix of the linear system, which so stays banded: an iteration takes time linear in the
 //! number of variables, where a general sparse solver spends most of it on bookkeeping.
 
-use super::banded::Banded;
+use super::banded::{Banded, Cholesky};
 
-/// min ½ xᵀ H x + gᵀ x + Σ price · (what a row is broken by) subject to the rows.
+/// min ½ xᵀ H x + gᵀ x + Σ price · (violation of a row) subject to the rows.
 pub(super) struct BandedProgram {
     /// H, positive definite, with a band that holds the terms of each row.
     pub(super) matrix: Banded,
@@ -24,7 +24,7 @@ pub(super) struct Row {
     pub(super) terms: Vec<(usize, f64)>,
     /// The bound.
     pub(super) bound: f64,
-    /// What breaking the row by one costs; infinite for a row that has to be kept.
+    /// Price of a violation by one; infinite for a hard row.
     pub(super) price: f64,
 }
 
@@ -45,12 +45,12 @@ pub(super) struct Optimum {
 const MAX_ITERATIONS: usize = 60;
 /// Share of the way to the boundary that a step goes.
 const TO_BOUNDARY: f64 = 0.995;
-/// Least room and multiplier at the begin.
+/// Least slack and multiplier at first.
 const BEGIN: f64 = 1e-2;
 /// Residual of the rows and of the gradient at the end, relative to their size.
 const RESIDUAL: f64 = 1e-7;
 
-/// Room w ≥ 0 of a row, what it is broken by s ≥ 0, and their multipliers λ and price − λ.
+/// Slack w ≥ 0 of a row, its violation s ≥ 0, and their multipliers λ and price − λ.
 #[derive(Clone, Copy)]
 struct State {
     w: f64,
@@ -58,114 +58,155 @@ struct State {
     lambda: f64,
 }
 
+/// How far an iterate is from the optimum.
+struct Residuals {
+    /// Gradient of the Lagrangian.
+    dual: Vec<f64>,
+    /// Of the rows with their slacks.
+    primal: Vec<f64>,
+    /// Σ of the products that vanish at the optimum.
+    complement: f64,
+    /// The objective.
+    cost: f64,
+}
+
+/// A Newton step: of x, and of the state of each row.
+struct Direction {
+    x: Vec<f64>,
+    states: Vec<State>,
+}
+
 impl BandedProgram {
     /// Solves the program to a gap relative to 1 + |objective|. None if it does not get there.
     pub(super) fn solve(&self, gap: f64) -> Option<Optimum> {
         let mut x = vec![0.0; self.gradient.len()];
         let mut states: Vec<State> = self.rows.iter().map(State::first).collect();
-        let pairs: usize = self.rows.iter().map(|row| if row.is_soft() { 2 } else { 1 }).sum();
         for _ in 0..MAX_ITERATIONS {
-            let curved = self.matrix.times(&x);
-            let mut dual: Vec<f64> =
-                curved.iter().zip(&self.gradient).map(|(h, g)| h + g).collect();
-            for (row, state) in self.rows.iter().zip(&states) {
-                for (i, weight) in &row.terms {
-                    dual[*i] += weight * state.lambda;
-                }
+            let residuals = self.residuals(&x, &states);
+            if residuals.are_within(gap) {
+                return Some(Optimum { x, cost: residuals.cost });
             }
-            let primal: Vec<f64> = self
+            let factor = self.factor(&states)?;
+            let mut reductions: Vec<(f64, f64)> = self
                 .rows
                 .iter()
                 .zip(&states)
-                .map(|(row, state)| row.value(&x) - state.s + state.w - row.bound)
+                .map(|(row, state)| (state.lambda * state.w, state.violation(row)))
                 .collect();
-            let complement: f64 =
-                self.rows.iter().zip(&states).map(|(row, state)| state.complement(row)).sum();
-            let cost = self.cost(&x, &curved, &states);
-            let size = 1.0 + cost.abs();
-            if complement <= gap * size
-                && primal.iter().all(|r| r.abs() <= RESIDUAL)
-                && dual.iter().all(|r| r.abs() <= RESIDUAL * size)
-            {
-                return Some(Optimum { x, cost });
+            let mut direction = self.direction(&factor, &states, &residuals, &reductions);
+            if !self.rows.is_empty() {
+                reductions = self.corrected(&reductions, &states, &residuals, &direction);
+                direction = self.direction(&factor, &states, &residuals, &reductions);
             }
-            let mut matrix = self.matrix.clone();
-            for (row, state) in self.rows.iter().zip(&states) {
-                let weight = 1.0 / state.give(row);
-                for (n, (i, a)) in row.terms.iter().enumerate() {
-                    for (j, b) in &row.terms[..=n] {
-                        matrix.add(*i.max(j), *i.min(j), weight * a * b);
-                    }
-                }
-            }
-            let factor = matrix.factor()?;
-            // The direction for the complements c_w = λ w … and c_s = (price − λ) s … wanted.
-            let direction = |aims: &[(f64, f64)]| {
-                let shifts: Vec<f64> = self
-                    .rows
-                    .iter()
-                    .zip(&states)
-                    .zip(aims.iter().zip(&primal))
-                    .map(|((row, state), ((c_w, c_s), primal))| {
-                        let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
-                        (primal + soft - c_w / state.lambda) / state.give(row)
-                    })
-                    .collect();
-                let mut right: Vec<f64> = dual.iter().map(|r| -r).collect();
-                for (row, shift) in self.rows.iter().zip(&shifts) {
-                    for (i, weight) in &row.terms {
-                        right[*i] -= weight * shift;
-                    }
-                }
-                let dx = factor.solve(right);
-                let changes: Vec<State> = self
-                    .rows
-                    .iter()
-                    .zip(&states)
-                    .zip(aims.iter().zip(&shifts))
-                    .map(|((row, state), ((c_w, c_s), shift))| {
-                        let lambda = row.value(&dx) / state.give(row) + shift;
-                        let w = (-c_w - state.w * lambda) / state.lambda;
-                        let soft = row.is_soft();
-                        let s = if soft { (state.s * lambda - c_s) / state.mu(row) } else { 0.0 };
-                        State { w, s, lambda }
-                    })
-                    .collect();
-                (dx, changes)
-            };
-            let aims: Vec<(f64, f64)> = self
-                .rows
-                .iter()
-                .zip(&states)
-                .map(|(row, state)| (state.lambda * state.w, state.broken(row)))
-                .collect();
-            let (mut dx, mut changes) = direction(&aims);
-            if pairs > 0 {
-                let reach = self.reach(&states, &changes);
-                let ahead: f64 = self
-                    .rows
-                    .iter()
-                    .zip(states.iter().zip(&changes))
-                    .map(|(row, (state, change))| state.moved(change, reach).complement(row))
-                    .sum();
-                let mean = complement / pairs as f64;
-                let aim = mean * (ahead / complement).powi(3);
-                let aims: Vec<(f64, f64)> = aims
-                    .iter()
-                    .zip(&changes)
-                    .map(|((c_w, c_s), d)| (c_w + d.w * d.lambda - aim, c_s - d.s * d.lambda - aim))
-                    .collect();
-                (dx, changes) = direction(&aims);
-            }
-            let step = (TO_BOUNDARY * self.reach(&states, &changes)).min(1.0);
-            for (x, d) in x.iter_mut().zip(&dx) {
+            let step = (TO_BOUNDARY * self.reach(&states, &direction.states)).min(1.0);
+            for (x, d) in x.iter_mut().zip(&direction.x) {
                 *x += step * d;
             }
-            for (state, change) in states.iter_mut().zip(&changes) {
+            for (state, change) in states.iter_mut().zip(&direction.states) {
                 *state = state.moved(change, step);
             }
         }
         None
+    }
+
+    fn residuals(&self, x: &[f64], states: &[State]) -> Residuals {
+        let curved = self.matrix.times(x);
+        let mut dual: Vec<f64> = curved.iter().zip(&self.gradient).map(|(h, g)| h + g).collect();
+        for (row, state) in self.rows.iter().zip(states) {
+            for (i, weight) in &row.terms {
+                dual[*i] += weight * state.lambda;
+            }
+        }
+        let rows = || self.rows.iter().zip(states);
+        Residuals {
+            dual,
+            primal: rows()
+                .map(|(row, state)| row.value(x) - state.s + state.w - row.bound)
+                .collect(),
+            complement: rows().map(|(row, state)| state.complement(row)).sum(),
+            cost: self.cost(x, &curved, states),
+        }
+    }
+
+    /// The factor of H with the rows eliminated. None if it is not positive definite.
+    fn factor(&self, states: &[State]) -> Option<Cholesky> {
+        let mut matrix = self.matrix.clone();
+        for (row, state) in self.rows.iter().zip(states) {
+            let weight = 1.0 / state.compliance(row);
+            for (n, (i, a)) in row.terms.iter().enumerate() {
+                for (j, b) in &row.terms[..=n] {
+                    matrix.add(*i.max(j), *i.min(j), weight * a * b);
+                }
+            }
+        }
+        matrix.factor()
+    }
+
+    /// The Newton step that lowers the products λ w and (price − λ) s of each row by `reductions`.
+    fn direction(
+        &self,
+        factor: &Cholesky,
+        states: &[State],
+        residuals: &Residuals,
+        reductions: &[(f64, f64)],
+    ) -> Direction {
+        let shifts: Vec<f64> = self
+            .rows
+            .iter()
+            .zip(states)
+            .zip(reductions.iter().zip(&residuals.primal))
+            .map(|((row, state), ((c_w, c_s), primal))| {
+                let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
+                (primal + soft - c_w / state.lambda) / state.compliance(row)
+            })
+            .collect();
+        let mut right: Vec<f64> = residuals.dual.iter().map(|r| -r).collect();
+        for (row, shift) in self.rows.iter().zip(&shifts) {
+            for (i, weight) in &row.terms {
+                right[*i] -= weight * shift;
+            }
+        }
+        let x = factor.solve(right);
+        let states = self
+            .rows
+            .iter()
+            .zip(states)
+            .zip(reductions.iter().zip(&shifts))
+            .map(|((row, state), ((c_w, c_s), shift))| {
+                let lambda = row.value(&x) / state.compliance(row) + shift;
+                let w = (-c_w - state.w * lambda) / state.lambda;
+                let soft = row.is_soft();
+                let s = if soft { (state.s * lambda - c_s) / state.mu(row) } else { 0.0 };
+                State { w, s, lambda }
+            })
+            .collect();
+        Direction { x, states }
+    }
+
+    /// The reductions with Mehrotra's correction: second-order terms of the predictor, and the
+    /// centring that its reach suggests.
+    fn corrected(
+        &self,
+        reductions: &[(f64, f64)],
+        states: &[State],
+        residuals: &Residuals,
+        predictor: &Direction,
+    ) -> Vec<(f64, f64)> {
+        let pairs: usize = self.rows.iter().map(|row| if row.is_soft() { 2 } else { 1 }).sum();
+        let reach = self.reach(states, &predictor.states);
+        let ahead: f64 = self
+            .rows
+            .iter()
+            .zip(states.iter().zip(&predictor.states))
+            .map(|(row, (state, change))| state.moved(change, reach).complement(row))
+            .sum();
+        let mean = residuals.complement / pairs as f64;
+        let centre = mean * (ahead / residuals.complement).powi(3);
+        reductions
+            .iter()
+            .zip(&predictor.states)
+            .map(|((c_w, c_s), d)| (c_w + d.w * d.lambda - centre, c_s - d.s * d.lambda - centre))
+            .collect()
     }
 
     fn cost(&self, x: &[f64], curved: &[f64], states: &[State]) -> f64 {
@@ -195,6 +236,17 @@ impl BandedProgram {
     }
 }
 
+impl Residuals {
+    /// Whether the complement is below the gap, and the residuals are rounding; relative to
+    /// 1 + |objective|.
+    fn are_within(&self, gap: f64) -> bool {
+        let size = 1.0 + self.cost.abs();
+        self.complement <= gap * size
+            && self.primal.iter().all(|r| r.abs() <= RESIDUAL)
+            && self.dual.iter().all(|r| r.abs() <= RESIDUAL * size)
+    }
+}
+
 impl Row {
     fn is_soft(&self) -> bool {
         self.price.is_finite()
@@ -214,16 +266,16 @@ impl State {
         row.price - self.lambda
     }
 
-    fn broken(&self, row: &Row) -> f64 {
+    fn violation(&self, row: &Row) -> f64 {
         if row.is_soft() { self.mu(row) * self.s } else { 0.0 }
     }
 
     fn complement(&self, row: &Row) -> f64 {
-        self.lambda * self.w + self.broken(row)
+        self.lambda * self.w + self.violation(row)
     }
 
-    /// How far a row gives way per multiplier.
-    fn give(&self, row: &Row) -> f64 {
+    /// Compliance of a row: change of its value per multiplier.
+    fn compliance(&self, row: &Row) -> f64 {
         let soft = if row.is_soft() { self.s / self.mu(row) } else { 0.0 };
         soft + self.w / self.lambda
     }
@@ -336,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_contradict_each_other_have_no_optimum() {
+    fn contradictory_rows_have_no_optimum() {
         let row = |sign: f64| Row { terms: vec![(0, sign)], bound: -1.0, price: f64::INFINITY };
         let program = BandedProgram { rows: vec![row(1.0), row(-1.0)], ..random(3, 4) };
         assert!(program.solve(1e-8).is_none());

@@ -1,6 +1,7 @@
-//! What a stream really does, against every limit.
+//! Check of the realised motion of a stream against every limit.
 
-use super::allowed::{Ceiling, Loads, speeds};
+use super::allowed::Loads;
+use super::ceilings::{Ceiling, speeds};
 use super::corridor::{Corridor, Offset};
 use super::keep_out::least_room;
 use super::plant::STILL;
@@ -15,7 +16,7 @@ use crate::retime::path::joint_path::{DOF, Joints};
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
 
-/// Shares of the limits that a stream uses, and how far it strays.
+/// Shares of the limits that a stream uses, and its distance from the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Check {
     /// Of the joint speeds.
@@ -32,17 +33,16 @@ pub struct Check {
     pub deviation_m: f64,
     /// The same in units of what is allowed at each place.
     pub deviation: f64,
-    /// Largest distance of the polygon of the points from the programmed path, m: where the robot goes
-    /// if it stops at each of them.
+    /// Largest distance of the polygon of the points from the programmed path, m: the path of a robot
+    /// that stops at each of them.
     pub polygon_m: f64,
     /// The same in units of what is allowed at each place.
     pub polygon: f64,
-    /// Distance of the end from the programmed one, rad.
+    /// Distance of the end from the programmed one, rad; 0 outside of a corridor.
     pub endpoint_error_rad: f64,
     /// True if every joint stays in its range.
     pub in_range: bool,
-    /// By how much arm and tool come into what the cell keeps free, m; only of what may leave its
-    /// path.
+    /// Depth to which arm and tool enter the keep-out zones, m; only where the path may be left.
     pub intrusion_m: f64,
 }
 
@@ -59,7 +59,7 @@ impl Check {
         self.worst() <= 1.0 && self.in_range && self.intrusion_m <= 0.0
     }
 
-    /// What is exceeded most, in words; for a check that does not hold.
+    /// The limit that is exceeded most, in words; for a check that does not hold.
     pub fn fault(&self) -> String {
         let figures = [
             ("joint speed", self.velocity),
@@ -105,29 +105,28 @@ impl Check {
     }
 }
 
-/// Where and how a stream may move.
+/// The space in which a stream may move.
 #[derive(Clone, Copy)]
 pub enum Room<'a> {
     /// In the corridor of the movements that it stands for.
     Corridor(&'a Corridor),
-    /// Anywhere, if joints bear no more than this.
+    /// Anywhere, with at most these joint loads.
     Free(&'a Loads),
 }
 
-/// Checks the realised motion of a stream in its room, towards where it is to end, and with the arm
-/// among what the cell keeps free.
+/// Checks the realised motion of a stream against every limit, in its room; `body` is the arm among
+/// the keep-out zones of the cell.
 pub fn check(
     model: &Model,
     load: &Load,
     tool: &Tcp,
     stream: &Stream,
     room: Room<'_>,
-    end: &Joints,
     body: Option<&Body<'_>>,
 ) -> Check {
     let velocity = speeds(model);
     let (corridor, loads) = match room {
-        Room::Corridor(corridor) => (Some(corridor), &corridor.allowed.loads),
+        Room::Corridor(corridor) => (Some(corridor), &corridor.ceilings.loads),
         Room::Free(loads) => (None, loads),
     };
     let share = |values: &[f64], limit: &Joints| {
@@ -138,7 +137,10 @@ pub fn check(
         velocity: share(&stream.max_velocity(), &velocity),
         acceleration: share(&stream.max_acceleration(), &loads.acceleration),
         jerk: share(&stream.max_jerk(), &loads.jerk),
-        endpoint_error_rad: (0..DOF).map(|j| (stream.end()[j] - end[j]).abs()).fold(0.0, f64::max),
+        endpoint_error_rad: corridor.map_or(0.0, |corridor| {
+            let error = |j: usize| (stream.end()[j] - corridor.end[j]).abs();
+            (0..DOF).map(error).fold(0.0, f64::max)
+        }),
         intrusion_m: body.map_or(0.0, |body| (-least_room(model, body, stream)).max(0.0)),
         ..Check::none()
     };
@@ -187,10 +189,11 @@ pub fn check(
 /// Steps on the way from one point to the next.
 const EDGE_STEPS: usize = 16;
 
-/// Distance from the time at which a joint turns, s: dry friction jumps there.
+/// Time beside a reversal of a joint, s: dry friction jumps at the reversal.
 const BESIDE: f64 = 1e-6;
 
-/// Times in a piece, s, rising: not far apart, and on both sides of where a joint turns.
+/// Sample times in a piece, s, rising: at most a step apart, and on both sides of each reversal of a
+/// joint.
 fn samples(piece: &Piece) -> Vec<f64> {
     let steps = (piece.length / STEP).ceil().max(1.0) as usize;
     let turns = (0..DOF).map(|j| -piece.qd[j] / piece.qdd[j]);

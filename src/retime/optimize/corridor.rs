@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Vector4};
 
-use super::allowed::{Allowed, Ceiling};
+use super::ceilings::{Ceiling, Ceilings};
 use super::freedom::Freedom;
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
@@ -25,7 +25,7 @@ pub const ZONE_TOLERANCE: f64 = 0.1;
 pub(super) const STOP_TOLERANCE: f64 = 0.0005;
 /// How far from a stop the path counts as near it, m: 50 mm, and what lies between places.
 const NEAR_STOP: f64 = 0.05 + 3.0 * SPACING;
-/// By how much the tolerance of the polygon grows behind that, m/m: a motion cannot follow a step.
+/// Growth of the polygon's tolerance beyond that, m/m: a motion cannot follow a step.
 const WIDENING: f64 = 0.05;
 /// How many samples ahead and behind the last place are searched for the nearest.
 const WINDOW: (usize, usize) = (8, 24);
@@ -48,11 +48,13 @@ struct Place {
 #[derive(Clone, Debug)]
 pub struct Corridor {
     places: Vec<Place>,
-    /// What a stream in it may ask of the robot.
-    pub(super) allowed: Allowed,
+    /// Largest loads and speeds of a stream in it.
+    pub(super) ceilings: Ceilings,
+    /// Where the run ends, rad.
+    pub(super) end: Joints,
 }
 
-/// How a pose lies to the corridor.
+/// Position of a pose relative to the corridor.
 #[derive(Clone, Copy, Debug)]
 pub struct Offset {
     /// Distance of the TCP, m, the turn of the tool included.
@@ -78,7 +80,7 @@ fn near_stops(places: &mut [Place]) {
 impl Corridor {
     /// The corridor of a run along one path; `None` for streams.
     pub fn new(model: &Model, run: &Run, freedom: &Freedom) -> Option<Corridor> {
-        let allowed = Allowed::new(model, run, freedom);
+        let ceilings = Ceilings::new(model, run, freedom);
         let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return None };
         let mut places = Vec::new();
         for piece in path.pieces() {
@@ -86,7 +88,7 @@ impl Corridor {
             let zone = &run.legs[piece.leg].zone;
             let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
             // A piece of a zone belongs to the leg before or after its corner: so does its ceiling.
-            let ceiling = allowed.moves[piece.leg];
+            let ceiling = ceilings.moves[piece.leg];
             let tolerance = match piece.kind {
                 PieceKind::Joint => JOINT_TOLERANCE,
                 PieceKind::Cartesian => LINE_TOLERANCE,
@@ -106,9 +108,11 @@ impl Corridor {
             };
             let other = corner.and_then(|leg| run.moves.get(leg)).map(|record| &record.movement);
             let movements = std::iter::once(movement).chain(other);
-            let free = movements.map(|movement| freedom.of(movement)).fold(f64::INFINITY, f64::min);
-            // In a corner joints come from the one speed to the other.
-            let beyond = corner.and_then(|leg| allowed.moves.get(leg)).unwrap_or(&ceiling);
+            let free = movements
+                .map(|movement| freedom.free_deviation(movement))
+                .fold(f64::INFINITY, f64::min);
+            // In a corner the joints change from one speed to the other.
+            let beyond = corner.and_then(|leg| ceilings.moves.get(leg)).unwrap_or(&ceiling);
             let tcp = if corner.is_some() { ceiling.corner } else { ceiling.tcp };
             let ceiling = Ceiling { tcp, joints: ceiling.max(beyond).joints, ..ceiling };
             let tolerance = tolerance.max(free);
@@ -124,7 +128,7 @@ impl Corridor {
                 .map(|i| piece.s + piece.length * i as f64 / n as f64)
                 .map(|s| extent.tool.pose(&fk(model, &piece.eval(s).q)))
                 .collect();
-            // Where zones fail an original goes to the corner itself; the polygon may go as far.
+            // Without its zone the original reaches the corner itself: the polygon may, too.
             let cut = corner.and_then(|other| run.legs.get(other.min(piece.leg))).map(|leg| {
                 let corner = extent.tool.pose(&fk(model, &leg.end)).translation.vector;
                 let distance = |pose: &Isometry3<f64>| (pose.translation.vector - corner).norm();
@@ -135,7 +139,7 @@ impl Corridor {
             places.extend(poses.into_iter().map(place));
         }
         near_stops(&mut places);
-        Some(Corridor { places, allowed })
+        Some(Corridor { places, ceilings, end: run.end })
     }
 
     /// The offset of a pose, searched near the place `from`, which is moved on.
@@ -151,7 +155,7 @@ impl Corridor {
         }
         *from = best.1;
         let place = &self.places[best.1];
-        // Between two stretches the more generous figure holds: they meet there.
+        // Where two stretches meet, the larger tolerance holds.
         let lo = &self.places[best.1.saturating_sub(1)];
         let hi = &self.places[(best.1 + 1).min(self.places.len() - 1)];
         Offset {
@@ -162,9 +166,8 @@ impl Corridor {
         }
     }
 
-    /// The TCP speeds of all places, each lower one holding from `reach` (m) before it to as much
-    /// behind it and rising from there as a motion can that gains `acceleration` (m/s²): the
-    /// same for a motion, but without steps.
+    /// The TCP speed ceilings of all places without steps: each lower ceiling is extended by `reach` (m)
+    /// to both sides and rises from there with the `acceleration` (m/s²).
     pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
         let last = self.places.len() - 1;
         let n = (reach / SPACING).ceil() as usize;
@@ -273,7 +276,7 @@ fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
 }
 
-/// Distance of the TCP from each joint's axis at most along the run, m: weighs joint errors.
+/// Largest distance of the TCP from the axis of each joint along the run, m: weight of joint errors.
 pub(super) fn levers(model: &Model, run: &Run) -> Joints {
     let mut lever = [MIN_LEVER; DOF];
     for leg in &run.legs {

@@ -1,10 +1,10 @@
-//! What is minimised on a path: energies, and the costs that the literature takes for them.
+//! The cost that is minimised on a path: energy, or a substitute from the literature.
 
 use super::path_energy::{EnergyModel, Sharing};
 use crate::arm::robot::{self, Model};
 use crate::retime::motion::stream::DOF;
 
-/// What a timing costs.
+/// The cost of a timing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cost {
     /// What the robot takes from the grid: work, copper losses, braking energy that is not used.

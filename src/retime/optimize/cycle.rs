@@ -12,14 +12,14 @@ pub struct TradeOff {
     points: Vec<(f64, f64)>,
 }
 
-/// What is known of a run at one time.
+/// Energy of a run at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// s.
     pub time: f64,
     /// J.
     pub energy: f64,
-    /// What one more second costs, W.
+    /// dE/dt: cost of one more second, W.
     pub slope: f64,
 }
 
@@ -109,7 +109,7 @@ fn slope(a: (f64, f64), b: (f64, f64)) -> f64 {
 pub enum Part {
     /// A run, by the index of its trade-off.
     Run(usize),
-    /// Time that nothing changes, s.
+    /// A fixed time, s.
     Fixed(f64),
     /// A wait for a signal.
     Arrival {
@@ -117,9 +117,9 @@ pub enum Part {
         since: Option<usize>,
         /// s.
         delay: f64,
-        /// What is waited at least, s: a reserve for who may be late.
+        /// Least time of the wait, s: a reserve for runs that come out late.
         least: f64,
-        /// What standing there takes, W.
+        /// Power of standing there, W.
         holding_w: f64,
     },
 }
@@ -132,11 +132,11 @@ const ROUNDING: f64 = 1e-9;
 /// A cycle whose time is shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
-    /// What happens, in its order.
+    /// The parts in order.
     pub parts: Vec<Part>,
     /// Longest time that it may take, s.
     pub takt: f64,
-    /// What standing takes for the rest of the takt, W.
+    /// Power of standing for the rest of the takt, W.
     pub resting_w: f64,
 }
 
@@ -150,7 +150,7 @@ impl Cycle {
         let wait = |index: usize| Some(2 * runs + index);
         let mut program = ConeProgram::new(2 * runs + arrivals);
 
-        // The time at the end of each part, as it is written down.
+        // The time at the end of each part.
         let mut ends: Vec<Affine> = Vec::with_capacity(self.parts.len());
         let mut now = Affine::constant(0.0);
         let mut arrival = 0;

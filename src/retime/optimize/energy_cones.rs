@@ -19,26 +19,16 @@
 //!
 //! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
 //! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
-//! those that come near their bound are in a program, and it is solved again when others turn up.
-//! The rest at both ends is eliminated: there the cones would have no interior.
-
-use nalgebra::SMatrix;
+//! rows near their bound are in a program, and it is solved again when others are violated. The rest
+//! at both ends is eliminated: there the cones would have no interior.
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
-use super::path_energy::{EnergyModel, Sharing, evaluate};
-use crate::retime::motion::stream::DOF;
+use super::energy_costs::{IntervalCost, Layout, Root, Scale, mean_root};
+use super::path_energy::{EnergyModel, evaluate};
 use crate::retime::motion::timing::grid::PathGrid;
-use crate::retime::motion::timing::limits::{PathLimits, Row, rows};
+use crate::retime::motion::timing::limits::{PathLimits, rows};
 use crate::retime::motion::timing::profile::Profile;
-
-/// What stands for √b where it is concave.
-#[derive(Clone, Copy)]
-pub(super) enum Root<'a> {
-    /// The convex lower bound.
-    Relaxed,
-    /// The tangent at this b, which is above.
-    Tangent(&'a [f64]),
-}
+use crate::retime::motion::timing::row::Row;
 
 /// The solution of a program. The energies leave out the constants of the path.
 pub(super) struct Step {
@@ -59,15 +49,12 @@ pub(super) struct Step {
 const MARGIN: f64 = 1e-5;
 /// Share of its limit from which a row is part of the first program.
 const NEAR_AT_FIRST: f64 = 0.6;
-/// Share of its limit from which a row is added when another one is broken.
+/// Share of its limit from which a row is added when another one is violated.
 const NEAR: f64 = 0.85;
 /// Rounds in which rows are added.
 const MAX_ROUNDS: usize = 8;
 /// Smallest scaled speed at which a tangent is taken.
 const SLOWEST: f64 = 1e-6;
-/// ∫ √b ds over an interval, per Δs √b at the moving end, where the other end rests.
-const MEAN_ROOT_FROM_REST: f64 = 2.0 / 3.0;
-
 /// sign · row ≤ 1 at the share `at` of an interval.
 struct Limit {
     interval: usize,
@@ -77,23 +64,7 @@ struct Limit {
     active: bool,
 }
 
-/// The costs of one interval in units of the objective and of scaled variables.
-struct IntervalCost {
-    /// Vector whose square over c₀ + c₁ is the copper loss.
-    copper: Vec<Affine>,
-    /// The part of the copper loss that is linear in (u, b).
-    cross: Affine,
-    /// Factor w of the mean √b.
-    viscous: f64,
-    /// Works that count when they are negative, each with the factor of the mean √b.
-    brakes: Vec<(Affine, f64)>,
-    /// Time per d, over the given duration.
-    time: f64,
-    /// Base energy per d.
-    base: f64,
-}
-
-/// The programs of one problem, with the rows that have turned out to matter.
+/// The programs of one problem, with the rows that have become active.
 pub(super) struct Programs<'a> {
     grid: &'a PathGrid,
     duration: f64,
@@ -171,10 +142,10 @@ impl<'a> Programs<'a> {
         self.convex
     }
 
-    /// Solves the program, adding rows until none is broken. None if the solver fails.
+    /// Solves the program, adding rows until none is violated. None if the solver fails.
     pub(super) fn solve(&mut self, root: Root<'_>) -> Option<Step> {
         for _ in 0..MAX_ROUNDS {
-            let layout = Layout::new(self, root);
+            let layout = Layout::new(&self.costs, root);
             let (program, time_row) = self.build(&layout, root);
             let solution = program.solve();
             if matches!(solution.status, ConeStatus::Infeasible | ConeStatus::Failed) {
@@ -225,7 +196,7 @@ impl<'a> Programs<'a> {
         self.costs.iter().enumerate().flat_map(of).sum()
     }
 
-    /// Whether a row that is not in the program is broken by the profile b.
+    /// Whether the profile b violates a row that is not in the program.
     fn broken(&self, b: &[f64], root: Root<'_>) -> bool {
         let limit = |l: &Limit| !l.active && self.value(l, b) > 1.0;
         let speed = |(k, (max, active)): (usize, &(f64, bool))| {
@@ -383,138 +354,5 @@ fn kind(root: Root<'_>) -> usize {
     match root {
         Root::Tangent(_) => 0,
         Root::Relaxed => 1,
-    }
-}
-
-/// Units of the scaled variables.
-struct Scale {
-    speed: f64,
-    unit: f64,
-    duration: f64,
-}
-
-impl IntervalCost {
-    /// The costs of interval k by the midpoint rule in s.
-    fn new(grid: &PathGrid, model: &EnergyModel, k: usize, scale: &Scale) -> IntervalCost {
-        let [begin, end] = &grid.ends()[k];
-        let middle = begin.toward(end, 0.5);
-        let delta = grid.delta(k);
-        let square = scale.speed * scale.speed;
-        let before = (k > 0).then(|| Layout::b_of(k));
-        let after = (k + 1 < grid.intervals()).then(|| Layout::b_of(k + 1));
-        // ℓ, Nm: linear in b at both nodes; the factors of these and the rest.
-        let factors = |j: usize| {
-            let (u, b) = (middle.m[j] * 0.5 / delta, 0.5 * middle.c[j]);
-            [(b - u) * square, (b + u) * square, middle.g[j] + middle.coulomb[j]]
-        };
-        let affine = |[x, y, rest]: [f64; 3]| Affine::constant(rest).plus(before, x).plus(after, y);
-        let linear = |j: usize| affine(factors(j));
-        let (mut cross, mut viscous) = (Affine::default(), 0.0);
-        let mut losses = SMatrix::<f64, DOF, 3>::zeros();
-        for j in 0..DOF {
-            let friction = middle.viscous[j];
-            viscous += friction * (model.work * middle.q1[j] + model.loss[j] * friction)
-                + model.speed * middle.q1[j] * middle.q1[j];
-            if model.loss[j] > 0.0 {
-                let per_unit = 2.0 * delta * model.loss[j] / (scale.unit * scale.speed);
-                losses.row_mut(j).copy_from_slice(&factors(j).map(|x| x * per_unit.sqrt()));
-                let factor = 2.0 * delta * model.loss[j] * friction / scale.unit;
-                cross = cross.sum(&linear(j).times(factor));
-            }
-        }
-        // All joints together depend on two variables: the same square in three terms.
-        let copper = if losses.iter().any(|x| *x != 0.0) {
-            losses.qr().r().row_iter().map(|row| affine([row[0], row[1], row[2]])).collect()
-        } else {
-            Vec::new()
-        };
-        let lost = (1.0 - model.regeneration) * delta / scale.unit;
-        let joint_work = |j: usize| {
-            let factor = middle.viscous[j] * middle.q1[j] * scale.speed;
-            (linear(j).times(lost * middle.q1[j]), lost * factor)
-        };
-        let mut brakes: Vec<(Affine, f64)> = Vec::new();
-        if lost > 0.0 {
-            let moving = (0..DOF).filter(|j| middle.q1[*j] != 0.0).map(joint_work);
-            match model.sharing {
-                Sharing::PerJoint => brakes.extend(moving),
-                Sharing::Bus => brakes.extend(moving.reduce(|x, y| (x.0.sum(&y.0), x.1 + y.1))),
-            }
-        }
-        let seconds = 2.0 * delta / scale.speed;
-        IntervalCost {
-            copper,
-            cross,
-            viscous: viscous * delta * scale.speed / scale.unit,
-            brakes,
-            time: seconds / scale.duration,
-            base: model.base_w * seconds / scale.unit,
-        }
-    }
-}
-
-/// Shares of √b at the nodes of interval k in the mean of √b over it.
-fn mean_root(k: usize, n: usize) -> [(usize, f64); 2] {
-    let share = if k == 0 || k + 1 == n { MEAN_ROOT_FROM_REST } else { 0.5 };
-    [(k, share), (k + 1, share)]
-}
-
-/// Where the variables are: b and c of the inner nodes, then the variables of each interval.
-struct Layout {
-    intervals: usize,
-    /// Index of the first variable of each interval, and the number of variables at the end.
-    first: Vec<usize>,
-    copper: Vec<bool>,
-    root: Vec<bool>,
-}
-
-impl Layout {
-    fn new(programs: &Programs<'_>, root: Root<'_>) -> Layout {
-        let relaxed = matches!(root, Root::Relaxed);
-        let intervals = programs.costs.len();
-        let mut layout = Layout {
-            intervals,
-            first: vec![2 * (intervals - 1)],
-            copper: programs.costs.iter().map(|cost| !cost.copper.is_empty()).collect(),
-            root: programs.costs.iter().map(|cost| relaxed && cost.viscous > 0.0).collect(),
-        };
-        for (k, cost) in programs.costs.iter().enumerate() {
-            let own = usize::from(layout.copper[k]) + usize::from(layout.root[k]);
-            layout.first.push(layout.first[k] + 1 + own + cost.brakes.len());
-        }
-        layout
-    }
-
-    fn variables(&self) -> usize {
-        self.first[self.intervals]
-    }
-
-    /// b of an inner node.
-    fn b_of(node: usize) -> usize {
-        2 * (node - 1)
-    }
-
-    fn b(&self, node: usize) -> Option<usize> {
-        (node > 0 && node < self.intervals).then(|| Layout::b_of(node))
-    }
-
-    fn c(&self, node: usize) -> Option<usize> {
-        self.b(node).map(|b| b + 1)
-    }
-
-    fn d(&self, k: usize) -> usize {
-        self.first[k]
-    }
-
-    fn copper(&self, k: usize) -> Option<usize> {
-        self.copper[k].then(|| self.first[k] + 1)
-    }
-
-    fn root(&self, k: usize) -> Option<usize> {
-        self.root[k].then(|| self.first[k] + 1 + usize::from(self.copper[k]))
-    }
-
-    fn brake(&self, k: usize, index: usize) -> usize {
-        self.first[k] + 1 + usize::from(self.copper[k]) + usize::from(self.root[k]) + index
     }
 }

@@ -1,10 +1,10 @@
-//! The curve of least energy over time of a run, and what is read from it.
+//! The curve of least energy over time of a run.
 
 use super::cycle::{Known, TradeOff};
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::margins::Margins;
 use super::path_energy::evaluate;
-use super::retime::{Task, Work, fastest_profile};
+use super::run_problem::{RunProblem, Task, fastest_profile};
 use crate::retime::energy::account;
 use crate::retime::motion::timing::grid::PathGrid;
 use crate::retime::motion::timing::limits::PathLimits;
@@ -12,7 +12,7 @@ use crate::retime::motion::timing::profile::Profile;
 
 /// The curve begins at the least time times this, where programs have room.
 const RESERVE_OF_CURVE: f64 = 1.001;
-/// And goes on to this many times that, at least.
+/// And ends at this multiple of that, at least.
 const CURVE: f64 = 2.0;
 
 /// A stream needs this much more time than the fastest profile, at least.
@@ -21,7 +21,7 @@ const RESERVE: f64 = 1.05;
 const COARSE: usize = 20;
 /// Share of a time within which a curve is known well enough.
 const NEAR: f64 = 0.03;
-/// Share by which a profile is made longer to see what that costs.
+/// Share by which a profile is lengthened for a finite difference of its energy.
 const LONGER: f64 = 1e-3;
 
 /// A point of the curve of energy over time.
@@ -40,8 +40,8 @@ pub struct TimeEnergy {
 /// stream can be compared with. Empty where the path has no timing.
 pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     let curve = || {
-        let work = Work::new(task).ok()?;
-        let (grid, limits) = work.bare_grid(&Margins::none()).ok()?;
+        let problem = RunProblem::new(task).ok()?;
+        let (grid, limits) = problem.bare_grid(&Margins::none()).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         let (run, robot) = (task.run, task.model);
         let least = RESERVE_OF_CURVE * fast.duration();
@@ -50,10 +50,10 @@ pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
         let point = |i: usize| {
             let share = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
             let time = least * (longest / least).powf(share);
-            let bound = energy_bound(&grid, &limits, &work.electrical, &fast, time);
+            let bound = energy_bound(&grid, &limits, &problem.electrical, &fast, time);
             let from = bound.as_ref();
-            let model = &work.electrical;
-            let optimum = minimize_energy_from(&grid, &limits, model, &fast, time, from);
+            let model = &problem.electrical;
+            let optimum = minimize_energy(&grid, &limits, model, &fast, time, from);
             let optimum = optimum.into_optimum()?;
             let idle = account::base(robot, time).energy_j() + held;
             Some(TimeEnergy {
@@ -67,10 +67,10 @@ pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     curve().unwrap_or_default()
 }
 
-/// What a run takes over the time that it gets, settling included: energies of the motion alone,
-/// known at some times and learnt at others.
+/// Least energy of the motion of a run over its time (settling included), computed at the times that
+/// are asked for.
 pub struct Curve<'a> {
-    work: Work<'a>,
+    problem: RunProblem<'a>,
     grid: PathGrid,
     limits: PathLimits,
     fast: Profile,
@@ -83,21 +83,21 @@ impl<'a> Curve<'a> {
     /// The curve of a run from `shortest` (s, 0 where that is not known) to `longest`, known at
     /// the time that the run takes now. `None` where there is no stream.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
-        let work = Work::new(task).ok()?;
-        let (grid, limits) = work.grid_of(&Margins::first(work.tolerance()), COARSE).ok()?;
+        let problem = RunProblem::new(task).ok()?;
+        let (grid, limits) = problem.grid_of(&Margins::first(problem.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        // What is known to be possible may be below what the coarse grid says.
+        // The shortest possible time may be below that of the coarse grid.
         let reserve = RESERVE * fast.duration() + task.run.settling;
         let shortest = if shortest > 0.0 { shortest } else { reserve };
         let range = (shortest, longest.max(shortest));
-        let mut curve = Curve { work, grid, limits, fast, known: Vec::new(), range };
+        let mut curve = Curve { problem, grid, limits, fast, known: Vec::new(), range };
         curve.learn(task.run.duration()).then_some(curve)
     }
 
-    /// Finds out what the run takes in a time, s, where that is not known well enough. Whether
-    /// there was something to learn.
+    /// Computes the energy of the run in a time, s, unless it is known near that time. Returns
+    /// whether a point was added.
     pub fn learn(&mut self, time: f64) -> bool {
-        let least = RESERVE * self.fast.duration() + self.work.task.run.settling;
+        let least = RESERVE * self.fast.duration() + self.problem.task.run.settling;
         let time = time.clamp(self.range.0, self.range.1).max(least);
         let place = self.known.partition_point(|(known, _)| known.time < time);
         let near = |(known, _): &(Known, Vec<f64>)| (known.time - time).abs() <= NEAR * time;
@@ -112,11 +112,11 @@ impl<'a> Curve<'a> {
         is_new
     }
 
-    /// What the run takes in a time, s; beyond the one of least energy that one too.
+    /// The point of the curve at a time, s; for a time beyond that of least energy, both points.
     fn at(&self, time: f64) -> Vec<(Known, Vec<f64>)> {
-        let settling = self.work.task.run.settling;
+        let settling = self.problem.task.run.settling;
         let moving = time - settling;
-        let (grid, model) = (&self.grid, &self.work.electrical);
+        let (grid, model) = (&self.grid, &self.problem.electrical);
         // The speeds at another time are a good guess of those at this one.
         let far = |(known, _): &&(Known, Vec<f64>)| (known.time / time).ln().abs();
         let nearest = self.known.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
@@ -126,7 +126,7 @@ impl<'a> Curve<'a> {
             EnergyBound { lower_bound: f64::NEG_INFINITY, b }
         });
         let (limits, guess) = (&self.limits, guess.as_ref());
-        let outcome = minimize_energy_from(grid, limits, model, &self.fast, moving, guess);
+        let outcome = minimize_energy(grid, limits, model, &self.fast, moving, guess);
         let Some(optimum) = outcome.into_optimum() else { return Vec::new() };
         let b = optimum.profile.b().to_vec();
         let least = optimum.energy.total();
@@ -150,7 +150,7 @@ impl<'a> Curve<'a> {
         found
     }
 
-    /// What is known of it by now.
+    /// The curve through the points so far.
     pub fn trade_off(&self) -> Option<TradeOff> {
         let known: Vec<Known> = self.known.iter().map(|(known, _)| *known).collect();
         TradeOff::through(&known, self.range)

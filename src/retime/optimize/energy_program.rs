@@ -4,7 +4,8 @@
 //! viscous terms then lower the energy step by step (difference of convex functions). A solver's
 //! answer counts only after the profile itself has been verified and evaluated.
 
-use super::energy_cones::{Programs, Root, Step};
+use super::energy_cones::{Programs, Step};
+use super::energy_costs::Root;
 use super::path_energy::{EnergyModel, EnergyParts, evaluate};
 use crate::retime::motion::stream::DOF;
 use crate::retime::motion::timing::grid::{PathGrid, PathPoint};
@@ -12,7 +13,7 @@ use crate::retime::motion::timing::limits::{PathLimits, worst_ratio};
 use crate::retime::motion::timing::profile::Profile;
 use crate::retime::motion::timing::reachability::{speed_range, time_optimal};
 
-/// A profile and what is known of its quality.
+/// A profile with its energy and a lower bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyOptimum {
     /// The profile, with all limits and the time verified.
@@ -65,26 +66,12 @@ const MAX_TANGENTS: usize = 8;
 const SLOWEST: f64 = 1e3;
 /// Steps of the search for the best time of the start.
 const PACE_STEPS: usize = 16;
-/// Time over that of the fastest profile beyond which it says little about speeds.
+/// Time over that of the fastest profile beyond which the speed range is not worth computing.
 const SLOW: f64 = 4.0;
 /// Bisection steps for a slow profile by a speed cap.
 const CAP_STEPS: usize = 40;
 
-/// The profile of least energy that takes at most `duration` (s, may be infinite) from rest to
-/// rest and keeps the limits at both ends of each interval. `fastest` is the fastest profile on
-/// the same grid.
-pub fn minimize_energy(
-    grid: &PathGrid,
-    limits: &PathLimits,
-    model: &EnergyModel,
-    fastest: &Profile,
-    duration: f64,
-) -> EnergyOutcome {
-    let bound = energy_bound(grid, limits, model, fastest, duration);
-    minimize_energy_from(grid, limits, model, fastest, duration, bound.as_ref())
-}
-
-/// What the relaxation says of a problem.
+/// The solution of the relaxation of a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyBound {
     /// No profile on the grid gets below this in the time, J.
@@ -116,9 +103,11 @@ pub fn energy_bound(
     Some(EnergyBound { lower_bound, b: relaxed.b })
 }
 
-/// As [`minimize_energy`], with the relaxation of this problem or of one on the same nodes with
-/// wider limits.
-pub fn minimize_energy_from(
+/// The profile of least energy that takes at most `duration` (s, may be infinite) from rest to
+/// rest and keeps the limits at both ends of each interval. `fastest` is the fastest profile on
+/// the same grid; `relaxed` the relaxation of this problem, or of one on the same nodes with wider
+/// limits.
+pub fn minimize_energy(
     grid: &PathGrid,
     limits: &PathLimits,
     model: &EnergyModel,
@@ -202,7 +191,7 @@ impl Search<'_> {
 }
 
 /// The time up to `duration` in which the uniformly slowed fastest profile costs least, s: holding
-/// the arm up and the base power can make slowness dear. It sets the scales of the programs.
+/// and base power may make slow motions expensive. It sets the scales of the programs.
 fn best_pace(grid: &PathGrid, model: &EnergyModel, fastest: &Profile, duration: f64) -> f64 {
     let cost = |log: f64| {
         let slower = fastest.scaled_to(fastest.duration() * log.exp());

@@ -1,4 +1,4 @@
-//! What a stream may do that its movements did not.
+//! Freedoms of a stream beyond its original movements.
 
 use std::collections::BTreeSet;
 
@@ -9,16 +9,16 @@ use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Movement;
 use crate::rapid::text::Span;
 
-/// What bounds a stream.
+/// The bound on a quantity of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
-    /// What the movements themselves reach.
+    /// The largest value of the movements themselves.
     Original,
     /// The limits of the robot.
     Robot,
 }
 
-/// What a stream may do that its movements did not.
+/// Freedoms of a stream beyond its original movements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedom {
     /// TCP speed along lines and arcs; [`Bound::Original`] includes their programmed speed.
@@ -31,7 +31,7 @@ pub struct Freedom {
     pub deviation: f64,
     /// Statements of lines, arcs and waits that the user made free; joint movements are.
     pub freed: BTreeSet<Span>,
-    /// What arm and tool keep out of where they leave their path.
+    /// Keep-out zones of arm and tool where they leave their path.
     pub keep_out: Vec<Obstacle>,
 }
 
@@ -48,18 +48,12 @@ impl Freedom {
         }
     }
 
-    /// All that the robot can do on the path.
-    pub fn of_the_robot() -> Freedom {
-        let robot = Bound::Robot;
-        Freedom { tcp: robot, joints: robot, ..Freedom::none() }
-    }
-
-    /// What the joints of a robot may bear.
+    /// Largest loads of the joints.
     pub fn loads(&self, model: &Model) -> Loads {
         self.loads.unwrap_or_else(|| Loads::limits(model))
     }
 
-    /// What bounds the speed of a movement.
+    /// The bound on the speed of a movement.
     pub fn bound(&self, movement: &Movement) -> Bound {
         match movement.form {
             MoveForm::Linear | MoveForm::Circular => self.tcp,
@@ -74,7 +68,7 @@ impl Freedom {
     }
 
     /// How far a movement may leave its path, m, more than the least that is always allowed.
-    pub fn of(&self, movement: &Movement) -> f64 {
+    pub fn free_deviation(&self, movement: &Movement) -> f64 {
         let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
         let free = joint || self.freed.contains(&movement.span);
         if free { self.deviation } else { 0.0 }

@@ -1,4 +1,4 @@
-//! Dwells: what standing still costs, and from when on the brake pays.
+//! Dwells: holding energy and the break-even of the brakes.
 
 use super::reason::Reason;
 use crate::arm::dynamics::Load;
@@ -25,16 +25,16 @@ pub struct Dwell {
     pub load: Load,
     /// Mean holding power by joint, W.
     pub holding_w: Joints,
-    /// s; `None` where nothing is spared or no brake is known.
+    /// s; `None` where nothing is saved or no brake is known.
     pub break_even_s: Option<f64>,
-    /// What the brake would save, J; 0 where it does not pay.
+    /// Energy that closing the brakes would save, J; 0 below the break-even.
     pub potential_j: f64,
     /// Why the program is not changed.
     pub reason: Reason,
 }
 
 impl Dwell {
-    /// Takes a wait into the mean holding power.
+    /// Includes a wait in the mean holding power.
     fn hold(&mut self, holding_w: &Joints, duration: f64) {
         let all = self.duration + duration;
         let share = if all > 0.0 { duration / all } else { 1.0 };
@@ -88,12 +88,12 @@ pub fn dwells(model: &Model, simulation: &Simulation) -> Vec<Dwell> {
         }
     }
     for dwell in &mut dwells {
-        judge(model, dwell);
+        classify(model, dwell);
     }
     dwells
 }
 
-fn judge(model: &Model, dwell: &mut Dwell) {
+fn classify(model: &Model, dwell: &mut Dwell) {
     let holding: f64 = dwell.holding_w.iter().sum();
     if matches!(dwell.reason, Reason::UnknownDwell) {
         return;

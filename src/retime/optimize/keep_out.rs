@@ -1,4 +1,4 @@
-//! What a movement that may leave its path must not come near: boxes and planes of the cell.
+//! Keep-out zones of movements that may leave their path: boxes and planes of the cell.
 
 use crate::arm::kinematics::{Body, Capsule, Tcp};
 use crate::arm::robot::Model;
@@ -8,15 +8,15 @@ use crate::retime::motion::timeline::Run;
 
 use super::freedom::Freedom;
 
-/// Arm and tool of a run among what the cell keeps free; `None` where nothing is to be kept free, or
-/// where the run keeps to a path that comes into it, which is the program's own choice.
+/// Arm and tool of a run among the keep-out zones; `None` where there are none, or where the run keeps
+/// to a programmed path that enters them itself.
 pub fn body<'a>(model: &'a Model, run: &Run, freedom: &Freedom) -> Option<Body<'a>> {
-    let free = run.moves.iter().any(|record| freedom.of(&record.movement) > 0.0);
+    let free = run.moves.iter().any(|record| freedom.free_deviation(&record.movement) > 0.0);
     let body = around(model, &run.legs.first()?.tool, freedom)?;
     (free || !enters(&body, run)).then_some(body)
 }
 
-/// Arm and tool among what the cell keeps free; `None` where nothing is to be kept free.
+/// Arm and tool among the keep-out zones; `None` where there are none.
 pub fn around<'a>(model: &'a Model, tool: &Tcp, freedom: &Freedom) -> Option<Body<'a>> {
     if freedom.keep_out.is_empty() {
         return None;
@@ -28,19 +28,19 @@ pub fn around<'a>(model: &'a Model, tool: &Tcp, freedom: &Freedom) -> Option<Bod
     Some(Body::new(model, tool, &freedom.keep_out))
 }
 
-/// Distance over which room becomes a share of a limit, m.
+/// Distance that stands for one unit of the share, m.
 const SCALE: f64 = 0.1;
 
-/// The room as a share of a limit: 1 where as much is left as is to be kept (m), more where less.
+/// The clearance as a share of a limit: 1 at the clearance `kept` (m), more below it.
 pub(super) fn share(body: &Body<'_>, q: &[f64], kept: f64) -> f64 {
     let [room, _] = body.margins(q);
     (1.0 + (kept - room) / SCALE).max(0.0)
 }
 
-/// Distance of the places at which a path is looked at, m.
+/// Distance of the samples of a path, m.
 const SPACING: f64 = 0.005;
 
-/// Whether the programmed path of a run comes into what is to be kept free.
+/// Whether the programmed path of a run enters a keep-out zone.
 pub(super) fn enters(body: &Body<'_>, run: &Run) -> bool {
     let [(_, TimedMotion::Path(path, _))] = run.motions.as_slice() else { return false };
     path.pieces().iter().any(|piece| {
@@ -55,15 +55,15 @@ pub(super) fn enters(body: &Body<'_>, run: &Run) -> bool {
 /// Time below which a stretch of a stream is not halved again, s.
 const FINEST: f64 = 1e-4;
 
-/// A stretch of a piece, with the room at both ends: s and m.
+/// A stretch of a piece: time (s) and clearance (m) at both ends.
 struct Stretch {
     begin: (f64, f64),
     end: (f64, f64),
 }
 
-/// A room, m, that arm and tool have everywhere along the realised motion of a stream and along the
-/// polygon of its points: that at both ends of a stretch, less what the fastest point can use up on
-/// the way. It is looked at closely where there is little.
+/// A lower bound of the clearance of arm and tool, m, along the realised motion of a stream and along
+/// the polygon of its points: the clearance at both ends of a stretch less the largest motion in
+/// between. Stretches with little clearance are halved.
 pub(super) fn least_room(model: &Model, body: &Body<'_>, stream: &Stream) -> f64 {
     let reach: f64 = body.capsules(stream.start()).iter().map(Capsule::length).sum();
     let mut least = f64::INFINITY;

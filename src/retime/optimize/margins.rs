@@ -1,4 +1,4 @@
-//! How far from the limits an attempt at a stream stays.
+//! Margins of an attempt at a stream to the limits.
 
 use super::check::Check;
 
@@ -13,11 +13,11 @@ const FIRST_SPACING: f64 = 0.1;
 /// Share of the allowed distance from the path that the polishing may use at first.
 pub(super) const FIRST_DISTANCE: f64 = 0.95;
 
-/// Room to what the cell keeps free at first, m: a motion is looked at in steps.
+/// Clearance to keep-out zones at first, m: a motion is sampled in steps.
 const FIRST_ROOM: f64 = 0.005;
 /// Factor on the tolerance of the points' placing.
 const CLOSER: f64 = 0.7;
-/// What is asked for beyond what is missing.
+/// Factor on the correction of an excess.
 const FURTHER: f64 = 1.002;
 
 /// Margins and tolerances of one attempt.
@@ -34,12 +34,12 @@ pub(super) struct Margins {
     pub(super) spacing: f64,
     /// Distance of the points' polygon from the path that their placing expects, m.
     pub(super) polygon: f64,
-    /// Share of the allowed distance of that polygon that the polishing may use; infinite until it is
-    /// found to be too far away: it follows the motion, and it needs room to become one that holds.
+    /// Share of the allowed distance of that polygon that the polishing may use; infinite until a check
+    /// finds the polygon too far away.
     pub(super) edges: f64,
     /// Share of the allowed distance from the path that the polishing may use.
     pub(super) distance: f64,
-    /// Room that the polishing keeps to what the cell keeps free, m.
+    /// Clearance that the polishing keeps to keep-out zones, m.
     pub(super) room: f64,
 }
 
@@ -58,13 +58,13 @@ impl Margins {
         }
     }
 
-    /// Share of the torque limits: where an arm is held at the most that the program asks of a joint,
-    /// any margin would be too much at first.
+    /// Share of the torque limits. There is no margin at first: where the limit is the largest torque of
+    /// the program, holding the arm may need all of it.
     pub(super) fn torque(&self) -> f64 {
         (self.load / FIRST_MARGIN).min(1.0)
     }
 
-    /// Tighter where the loads left no stream.
+    /// Lower loads, where no stream was found.
     pub(super) fn lighten(&mut self) {
         self.load *= FIRST_MARGIN;
     }
@@ -83,13 +83,13 @@ impl Margins {
         }
     }
 
-    /// The largest share of a limit that was asked for.
+    /// The largest share of the limits that apply.
     pub(super) fn worst(&self, check: &Check) -> f64 {
         let polygon = if self.edges.is_infinite() { 0.0 } else { check.polygon };
         Check { polygon, ..*check }.worst()
     }
 
-    /// Tighter for another attempt from the begin.
+    /// Tighter margins for a new attempt.
     pub(super) fn tighten(&mut self, check: &Check) {
         let load = check.torque.max(check.acceleration);
         if load > 1.0 {
@@ -105,7 +105,7 @@ impl Margins {
         if check.deviation > 1.0 {
             self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
         }
-        // Between points far apart, speed and path ripple.
+        // Distant points cause ripples of speed and path.
         if check.tcp_speed > 1.0 || check.deviation > 1.0 {
             self.spacing *= CLOSER;
         }
@@ -115,9 +115,9 @@ impl Margins {
         }
     }
 
-    /// Tighter for more polishing of a stream that nearly holds.
+    /// Tighter margins for more polishing of a stream that nearly holds.
     pub(super) fn tighten_a_little(&mut self, check: &Check) {
-        // A share a hair above 1 would leave the margin where it is.
+        // A share slightly above 1 would hardly change the margin.
         let over = |share: f64| if share > 1.0 { share * FURTHER } else { 1.0 };
         self.room += check.intrusion_m.max(0.0);
         self.load /= over(check.torque);

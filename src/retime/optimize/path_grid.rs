@@ -1,23 +1,23 @@
-//! The grid on which a run is timed anew: nodes where joints turn, friction as each side sees it.
+//! The grid on which a run is timed anew, with nodes at joint reversals and one-sided friction.
 
 use crate::arm::robot::Model;
 use crate::retime::motion::sampling::{self, Loaded, SpeedCap};
 use crate::retime::motion::timing::grid::{GridError, PathGrid, PathPoint};
-use crate::retime::path::joint_path::{DOF, JointPath, Piece, PieceKind};
+use crate::retime::path::joint_path::{DOF, JointPath, Piece};
 
-/// Parts of a piece in which one turn of a joint is looked for.
+/// Parts of a piece that are searched for one reversal of a joint each.
 const PARTS: usize = 4;
-/// Bisections that find a turn.
+/// Bisections that locate a reversal.
 const BISECTIONS: usize = 40;
-/// Rate of a joint at which its direction is rounding, rad per unit of s.
+/// Joint rate below which its sign is rounding, rad per unit of s.
 const STILL: f64 = 1e-7;
 /// Distance of nodes that is rounding, share of the path.
 const LEAST_DISTANCE: f64 = 1e-8;
-/// Nodes nearer to a turn than this are moved there, m of the path or share of a short one.
+/// Nodes nearer to a reversal than this are moved there, m of the path or share of a short one.
 const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
-/// Nodes in s: about `count` intervals, closer where speeds change, and the places where a joint
-/// turns, since its dry friction jumps there.
+/// Nodes in s: about `count` intervals, closer where speeds change, and the reversals of joints,
+/// where dry friction jumps.
 pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
     let mut nodes = sampling::nodes(model, path, caps, count);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * path.length());
@@ -28,7 +28,7 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
             continue;
         }
         let last = nodes.len() - 1;
-        // Two joints may turn at the same place.
+        // Two joints may reverse at the same place.
         if turn - nodes[next - 1] < nearest || nodes[next] - turn < nearest {
             continue;
         }
@@ -42,31 +42,7 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
     nodes
 }
 
-/// The same with every edge of a zone, however near to another: way points that nearly coincide
-/// make zones shorter than the least distance of the nodes, in which a path bends all the same.
-pub fn nodes_with_edges(
-    model: &Model,
-    path: &JointPath,
-    caps: &[SpeedCap],
-    count: usize,
-) -> Vec<f64> {
-    let mut nodes = nodes(model, path, caps, count);
-    let nearest = LEAST_DISTANCE * path.length();
-    let edges = path
-        .pieces()
-        .iter()
-        .filter(|piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone));
-    for edge in edges.flat_map(|piece| [piece.s, piece.s + piece.length]) {
-        let next = nodes.partition_point(|node| *node < edge);
-        let inside = next > 0 && next < nodes.len();
-        if inside && edge - nodes[next - 1] > nearest && nodes[next] - edge > nearest {
-            nodes.insert(next, edge);
-        }
-    }
-    nodes
-}
-
-/// Where joints change their direction inside a piece.
+/// Reversals of joints inside a piece.
 fn turns(piece: &Piece) -> Vec<f64> {
     let at = |i: usize| piece.s + piece.length * i as f64 / PARTS as f64;
     let rates: Vec<_> = (0..=PARTS).map(|i| piece.eval(at(i)).q1).collect();
@@ -88,8 +64,8 @@ fn turns(piece: &Piece) -> Vec<f64> {
     turns
 }
 
-/// The grid at these nodes, with the speed caps of the legs. Where the robot rests, at both ends,
-/// dry friction helps nobody: it has no direction there.
+/// The grid at these nodes, with the speed caps of the legs. At rest, at both ends, dry friction is 0:
+/// it has no direction there.
 ///
 /// # Errors
 /// Values that are not finite.

@@ -1,4 +1,4 @@
-//! What the optimiser of a stream asks of the robot, and what a realised stream costs there.
+//! The robot as the optimiser of a stream sees it, and the cost of a realised stream.
 
 use super::path_energy::{EnergyModel, EnergyParts};
 use crate::retime::motion::stream::{DOF, Joints, Piece, Stream};
@@ -32,21 +32,20 @@ pub trait Plant {
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// What else has a limit, over that limit: the speed of the tool, that of the joints there, the
-    /// distance of the tool from the path, and how near arm and tool come to what the cell keeps
-    /// free. `place` says where on its path the robot was a moment ago, and then where it is: a path
-    /// may cross itself.
+    /// Shares of the other limits: TCP speed, joint speeds at this place of the path, distance of the
+    /// TCP from the path, and nearness to keep-out zones. `place` is the index of the previous place on
+    /// the path and is updated: a path may cross itself.
     fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> PathShares {
         PathShares::default()
     }
 
-    /// What a place on the polygon of the points has of its limits: its distance from the path and how
-    /// near arm and tool come there to what the cell keeps free. `place` as above.
+    /// Share of the limits at a position on the polygon of the points: distance from the path and
+    /// nearness to keep-out zones. `place` as above.
     fn polygon_share(&self, _q: &Joints, _place: &mut usize) -> f64 {
         0.0
     }
 
-    /// Number of steps on a piece in which it is judged, even.
+    /// Number of integration steps on a piece, even.
     fn steps(&self, _piece: &Piece) -> usize {
         LEAST_STEPS
     }
@@ -58,8 +57,8 @@ pub trait Plant {
     }
 }
 
-/// A speed that is the rounding of none, rad/s: where a motion ends it has no direction, and no
-/// dry friction helps to brake.
+/// Speed below which a joint is at rest, rad/s: at the end of a motion dry friction does not help to
+/// brake.
 pub(super) const STILL: f64 = 1e-9;
 
 /// The sign of a velocity, 0 at rest.
@@ -69,24 +68,24 @@ pub(super) fn direction(velocity: f64) -> f64 {
 
 /// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
 pub(super) const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
-/// Room that is kept to the limits.
+/// Margin to the limits.
 pub(super) const ROOM: f64 = 1e-3;
-/// Steps on a piece in which it is judged, at least; even, for Simpson's rule.
+/// Least number of integration steps on a piece; even, for Simpson's rule.
 pub(super) const LEAST_STEPS: usize = 8;
 
-/// What the motion that a stream is realised as costs, and how near it comes to the limits.
+/// Cost of the realised motion of a stream, and its shares of the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Realised {
-    /// Energies. Friction is the dry part; the viscous part is with the mechanical one, from
-    /// which a plant does not tell it.
+    /// Energies. Friction is the dry part; the viscous part is in the mechanical one, since a plant
+    /// does not separate them.
     pub energy: EnergyParts,
     /// The largest share of a torque limit or of a limit of the path.
     pub worst_share: f64,
-    /// Sum over the samples of what shares exceed the limit less a little room by.
+    /// Sum over the samples of the shares beyond 1 less a small margin.
     pub excess: f64,
 }
 
-/// Plays a stream on a plant, by Simpson's rule on each piece.
+/// Evaluates a stream on a plant, by Simpson's rule on each piece.
 pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Realised {
     let (dry, limit) = (plant.dry_friction(), plant.torque_limit());
     let mut out = Realised::default();
@@ -130,5 +129,5 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     out
 }
 
-/// Places on the way from one point to the next at which it is judged, shares of it.
+/// Samples on the way from one point to the next, as shares of it.
 pub(super) const EDGE_PLACES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];

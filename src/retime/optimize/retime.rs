@@ -4,53 +4,20 @@
 //! to it and checked as the controller will realise it. What breaks a limit
 //! tightens the margins and is tried again.
 
-use super::allowed::{Ceiling, Loads, speeds};
 use super::attempt::{Attempt, Intended};
-use super::check::{Check, Room, check};
-use super::corridor::{Corridor, JOINT_TOLERANCE, LINE_TOLERANCE, levers};
-use super::cost::Cost;
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy_from};
-use super::freedom::Freedom;
+use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::keep_out;
 use super::margins::{FIRST_DISTANCE, Margins};
-use super::path_energy::EnergyModel;
-use super::path_grid;
 use super::reason::Reason;
-use super::stream_limits::StreamLimits;
+pub use super::run_problem::Task;
+use super::run_problem::{RunProblem, fastest_profile};
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
 use crate::arm::dynamics::potential_energy;
-use crate::arm::kinematics::Body;
-use crate::arm::robot::Model;
 use crate::retime::energy::power::motion_energy;
 use crate::retime::energy::{EnergyParts, account};
-use crate::retime::motion::sampling::{Loaded, SpeedCap};
 use crate::retime::motion::stream::Stream;
 use crate::retime::motion::timed::TimedMotion;
-use crate::retime::motion::timeline::Run;
-use crate::retime::motion::timing::grid::PathGrid;
-use crate::retime::motion::timing::limits::PathLimits;
-use crate::retime::motion::timing::profile::Profile;
-use crate::retime::motion::timing::reachability::time_optimal;
-use crate::retime::path::joint_path::{DOF, JointPath, Joints};
-
-/// A run to be timed anew.
-#[derive(Clone, Copy)]
-pub struct Task<'a> {
-    /// The robot.
-    pub model: &'a Model,
-    /// The run as the controller executes it.
-    pub run: &'a Run,
-    /// Its energy.
-    pub energy_before: EnergyParts,
-    /// Least time between two points, s.
-    pub spacing_s: f64,
-    /// The same where the polygon of the points would be too far from the path otherwise, s.
-    pub closest_s: f64,
-    /// What the stream may do that the run did not.
-    pub freedom: &'a Freedom,
-    /// What is minimised.
-    pub cost: Cost,
-}
+use crate::retime::path::joint_path::{DOF, Joints};
 
 /// The time of a run, settling included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,8 +35,6 @@ pub enum Goal {
 pub struct Retiming {
     /// As emitted: its figures are rounded like the text.
     pub stream: Stream,
-    /// What it does to the limits.
-    pub check: Check,
     /// Energy of the run with it, settling included.
     pub energy: EnergyParts,
     /// Energy of the run as it was, J.
@@ -82,7 +47,7 @@ pub struct Retiming {
     pub path: PathUse,
 }
 
-/// What a stream makes of the path of its run.
+/// Whether a stream keeps to the path of its run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PathUse {
     /// It keeps to it, within the tolerance.
@@ -93,21 +58,15 @@ pub enum PathUse {
     Left,
 }
 
-/// Intervals of the grid besides those of zones.
-const INTERVALS: usize = 44;
 /// Attempts with tighter margins.
 const ATTEMPTS: usize = 8;
-/// Time over which the points of a stream smooth its speed to either side, s.
-const SHAPING_TIME: f64 = 0.04;
 /// Rounding between two integrations of the same energy, relative.
 const BOUND_ROUNDING: f64 = 1e-5;
-/// Distance from the path that costs the polishing a share of the energy, in tolerances of it.
-const CORRIDOR: f64 = 0.3;
 /// Share of a limit beyond which an attempt is begun anew instead of polished on.
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
-/// Share of the energy that more polishing is not expected to take off a stream.
+/// Share of the energy that more polishing may still be expected to save.
 const HOPELESS: f64 = 0.05;
 /// Where a motion is slow, the ramp time is a short step: at least this share of its time.
 const SLOW_STEP: f64 = 0.02;
@@ -120,10 +79,10 @@ const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 /// The reason why the run stays as it is.
 pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     let mut moves = task.run.moves.iter();
-    if !moves.any(|record| task.freedom.of(&record.movement) > 0.0) {
+    if !moves.any(|record| task.freedom.free_deviation(&record.movement) > 0.0) {
         return on_path(task, goal);
     }
-    // What is free is never worse than what keeps to the path.
+    // The free stream is used only if it is better than the one on the path.
     let strict = task.freedom.strict();
     let kept = on_path(&Task { freedom: &strict, ..*task }, goal);
     let body = keep_out::body(task.model, task.run, task.freedom);
@@ -152,8 +111,8 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     }
 }
 
-/// No motion between the ends of a run in this time (s) takes less, J: what it gains in height,
-/// dry friction over the way, and viscous friction of the same speed all the time.
+/// Lower bound of the energy of any motion between the ends of a run in this time (s), J: potential
+/// energy, dry friction over the distance, and viscous friction at constant speed.
 fn free_bound(task: &Task<'_>, time: f64) -> f64 {
     let Task { model, run, .. } = task;
     let height = |q: &Joints| potential_energy(model, &run.load, q);
@@ -166,63 +125,36 @@ fn free_bound(task: &Task<'_>, time: f64) -> f64 {
 }
 
 fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
-    let work = Work::new(task)?;
+    let problem = RunProblem::new(task)?;
     match goal {
         Goal::Within(time) => {
             let before = task.energy_before.motion_energy_j();
             let worth = before - WORTHWHILE * before.abs();
-            let retiming =
-                work.least_energy(time, worth).or_else(|reason| work.instead(reason, time))?;
+            let retiming = problem
+                .least_energy(time, worth)
+                .or_else(|reason| problem.instead(reason, time))?;
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
         Goal::Exactly(time) => {
-            work.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
-                Reason::NoSaving => work.within(time),
-                reason => work.instead(reason, time),
+            problem.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
+                Reason::NoSaving => problem.within(time),
+                reason => problem.instead(reason, time),
             })
         }
-        Goal::Fastest => work.least_time(),
+        Goal::Fastest => problem.least_time(),
     }
 }
 
 /// The least time of a run as a stream, s; `None` where there is no stream.
 pub fn fastest(task: &Task<'_>) -> Option<f64> {
-    Work::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
+    RunProblem::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
 }
 
-/// A run is made slower by this factor at most.
+/// Largest factor by which a run is slowed.
 pub const SLOWEST: f64 = 10.0;
 
-pub(super) struct Work<'a> {
-    pub(super) task: &'a Task<'a>,
-    pub(super) path: &'a JointPath,
-    pub(super) corridor: Corridor,
-    pub(super) body: Option<Body<'a>>,
-    pub(super) limits: StreamLimits,
-    /// What the robot takes.
-    pub(super) electrical: EnergyModel,
-    /// What is minimised.
-    pub(super) model: EnergyModel,
-    pub(super) lever: Joints,
-}
-
-impl<'a> Work<'a> {
-    pub(super) fn new(task: &'a Task<'a>) -> Result<Work<'a>, Reason> {
-        let [(_, TimedMotion::Path(path, _))] = task.run.motions.as_slice() else {
-            return Err(Reason::SharpCorner);
-        };
-        let corridor =
-            Corridor::new(task.model, task.run, task.freedom).ok_or(Reason::SharpCorner)?;
-        let robot = task.model;
-        let (electrical, model) = (Cost::Electrical.model(robot), task.cost.model(robot));
-        let Loads { acceleration, jerk, .. } = corridor.allowed.loads;
-        let limits = StreamLimits { velocity: speeds(robot), acceleration, jerk };
-        let lever = levers(robot, task.run);
-        let body = keep_out::body(robot, task.run, task.freedom);
-        Ok(Work { task, path, corridor, body, limits, electrical, model, lever })
-    }
-
+impl RunProblem<'_> {
     /// Least energy in a time, settling included, if it is below `worth` (J, motion).
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
@@ -245,12 +177,12 @@ impl<'a> Work<'a> {
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);
-                    let retiming = self.retiming(attempt.stream, attempt.check, bound);
+                    let retiming = self.retiming(attempt.stream, bound);
                     let saves = retiming.energy.motion_energy_j() < worth;
                     return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
                 }
                 Ok(attempt) => {
-                    // Tighter margins do not make it cheaper, more polishing a little.
+                    // Tighter margins do not lower the energy; more polishing lowers it a little.
                     let energy = self.moving(&attempt.stream).motion_energy_j();
                     if energy - HOPELESS * energy.abs() >= worth {
                         return Err(Reason::NoSaving);
@@ -288,13 +220,13 @@ impl<'a> Work<'a> {
         let (mut grid, limits) = self.grid(margins)?;
         let mut fast = fastest_profile(&grid, &limits)?;
         if fast.duration() > budget {
-            // Too short a time for a shaped motion: polishing shapes it.
+            // The time is too short for a shaped motion; the polishing has to shape it.
             (grid, _) = self.bare_grid(margins)?;
             fast = fastest_profile(&grid, &limits)?;
         }
-        // The relaxation of another cost says nothing of this one.
+        // The relaxation bounds the electrical energy only.
         let bound = bound.filter(|_| self.model == self.electrical);
-        let optimum = minimize_energy_from(&grid, &limits, &self.model, &fast, budget, bound)
+        let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;
         self.intend(&optimum.profile, budget, margins)
@@ -307,7 +239,7 @@ impl<'a> Work<'a> {
         energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
 
-    /// Least time: the fastest profile, given as much longer as the jerk limit needs.
+    /// Least time: the fastest profile, lengthened as far as the jerk limit needs.
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
@@ -322,7 +254,7 @@ impl<'a> Work<'a> {
                 let intended = self.intend(&fast, budget, &margins);
                 match intended.and_then(|intended| self.realise(intended, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
-                        return Ok(self.retiming(attempt.stream, attempt.check, None));
+                        return Ok(self.retiming(attempt.stream, None));
                     }
                     Ok(attempt) => {
                         problem = Reason::NoStream(attempt.check.fault());
@@ -339,7 +271,7 @@ impl<'a> Work<'a> {
         Err(problem)
     }
 
-    /// The fastest stream made as slow, where the time is too short for more.
+    /// The fastest stream, slowed to the given time, where no better stream was found.
     fn within(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
         if retiming.duration_s > time + quantum() {
@@ -358,85 +290,16 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// A stream with all its intervals longer, if it still holds: friction and weight don't fall
+    /// A stream with all its intervals lengthened, if it still holds: friction and weight do not fall
     /// with the speed.
     fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
         let longer = duration / stream.duration();
         let intervals: Vec<f64> = stream.intervals().iter().map(|x| x * longer).collect();
         let intervals = rounded_intervals(&intervals, duration);
         let slow = Stream::new(*stream.start(), stream.points().to_vec(), intervals).ok()?;
-        let check = self.check(&slow);
+        let holds = self.check(&slow).holds();
         let bound = self.bound(duration).map(|bound| bound.lower_bound);
-        check.holds().then(|| self.retiming(slow, check, bound))
-    }
-
-    /// What a stream does as the controller will realise it.
-    pub(super) fn check(&self, stream: &Stream) -> Check {
-        let Task { model, run, .. } = self.task;
-        let tool = &run.legs[0].tool;
-        let room = Room::Corridor(&self.corridor);
-        check(model, &run.load, tool, stream, room, &run.end, self.body.as_ref())
-    }
-
-    /// How far the motion may leave the path somewhere, m, before the polishing minds.
-    pub(super) fn looseness(&self) -> f64 {
-        let moves = self.task.run.moves.iter();
-        let free = moves.map(|record| self.task.freedom.of(&record.movement)).fold(0.0, f64::max);
-        if free > 0.0 { free } else { CORRIDOR * self.tolerance() }
-    }
-
-    /// The smallest tolerance on the path, m.
-    pub(super) fn tolerance(&self) -> f64 {
-        let line = self
-            .task
-            .run
-            .legs
-            .iter()
-            .any(|leg| !matches!(leg.kind, crate::retime::path::LegKind::Joint));
-        if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
-    }
-
-    /// The problem on the path, shaped so that a stream can follow its solution.
-    pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
-        self.grid_of(margins, INTERVALS)
-    }
-
-    /// The same with so many intervals besides those of zones.
-    pub(super) fn grid_of(
-        &self,
-        margins: &Margins,
-        intervals: usize,
-    ) -> Result<(PathGrid, PathLimits), Reason> {
-        let (grid, limits) = self.bare_grid_of(margins, intervals)?;
-        Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
-    }
-
-    pub(super) fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
-        self.bare_grid_of(margins, INTERVALS)
-    }
-
-    fn bare_grid_of(
-        &self,
-        margins: &Margins,
-        intervals: usize,
-    ) -> Result<(PathGrid, PathLimits), Reason> {
-        let allowed = &self.corridor.allowed;
-        let cap = |ceiling: &Ceiling| SpeedCap {
-            peak: [ceiling.tcp, ceiling.corner].map(|speed| margins.speed * speed),
-            joints: ceiling.joints.map(|speed| margins.speed * speed),
-            ..SpeedCap::NONE
-        };
-        let caps: Vec<SpeedCap> = allowed.moves.iter().map(cap).collect();
-        let loaded = Loaded { model: self.task.model, load: &self.task.run.load };
-        let nodes = path_grid::nodes(self.task.model, self.path, &caps, intervals);
-        let no_grid = |why: String| Reason::NoStream(why);
-        let grid = path_grid::grid(loaded, self.path, &nodes, &caps)
-            .map_err(|error| no_grid(error.to_string()))?;
-        let acceleration = allowed.loads.acceleration.map(|x| x * margins.load);
-        let torque = allowed.loads.torque.map(|x| x * margins.torque());
-        let limits =
-            PathLimits::new(acceleration, torque).map_err(|error| no_grid(error.to_string()))?;
-        Ok((grid, limits))
+        holds.then(|| self.retiming(slow, bound))
     }
 
     /// Energy of a stream's motion, settling not included.
@@ -445,7 +308,7 @@ impl<'a> Work<'a> {
         motion_energy(self.task.model, &self.task.run.load, &motion, 0.0, stream.duration())
     }
 
-    fn retiming(&self, stream: Stream, check: Check, bound: Option<f64>) -> Retiming {
+    fn retiming(&self, stream: Stream, bound: Option<f64>) -> Retiming {
         let task = self.task;
         let duration = stream.duration();
         let moving = self.moving(&stream);
@@ -460,7 +323,6 @@ impl<'a> Work<'a> {
             bound.unwrap_or(f64::NEG_INFINITY).min(achieved - BOUND_ROUNDING * achieved.abs());
         Retiming {
             stream,
-            check,
             energy,
             energy_before_j: task.energy_before.energy_j(),
             duration_s: duration + task.run.settling,
@@ -468,10 +330,4 @@ impl<'a> Work<'a> {
             path: PathUse::Kept,
         }
     }
-}
-
-pub(super) fn fastest_profile(grid: &PathGrid, limits: &PathLimits) -> Result<Profile, Reason> {
-    time_optimal(grid, limits)
-        .into_profile()
-        .ok_or_else(|| Reason::NoStream("the torque limits leave no timing on the path".into()))
 }

@@ -3,8 +3,8 @@
 use super::keep_out;
 use super::margins::Margins;
 use super::plant::{LEAST_STEPS, PathShares, Plant};
-use super::retime::Work;
 use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
+use super::run_problem::RunProblem;
 use crate::arm::kinematics::fk;
 use crate::retime::motion::stream::Piece;
 use crate::retime::path::joint_path::{DOF, Joints};
@@ -15,7 +15,7 @@ pub(super) const LONGEST_STEP: f64 = 0.004;
 
 /// The robot with its load, as the polishing of a stream sees it.
 pub(super) struct RunPlant<'a> {
-    pub(super) work: &'a Work<'a>,
+    pub(super) problem: &'a RunProblem<'a>,
     pub(super) margins: &'a Margins,
     /// TCP speed at the places of the corridor, m/s.
     pub(super) ceilings: Vec<f64>,
@@ -23,26 +23,26 @@ pub(super) struct RunPlant<'a> {
 
 impl Plant for RunPlant<'_> {
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
-        let task = self.work.task;
+        let task = self.problem.task;
         smooth_torque(task.model, &task.run.load, q, qd, qdd)
     }
 
     fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
-        let task = self.work.task;
+        let task = self.problem.task;
         smooth_torque_derivatives(task.model, &task.run.load, q, qd, qdd)
     }
 
     fn dry_friction(&self) -> Joints {
-        std::array::from_fn(|j| self.work.task.model.friction.coulomb[j])
+        std::array::from_fn(|j| self.problem.task.model.friction.coulomb[j])
     }
 
     fn torque_limit(&self) -> Joints {
-        self.work.corridor.allowed.loads.torque.map(|x| x * self.margins.torque())
+        self.problem.corridor.ceilings.loads.torque.map(|x| x * self.margins.torque())
     }
 
     fn steps(&self, piece: &Piece) -> usize {
         let speed = |qd: &Joints| -> f64 {
-            let tcp = self.work.lever.iter().zip(qd).map(|(lever, v)| (lever * v).powi(2));
+            let tcp = self.problem.lever.iter().zip(qd).map(|(lever, v)| (lever * v).powi(2));
             tcp.sum::<f64>().sqrt()
         };
         let way = speed(&piece.qd).max(speed(&piece.at(piece.length).1)) * piece.length;
@@ -50,26 +50,26 @@ impl Plant for RunPlant<'_> {
     }
 
     fn path_shares(&self, q: &Joints, qd: &Joints, place: &mut usize) -> PathShares {
-        let task = self.work.task;
+        let task = self.problem.task;
         let tool = &task.run.legs[0].tool;
         let pose = tool.pose(&fk(task.model, q));
-        let (distance, ceiling) = self.work.corridor.locate(&pose, &self.ceilings, place);
+        let (distance, ceiling) = self.problem.corridor.locate(&pose, &self.ceilings, place);
         let rate = tool.twist(task.model, q, qd);
         let [tcp, joints] = [
             rate.fixed_rows::<3>(0).norm() / ceiling,
-            self.work.corridor.ceiling(*place).share(qd),
+            self.problem.corridor.ceiling(*place).share(qd),
         ]
         .map(|share| share / self.margins.speed);
-        let body = self.work.body.as_ref();
+        let body = self.problem.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
         [tcp, joints, distance / self.margins.distance, near]
     }
 
     fn polygon_share(&self, q: &Joints, place: &mut usize) -> f64 {
-        let task = self.work.task;
+        let task = self.problem.task;
         let pose = task.run.legs[0].tool.pose(&fk(task.model, q));
-        let distance = self.work.corridor.polygon_share(&pose, place);
-        let body = self.work.body.as_ref();
+        let distance = self.problem.corridor.polygon_share(&pose, place);
+        let body = self.problem.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
         near.max(distance / self.margins.edges)
     }

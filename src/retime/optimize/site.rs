@@ -19,12 +19,12 @@ use crate::retime::motion::timed::TimedMotion;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::path::joint_path::{DOF, JointPath, Joints, PieceKind};
 
-/// A place with the ways in which it ran.
+/// A place of the program with its variants.
 #[derive(Debug)]
 pub struct Site {
     /// From the first statement to the last.
     pub span: Span,
-    /// The distinct ways.
+    /// The distinct variants.
     pub variants: Vec<Variant>,
     /// Why the whole site stays, if it does.
     pub reason: Option<Reason>,
@@ -32,7 +32,7 @@ pub struct Site {
     statements: BTreeSet<Span>,
 }
 
-/// One way in which a site ran.
+/// One way in which a site was executed.
 #[derive(Debug)]
 pub struct Variant {
     /// Indices of the simulation's events in which it ran so.
@@ -130,7 +130,7 @@ fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
     std::iter::once(last).chain(first).collect()
 }
 
-/// Sites that share a statement can't both be replaced.
+/// Marks sites that share a statement: they cannot both be replaced.
 fn mark_overlaps(sites: &mut [Site]) {
     let mut users: BTreeMap<Span, usize> = BTreeMap::new();
     for statement in sites.iter().flat_map(|site| &site.statements) {
@@ -330,8 +330,8 @@ impl Places {
         }
     }
 
-    /// Whether a run ends in a zone and nothing behind it makes sure that the robot stops there: in
-    /// another branch, or where an input is on already, it flies on.
+    /// Whether a run ends in a zone and no wait behind it makes the robot stop: in another branch, or
+    /// where an input is on already, the robot goes on without a stop.
     fn flies_on(&self, run: &Run) -> bool {
         let Some(last) = run.moves.last().filter(|record| !record.movement.zone.fine) else {
             return false;

@@ -1,4 +1,4 @@
-//! Standing still: what a pose costs, and where nearby it costs least.
+//! Standing still: the holding power of a pose, and the nearby pose of least holding power.
 //!
 //! Paes et al. 2014, table 3 and figure 7. Holding power is cheap to evaluate and has
 //! several minima: the search looks at poses over the whole box and at its corners, and
@@ -35,18 +35,17 @@ pub struct Standing {
     pub q: Joints,
     /// Holding power by joint, W.
     pub per_joint_w: Joints,
-    /// From which length of a dwell on closing the brakes pays, s; `None` where
-    /// nothing is spared or no brake is known.
+    /// Break-even time of the brakes, s; `None` where nothing is saved or no brake is known.
     pub break_even_s: Option<f64>,
     /// The pose of least holding power nearby, rad.
     pub best: Joints,
     /// Its holding power, W.
     pub best_w: f64,
-    /// What is known of it where the robot is uncertain.
+    /// Intervals over plausible robots.
     pub plausible: Option<Range>,
 }
 
-/// Standing over plausible robots.
+/// Intervals of a standing robot over plausible robots.
 #[derive(Clone, Debug)]
 pub struct Range {
     /// Holding power \[W\].
@@ -64,9 +63,9 @@ pub struct Plausible {
 }
 
 impl Plausible {
-    /// Of a model; `None` where it is known, or its effects lead to what no robot has.
-    pub fn of(model: &Model) -> Option<Plausible> {
-        let robots = Robots::of(model)?;
+    /// Draws for a model; `None` where all parameters are known, or an effect makes a draw invalid.
+    pub fn new(model: &Model) -> Option<Plausible> {
+        let robots = Robots::new(model)?;
         let models: Result<Vec<Model>, _> =
             robots.drawn_robots().iter().map(|robot| drawn(model, robot)).collect();
         Some(Plausible { robots, models: models.ok()? })
@@ -77,9 +76,9 @@ impl Plausible {
         let times = self.models.iter().zip(&holding).map(|(robot, w)| break_even_s(robot, *w));
         let times: Option<Vec<f64>> = times.collect();
         Range {
-            holding_w: Interval::of(&holding),
+            holding_w: Interval::from_values(&holding),
             contributions: self.robots.contributions(times.as_ref().unwrap_or(&holding)),
-            break_even_s: times.map(|times| Interval::of(&times)),
+            break_even_s: times.map(|times| Interval::from_values(&times)),
         }
     }
 }
@@ -116,7 +115,7 @@ fn total(model: &Model, load: &Load, q: &Joints) -> f64 {
     holding_w(model, load, q).iter().sum()
 }
 
-/// Where to look: no joint farther than `distance` \[rad\] from `from`, nor outside its range.
+/// The box of the search: no joint farther than `distance` \[rad\] from `from`, nor outside its range.
 struct Search<'a> {
     model: &'a Model,
     load: &'a Load,
@@ -162,13 +161,13 @@ impl Search<'_> {
             .map(|at| (at, self.power(&at)))
             .collect();
         starts.sort_by(|a, b| a.1.total_cmp(&b.1));
-        // The same power is the same pose but for axes that carry nothing.
+        // Poses of the same power differ only in axes that carry nothing.
         starts.dedup_by(|later, kept| later.1 - kept.1 < BETTER);
         starts.truncate(STARTS);
         starts
     }
 
-    /// Every joint a step to either side, where that helps.
+    /// Exploratory moves: each joint by a step to either side, where that lowers the power.
     fn explored(&self, from: (Joints, f64), step: f64) -> (Joints, f64) {
         let mut best = from;
         for joint in 0..DOF {
@@ -199,7 +198,7 @@ impl Search<'_> {
                 step *= 0.5;
                 continue;
             }
-            // On along the way that helped, as long as it does.
+            // Pattern moves, as long as they lower the power.
             let (mut before, mut here) = (best, found);
             while here.1 < before.1 {
                 let ahead = std::array::from_fn(|j| 2.0 * here.0[j] - before.0[j]);
@@ -225,7 +224,7 @@ fn best_nearby(model: &Model, load: &Load, q: &Joints, distance: f64) -> Joints 
             best = found;
         }
     }
-    // Joints that need not have moved go back.
+    // Joints whose motion saves nothing go back.
     for joint in 0..DOF {
         let mut at = best.0;
         at[joint] = q[joint];

@@ -5,7 +5,7 @@
 //! limit, the nearest points (in the same weights) that keep the limits, which needs only the
 //! rows that come near their bound.
 //!
-//! An error along the path is a matter of timing and costs less than one away from it.
+//! An error along the path is only an error of timing and weighs less than one across it.
 
 use super::banded::Banded;
 use super::cone::{Affine, ConeProgram, ConeStatus};

@@ -1,4 +1,4 @@
-//! Lower energy for a stream at its own intervals, within all limits: the realised motion counts.
+//! Lowers the energy of the realised motion of a stream at fixed intervals, within all limits.
 //!
 //! Sequential quadratic programming on the points. The copper loss is a sum of squares of torques
 //! that are linearised in the points (Gauss–Newton). The loss of a power that is braked away is
@@ -6,16 +6,14 @@
 //! and the limits of the path are linearised rows with slacks that are priced. A distance from the path
 //! is priced too: one of the tolerance costs the share `DEVIATION_PRICE` of the energy.
 
-use super::banded::Banded;
 use super::banded_program::{BandedProgram, Optimum, Row};
-use super::path_energy::{EnergyModel, Sharing};
-use super::plant::{
-    DIFFERENCES, EDGE_PLACES, PathShares, Plant, ROOM, Realised, direction, realise,
-};
+use super::path_energy::EnergyModel;
+use super::plant::{Plant, ROOM, Realised};
+use super::polish_problem::{PathPenalty, PolishProblem, Quadratic, UNIT};
 use super::stream_limits::StreamLimits;
-use super::stream_points::{LimitRow, Points};
+use super::stream_points::LimitRow;
 use super::stream_reference::Reference;
-use crate::retime::motion::stream::{DOF, Joints, Piece, Stream, StreamError};
+use crate::retime::motion::stream::{Stream, StreamError};
 
 /// How the polishing ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,96 +31,49 @@ pub struct Polished {
     pub stream: Stream,
     /// How the polishing ended.
     pub status: PolishStatus,
-    /// What its motion costs and how near it comes to the limits.
+    /// Cost of its motion and shares of the limits.
     pub realised: Realised,
     /// Largest distance of the realised motion from the path of the reference, in the units of
     /// the levers.
     pub deviation: f64,
 }
 
-/// How much a stream may leave the path of its reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corridor {
-    /// Distance that costs a noticeable share of the energy; infinite for a free path.
-    pub tolerance: f64,
-    /// Weight of each joint in the distance.
-    pub lever: Joints,
-}
-
-/// Share of the energy that a mean distance of the tolerance costs.
-const DEVIATION_PRICE: f64 = 0.02;
-/// Energies that the full violation of a limit at one place costs.
-const VIOLATION_PRICE: f64 = 5.0;
 /// Steps.
 const MAX_STEPS: usize = 80;
 /// Relative fall of the merit at which the steps end.
 const CONVERGED: f64 = 3e-5;
-/// Share of its limit from which a row is part of a program.
-const NEAR: f64 = 0.75;
-/// Gap of the programs: a step is judged by what it does, not by what it promises.
+/// Gap of the programs: a step is accepted by its effect on the merit, so a rough solution suffices.
 const ROUGH_GAP: f64 = 1e-5;
-/// Unit of the variables, rad.
-const UNIT: f64 = 0.01;
-/// Price of a step of one unit in every variable at the begin, in energies; and its bounds.
+/// Price of a step of one unit in every variable at first, in energies; and its bounds.
 const DAMPING: f64 = 1e-3;
 const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 /// Factor on the damping after a good or a bad step.
 const DAMPING_STEP: f64 = 5.0;
-/// Smallest tolerance that is taken literally.
-const TIGHTEST: f64 = 1e-7;
-/// Steps to the nearest point of the path.
-const NEAREST_STEPS: usize = 6;
-/// Speed below which a path has no direction.
-const SLOWEST: f64 = 1e-6;
-/// Share of the peak power about which the loss of braking is rounded.
-const ROUND_POWER: f64 = 0.02;
-/// Share of the peak speed about which dry friction is rounded.
-const ROUND_SPEED: f64 = 0.02;
-/// Peak power below which a stream is taken to need no rounding finer, W.
-const LEAST_POWER: f64 = 1.0;
-/// Steps of Simpson's rule on a piece.
-const SIMPSON: usize = 2;
 /// Parts of a proposed step that are tried.
 const PARTS: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
 /// Lowers the energy of `stream`, which starts and ends as `reference` and keeps `limits`.
 ///
 /// # Errors
-/// None for a stream that exists; the same as of making one.
+/// None for a valid stream; those of [`Stream::new`].
 pub fn polish_stream(
     stream: &Stream,
     reference: &Reference,
     plant: &impl Plant,
     limits: &StreamLimits,
     model: &EnergyModel,
-    corridor: &Corridor,
+    penalty: &PathPenalty,
 ) -> Result<Polished, StreamError> {
-    let points = Points::new(reference, stream.intervals().to_vec())?;
-    let rows = points.limit_rows(limits);
-    let unit = realise(stream, plant, model).energy.total().abs().max(f64::MIN_POSITIVE);
-    let round_power = ROUND_POWER * peak_power(stream, plant).max(LEAST_POWER);
-    let round_speed = (ROUND_SPEED * peak_speed(stream)).max(f64::MIN_POSITIVE);
-    let dry = plant.dry_friction();
-    let polish = Polish {
-        reference,
-        plant,
-        model,
-        corridor,
-        points,
-        limits,
-        rows,
-        unit,
-        round_power,
-        round_speed,
-        dry,
-    };
-    let mut best = polish.judge(stream.clone());
+    let problem = PolishProblem::new(stream, reference, plant, model, penalty)?;
+    let rows = problem.points.limit_rows(limits);
+    let polish = Polish { problem, limits, rows };
+    let mut best = polish.candidate(stream.clone());
     let mut damping = DAMPING;
     let mut status = PolishStatus::Stopped;
-    if polish.points.size() == 0 {
+    if polish.problem.points.size() == 0 {
         return Ok(polish.polished(best, PolishStatus::Converged));
     }
-    let mut model = polish.model(&best);
+    let mut model = polish.quadratic(&best);
     for _ in 0..MAX_STEPS {
         let Some(step) = polish.step(&best, &model, damping) else {
             status = PolishStatus::Converged;
@@ -147,13 +98,13 @@ pub fn polish_stream(
             status = PolishStatus::Converged;
             break;
         }
-        model = polish.model(&best);
+        model = polish.quadratic(&best);
     }
     Ok(polish.polished(best, status))
 }
 
 /// A stream with its merit in energies of the first one.
-struct Judged {
+struct Candidate {
     stream: Stream,
     realised: Realised,
     merit: f64,
@@ -166,63 +117,43 @@ struct Proposal {
 }
 
 struct Polish<'a, P> {
-    reference: &'a Reference,
-    plant: &'a P,
-    model: &'a EnergyModel,
-    corridor: &'a Corridor,
-    points: Points,
+    problem: PolishProblem<'a, P>,
     limits: &'a StreamLimits,
+    /// The joint limits as rows.
     rows: Vec<LimitRow>,
-    unit: f64,
-    /// Power about which the loss of braking is rounded, W.
-    round_power: f64,
-    /// Speed about which dry friction is rounded, rad/s.
-    round_speed: f64,
-    /// Dry friction, Nm.
-    dry: Joints,
-}
-
-/// Torque, shares of the limits of the path and their derivatives at one place: `by[kind][i]` holds the change of
-/// them per change of q, q̇ or q̈ of joint i.
-struct Linearised {
-    torque: Joints,
-    path: PathShares,
-    torque_by: [[Joints; DOF]; 3],
-    /// Of each share of the path, by q and q̇; zero where all are far from their limits.
-    path_by: [[[f64; DOF]; 2]; 4],
 }
 
 impl<P: Plant> Polish<'_, P> {
-    fn polished(&self, best: Judged, status: PolishStatus) -> Polished {
-        let places = places(&best.stream, |_| SIMPSON);
+    fn polished(&self, best: Candidate, status: PolishStatus) -> Polished {
         Polished {
             status,
             realised: best.realised,
-            deviation: places.iter().map(|p| norm(&self.offset(p).0)).fold(0.0, f64::max),
+            deviation: self.problem.deviation(&best.stream),
             stream: best.stream,
         }
     }
 
-    fn judge(&self, stream: Stream) -> Judged {
-        let realised = realise(&stream, self.plant, self.model);
-        let price = self.deviation_price();
-        let places = places(&stream, |_| SIMPSON);
-        let distance: f64 =
-            places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
-        let merit = realised.energy.total() / self.unit
-            + VIOLATION_PRICE * realised.excess
-            + price * distance;
-        Judged { stream, realised, merit }
+    fn candidate(&self, stream: Stream) -> Candidate {
+        let (realised, merit) = self.problem.merit(&stream);
+        Candidate { stream, realised, merit }
     }
 
-    /// The largest tried part of a step that lowers the merit, and the stream there. The joint
-    /// limits are convex: what keeps them at both ends keeps them between.
-    fn along(&self, best: &Judged, step: &Proposal) -> Result<Option<(f64, Judged)>, StreamError> {
-        let from = self.points.variables(&best.stream);
+    fn quadratic(&self, best: &Candidate) -> Quadratic {
+        self.problem.quadratic(&best.stream, best.realised.excess)
+    }
+
+    /// Line search: the largest part of a step that lowers the merit, and the stream there. The joint
+    /// limits are convex: a part of a feasible step keeps them.
+    fn along(
+        &self,
+        best: &Candidate,
+        step: &Proposal,
+    ) -> Result<Option<(f64, Candidate)>, StreamError> {
+        let from = self.problem.points.variables(&best.stream);
         for part in PARTS {
             let variables: Vec<f64> =
                 from.iter().zip(&step.change).map(|(x, change)| x + part * change).collect();
-            let next = self.judge(self.points.stream(&variables)?);
+            let next = self.candidate(self.problem.points.stream(&variables)?);
             let kept = self.limits.worst_ratio(&next.stream)
                 <= self.limits.worst_ratio(&best.stream).max(1.0);
             if kept && next.merit < best.merit {
@@ -232,125 +163,16 @@ impl<P: Plant> Polish<'_, P> {
         Ok(None)
     }
 
-    /// Price of ∫ distance² dt, in energies.
-    fn deviation_price(&self) -> f64 {
-        DEVIATION_PRICE
-            / (self.corridor.tolerance.max(TIGHTEST).powi(2) * self.points.knots.duration())
-    }
-
-    /// The vector from the nearest point of the reference's path to the place, scaled by the
-    /// levers, and the direction of the path there, of length one, zero at rest.
-    fn offset(&self, place: &Place) -> (Joints, Joints) {
-        let lever = &self.corridor.lever;
-        let stretch = self.reference.duration() / self.points.knots.duration();
-        let mut t = place.t * stretch;
-        let (mut offset, mut along) = (Joints::default(), Joints::default());
-        for _ in 0..NEAREST_STEPS {
-            let (q, qd) = self.reference.at(t);
-            offset = std::array::from_fn(|j| lever[j] * (place.q[j] - q[j]));
-            along = std::array::from_fn(|j| lever[j] * qd[j]);
-            let speed = norm(&along);
-            if speed < SLOWEST {
-                return (offset, Joints::default());
-            }
-            let ahead: f64 = offset.iter().zip(&along).map(|(o, a)| o * a).sum();
-            t = (t + ahead / (speed * speed)).clamp(0.0, self.reference.duration());
-            along = along.map(|a| a / speed);
-        }
-        (offset, along)
-    }
-
-    /// Torque and shares at a place; `near` as for the plant.
-    fn shares(&self, place: &Place, near: &mut usize) -> Linearised {
-        Linearised {
-            torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
-            path: self.plant.path_shares(&place.q, &place.qd, near),
-            torque_by: Default::default(),
-            path_by: Default::default(),
-        }
-    }
-
-    /// Adds the derivatives.
-    fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
-        lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
-        if lin.path.iter().all(|share| *share <= NEAR) {
-            return;
-        }
-        // Positions and speeds move the tool; accelerations do not.
-        for (kind, step) in DIFFERENCES.into_iter().enumerate().take(2) {
-            for joint in self.points.joints.iter().copied() {
-                let mut state = [place.q, place.qd];
-                state[kind][joint] += step;
-                let [q, qd] = state;
-                let next = self.plant.path_shares(&q, &qd, &mut near.clone());
-                for (limit, next) in next.iter().enumerate() {
-                    lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
-                }
-            }
-        }
-    }
-
-    /// The quadratic model of merit and limits around `best`.
-    fn model(&self, best: &Judged) -> Quadratic {
-        let size = self.points.size();
-        // A jerk touches four points.
-        let width = (3 * self.points.joints.len()).min(size);
-        let mut model = Quadratic {
-            matrix: Banded::zeros(size, width),
-            gradient: vec![0.0; size],
-            shares: Vec::new(),
-            broken: VIOLATION_PRICE * best.realised.excess,
-        };
-        let mut near = 0;
-        let limit = self.plant.torque_limit();
-        for place in places(&best.stream, |piece| self.plant.steps(piece)) {
-            let mut lin = self.shares(&place, &mut near);
-            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
-            if place.seconds > 0.0 || loaded || lin.path.iter().any(|share| *share > NEAR) {
-                self.linearise(&place, near, &mut lin);
-                self.add_place(&place, &lin, &mut model);
-            }
-        }
-        self.add_polygon(&best.stream, &mut model);
-        model
-    }
-
-    /// Adds the limits of the polygon of the points.
-    fn add_polygon(&self, stream: &Stream, model: &mut Quadratic) {
-        let mut near = 0;
-        for (i, edge) in stream.polygon().enumerate() {
-            for tau in EDGE_PLACES {
-                let (q, _, _) = edge.at(tau);
-                let share = self.plant.polygon_share(&q, &mut near);
-                if share <= NEAR {
-                    continue;
-                }
-                let mut weights = Vec::new();
-                for (m, joint) in self.points.joints.iter().enumerate() {
-                    let mut state = q;
-                    state[*joint] += DIFFERENCES[0];
-                    let next = self.plant.polygon_share(&state, &mut near.clone());
-                    let slope = UNIT * (next - share) / DIFFERENCES[0];
-                    for (point, weight) in [(i, 1.0 - tau), (i + 1, tau)] {
-                        let index = self.points.variable(point, m);
-                        weights.extend(index.map(|index| (index, weight * slope)));
-                    }
-                }
-                model.add_share(share, weights.into_iter());
-            }
-        }
-    }
-
     /// The change that the quadratic program around `best` proposes. None if there is none.
-    fn step(&self, best: &Judged, model: &Quadratic, damping: f64) -> Option<Proposal> {
-        let size = self.points.size();
-        let variables = self.points.variables(&best.stream);
+    fn step(&self, best: &Candidate, model: &Quadratic, damping: f64) -> Option<Proposal> {
+        let size = self.problem.points.size();
+        let variables = self.problem.points.variables(&best.stream);
         let mut matrix = model.matrix.clone();
         let price = 2.0 * damping / size as f64;
         for i in 0..size {
             matrix.add(i, i, price);
         }
-        // What is at its limit already has to stay there only.
+        // A row beyond its limit must not get worse.
         let kept = self.rows.iter().filter(|row| !row.terms.is_empty()).map(|row| Row {
             terms: row.terms.iter().map(|(i, weight)| (*i, UNIT * weight)).collect(),
             bound: (1.0 - ROOM - row.value(&variables)).max(0.0),
@@ -363,205 +185,4 @@ impl<P: Plant> Polish<'_, P> {
         let predicted = model.broken - (cost - damped);
         Some(Proposal { change: x.iter().map(|x| UNIT * x).collect(), predicted })
     }
-
-    /// Adds the costs and limits at a place to the model.
-    fn add_place(&self, place: &Place, lin: &Linearised, model: &mut Quadratic) {
-        let weights = self.points.knots.weights(place.piece, place.tau);
-        let mut columns = Vec::new();
-        for (k, i) in weights.support.clone().enumerate() {
-            for (m, joint) in self.points.joints.iter().enumerate() {
-                if let Some(index) = self.points.variable(i, m) {
-                    let [w, w1, w2] =
-                        [weights.position[k], weights.velocity[k], weights.acceleration[k]]
-                            .map(|w| UNIT * w);
-                    let torque = std::array::from_fn(|j| {
-                        w * lin.torque_by[0][*joint][j]
-                            + w1 * lin.torque_by[1][*joint][j]
-                            + w2 * lin.torque_by[2][*joint][j]
-                    });
-                    let path = lin.path_by.map(|by| w * by[0][*joint] + w1 * by[1][*joint]);
-                    columns.push(Column { index, joint: *joint, w, w1, torque, path });
-                }
-            }
-        }
-        let per = place.seconds / self.unit;
-        let (offset, along) = self.offset(place);
-        let price = self.deviation_price() * place.seconds;
-        let lever = &self.corridor.lever;
-        for (n, a) in columns.iter().enumerate() {
-            let mut slope = 2.0 * price * a.w * lever[a.joint] * offset[a.joint];
-            for j in 0..DOF {
-                let work = self.model.work * place.qd[j];
-                slope += per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + work);
-            }
-            let speed = 2.0 * self.model.speed * place.qd[a.joint];
-            let (dry, _) = self.rounded_friction(a.joint, place.qd[a.joint]);
-            let torque = lin.torque[a.joint] + dry;
-            slope += per * a.w1 * (self.model.work * torque + speed);
-            model.gradient[a.index] += slope;
-            for b in &columns[..=n] {
-                let mut curve: f64 = (0..DOF)
-                    .map(|j| 2.0 * per * self.model.loss[j] * a.torque[j] * b.torque[j])
-                    .sum();
-                let mut normal = -along[a.joint] * along[b.joint];
-                if a.joint == b.joint {
-                    normal += 1.0;
-                    let viscous = lin.torque_by[1][a.joint][a.joint].max(0.0);
-                    let (_, dry) = self.rounded_friction(a.joint, place.qd[a.joint]);
-                    let friction = self.model.work * (viscous + 0.5 * dry);
-                    curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
-                }
-                curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
-                let (i, j) = (a.index.max(b.index), a.index.min(b.index));
-                model.matrix.add(i, j, curve);
-            }
-        }
-        self.add_brakes(place, lin, &columns, model);
-        let limit = self.plant.torque_limit();
-        for j in 0..DOF {
-            let share = lin.torque[j] / limit[j];
-            if share.abs() > NEAR {
-                let sign = share.signum();
-                let weights = columns.iter().map(|c| (c.index, sign * c.torque[j] / limit[j]));
-                model.add_share(share.abs(), weights);
-            }
-        }
-        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
-            model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
-        }
-    }
-
-    /// What rounding changes of the dry friction of a joint at a velocity, Nm, and the slope of the
-    /// rounded friction, Nms: without them no step would take a joint over the kink in its work.
-    fn rounded_friction(&self, joint: usize, velocity: f64) -> (f64, f64) {
-        let root = velocity.hypot(self.round_speed);
-        let dry = self.dry[joint];
-        (
-            dry * (velocity / root - direction(velocity)),
-            dry * (self.round_speed / root).powi(2) / root,
-        )
-    }
-
-    /// Adds the loss of the powers at a place that are braked away: (√(p² + ε²) − p) / 2 for
-    /// each power p, with its slope and curvature.
-    fn add_brakes(
-        &self,
-        place: &Place,
-        lin: &Linearised,
-        columns: &[Column],
-        model: &mut Quadratic,
-    ) {
-        let lost = (1.0 - self.model.regeneration) * place.seconds / self.unit;
-        if lost <= 0.0 {
-            return;
-        }
-        let round = self.round_power;
-        let powers: Joints = std::array::from_fn(|j| lin.torque[j] * place.qd[j]);
-        let mut add = |group: &[usize]| {
-            let now: f64 = group.iter().map(|j| powers[*j]).sum();
-            let root = now.hypot(round);
-            let slope = 0.5 * lost * (now / root - 1.0);
-            let curvature = 0.5 * lost * (round / root).powi(2) / root;
-            let by: Vec<f64> = columns
-                .iter()
-                .map(|column| {
-                    let force: f64 = group.iter().map(|j| place.qd[*j] * column.torque[*j]).sum();
-                    let own = group.contains(&column.joint);
-                    force + if own { column.w1 * lin.torque[column.joint] } else { 0.0 }
-                })
-                .collect();
-            for (n, a) in columns.iter().enumerate() {
-                model.gradient[a.index] += slope * by[n];
-                for (m, b) in columns[..=n].iter().enumerate() {
-                    let (i, j) = (a.index.max(b.index), a.index.min(b.index));
-                    model.matrix.add(i, j, curvature * by[n] * by[m]);
-                }
-            }
-        };
-        match self.model.sharing {
-            Sharing::Bus => add(&self.points.joints),
-            Sharing::PerJoint => self.points.joints.iter().for_each(|j| add(&[*j])),
-        }
-    }
-}
-
-/// A place of the realised motion.
-struct Place {
-    piece: usize,
-    /// Time in the piece, and weight in the integral, s.
-    tau: f64,
-    seconds: f64,
-    t: f64,
-    q: Joints,
-    qd: Joints,
-    qdd: Joints,
-}
-
-/// Places of a stream, an even number of steps apart on each piece, with the weights of Simpson's
-/// rule at the ends and the middle of pieces.
-fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
-    let of = |(index, piece): (usize, Piece)| {
-        let steps = steps(&piece);
-        (0..=steps)
-            .map(|i| {
-                let tau = piece.length * i as f64 / steps as f64;
-                let (q, qd, qdd) = piece.at(tau);
-                let weight = match 2 * i {
-                    n if n == steps => 4.0 / 6.0,
-                    n if n == 0 || n == 2 * steps => 1.0 / 6.0,
-                    _ => 0.0,
-                };
-                let seconds = weight * piece.length;
-                Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
-            })
-            .collect::<Vec<Place>>()
-    };
-    stream.pieces().enumerate().flat_map(of).collect()
-}
-
-/// What a variable does at a place, per unit of it.
-struct Column {
-    index: usize,
-    joint: usize,
-    /// Change of the joint's position and velocity.
-    w: f64,
-    w1: f64,
-    torque: Joints,
-    path: PathShares,
-}
-
-/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus what is broken.
-struct Quadratic {
-    matrix: Banded,
-    gradient: Vec<f64>,
-    /// Shares of limits.
-    shares: Vec<Row>,
-    /// By how much the limits are broken at x = 0, priced.
-    broken: f64,
-}
-
-impl Quadratic {
-    /// A share of a limit and how the variables change it.
-    fn add_share(&mut self, share: f64, weights: impl Iterator<Item = (usize, f64)>) {
-        let terms = weights.collect();
-        self.shares.push(Row { terms, bound: 1.0 - ROOM - share, price: VIOLATION_PRICE });
-    }
-}
-
-/// The largest power of a joint, W.
-fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
-    let power = |place: &Place| {
-        let torque = plant.full_torque(&place.q, &place.qd, &place.qdd);
-        (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
-    };
-    places(stream, |_| SIMPSON).iter().map(power).fold(0.0, f64::max)
-}
-
-/// The largest speed of a joint, rad/s.
-fn peak_speed(stream: &Stream) -> f64 {
-    stream.max_velocity().into_iter().fold(0.0, f64::max)
-}
-
-fn norm(vector: &Joints) -> f64 {
-    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -1,8 +1,8 @@
-//! The motion that a stream is meant to realise: dense samples over time.
+//! The intended motion of a stream, as dense samples over time.
 
 use crate::retime::motion::stream::{DOF, Joints};
 
-/// Movement of a joint that is rounding of none, rad: less than the emitted text can say.
+/// Joint movement below which a joint rests, rad: less than the resolution of the emitted text.
 const ROUNDING: f64 = 5e-9;
 
 /// An intended joint motion, sampled so densely that cubic interpolation is exact enough.

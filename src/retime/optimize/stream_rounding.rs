@@ -1,4 +1,4 @@
-//! Times and points as the emitted text will say them.
+//! Times and points, rounded as in the emitted text.
 
 use crate::rapid::ir::number::{TIME_DECIMALS, joint_as_emitted};
 use crate::retime::motion::stream::{Stream, StreamError};
@@ -19,10 +19,10 @@ pub fn round_up(t: f64) -> f64 {
     (t / quantum()).ceil() * quantum()
 }
 
-/// The stream with points as the emitted text will say them.
+/// The stream with points rounded as in the emitted text.
 ///
 /// # Errors
-/// None that the stream itself did not have.
+/// None for a valid stream.
 pub fn rounded_points(stream: &Stream) -> Result<Stream, StreamError> {
     let points = stream.points().iter().map(|q| q.map(joint_as_emitted)).collect();
     Stream::new(*stream.start(), points, stream.intervals().to_vec())

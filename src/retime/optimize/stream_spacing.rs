@@ -1,4 +1,4 @@
-//! Where the points of a stream go: intervals that follow the motion's third derivative.
+//! Intervals of a stream, chosen by the third derivative of the motion.
 //!
 //! A quadratic spline with spacing h misses a motion by at most h³ |q⃛| √3/216 (the peak of the
 //! third Bernoulli polynomial over 3!). Spacing h = (ε 216/(√3 |q⃛|))^⅓ spends the error evenly.
@@ -21,7 +21,7 @@ const FEWEST: f64 = 4.0;
 /// Most intervals, whatever the shortest one is.
 const MOST: f64 = 1e4;
 
-/// How close the points of a stream may be, and how close the motion must be met.
+/// Limits on the intervals of a stream, and the accepted errors of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
     /// Shortest interval, s.

@@ -1,4 +1,4 @@
-//! Where a line or arc arrives whose target states no configuration.
+//! The end of a line or arc whose target states no configuration.
 
 use super::build::{MAX_PIECE, measure};
 use super::joint_path::Joints;
@@ -6,8 +6,8 @@ use super::leg::Leg;
 use crate::arm::kinematics::ik_near;
 use crate::arm::robot::Model;
 
-/// Joints at the end of a Cartesian leg (rad), reached along it from its start, each solution the
-/// nearest to the one before; `None` where a place on the way has none.
+/// Joints at the end of a Cartesian leg (rad): the inverse kinematics is followed along the leg from
+/// its start, nearest solution to nearest solution; `None` where a pose on the way has none.
 pub fn arrival(model: &Model, leg: &Leg) -> Option<Joints> {
     let curve = measure(model, leg, 0, &leg.start).ok()?.curve?;
     let steps = (curve.length() / MAX_PIECE).ceil().max(1.0) as usize;

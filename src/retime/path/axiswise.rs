@@ -1,8 +1,8 @@
 //! Lines and arcs whose wrist is interpolated axis by axis: `SingArea\Wrist`.
 //!
-//! The TCP stays on its curve while axes 4 to 6 go evenly from their angles at the start to those
-//! at the end; the tool is turned otherwise than programmed in between (ABB, RAPID overview,
-//! "Positioning during program execution").
+//! The TCP stays on its curve while axes 4 to 6 turn at constant rates from their angles at the start
+//! to those at the end; in between the orientation of the tool differs from the programmed one (ABB,
+//! RAPID overview, "Positioning during program execution").
 
 use nalgebra::{Matrix3, Vector3, Vector6};
 
@@ -11,14 +11,14 @@ use super::joint_path::{Joints, PathPoint};
 use crate::arm::kinematics::{Tcp, fk};
 use crate::arm::robot::Model;
 
-/// Newton steps before a place counts as not reachable.
+/// Newton steps before a position counts as not reachable.
 const STEPS: usize = 20;
-/// Distance of the TCP from its place at which it is there, m.
-const THERE: f64 = 1e-12;
+/// Error of the TCP position at which the iteration has converged, m.
+const CONVERGED: f64 = 1e-12;
 /// Joints that place the TCP.
 const ARM: usize = 3;
 
-/// Wrist angles (rad) that change evenly with the parameter.
+/// Wrist angles (rad) that are linear in the parameter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wrist {
     /// At 0.
@@ -38,7 +38,7 @@ impl Wrist {
     }
 
     /// Joints (rad) at the parameter `x` with the TCP at `position` (m, base frame), nearest to
-    /// `near`; `None` if the search does not get there.
+    /// `near`; `None` if the iteration does not converge.
     pub(super) fn solve(
         &self,
         model: &Model,
@@ -53,7 +53,7 @@ impl Wrist {
         }
         for _ in 0..STEPS {
             let error = position - tool.pose(&fk(model, &q)).translation.vector;
-            if error.norm() < THERE {
+            if error.norm() < CONVERGED {
                 return Some(q);
             }
             let step = arm(&tool.jacobian(model, &q)).lu().solve(&error)?;
@@ -86,7 +86,7 @@ impl Wrist {
     }
 }
 
-/// Distance that rounding may leave where the Newton steps no longer get nearer, m.
+/// Largest error that rounding may leave after the last Newton step, m.
 const NEAR_ENOUGH: f64 = 1e-9;
 
 /// The part of a Jacobian by which the arm moves the TCP.

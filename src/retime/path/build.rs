@@ -12,8 +12,8 @@ use crate::arm::robot::Model;
 
 /// Parameter length of a turn of the tool or of a joint where the TCP hardly moves, m/rad.
 const METRES_PER_RADIAN: f64 = 0.1;
-/// A leg shorter than this (m, or rad × the above) goes nowhere.
-const NOWHERE: f64 = 1e-7;
+/// A leg shorter than this (m, or rad × the above) does not move.
+const NO_MOTION: f64 = 1e-7;
 /// Longest piece of a Cartesian curve, m.
 pub(super) const MAX_PIECE: f64 = 0.04;
 /// A piece is split while its middle is farther than this from the exact joints, rad.
@@ -25,7 +25,7 @@ const SINGULAR_RATE: f64 = 300.0;
 /// Samples for the TCP length of a joint leg.
 const LENGTH_SAMPLES: usize = 24;
 
-/// A leg with what the zones need to know of it.
+/// A leg with its lengths and its curve, from which the zones follow.
 pub(super) struct Measured<'a> {
     leg: &'a Leg,
     index: usize,
@@ -37,7 +37,7 @@ pub(super) struct Measured<'a> {
     extent: f64,
     /// The Cartesian curve over [0, extent]; `None` for joint legs.
     pub(super) curve: Option<Curve>,
-    /// Where the wrist goes its own way along the curve.
+    /// The wrist angles, where they are interpolated axis by axis.
     wrist: Option<Wrist>,
 }
 
@@ -54,7 +54,7 @@ pub fn build(model: &Model, legs: &[Leg]) -> Result<Vec<JointPath>, PathError> {
     for (index, leg) in legs.iter().enumerate() {
         let measured = measure(model, leg, index, &start)?;
         start = leg.end;
-        if measured.extent < NOWHERE {
+        if measured.extent < NO_MOTION {
             continue;
         }
         let rounded = open.last().is_some_and(|before| zone_size(before, &measured) > 0.0);
@@ -70,7 +70,7 @@ pub fn build(model: &Model, legs: &[Leg]) -> Result<Vec<JointPath>, PathError> {
     Ok(paths)
 }
 
-/// What the zones need to know of a leg that begins at the joints `start`.
+/// The lengths and the curve of a leg that begins at the joints `start` (rad).
 pub(super) fn measure<'a>(
     model: &Model,
     leg: &'a Leg,
@@ -111,7 +111,7 @@ pub(super) fn measure<'a>(
                 };
                 (length, Some(curve))
             } else if (via - a).dot(&(b - via)) > 0.0 {
-                // A circle point on the straight way is no circle: runs show the line.
+                // A circle point on the chord: the logged runs follow the line.
                 line(&from, &to, &turn)
             } else {
                 return Err(PathError::FlatArc { leg: index });
@@ -128,12 +128,12 @@ pub(super) fn measure<'a>(
     Ok(Measured { leg, index, length, angle, extent, curve, wrist })
 }
 
-/// TCP length of a line (m) and its curve; none if it goes nowhere.
+/// TCP length of a line (m) and its curve; none if it does not move.
 fn line(from: &Isometry3<f64>, to: &Isometry3<f64>, turn: &Vector3<f64>) -> (f64, Option<Curve>) {
     let chord = to.translation.vector - from.translation.vector;
     let length = chord.norm();
     let extent = length.max(METRES_PER_RADIAN * turn.norm());
-    let curve = (extent >= NOWHERE).then(|| Curve::Line {
+    let curve = (extent >= NO_MOTION).then(|| Curve::Line {
         start: *from,
         direction: chord / extent,
         turn: turn / extent,
@@ -157,20 +157,20 @@ fn zone_size(before: &Measured<'_>, after: &Measured<'_>) -> f64 {
         return 0.0;
     }
     let share = |leg: &Measured<'_>| {
-        let by_length = if leg.length > NOWHERE { zone.tcp / leg.length } else { 0.5 };
-        let by_angle = if leg.angle > NOWHERE { zone.angle / leg.angle } else { 0.5 };
+        let by_length = if leg.length > NO_MOTION { zone.tcp / leg.length } else { 0.5 };
+        let by_angle = if leg.angle > NO_MOTION { zone.angle / leg.angle } else { 0.5 };
         0.5_f64.min(by_length).min(by_angle)
     };
     let size = |leg: &Measured<'_>| share(leg) * leg.extent;
     let size = size(before).min(size(after));
-    if size < NOWHERE { 0.0 } else { size }
+    if size < NO_MOTION { 0.0 } else { size }
 }
 
 /// One path of legs with zones between all of them.
 fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError> {
     let mut builder = Builder { model, pieces: Vec::new(), s: 0.0, q: legs[0].leg.start };
     let mut trimmed = 0.0;
-    // Joints at the programmed start of the leg at hand.
+    // Joints at the programmed start of the current leg.
     let mut corner = legs[0].leg.start;
     for (i, leg) in legs.iter().enumerate() {
         let next = legs.get(i + 1);
@@ -185,7 +185,7 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
         corner = leg.leg.end;
         trimmed = zone;
     }
-    // A leg that goes nowhere is left out; its neighbours keep their indices.
+    // A leg that does not move is left out; its neighbours keep their indices.
     let first = legs[0].index;
     let last = legs[legs.len() - 1].index;
     let extents = (first..=last).map(|index| {
@@ -208,7 +208,7 @@ struct Builder<'a> {
     model: &'a Model,
     pieces: Vec<Piece>,
     s: f64,
-    /// Joints where the path has got to: the branch to stay on.
+    /// Joints at the end of the pieces so far: they select the branch of the inverse kinematics.
     q: Joints,
 }
 
@@ -229,23 +229,22 @@ impl Builder<'_> {
         match &leg.curve {
             None => {
                 let end = leg.leg.end;
-                if to - from > NOWHERE {
+                if to - from > NO_MOTION {
                     let (a, b) = (joint_point(leg, start, from), joint_point(leg, start, to));
                     self.push(leg.index, PieceKind::Joint, to - from, &a, &b);
                 }
                 self.q = joint_point(leg, start, to).q;
-                // A joint limit may lie on the way only at an end: the range is convex, but for
-                // conditional limits.
+                // The range of the joints is convex but for conditional limits: a few places suffice.
                 for share in [0.25, 0.5, 0.75, 1.0] {
                     self.check_limits(leg, &along(start, &end, share), share)?;
                 }
                 Ok(Arrival { end })
             }
             Some(curve) => {
-                if to - from > NOWHERE {
+                if to - from > NO_MOTION {
                     self.trace(leg, curve, PieceKind::Cartesian, from, to)?;
                 }
-                // Up to the programmed end, to see on which branch it would arrive.
+                // Up to the programmed end: it tells the configuration of arrival.
                 let mut q = self.q;
                 let rest = curve.length() - to;
                 let steps = (rest / MAX_PIECE).ceil().max(1.0) as usize;
@@ -334,7 +333,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Pieces along a curve of the TCP, fine enough to keep it.
+    /// Pieces along a curve of the TCP, each within the tolerance.
     fn trace(
         &mut self,
         leg: &Measured<'_>,
@@ -347,7 +346,7 @@ impl Builder<'_> {
         let mut a = self.curve_point(leg, curve, from, &q)?;
         let mut x = from;
         let mut step = MAX_PIECE;
-        while to - x > NOWHERE {
+        while to - x > NO_MOTION {
             let h = step.min(to - x);
             let b = self.curve_point(leg, curve, x + h, &a.q)?;
             let middle = self.solve(leg, &curve.eval(x + 0.5 * h), &a.q, x + 0.5 * h)?;
@@ -409,7 +408,7 @@ impl Builder<'_> {
         near: &Joints,
         x: f64,
     ) -> Result<Joints, PathError> {
-        // Between neighbouring points no joint turns by more than this, but for a branch change.
+        // Largest turn of a joint between neighbouring points; more is a change of branch, rad.
         const JUMP: f64 = 0.6;
         let tool = &leg.leg.tool;
         let q = match &leg.wrist {

@@ -134,8 +134,7 @@ pub struct Extent {
     pub flat_arc: bool,
 }
 
-/// A joint path over [0, length]: q and q′ are continuous, and q″ up to jumps that
-/// straight joint lines without a zone between them do not have.
+/// A joint path over [0, length]: q and q′ are continuous; q″ may jump where pieces meet.
 #[derive(Clone, Debug, Default)]
 pub struct JointPath {
     pieces: Vec<Piece>,
@@ -167,7 +166,7 @@ impl JointPath {
         self.ends[1]
     }
 
-    /// What is known of a leg of the path.
+    /// The extent of a leg of the path.
     pub fn extent(&self, leg: usize) -> Extent {
         self.legs.1[leg - self.legs.0]
     }

@@ -24,8 +24,8 @@ pub struct Leg {
     pub kind: LegKind,
     /// Joints at its start, rad.
     pub start: Joints,
-    /// Joints at its programmed end, rad. For a Cartesian leg the branch that is nearest
-    /// along the path counts; this is the one that the program states.
+    /// Joints at its programmed end, rad, in the configuration that the program states. A Cartesian
+    /// leg has to arrive in it.
     pub end: Joints,
     /// Where the TCP is fixed, m.
     pub tool: Tcp,

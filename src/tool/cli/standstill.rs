@@ -125,5 +125,5 @@ fn of_program(
 }
 
 fn plausible(args: &StandstillArgs, model: &Model) -> Option<Plausible> {
-    if args.program.point_estimate { None } else { Plausible::of(model) }
+    if args.program.point_estimate { None } else { Plausible::new(model) }
 }

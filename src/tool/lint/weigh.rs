@@ -63,7 +63,7 @@ impl Cycle {
                 What::Output(..) | What::Left(_) => {}
             }
         }
-        let robots = Robots::of(model);
+        let robots = Robots::new(model);
         Cycle { simulation, account, robots, options, events, concurrent }
     }
 
@@ -130,7 +130,7 @@ impl Difference {
         let (low_j, high_j) = if self.plausible_j.is_empty() {
             (energy_j, energy_j)
         } else {
-            let Interval { low, high, .. } = Interval::of(&self.plausible_j);
+            let Interval { low, high, .. } = Interval::from_values(&self.plausible_j);
             (low, high)
         };
         if low_j <= 0.0 {
@@ -188,10 +188,10 @@ fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Mom
     let mut sums = Moments::none(model);
     for Replayed { range, after, .. } in parts {
         for event in &cycle.simulation.events[range.clone()] {
-            sums.add(&Moments::of(model, event), 1.0);
+            sums.add(&Moments::from_event(model, event), 1.0);
         }
         for event in &after.events {
-            sums.add(&Moments::of(model, event), -1.0);
+            sums.add(&Moments::from_event(model, event), -1.0);
         }
     }
     for rest in rests {

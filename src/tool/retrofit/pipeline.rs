@@ -49,7 +49,7 @@ pub fn retrofit(
     let guards = Guards::new(&program, files, settings);
     let sites = marked_sites(&program, &cycle.simulation, &guards, settings.form);
     let lowered = lowered(&program, entry, model, settings);
-    let robots = if settings.point_estimate { None } else { Robots::of(model) };
+    let robots = if settings.point_estimate { None } else { Robots::new(model) };
     let job = Job {
         mean: mean_robot(model, robots.as_ref(), &cycle.simulation),
         settings: settings.with_shown_loads(model, &cycle.simulation),

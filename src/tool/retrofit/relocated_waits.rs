@@ -269,7 +269,7 @@ fn excess(
         let body = around(model, tool, &settings.freedom);
         let loads = settings.freedom.loads(model).for_other_ways(model);
         let room = Room::Free(&loads);
-        let seen = check(model, &run.load, tool, stream, room, intended.end(), body.as_ref());
+        let seen = check(model, &run.load, tool, stream, room, body.as_ref());
         seen.holds()
             && run.load == record.load
             && apart(stream.end(), intended.end()) <= ENDPOINT_TOLERANCE

@@ -65,7 +65,7 @@ impl PeakTorques {
                 Instant { load: run.load.clone(), state: [state.q, state.qd, state.qdd] }
             }));
         }
-        let along = Along::of(model, &instants, Vec::new());
+        let along = Along::new(model, &instants, Vec::new());
         let torques = along.torques(robots.drawn());
         let count = torques.first().map_or(0, nalgebra::Matrix::ncols);
         let largest = |robot| std::array::from_fn(|j| torques[j].column(robot).amax());

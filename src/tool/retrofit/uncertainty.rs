@@ -36,7 +36,7 @@ pub(super) fn uncertain(
 ) -> Vec<(usize, State)> {
     let before = &original.cycle;
     let moments = |cycle: &Simulated, event: usize| {
-        Some(Moments::of(model, cycle.simulation.events.get(event)?))
+        Some(Moments::from_event(model, cycle.simulation.events.get(event)?))
     };
     let energy = |cycle: &Simulated, event: usize| -> Option<f64> {
         Some(cycle.account.events.get(event)?.iter().map(EnergyParts::motion_energy_j).sum())
@@ -97,7 +97,7 @@ pub(super) fn uncertainty(
         let pairs = original[i].iter().zip(&optimized[i]);
         pairs.map(|(a, b)| if *a > 0.0 { 100.0 * (a - b) / a } else { 0.0 }).collect()
     });
-    let interval = |values: [Vec<f64>; 2]| values.map(|values| Interval::of(&values));
+    let interval = |values: [Vec<f64>; 2]| values.map(|values| Interval::from_values(&values));
     Uncertainty {
         contributions: robots.contributions(&saving[1]),
         original: interval(original),

@@ -139,8 +139,7 @@ fn compare(
     }
     let body = body(model, run, freedom);
     let tool = &run.legs[0].tool;
-    let check =
-        check(model, &run.load, tool, stream, Room::Corridor(&corridor), &run.end, body.as_ref());
+    let check = check(model, &run.load, tool, stream, Room::Corridor(&corridor), body.as_ref());
     if !check.holds() {
         return Err("a limit is exceeded by the emitted points");
     }

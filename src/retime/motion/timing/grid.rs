@@ -7,7 +7,7 @@
 //!
 //! m = M q', c = RNEA(q, q', q'') − g: Bobrow, Dubowsky, Gibson (1985); Verscheure et al. (2009).
 
-use super::limits::Row;
+use super::row::Row;
 use crate::retime::motion::stream::Joints;
 
 /// Fewest intervals of a path that starts and ends at rest: one cannot move from 0 to 0.
@@ -47,7 +47,7 @@ pub enum GridError {
     },
 }
 
-/// The path and the dynamics at one place, as seen from one side.
+/// The path and the dynamics at one place, seen from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
     /// Joint positions, rad.
@@ -81,7 +81,7 @@ pub struct PathPoint {
 /// What bounds the speed at a place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SpeedBound {
-    /// Nothing that is known.
+    /// None.
     #[default]
     None,
     /// The programmed speed of the TCP.
@@ -172,14 +172,6 @@ impl PathPoint {
     }
 }
 
-/// n + 1 nodes on [0, length], denser toward the ends: s = L (3x² − 2x³). The speed of a motion
-/// from rest grows as √s, so that equal intervals waste time at both ends: on random paths with
-/// N = 100 the time over that of a fine grid falls by half.
-pub fn rest_to_rest_nodes(length: f64, n: usize) -> Vec<f64> {
-    let share = |k: usize| k as f64 / n as f64;
-    (0..=n).map(|k| length * share(k).powi(2) * (3.0 - 2.0 * share(k))).collect()
-}
-
 /// A path from rest to rest on nodes s₀ < … < sₙ. Each interval has its own values at both ends,
 /// since q'' jumps where segments meet and sgn(q') where a joint turns.
 #[derive(Clone, Debug, PartialEq)]
@@ -220,9 +212,8 @@ impl PathGrid {
         PathGrid::new(s, nodes.windows(2).map(|w| [w[0], w[1]]).collect())
     }
 
-    /// The same path with each bound on ṡ holding earlier and longer: from the distance that
-    /// it takes `time` (s) to pass at that bound, and `distance` besides, before it to as much
-    /// behind it. What smooths a profile over time then keeps the bounds.
+    /// The same path with each bound on ṡ extended to both sides, by the way passed in `time` (s) at
+    /// that bound plus `distance`. A profile that is smoothed over time then keeps the bounds.
     pub(crate) fn holding(&self, time: f64, distance: f64) -> PathGrid {
         let bounds: Vec<(f64, f64, f64)> = self
             .ends
@@ -234,7 +225,7 @@ impl PathGrid {
         let mut held = self.clone();
         for (k, pair) in held.ends.iter_mut().enumerate() {
             for (end, s) in pair.iter_mut().zip(&self.s[k..k + 2]) {
-                // A hair more: round figures put nodes exactly at the reach.
+                // Slightly more: with round figures nodes lie exactly at the reach.
                 let near = bounds.iter().filter(|(at, _, reach)| (at - s).abs() <= reach * 1.001);
                 end.v_max = near.map(|(_, v, _)| *v).fold(end.v_max, f64::min);
             }

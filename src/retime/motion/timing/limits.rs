@@ -4,6 +4,7 @@
 //! over its limit between the nodes.
 
 use super::grid::{PathGrid, PathPoint};
+use super::row::Row;
 use crate::retime::motion::stream::{DOF, Joints};
 
 /// Largest |q̈| and |τ| of each joint. Infinite where there is no limit.
@@ -39,14 +40,6 @@ impl PathLimits {
         Ok(PathLimits { acceleration, torque })
     }
 
-    /// All limits times a positive factor.
-    pub(super) fn scaled(&self, factor: f64) -> PathLimits {
-        PathLimits {
-            acceleration: self.acceleration.map(|x| x * factor),
-            torque: self.torque.map(|x| x * factor),
-        }
-    }
-
     /// Largest |q̈| of each joint, rad/s².
     pub fn acceleration(&self) -> &Joints {
         &self.acceleration
@@ -55,44 +48,6 @@ impl PathLimits {
     /// Largest |τ| of each joint, Nm.
     pub fn torque(&self) -> &Joints {
         &self.torque
-    }
-}
-
-/// |u · `u` + b · `b` + √b · `root` + `constant`| ≤ 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
-    /// Factor of s̈.
-    pub u: f64,
-    /// Factor of ṡ².
-    pub b: f64,
-    /// Factor of ṡ.
-    pub root: f64,
-    /// The rest.
-    pub constant: f64,
-}
-
-impl Row {
-    /// The row at the share `x` of the way to `other`.
-    pub(crate) fn toward(&self, other: &Row, x: f64) -> Row {
-        let mix = |a: f64, b: f64| a + x * (b - a);
-        Row {
-            u: mix(self.u, other.u),
-            b: mix(self.b, other.b),
-            root: mix(self.root, other.root),
-            constant: mix(self.constant, other.constant),
-        }
-    }
-
-    /// Bound on the absolute value while |u| and b are at most these; `root` is √b.
-    fn largest(&self, u: f64, b: f64, root: f64) -> f64 {
-        // Without inertia the acceleration does not matter, however large it may be.
-        let inertial = if self.u == 0.0 { 0.0 } else { self.u.abs() * u };
-        inertial + self.b.abs() * b + self.root.abs() * root + self.constant.abs()
-    }
-
-    /// The left side without the absolute value.
-    pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
-        self.u * u + self.b * b + self.root * b.sqrt() + self.constant
     }
 }
 
@@ -133,7 +88,7 @@ pub(crate) fn binding_rows(
 ) {
     let accelerations: [Row; DOF] = std::array::from_fn(|j| acceleration_row(point, limits, j));
     let bounds = accelerations.iter().map(|row| acceleration_bound(row, b_max));
-    // A hair of room for the tolerance on the others.
+    // Slightly more, for the tolerance of the solver.
     let u_max = bounds.fold(f64::INFINITY, f64::min) * 1.001;
     let root = b_max.sqrt();
     let mut see = |row: &Row| {

@@ -6,4 +6,4 @@ pub mod grid;
 pub mod limits;
 pub mod profile;
 pub mod reachability;
-pub mod refined;
+pub mod row;

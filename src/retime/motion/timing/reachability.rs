@@ -11,8 +11,9 @@
 //! are repeated until the profile stays.
 
 use super::grid::PathGrid;
-use super::limits::{PathLimits, Row, binding_rows, worst_ratio};
+use super::limits::{PathLimits, binding_rows, worst_ratio};
 use super::profile::Profile;
+use super::row::Row;
 
 /// How the search for the fastest profile ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +47,7 @@ const STAGE_SLACK: f64 = 1e-8;
 const TIME_TOLERANCE: f64 = 1e-5;
 /// Passes before the help of friction in braking is given up.
 const MAX_PASSES: usize = 25;
-/// Factor on the tangent points while they leave no profile at all.
+/// Factor on the tangent points while no profile is feasible.
 const TANGENT_RETREAT: f64 = 0.25;
 /// Retreats before the limits count as infeasible.
 const MAX_RETREATS: usize = 12;

@@ -1,4 +1,4 @@
-//! What is not on the time line yet.
+//! Items that are not on the time line yet.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub(super) struct WaitDraft {
     pub(super) load: Load,
 }
 
-/// What becomes an event once the time is known.
+/// An item that becomes an event once its time is known.
 pub(super) enum Draft {
     Run(Box<RunDraft>),
     Wait(Box<WaitDraft>),

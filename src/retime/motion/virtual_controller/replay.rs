@@ -1,10 +1,11 @@
-//! Movements, waits and outputs that were executed before, laid on a time line again: what another
-//! zone, speed or order of some of them would change, without running the program.
+//! Lays given movements, waits and outputs on a time line: the effect of another zone, speed or order
+//! of some of them, without executing the program.
 
 use std::collections::BTreeMap;
 
 use super::load::gripping;
-use super::{Options, VirtualController};
+use super::options::Options;
+use super::state::VirtualController;
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::Machine;
 use crate::rapid::ir::movement::{Movement, Output, Wait};

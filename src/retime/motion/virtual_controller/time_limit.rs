@@ -1,10 +1,19 @@
 //! Where a simulation ends that would last too long.
 
-use super::{MAX_EVENTS, MAX_MOVES, MAX_TIME, Planned, RunDraft, VirtualController, What};
+use super::draft::RunDraft;
+use super::state::VirtualController;
 use crate::arm::kinematics::fk;
 use crate::rapid::ir::movement::Movement;
+use crate::retime::motion::run_plan::Planned;
+use crate::retime::motion::timeline::What;
 use crate::retime::path::{Leg, LegKind};
 
+/// Time after which a simulation ends where nothing else is said, s: ten hours.
+const MAX_TIME: f64 = 36_000.0;
+/// Events of a simulation: more are not kept.
+const MAX_EVENTS: usize = 200_000;
+/// Movements of a simulation: their motions take memory.
+const MAX_MOVES: usize = 50_000;
 /// Zones may shorten movements to this share.
 const SHORTEST: f64 = 0.5;
 

@@ -128,7 +128,7 @@ fn figures(model: &Model) -> Vec<Figure> {
             what,
             provenance: model.provenance_of(table, key),
             value,
-            range: if values.is_empty() { one } else { Interval::of(&values) },
+            range: if values.is_empty() { one } else { Interval::from_values(&values) },
         }
     };
     let mut all = Vec::new();

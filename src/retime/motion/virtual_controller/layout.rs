@@ -1,0 +1,205 @@
+//! Plans runs and lays runs, waits and outputs on the time line.
+
+use rayon::prelude::*;
+
+use super::draft::{Draft, RunDraft, WaitDraft};
+use super::load::effective_load;
+use super::state::VirtualController;
+use crate::rapid::ir::exec::Waited;
+use crate::rapid::ir::movement::{Movement, Stop, Wait};
+use crate::retime::motion::run_plan::Planned;
+use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
+
+/// Drafts that are planned together: enough for all processors, few enough that an endless program
+/// does not run far beyond its largest time.
+const BATCH: usize = 256;
+
+/// Time constant with which the error of the servos dies away at a stop point, s. Chosen: position
+/// loops of such robots close at some 20/s; no measurement of stop points with `inpos` is known.
+const SERVO_S: f64 = 0.05;
+
+impl VirtualController<'_> {
+    /// Keeps the pending movements as one run to a stop.
+    pub(super) fn flush(&mut self) {
+        let pending = std::mem::take(&mut self.pending);
+        self.pending_s = 0.0;
+        let Some(first) = pending.first() else { return };
+        let settings = first.movement.settings.clone();
+        let load = effective_load(&first.movement);
+        let times = pending.iter().map(|p| self.timed(&p.movement)).collect();
+        let (movements, legs) = pending.into_iter().map(|p| (p.movement, p.leg)).unzip();
+        self.keep(Draft::Run(Box::new(RunDraft { movements, legs, times, load, settings })));
+    }
+
+    pub(super) fn keep(&mut self, draft: Draft) {
+        self.drafts.push(draft);
+        if self.drafts.len() >= BATCH {
+            self.lay_out();
+        }
+    }
+
+    /// Plans the drafts, runs in parallel, and lays them on the time line.
+    pub(super) fn lay_out(&mut self) {
+        let model = self.model;
+        let drafts = std::mem::take(&mut self.drafts);
+        let plans: Vec<Option<Planned>> = drafts
+            .par_iter()
+            .map(|draft| match draft {
+                Draft::Run(run) => Some(run.plan(model)),
+                _ => None,
+            })
+            .collect();
+        for (draft, plan) in drafts.into_iter().zip(plans) {
+            if self.late {
+                break;
+            }
+            match (draft, plan) {
+                (Draft::Run(run), Some(plan)) => self.lay_run(*run, plan),
+                (Draft::Wait(wait), _) => self.lay_wait(*wait),
+                (Draft::Output(output, position), _) => {
+                    self.push(0.0, What::Output(output, position));
+                }
+                (Draft::Left(left), _) => {
+                    self.certain = false;
+                    self.push(0.0, What::Left(left));
+                }
+                (Draft::Run(_), None) => unreachable!("every run is planned"),
+            }
+            self.late = self.late || self.time > self.max_time();
+        }
+    }
+
+    fn lay_run(&mut self, run: RunDraft, plan: Planned) {
+        let (run, plan) = self.in_time(run, plan);
+        let RunDraft { movements, legs, load, .. } = run;
+        let Planned { motions, mut pieces, problem, settling_s } = plan;
+        let stands = movements.last().map_or(0.0, |movement| self.stands(movement));
+        if let Some((duration, _)) = pieces.last_mut() {
+            *duration += stands;
+        }
+        // The logic goes on when a movement with \Conc begins.
+        let under_way = movements.iter().zip(&pieces).rev();
+        let under_way = under_way.take_while(|(movement, _)| movement.concurrent);
+        let ahead: f64 = under_way.map(|(_, (duration, _))| duration).sum();
+        let all = movements.iter().all(|movement| movement.concurrent);
+        self.ahead = if all { self.ahead + ahead } else { ahead };
+        if let Some((leg, reason)) = &problem {
+            self.note(movements[*leg].span, reason);
+        }
+        let mut records = Vec::with_capacity(movements.len());
+        let mut t = 0.0;
+        for (movement, (duration, pace)) in movements.into_iter().zip(pieces) {
+            records.push(MoveRecord { movement, t_start: t, duration, pace });
+            t += duration;
+        }
+        let run = Run {
+            moves: records,
+            load,
+            start: legs[0].start,
+            end: legs[legs.len() - 1].end,
+            legs,
+            motions,
+            settling: stands,
+            start_known: self.certain,
+            problem: problem.map(|(_, reason)| reason),
+        };
+        // An output between fly-by movements was noted when the run was not planned yet: it
+        // keeps its place in the order before the run's event.
+        // The first movement ends at its target, wherever it starts.
+        let first = !self.events.iter().any(|event| matches!(event.what, What::Run(_)));
+        self.certain = run.problem.is_none() || (first && self.options.start.is_none());
+        if t > 0.0 {
+            self.settle();
+        }
+        self.settling = settling_s;
+        self.push(t, What::Run(Box::new(run)));
+    }
+
+    /// Between two movements the robot rests at the stop point. A wait takes that time too.
+    fn settle(&mut self) {
+        let settling = self.settling;
+        let own = self.events.iter().rev().take_while(|event| event.is_within_next_run()).count();
+        let at = self.events.len() - own;
+        let (events, own) = self.events.split_at_mut(at);
+        let Some(Event { duration, what: What::Run(before), .. }) = events.last_mut() else {
+            return;
+        };
+        let Some(last) = before.moves.last_mut().filter(|_| *duration > 0.0) else { return };
+        before.settling += settling;
+        last.duration += settling;
+        *duration += settling;
+        for event in own {
+            event.t_start += settling;
+        }
+        self.time += settling;
+    }
+
+    /// When the input of a wait comes, s from the start of the cycle, if the user states it.
+    pub(super) fn input_at(&self, wait: &Wait) -> Option<f64> {
+        let key = wait.signal.as_ref()?.to_lowercase();
+        let delay = self.options.inputs.get(&key)?;
+        Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
+    }
+
+    /// Time that the robot stands at a stop point besides settling, s.
+    fn stands(&mut self, movement: &Movement) -> f64 {
+        match movement.stop {
+            Stop::Fine => 0.0,
+            Stop::Time(time) => time,
+            Stop::InPosition { share, least, most } => {
+                let text = format!(
+                    "at stop points with inpos the error of the servos dies away over {SERVO_S} s"
+                );
+                if !self.assumed.contains(&text) {
+                    self.assumed.push(text);
+                }
+                // The error that `fine` allows is reached without a wait; it dies away from there.
+                let longer = if share > 0.0 { -SERVO_S * share.ln() } else { f64::INFINITY };
+                longer.max(0.0).clamp(least, most)
+            }
+        }
+    }
+
+    fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
+        // Logic that runs during a movement with \Conc takes no time of its own.
+        let begin = self.time - self.ahead;
+        self.waited_last = Waited::Ended;
+        let (length, basis) = match (wait.duration, self.input_at(&wait)) {
+            (Some(duration), _) => (duration, WaitBasis::Stated),
+            (None, Some(at)) => {
+                let rest = (at - begin).max(0.0);
+                match wait.max_time {
+                    Some(most) if most < rest => {
+                        self.waited_last = Waited::TimedOut;
+                        (most, WaitBasis::Stated)
+                    }
+                    _ => (rest, WaitBasis::Input),
+                }
+            }
+            (None, None) => {
+                let what = match (&wait.signal, &wait.other) {
+                    (Some(signal), _) => format!(
+                        "{signal}, at a time that is not known: taken as 0 s \
+                         (--input {signal}=SECONDS states it)"
+                    ),
+                    (None, Some(other)) => format!("{other}: taken as 0 s"),
+                    (None, None) => {
+                        "a condition, at a time that is not known: taken as 0 s".to_owned()
+                    }
+                };
+                self.note(wait.span, &format!("waits for {what}"));
+                (0.0, WaitBasis::Unknown)
+            }
+        };
+        if let Some(signal) = &wait.signal {
+            self.asked.insert(signal.to_lowercase());
+        }
+        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == Waited::Ended) {
+            self.waited.insert(signal.to_lowercase(), begin + length);
+        }
+        let duration = (length - self.ahead).max(0.0);
+        self.ahead = (self.ahead - length).max(0.0);
+        let record = WaitRecord { wait, basis, q, load, position_known: self.certain };
+        self.push(duration, What::Wait(Box::new(record)));
+    }
+}

@@ -1,0 +1,425 @@
+//! The merit of a stream under polishing, and its quadratic model around a stream.
+
+use super::banded::Banded;
+use super::banded_program::Row;
+use super::path_energy::{EnergyModel, Sharing};
+use super::plant::{
+    DIFFERENCES, EDGE_PLACES, PathShares, Plant, ROOM, Realised, direction, realise,
+};
+use super::stream_points::Points;
+use super::stream_reference::Reference;
+use crate::retime::motion::stream::{DOF, Joints, Piece, Stream, StreamError};
+
+/// What a distance of the stream from the path of its reference costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPenalty {
+    /// Distance that costs a noticeable share of the energy; infinite for a free path.
+    pub tolerance: f64,
+    /// Weight of each joint in the distance.
+    pub lever: Joints,
+}
+
+/// Share of the energy that a mean distance of the tolerance costs.
+const DEVIATION_PRICE: f64 = 0.02;
+/// Energies that the full violation of a limit at one place costs.
+const VIOLATION_PRICE: f64 = 5.0;
+/// Share of its limit from which a row is part of a program.
+const NEAR: f64 = 0.75;
+/// Unit of the variables, rad.
+pub(super) const UNIT: f64 = 0.01;
+/// Smallest tolerance.
+const TIGHTEST: f64 = 1e-7;
+/// Steps to the nearest point of the path.
+const NEAREST_STEPS: usize = 6;
+/// Speed below which a path has no direction.
+const SLOWEST: f64 = 1e-6;
+/// Rounding of the braking loss, as a share of the peak power.
+const ROUND_POWER: f64 = 0.02;
+/// Rounding of dry friction, as a share of the peak speed.
+const ROUND_SPEED: f64 = 0.02;
+/// Least peak power for the rounding, W.
+const LEAST_POWER: f64 = 1.0;
+/// Steps of Simpson's rule on a piece.
+const SIMPSON: usize = 2;
+
+/// The polishing of one stream: what its merit is made of.
+pub(super) struct PolishProblem<'a, P> {
+    reference: &'a Reference,
+    plant: &'a P,
+    model: &'a EnergyModel,
+    penalty: &'a PathPenalty,
+    pub(super) points: Points,
+    /// Energy of the stream at the beginning, J: the unit of the merit.
+    unit: f64,
+    /// Rounding of the braking loss, W.
+    round_power: f64,
+    /// Rounding of dry friction, rad/s.
+    round_speed: f64,
+    /// Dry friction, Nm.
+    dry: Joints,
+}
+
+/// Torque, shares of the limits of the path and their derivatives at one place: `by[kind][i]` holds the change of
+/// them per change of q, q̇ or q̈ of joint i.
+struct Linearised {
+    torque: Joints,
+    path: PathShares,
+    torque_by: [[Joints; DOF]; 3],
+    /// Of each share of the path, by q and q̇; zero where all are far from their limits.
+    path_by: [[[f64; DOF]; 2]; 4],
+}
+
+impl<'a, P: Plant> PolishProblem<'a, P> {
+    /// The problem of a stream.
+    pub(super) fn new(
+        stream: &Stream,
+        reference: &'a Reference,
+        plant: &'a P,
+        model: &'a EnergyModel,
+        penalty: &'a PathPenalty,
+    ) -> Result<PolishProblem<'a, P>, StreamError> {
+        let energy = realise(stream, plant, model).energy.total();
+        Ok(PolishProblem {
+            reference,
+            plant,
+            model,
+            penalty,
+            points: Points::new(reference, stream.intervals().to_vec())?,
+            unit: energy.abs().max(f64::MIN_POSITIVE),
+            round_power: ROUND_POWER * peak_power(stream, plant).max(LEAST_POWER),
+            round_speed: (ROUND_SPEED * peak_speed(stream)).max(f64::MIN_POSITIVE),
+            dry: plant.dry_friction(),
+        })
+    }
+
+    /// What the motion of a stream costs, and its merit: energy, priced violations of limits and
+    /// priced distance from the path, in energies of the first stream.
+    pub(super) fn merit(&self, stream: &Stream) -> (Realised, f64) {
+        let realised = realise(stream, self.plant, self.model);
+        let price = self.deviation_price();
+        let places = places(stream, |_| SIMPSON);
+        let distance: f64 =
+            places.iter().map(|p| p.seconds * norm(&self.offset(p).0).powi(2)).sum();
+        let merit = realised.energy.total() / self.unit
+            + VIOLATION_PRICE * realised.excess
+            + price * distance;
+        (realised, merit)
+    }
+
+    /// Largest distance of the realised motion from the path of the reference, in the units of
+    /// the levers.
+    pub(super) fn deviation(&self, stream: &Stream) -> f64 {
+        let places = places(stream, |_| SIMPSON);
+        places.iter().map(|p| norm(&self.offset(p).0)).fold(0.0, f64::max)
+    }
+
+    /// Price of ∫ distance² dt, in energies.
+    fn deviation_price(&self) -> f64 {
+        DEVIATION_PRICE
+            / (self.penalty.tolerance.max(TIGHTEST).powi(2) * self.points.knots.duration())
+    }
+
+    /// The vector from the nearest point of the reference's path to the place, scaled by the
+    /// levers, and the direction of the path there, of length one, zero at rest.
+    fn offset(&self, place: &Place) -> (Joints, Joints) {
+        let lever = &self.penalty.lever;
+        let stretch = self.reference.duration() / self.points.knots.duration();
+        let mut t = place.t * stretch;
+        let (mut offset, mut along) = (Joints::default(), Joints::default());
+        for _ in 0..NEAREST_STEPS {
+            let (q, qd) = self.reference.at(t);
+            offset = std::array::from_fn(|j| lever[j] * (place.q[j] - q[j]));
+            along = std::array::from_fn(|j| lever[j] * qd[j]);
+            let speed = norm(&along);
+            if speed < SLOWEST {
+                return (offset, Joints::default());
+            }
+            let ahead: f64 = offset.iter().zip(&along).map(|(o, a)| o * a).sum();
+            t = (t + ahead / (speed * speed)).clamp(0.0, self.reference.duration());
+            along = along.map(|a| a / speed);
+        }
+        (offset, along)
+    }
+
+    /// Torque and shares at a place; `near` as for the plant.
+    fn shares(&self, place: &Place, near: &mut usize) -> Linearised {
+        Linearised {
+            torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
+            path: self.plant.path_shares(&place.q, &place.qd, near),
+            torque_by: Default::default(),
+            path_by: Default::default(),
+        }
+    }
+
+    /// Adds the derivatives.
+    fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
+        lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
+        if lin.path.iter().all(|share| *share <= NEAR) {
+            return;
+        }
+        // Positions and speeds move the tool; accelerations do not.
+        for (kind, step) in DIFFERENCES.into_iter().enumerate().take(2) {
+            for joint in self.points.joints.iter().copied() {
+                let mut state = [place.q, place.qd];
+                state[kind][joint] += step;
+                let [q, qd] = state;
+                let next = self.plant.path_shares(&q, &qd, &mut near.clone());
+                for (limit, next) in next.iter().enumerate() {
+                    lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
+                }
+            }
+        }
+    }
+
+    /// The quadratic model of merit and limits around a stream that exceeds limits by `excess`.
+    pub(super) fn quadratic(&self, stream: &Stream, excess: f64) -> Quadratic {
+        let size = self.points.size();
+        // A jerk touches four points.
+        let width = (3 * self.points.joints.len()).min(size);
+        let mut model = Quadratic {
+            matrix: Banded::zeros(size, width),
+            gradient: vec![0.0; size],
+            shares: Vec::new(),
+            broken: VIOLATION_PRICE * excess,
+        };
+        let mut near = 0;
+        let limit = self.plant.torque_limit();
+        for place in places(stream, |piece| self.plant.steps(piece)) {
+            let mut lin = self.shares(&place, &mut near);
+            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
+            if place.seconds > 0.0 || loaded || lin.path.iter().any(|share| *share > NEAR) {
+                self.linearise(&place, near, &mut lin);
+                self.add_place(&place, &lin, &mut model);
+            }
+        }
+        self.add_polygon(stream, &mut model);
+        model
+    }
+
+    /// Adds the limits of the polygon of the points.
+    fn add_polygon(&self, stream: &Stream, model: &mut Quadratic) {
+        let mut near = 0;
+        for (i, edge) in stream.polygon().enumerate() {
+            for tau in EDGE_PLACES {
+                let (q, _, _) = edge.at(tau);
+                let share = self.plant.polygon_share(&q, &mut near);
+                if share <= NEAR {
+                    continue;
+                }
+                let mut weights = Vec::new();
+                for (m, joint) in self.points.joints.iter().enumerate() {
+                    let mut state = q;
+                    state[*joint] += DIFFERENCES[0];
+                    let next = self.plant.polygon_share(&state, &mut near.clone());
+                    let slope = UNIT * (next - share) / DIFFERENCES[0];
+                    for (point, weight) in [(i, 1.0 - tau), (i + 1, tau)] {
+                        let index = self.points.variable(point, m);
+                        weights.extend(index.map(|index| (index, weight * slope)));
+                    }
+                }
+                model.add_share(share, weights.into_iter());
+            }
+        }
+    }
+
+    /// Adds the costs and limits at a place to the model.
+    fn add_place(&self, place: &Place, lin: &Linearised, model: &mut Quadratic) {
+        let weights = self.points.knots.weights(place.piece, place.tau);
+        let mut columns = Vec::new();
+        for (k, i) in weights.support.clone().enumerate() {
+            for (m, joint) in self.points.joints.iter().enumerate() {
+                if let Some(index) = self.points.variable(i, m) {
+                    let [w, w1, w2] =
+                        [weights.position[k], weights.velocity[k], weights.acceleration[k]]
+                            .map(|w| UNIT * w);
+                    let torque = std::array::from_fn(|j| {
+                        w * lin.torque_by[0][*joint][j]
+                            + w1 * lin.torque_by[1][*joint][j]
+                            + w2 * lin.torque_by[2][*joint][j]
+                    });
+                    let path = lin.path_by.map(|by| w * by[0][*joint] + w1 * by[1][*joint]);
+                    columns.push(Column { index, joint: *joint, w, w1, torque, path });
+                }
+            }
+        }
+        let per = place.seconds / self.unit;
+        let (offset, along) = self.offset(place);
+        let price = self.deviation_price() * place.seconds;
+        let lever = &self.penalty.lever;
+        for (n, a) in columns.iter().enumerate() {
+            let mut slope = 2.0 * price * a.w * lever[a.joint] * offset[a.joint];
+            for j in 0..DOF {
+                let work = self.model.work * place.qd[j];
+                slope += per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + work);
+            }
+            let speed = 2.0 * self.model.speed * place.qd[a.joint];
+            let (dry, _) = self.rounded_friction(a.joint, place.qd[a.joint]);
+            let torque = lin.torque[a.joint] + dry;
+            slope += per * a.w1 * (self.model.work * torque + speed);
+            model.gradient[a.index] += slope;
+            for b in &columns[..=n] {
+                let mut curve: f64 = (0..DOF)
+                    .map(|j| 2.0 * per * self.model.loss[j] * a.torque[j] * b.torque[j])
+                    .sum();
+                let mut normal = -along[a.joint] * along[b.joint];
+                if a.joint == b.joint {
+                    normal += 1.0;
+                    let viscous = lin.torque_by[1][a.joint][a.joint].max(0.0);
+                    let (_, dry) = self.rounded_friction(a.joint, place.qd[a.joint]);
+                    let friction = self.model.work * (viscous + 0.5 * dry);
+                    curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
+                }
+                curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
+                let (i, j) = (a.index.max(b.index), a.index.min(b.index));
+                model.matrix.add(i, j, curve);
+            }
+        }
+        self.add_brakes(place, lin, &columns, model);
+        let limit = self.plant.torque_limit();
+        for j in 0..DOF {
+            let share = lin.torque[j] / limit[j];
+            if share.abs() > NEAR {
+                let sign = share.signum();
+                let weights = columns.iter().map(|c| (c.index, sign * c.torque[j] / limit[j]));
+                model.add_share(share.abs(), weights);
+            }
+        }
+        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
+            model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
+        }
+    }
+
+    /// Rounded less exact dry friction of a joint at a velocity, Nm, and the slope of the rounded
+    /// friction, Nms: without the rounding no step would cross the kink of its work at rest.
+    fn rounded_friction(&self, joint: usize, velocity: f64) -> (f64, f64) {
+        let root = velocity.hypot(self.round_speed);
+        let dry = self.dry[joint];
+        (
+            dry * (velocity / root - direction(velocity)),
+            dry * (self.round_speed / root).powi(2) / root,
+        )
+    }
+
+    /// Adds the loss of the powers at a place that are braked away: (√(p² + ε²) − p) / 2 for
+    /// each power p, with its slope and curvature.
+    fn add_brakes(
+        &self,
+        place: &Place,
+        lin: &Linearised,
+        columns: &[Column],
+        model: &mut Quadratic,
+    ) {
+        let lost = (1.0 - self.model.regeneration) * place.seconds / self.unit;
+        if lost <= 0.0 {
+            return;
+        }
+        let round = self.round_power;
+        let powers: Joints = std::array::from_fn(|j| lin.torque[j] * place.qd[j]);
+        let mut add = |group: &[usize]| {
+            let now: f64 = group.iter().map(|j| powers[*j]).sum();
+            let root = now.hypot(round);
+            let slope = 0.5 * lost * (now / root - 1.0);
+            let curvature = 0.5 * lost * (round / root).powi(2) / root;
+            let by: Vec<f64> = columns
+                .iter()
+                .map(|column| {
+                    let force: f64 = group.iter().map(|j| place.qd[*j] * column.torque[*j]).sum();
+                    let own = group.contains(&column.joint);
+                    force + if own { column.w1 * lin.torque[column.joint] } else { 0.0 }
+                })
+                .collect();
+            for (n, a) in columns.iter().enumerate() {
+                model.gradient[a.index] += slope * by[n];
+                for (m, b) in columns[..=n].iter().enumerate() {
+                    let (i, j) = (a.index.max(b.index), a.index.min(b.index));
+                    model.matrix.add(i, j, curvature * by[n] * by[m]);
+                }
+            }
+        };
+        match self.model.sharing {
+            Sharing::Bus => add(&self.points.joints),
+            Sharing::PerJoint => self.points.joints.iter().for_each(|j| add(&[*j])),
+        }
+    }
+}
+
+/// A place of the realised motion.
+struct Place {
+    piece: usize,
+    /// Time in the piece, and weight in the integral, s.
+    tau: f64,
+    seconds: f64,
+    t: f64,
+    q: Joints,
+    qd: Joints,
+    qdd: Joints,
+}
+
+/// Places of a stream, an even number of steps apart on each piece, with the weights of Simpson's
+/// rule at the ends and the middle of pieces.
+fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
+    let of = |(index, piece): (usize, Piece)| {
+        let steps = steps(&piece);
+        (0..=steps)
+            .map(|i| {
+                let tau = piece.length * i as f64 / steps as f64;
+                let (q, qd, qdd) = piece.at(tau);
+                let weight = match 2 * i {
+                    n if n == steps => 4.0 / 6.0,
+                    n if n == 0 || n == 2 * steps => 1.0 / 6.0,
+                    _ => 0.0,
+                };
+                let seconds = weight * piece.length;
+                Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
+            })
+            .collect::<Vec<Place>>()
+    };
+    stream.pieces().enumerate().flat_map(of).collect()
+}
+
+/// Change of the quantities at a place per unit of a variable.
+struct Column {
+    index: usize,
+    joint: usize,
+    /// Change of the joint's position and velocity.
+    w: f64,
+    w1: f64,
+    torque: Joints,
+    path: PathShares,
+}
+
+/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus the price of violated limits.
+pub(super) struct Quadratic {
+    pub(super) matrix: Banded,
+    pub(super) gradient: Vec<f64>,
+    /// Limits of the path and of torque as rows with a price.
+    pub(super) shares: Vec<Row>,
+    /// Price of the violated limits at x = 0.
+    pub(super) broken: f64,
+}
+
+impl Quadratic {
+    /// A share of a limit and how the variables change it.
+    fn add_share(&mut self, share: f64, weights: impl Iterator<Item = (usize, f64)>) {
+        let terms = weights.collect();
+        self.shares.push(Row { terms, bound: 1.0 - ROOM - share, price: VIOLATION_PRICE });
+    }
+}
+
+/// The largest power of a joint, W.
+fn peak_power(stream: &Stream, plant: &impl Plant) -> f64 {
+    let power = |place: &Place| {
+        let torque = plant.full_torque(&place.q, &place.qd, &place.qdd);
+        (0..DOF).map(|j| (torque[j] * place.qd[j]).abs()).fold(0.0, f64::max)
+    };
+    places(stream, |_| SIMPSON).iter().map(power).fold(0.0, f64::max)
+}
+
+/// The largest speed of a joint, rad/s.
+fn peak_speed(stream: &Stream) -> f64 {
+    stream.max_velocity().into_iter().fold(0.0, f64::max)
+}
+
+fn norm(vector: &Joints) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
