@@ -6,6 +6,7 @@ mod fixes;
 mod formats;
 mod hostile;
 mod manuals;
+mod page;
 mod plants;
 mod savings;
 mod schema;

@@ -5,11 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Isometry3, Vector3};
 
 use super::flow::{Class, Flow, Next, Place, Through};
+use super::group::Group;
 use super::quiet::Quiet;
+use super::saving::Weighed;
 use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
-use super::trace::{Deed, Done, executions};
-use super::weigh::{Change, Cycle, Difference, Weighed, difference, weigh};
+use super::trace::{self, Deed, Done, Recording, executions};
+use super::weigh::{Change, Cycle, Difference, difference, weigh};
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::Note;
 use crate::rapid::ir::graph::Step as GraphStep;
@@ -86,18 +88,24 @@ impl Corner {
 }
 
 impl<'c> Context<'c> {
-    /// Looks at a program.
-    #[expect(clippy::too_many_arguments, reason = "the parts of one value, named by it")]
+    /// Examines the program of a group, with its simulated cycle, or else with the recording of a
+    /// run without a robot.
     pub fn new(
         files: &'c [SourceFile],
-        program: &'c Program,
-        entry: Option<RoutineId>,
         model: Option<&'c Model>,
+        program: &'c Program,
+        group: &'c Group,
         cycle: Option<&'c Cycle>,
-        trace: Vec<Done<'c>>,
-        unresolved: &'c [Note],
-        system: Option<&'c System>,
+        recording: Option<&'c Recording>,
     ) -> Context<'c> {
+        let entry = program.entry(&group.entry);
+        let (trace, unresolved): (Vec<Done<'c>>, &[Note]) = match (cycle, recording) {
+            (Some(cycle), _) => {
+                (trace::of_simulation(&cycle.simulation), &cycle.simulation.unresolved)
+            }
+            (None, Some(recording)) => (recording.trace(), &recording.notes),
+            (None, None) => (Vec::new(), &[]),
+        };
         let flow = Flow::new(program, entry);
         let quiet = Quiet::new(program);
         let executed = executions(&trace);
@@ -141,7 +149,7 @@ impl<'c> Context<'c> {
             flow,
             quiet,
             sites,
-            system,
+            system: group.system.as_ref(),
             by_place,
             before,
             starts,
@@ -231,11 +239,6 @@ impl<'c> Context<'c> {
         moves.collect::<Option<Vec<usize>>>().filter(|moves| !moves.is_empty())
     }
 
-    /// The movement statement at a place.
-    pub fn site_at(&self, place: Place) -> Option<usize> {
-        self.by_place.get(&place).copied()
-    }
-
     /// The movement statement of a span.
     pub fn site_of(&self, span: Span) -> Option<usize> {
         self.sites.binary_search_by_key(&span, |site| site.stmt.span).ok()
@@ -254,11 +257,6 @@ impl<'c> Context<'c> {
     /// The line that a span begins in, from 1.
     pub fn line(&self, span: Span) -> u32 {
         self.files[span.file.0 as usize].position(span.start).line
-    }
-
-    /// Name of the file of a span.
-    pub fn path(&self, span: Span) -> &'c str {
-        &self.files[span.file.0 as usize].path
     }
 
     /// The simulated movement of a step of the trace.

@@ -1,7 +1,7 @@
 //! Changes of the text that rules propose.
 
 use super::context::Context;
-use super::finding::{Applicability, Fix};
+use super::rule::{Applicability, Fix};
 use super::site::Site;
 use crate::rapid::text::{Edit, Span};
 

@@ -6,48 +6,22 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::context::Context;
-use super::finding::Finding;
+use super::group::Group;
+use super::job::Job;
 use super::register::ALL;
+use super::rule::Finding;
 use super::rules::unused_suppression;
-use super::settings::Settings;
 use super::suppress::{Suppression, suppressions};
-use super::system::System;
 use super::trace;
 use super::weigh::Cycle;
 use crate::arm::robot::Model;
-use crate::rapid::ir::exec::Note;
 use crate::rapid::ir::hir::Module;
 use crate::rapid::ir::lower;
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::syntax;
-use crate::rapid::text::{SourceFile, Span};
+use crate::rapid::text::Span;
 use crate::retime::energy::account;
-use crate::retime::motion::{Options, simulate};
-
-/// Files that may belong together, and how they run.
-#[derive(Clone, Debug)]
-pub struct Group {
-    /// Ids of the files.
-    pub files: Vec<usize>,
-    /// The routine that starts the program.
-    pub entry: String,
-    /// The configuration of their controller.
-    pub system: Option<System>,
-}
-
-/// What is linted.
-pub struct Job<'j> {
-    /// The files; their ids count from 0.
-    pub files: &'j [SourceFile],
-    /// Which belong together.
-    pub groups: Vec<Group>,
-    /// The robot.
-    pub model: Option<&'j Model>,
-    /// How programs are simulated.
-    pub options: Options,
-    /// What the user asks.
-    pub settings: &'j Settings,
-}
+use crate::retime::motion::simulate;
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -221,23 +195,8 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         (None, Some(entry)) => Some(trace::record(&program, entry)),
         _ => None,
     };
-    let notes: Vec<Note> = recording.iter().flat_map(|it| it.notes.iter().cloned()).collect();
-    let unresolved = cycle.as_ref().map_or(&notes, |cycle| &cycle.simulation.unresolved);
-    let trace = match (&cycle, &recording) {
-        (Some(cycle), _) => trace::of_simulation(&cycle.simulation),
-        (None, Some(recording)) => recording.trace(),
-        (None, None) => Vec::new(),
-    };
-    let context = Context::new(
-        job.files,
-        &program,
-        entry,
-        job.model,
-        cycle.as_ref(),
-        trace,
-        unresolved,
-        unit.system.as_ref(),
-    );
+    let context =
+        Context::new(job.files, job.model, &program, unit, cycle.as_ref(), recording.as_ref());
     let mut findings = Vec::new();
     for rule in ALL.iter().filter(|rule| job.settings.selects(rule)) {
         (rule.check)(&context, &mut findings);
@@ -258,7 +217,8 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         .filter(|_| dynamics)
         .map(|cycle| cycle.account.total.energy_j())
         .filter(|energy| energy.is_finite());
-    let report = Report { findings, cycle_energy_j: energy, unresolved: unresolved.len() };
+    let unresolved = context.unresolved.len();
+    let report = Report { findings, cycle_energy_j: energy, unresolved };
     (report, cycle)
 }
 
@@ -298,7 +258,7 @@ fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<
             let codes = suppression.codes.iter().enumerate();
             let unused = codes.filter(|(code, _)| !used.contains(&(*file, index, *code)));
             let unused: Vec<&str> = unused.map(|(_, code)| code.as_str()).collect();
-            unused_suppression::judge(job, suppression, &unused, findings);
+            unused_suppression::judge(job, &ALL, suppression, &unused, findings);
         }
     }
 }

@@ -1,15 +1,14 @@
 //! Applies fixes, and takes them back where the cycle does not get better by them.
 
-use super::engine::{Examined, Job, cycles, examine, lint};
-use super::finding::{Applicability, Finding};
-use super::rule::Family;
+use super::engine::{Examined, Report, cycles, examine, lint};
+use super::job::Job;
+use super::rule::{Applicability, Family, Finding};
+use super::trace::{self, Deed};
 use super::weigh::Cycle;
-use super::{Report, trace};
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, FileId, SourceFile, apply};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::joint_path::{DOF, Joints};
-use crate::tool::lint::trace::Deed;
 
 /// Rounds of fixing what was found after the last one.
 const MOST_ROUNDS: usize = 40;

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use super::finding::{Per, Saving};
+use super::saving::{Saving, Weighed};
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::{Movement, Output, Wait};
@@ -77,36 +77,6 @@ impl Cycle {
     }
 }
 
-/// A change saves nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it saves nothing; leave it as it is")]
-pub struct Worthless;
-
-/// What came out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Weighed {
-    /// Nothing can be said.
-    Unknown,
-    /// It saves nothing, or may as well cost.
-    Nothing,
-    /// It saves this.
-    Saves(Saving),
-}
-
-impl Weighed {
-    /// The saving, if there is one.
-    ///
-    /// # Errors
-    /// The change saves nothing.
-    pub fn saving(self) -> Result<Option<Saving>, Worthless> {
-        match self {
-            Weighed::Unknown => Ok(None),
-            Weighed::Nothing => Err(Worthless),
-            Weighed::Saves(saving) => Ok(Some(saving)),
-        }
-    }
-}
-
 /// What becomes of a step whose statement was asked for.
 pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 
@@ -136,7 +106,7 @@ impl Difference {
         if low_j <= 0.0 {
             return Weighed::Nothing;
         }
-        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s, per: Per::Cycle })
+        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s })
     }
 }
 

@@ -34,9 +34,9 @@
 use std::sync::Arc;
 
 use super::super::context::Context;
-use super::super::finding::{Applicability, Finding, Fix};
+use super::super::rule::{Applicability, Finding, Fix};
+use super::super::saving::Weighed;
 use super::super::trace::Deed;
-use super::super::weigh::Weighed;
 use super::racing_to_wait::{run_of, slower_run, waits_behind};
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::rapid::text::{Edit, Span};

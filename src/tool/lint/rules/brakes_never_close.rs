@@ -28,7 +28,7 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::Deed;
 use crate::rapid::text::Span;
 use crate::retime::energy::brakes::spared_j;

@@ -30,7 +30,7 @@
 //! The robot starts where the simulation does.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::{Deed, Done};
 use crate::arm::kinematics::{Conf, ik_conf};
 use crate::rapid::ir::instructions::MoveForm;

@@ -37,8 +37,8 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
 use super::super::flow::Class;
+use super::super::rule::Finding;
 use crate::rapid::ir::graph::Step;
 use crate::rapid::ir::hir::{Callee, RoutineKind, Scope, Stmt, StmtKind};
 use crate::rapid::ir::instructions::MoveForm;

@@ -33,7 +33,7 @@
 //! else.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::move_to_same_place::same_goal;
 use super::there_and_back::only_next;
 use crate::rapid::text::Span;

@@ -33,9 +33,9 @@
 //! There is room for the way to the other pose.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use super::super::trace::{Deed, executions};
-use super::super::weigh::Weighed;
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::Model;

@@ -26,7 +26,7 @@
 //! What the configuration names only where it declares signals is used by nothing in it.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::words;
 
 rule!("EW802", "energy-signal-unused", System, Backup, Info, "energy_signal_unused.rs");

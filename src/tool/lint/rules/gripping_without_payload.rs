@@ -45,7 +45,7 @@
 use std::collections::BTreeMap;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::{Deed, Done};
 use crate::rapid::ir::instructions::MoveForm;
 

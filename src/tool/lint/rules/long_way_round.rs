@@ -32,9 +32,9 @@ use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace};
-use super::super::finding::{Applicability, Finding};
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use super::super::site::Site;
-use super::super::weigh::Weighed;
 use super::super::words;
 use crate::rapid::ir::hir::{ArgKind, Expr, ExprKind, Ident};
 use crate::rapid::ir::movement::{Movement, RobTarget, Target};

@@ -33,9 +33,9 @@
 
 use super::super::context::Context;
 use super::super::edits::replace;
-use super::super::finding::{Applicability, Finding, Fix};
+use super::super::rule::{Applicability, Finding, Fix};
+use super::super::saving::Weighed;
 use super::super::trace::Deed;
-use super::super::weigh::Weighed;
 use super::accelerated_to_wait::with_acceleration;
 use super::setting_never_restored::percent;
 use crate::rapid::ir::hir::ArgKind;

@@ -34,9 +34,9 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use super::super::trace::Deed;
-use super::super::weigh::Weighed;
 use crate::rapid::text::Span;
 use crate::retime::energy::brakes::spared_j;
 use crate::retime::energy::power::holding_w;

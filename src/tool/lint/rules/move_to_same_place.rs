@@ -31,8 +31,8 @@
 
 use super::super::context::Context;
 use super::super::edits::{fix, remove};
-use super::super::finding::{Applicability, Finding};
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use crate::rapid::ir::hir::{Expr, ExprKind};
 use crate::rapid::ir::program::Symbol;
 

@@ -29,9 +29,9 @@
 //! The robot has a spherical wrist. First movements are not judged: where they begin is assumed.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use super::super::trace::Deed;
-use super::super::weigh::Weighed;
 use super::line_in_free_air::as_joint;
 use crate::arm::kinematics::singularity;
 use crate::rapid::ir::instructions::MoveForm;

@@ -34,10 +34,10 @@
 //! the program also ends and the robot stops.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use super::super::site::{Site, facts_of};
 use super::super::trace::Deed;
-use super::super::weigh::Weighed;
 use crate::rapid::ir::graph::Step as GraphStep;
 use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
 use crate::rapid::ir::instructions::MoveForm;

@@ -35,7 +35,7 @@
 //! The program is complete: it has its entry.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::ArgKind;
 use crate::rapid::ir::value::Datum;
 

@@ -33,8 +33,8 @@
 //! A name that nothing declares is an input.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
 use super::super::flow::Class;
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::{Block, Callee, Expr, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 

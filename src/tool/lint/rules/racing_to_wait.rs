@@ -33,11 +33,11 @@
 
 use super::super::context::Context;
 use super::super::edits::{replace, slower};
-use super::super::finding::{Applicability, Finding, Fix};
 use super::super::flow::{Next, Through};
+use super::super::rule::{Applicability, Finding, Fix};
+use super::super::saving::Weighed;
 use super::super::site::Site;
 use super::super::trace::Deed;
-use super::super::weigh::Weighed;
 use crate::rapid::ir::hir::{Callee, StmtKind};
 use crate::rapid::ir::movement::{Movement, Speed};
 use crate::rapid::text::Span;

@@ -29,8 +29,8 @@
 //! The rate of turning is that of the speed data.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::weigh::Weighed;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use crate::rapid::ir::instructions::MoveForm;
 use crate::rapid::ir::movement::{Movement, Speed};
 use crate::retime::motion::Step;

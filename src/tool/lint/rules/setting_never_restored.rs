@@ -34,7 +34,7 @@
 //! The program is complete: it has its entry.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::Deed;
 use crate::rapid::ir::hir::{ArgKind, Call};
 use crate::rapid::ir::movement::{Movement, Settings};

@@ -34,7 +34,7 @@
 //! The input comes when `--input` or the configuration says, whenever the outputs are set.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::Deed;
 use super::racing_to_wait::slower_run;
 use crate::rapid::text::Span;

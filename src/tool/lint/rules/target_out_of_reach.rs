@@ -32,7 +32,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::{Deed, record};
 use crate::arm::kinematics::{IkError, ik_near, limits_ok};
 use crate::arm::robot::Model;

@@ -33,8 +33,8 @@
 //! Ways that are gone several times are left alone.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
 use super::super::flow::Through;
+use super::super::rule::Finding;
 use super::move_to_same_place::same_goal;
 use crate::rapid::ir::instructions::MoveForm;
 

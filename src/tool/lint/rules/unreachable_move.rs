@@ -29,7 +29,7 @@
 //! Handlers can always be reached: every statement may raise an error.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 
 rule!("EW701", "unreachable-move", Program, Text, Warning, "unreachable_move.rs");
 

@@ -31,8 +31,8 @@
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace, slower};
-use super::super::finding::{Applicability, Finding};
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use super::racing_to_wait::{waits_behind, with_speed};
 use crate::arm::dynamics::{Data, Load};
 use crate::arm::robot::Model;

@@ -29,7 +29,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::trace::{Deed, record};
 use crate::rapid::ir::instructions::MoveForm;
 use crate::rapid::text::Span;

@@ -29,15 +29,13 @@
 //! and how the robot moves: with one it may find what it does not find without.
 
 use super::super::edits::{fix, replace};
-use super::super::engine::Job;
-use super::super::finding::{Applicability, Finding};
-use super::super::register::ALL;
-use super::super::rule::{Family, Needs, Rule};
+use super::super::job::Job;
+use super::super::rule::{Applicability, Family, Finding, Needs, Rule};
 use super::super::suppress::Suppression;
 use crate::rapid::diagnostics::Severity;
 
 /// A comment takes back a finding that is not there.
-pub(in crate::tool::lint) static RULE: Rule = Rule {
+pub(crate) static RULE: Rule = Rule {
     code: "EW001",
     name: "unused-suppression",
     family: Family::Comments,
@@ -49,13 +47,14 @@ pub(in crate::tool::lint) static RULE: Rule = Rule {
 };
 
 /// Adds a finding for the codes of a comment that took nothing back, as far as their rules ran.
-pub(in crate::tool::lint) fn judge(
+pub(crate) fn judge(
     job: &Job<'_>,
+    rules: &[&'static Rule],
     suppression: &Suppression,
     unused: &[&str],
     findings: &mut Vec<Finding>,
 ) {
-    let meant = |code: &str| ALL.iter().filter(|rule| rule.is_meant(code)).collect::<Vec<_>>();
+    let meant = |code: &str| rules.iter().filter(|rule| rule.is_meant(code)).collect::<Vec<_>>();
     let idle = |rule: &Rule| {
         !job.settings.selects(rule)
             || rule.needs == Needs::Backup

@@ -54,7 +54,7 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
         "saving_low_j": saving.map(|s| s.low_j),
         "saving_high_j": saving.map(|s| s.high_j),
         "saving_interval_j": saving.map(|s| [s.low_j, s.high_j]),
-        "per": saving.map_or("execution", |s| s.per.name()),
+        "per": if saving.is_some() { "cycle" } else { "execution" },
         "assumptions": finding.assumptions,
         "fix": fix,
     })
