@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use super::backup::motion_configuration;
 use super::choice;
 use super::input::{self, Input};
-use super::refresh::Streams;
+use super::streams::Streams;
 use crate::arm::effects;
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::{self, Model};

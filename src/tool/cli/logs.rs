@@ -14,6 +14,7 @@ use crate::learn::identify::{
     synchronised, torques, weight_factor,
 };
 use crate::learn::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
+use crate::tool::report::identify::LogRecord;
 
 /// Share of a log that is held out where there is no other one, and repetitions of which none can
 /// be.
@@ -34,8 +35,8 @@ pub struct Read {
 
 /// A log ready to be used.
 pub struct Ready {
-    /// Path as given, SHA-256, usable rows, rows left out.
-    pub record: (String, String, usize, usize),
+    /// What was read.
+    pub record: LogRecord,
     /// The instants.
     pub samples: Samples,
     /// Where the torques come from.
@@ -51,8 +52,6 @@ pub struct Ready {
 pub struct Reader<'a> {
     /// The robot.
     pub model: &'a Model,
-    /// Columns under other names.
-    pub map: &'a ColumnMap,
     /// No notes on standard error.
     pub quiet: bool,
     /// What a reader of the result has to know of the logs.
@@ -127,7 +126,7 @@ impl Reader<'_> {
             self.tell(format!("{shown}: {text}"));
         }
         Ok(Ready {
-            record: (shown, hash, usable, left_out),
+            record: LogRecord { path: shown, hash, rows: usable, left_out },
             samples,
             origin: torque.origin,
             log,
@@ -162,7 +161,7 @@ pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
         let (record, origin) = (of.record.clone(), of.origin.clone());
         Ok(Ready { record, samples, origin, log, weight: of.weight })
     };
-    let shown = &of.record.0;
+    let shown = &of.record.path;
     Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
 }
 

@@ -12,7 +12,7 @@ use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::written::{now, outside, whole_backup, write_folder, write_in_place};
-use super::{backinfo, input, listing, output, refresh, undo};
+use super::{backinfo, input, listing, output, streams, undo};
 use crate::arm::kinematics::{self, Obstacle, Plane};
 use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
@@ -217,7 +217,7 @@ pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bail!("refresh takes nothing back: joulepath optimize --undo does");
     }
     let mut input = input::read(&args.program.cell.paths)?;
-    let streams = refresh::take_out(&mut input)?;
+    let streams = streams::take_out(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
     work(args, &Job { streams, ..job })
 }
@@ -247,7 +247,7 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
                     .to_owned(),
             );
         }
-        refresh::hand_on(job, &mut result);
+        job.streams.restate(&mut result);
         listing::add(&mut result, &job.input, &job.files);
         if lists {
             backinfo::add(&mut result, &job.input);

@@ -1,10 +1,10 @@
 //! A diagnosis as a page: what was found, where, and how far the gap shrinks.
 
 use serde::Serialize;
-use tera::{Context, Tera};
+use tera::Context;
 
-use super::ReportError;
 use super::format::{INTERVAL, fixed};
+use super::page::{ReportError, render};
 use super::reliability::reliability;
 use crate::examine::blind::Bin;
 use crate::gap::{
@@ -134,7 +134,6 @@ pub fn diagnose_report(
     // Regimes of joints are in the table of who takes what away.
     let whole = |of: &&Place| of.joint.is_none() || of.regime == "all";
     let places: Vec<PlaceRow> = found.places.iter().filter(whole).map(place).collect();
-    context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", robot);
     context.insert("verdict", sentence(found.verdict));
     context.insert("heldout", &heldout(basis));
@@ -156,13 +155,7 @@ pub fn diagnose_report(
     context.insert("reliability", &reliability(&COUNTED.map(counted)));
     context.insert("error", &fixed(100.0 * found.error, 2));
     context.insert("model", &basis.model);
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("report.css", include_str!("../../../../templates/report.css")),
-        ("reliability.html", include_str!("../../../../templates/reliability.html.tera")),
-        ("diagnose.html", include_str!("../../../../templates/diagnose.html.tera")),
-    ])?;
-    Ok(tera.render("diagnose.html", &context)?)
+    render(include_str!("../../../../templates/diagnose.html.tera"), context)
 }
 
 /// What took no part.
