@@ -3,14 +3,13 @@
 mod channels;
 mod pictures;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
@@ -111,11 +110,7 @@ enum TrustArg {
 /// A log or a robot that can't be used, or output that can't be written.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = diagnosed(args)?;
-    let mut out = std::io::stdout().lock();
-    match args.format {
-        Format::Json => writeln!(out, "{:#}", report::json(&found, &basis))?,
-        Format::Text => write!(out, "{}", report::text(&found, &basis))?,
-    }
+    common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
@@ -218,7 +213,7 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     let of_power = diagnose_power(&model, &before, &now, &graded, &may);
     let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::runs(logs));
     let of_runs = diagnose_runs(&model, &before, &now, &graded, &may);
-    // What takes a while is not to fail at its end.
+    // The outputs have to be writable before the search, which takes long.
     for path in args.out.iter().chain(&args.report) {
         output::stage(path, &[])?;
     }
@@ -375,8 +370,7 @@ fn of_logs(
 
 /// A bar over the phases of a diagnosis; nothing where standard error is no terminal.
 fn progress(quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(Some(Phase::ALL.len() as u64), target);
+    let bar = common::progress(quiet, Some(Phase::ALL.len() as u64));
     let style = ProgressStyle::with_template("{elapsed:>4} {bar:20} {pos}/{len} {msg}");
     if let Ok(style) = style {
         bar.set_style(style);

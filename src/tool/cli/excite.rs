@@ -7,7 +7,6 @@ mod outputs;
 
 pub use args::ExciteArgs;
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use anyhow::bail;
@@ -17,7 +16,7 @@ use self::area::{keep_out, numbers, plane};
 use self::args::{Spacing, Variant, WIDEST};
 use self::motion::{FINE, along_plateaus, designed};
 use self::outputs::{json, text, write};
-use super::common::{self, Format};
+use super::common;
 use super::load;
 use crate::arm::effects;
 use crate::arm::kinematics::{Body, Obstacle, Plane};
@@ -40,9 +39,7 @@ const LEAST_POINTS: f64 = 6.0;
 /// A robot without limits, options that make no sense, or output that can't be written.
 pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load_estimated(&args.robot)?;
-    if model.dof != 6 {
-        bail!("{} has {} joints; RAPID is written for robots with 6", model.name, model.dof);
-    }
+    common::require_six_joints(&model, "RAPID is written for robots with 6")?;
     let settings = settings(args, &model)?;
     for text in model.assumed() {
         common::note(args.quiet, &text);
@@ -55,11 +52,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
         _ => designed(args, &model, &settings, &body)?,
     };
     let outputs = write(args, &model, &settings.load, &motion)?;
-    let mut out = std::io::stdout().lock();
-    match args.format {
-        Format::Json => writeln!(out, "{:#}", json(&motion, &outputs))?,
-        Format::Text => write!(out, "{}", text(&motion, &outputs))?,
-    }
+    common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -129,7 +122,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         Variant::Payload => (Focus::Payload, args.base_frequency, harmonics, args.speed_share),
         _ => (Focus::All, args.base_frequency, harmonics, args.speed_share),
     };
-    let load = load::of_option(args.load.as_deref())?;
+    let load = load::from_option(args.load.as_deref())?;
     Ok(Design {
         focus,
         base_frequency,

@@ -1,6 +1,5 @@
 //! `joulepath identify`: a dynamic model from measured logs.
 
-use std::io::Write as _;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -183,7 +182,7 @@ struct Data {
     /// All logs of the fit as one.
     samples: Samples,
     validation: Vec<Samples>,
-    /// Factor between the torques and the weight of the robot file's masses, where it is strange.
+    /// Ratio of the logged torques to the weight of the robot file's masses, where it is implausible.
     weight: Option<f64>,
 }
 
@@ -289,15 +288,15 @@ fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
     basis.notes.push(text);
 }
 
-/// Share of a torque that no good model misses.
+/// Largest relative residual of a good model.
 const MISSED: f64 = 0.35;
-/// Share of a torque that is as good as nothing.
+/// Relative residual that counts as zero.
 const NOTHING: f64 = 1e-3;
 
-/// No link of an arm has such a mass \[kg\].
+/// Largest plausible mass of a link \[kg\].
 const HEAVIEST: f64 = 1500.0;
 
-/// What a reader should not overlook.
+/// Warnings on the quality of the result.
 fn doubts(found: &Identified) -> Vec<String> {
     let mut texts = Vec::new();
     let (with, without) = match (&found.validation, &found.unconstrained_validation) {
@@ -416,10 +415,10 @@ fn write(
             .context("the identified numbers are no robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;
     }
-    let mut out = std::io::stdout().lock();
-    match args.format {
-        Format::Json => writeln!(out, "{:#}", report::json(found, basis, &path))?,
-        Format::Text => write!(out, "{}", report::text(found, basis))?,
-    }
+    common::print(
+        args.format,
+        || report::json(found, basis, &path),
+        || report::text(found, basis),
+    )?;
     Ok(ExitCode::SUCCESS)
 }

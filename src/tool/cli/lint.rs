@@ -171,9 +171,7 @@ impl Setup {
     /// Nothing can be read, or an option is wrong.
     pub(super) fn new(args: &LintArgs) -> anyhow::Result<Setup> {
         let input = input::read(&args.cell.paths)?;
-        for unreadable in &input.unreadable {
-            note(args.cell.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
-        }
+        common::note_unreadable(args.cell.quiet, &input);
         for file in input.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
             let path = &file.source.path;
             note(args.cell.quiet, &format!("'{path}' is an encoded module: nothing in it is seen"));
@@ -238,13 +236,7 @@ fn robot(
         named.map(|(root, model)| common::as_configured(root, model, args.quiet))
     };
     let Some(model) = model else { return Ok(None) };
-    if model.dof != 6 {
-        bail!(
-            "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
-            model.name,
-            model.dof
-        );
-    }
+    common::require_six_joints(&model, common::RUN_SIX_JOINTS)?;
     Ok(Some(model))
 }
 

@@ -16,9 +16,9 @@ use crate::learn::identify::{
 use crate::learn::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
 use crate::tool::report::identify::LogRecord;
 
-/// Share of a log that is held out where there is no other one, and repetitions of which none can
-/// be.
+/// Share of a single log that is held out.
 const HELD_OUT: f64 = 0.3;
+/// Most repetitions of which none is held out as a whole.
 const LEAST_CYCLES: usize = 3;
 
 /// A log that was read.
@@ -43,8 +43,7 @@ pub struct Ready {
     pub origin: String,
     /// The usable rows.
     pub log: Log,
-    /// How many times the weight of the robot file's masses the torques carry, where that is
-    /// strange.
+    /// Ratio of the logged torques to the weight of the robot file's masses, where it is implausible.
     pub weight: Option<f64>,
 }
 
@@ -54,7 +53,7 @@ pub struct Reader<'a> {
     pub model: &'a Model,
     /// No notes on standard error.
     pub quiet: bool,
-    /// What a reader of the result has to know of the logs.
+    /// Notes on the logs, for the result.
     pub notes: Vec<String>,
 }
 
@@ -222,7 +221,7 @@ impl io::Read for Hashed {
     }
 }
 
-/// Torques that do not carry the masses of the robot file.
+/// What torques mean that do not fit the weight of the robot file's masses.
 fn of_weight(factor: f64, joint: usize) -> String {
     let times = |times: f64| if times < 10.0 { times } else { times.round() };
     if factor < 1.0 {
@@ -242,7 +241,7 @@ fn of_weight(factor: f64, joint: usize) -> String {
     }
 }
 
-/// A period that was given and is not that of the motion.
+/// A note where the given period is not that of the motion.
 fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
     let given = period?;
     match source {
@@ -262,10 +261,10 @@ fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
 /// Share by which a period may differ from the one that was given.
 const OTHER_PERIOD: f64 = 0.01;
 
-/// Rows of one kind that are told one by one.
+/// Rows left out for one reason that are listed one by one.
 const TOLD: usize = 3;
 
-/// What was left out; of many rows for one reason the first ones and the number of the others.
+/// The rows left out; of many for one reason the first ones and the number of the others.
 fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
     // Numbers differ from row to row, the words tell the kind.
     let kind = |reason: &str| -> String {

@@ -1,6 +1,5 @@
 //! `joulepath simulate`: a program on the virtual controller.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -87,19 +86,15 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     for text in &notes {
         common::note(args.program.cell.quiet, text);
     }
-    let mut out = std::io::stdout().lock();
-    match args.program.format {
-        Format::Json => {
-            let value = report::json::simulation(simulated, places, &notes);
-            serde_json::to_writer_pretty(&mut out, &value)?;
-            writeln!(out)?;
-        }
-        Format::Text => {
-            for text in report::text::notes(&job.model, places, &simulation) {
-                common::note(args.program.cell.quiet, &text);
-            }
-            write!(out, "{}", report::text::simulation(simulated, places))?;
+    if args.program.format == Format::Text {
+        for text in report::text::notes(&job.model, places, &simulation) {
+            common::note(args.program.cell.quiet, &text);
         }
     }
+    common::print(
+        args.program.format,
+        || report::json::simulation(simulated, places, &notes),
+        || report::text::simulation(simulated, places),
+    )?;
     Ok(ExitCode::SUCCESS)
 }

@@ -30,13 +30,12 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// Energy of the cycles that were simulated, J; `None` where nothing was, or without dynamics.
     pub cycle_energy_j: Option<f64>,
-    /// Places that could not be worked out.
+    /// Number of places that could not be resolved.
     pub unresolved: usize,
 }
 
 impl Report {
-    /// What all findings with a saving save, J. Findings at one place are alternatives: the
-    /// largest of them counts.
+    /// Sum of the savings, J. Findings at one place are alternatives: only the largest counts.
     #[must_use]
     pub fn saving_j(&self) -> f64 {
         let mut best: BTreeMap<_, f64> = BTreeMap::new();
@@ -56,9 +55,9 @@ struct Read {
     suppressions: Vec<Suppression>,
 }
 
-/// What was read of files, kept from one look at them to the next.
+/// The parsed files of the last examination: a file that did not change is not parsed again.
 #[derive(Default)]
-pub struct Kept {
+pub struct ReadCache {
     files: Vec<(Vec<u8>, Arc<Read>)>,
 }
 
@@ -73,26 +72,26 @@ pub struct Examined {
     pub programs: Vec<Vec<usize>>,
 }
 
-/// Looks at all programs.
+/// Lints all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
-    let read = read(job, &Kept::default());
+    let read = read(job, &ReadCache::default());
     // No cycle is kept: those of a plant's programs would fill the memory.
     let report = |unit: &Group| one(job, unit, &read).0;
     merged(units(job, &read).par_iter().map(report).collect())
 }
 
-/// Looks at all programs, and gives their cycles too.
+/// Lints all programs, and gives their cycles too.
 #[must_use]
 pub fn examine(job: &Job<'_>) -> Examined {
-    let read = read(job, &Kept::default());
+    let read = read(job, &ReadCache::default());
     let units = units(job, &read);
     examine_units(job, &units, &read)
 }
 
-/// Looks at the programs that hold a file; reads files anew only where they have changed.
+/// Lints the programs that hold a file; only changed files are parsed again.
 #[must_use]
-pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut Kept) -> Examined {
+pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut ReadCache) -> Examined {
     let read = read(job, kept);
     let bytes = job.files.iter().map(|file| file.bytes.clone());
     kept.files = bytes.zip(read.iter().cloned()).collect();
@@ -122,7 +121,7 @@ fn merged(reports: Vec<Report>) -> Report {
     all
 }
 
-fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
+fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<Read>> {
     job.files
         .par_iter()
         .enumerate()
@@ -143,7 +142,7 @@ fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
 /// an entry.
 #[must_use]
 pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
-    let read = read(job, &Kept::default());
+    let read = read(job, &ReadCache::default());
     let cycle = |unit: &Group| {
         let modules =
             unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
@@ -211,7 +210,7 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         worth && !settings.ignores_in(finding.rule, path)
     });
     let dynamics = job.model.is_some_and(Model::has_dynamics);
-    // A wait without an end has no energy that others could be added to.
+    // A wait without an end has an infinite energy, which cannot be added up.
     let energy = cycle
         .as_ref()
         .filter(|_| dynamics)
@@ -229,7 +228,7 @@ fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
     Some(Cycle::new(model, simulation, account, job.options.clone()))
 }
 
-/// Drops what comments take back, and adds what comments take back in vain.
+/// Drops the findings that comments suppress, and adds findings for comments that suppress none.
 fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
     // By file, comment and code of the comment.
     let mut used: BTreeSet<(usize, usize, usize)> = BTreeSet::new();

@@ -120,9 +120,9 @@ pub struct Finding {
     pub span: Span,
     /// What is wrong there, without the saving: lower case, no full stop.
     pub message: String,
-    /// The change that the saving is of, as one says it: "`z50` in place of `fine`".
+    /// The change that saves, in words: "`z50` in place of `fine`".
     pub change: String,
-    /// What the change saves in a cycle; none where nothing honest can be said.
+    /// What the change saves in a cycle; `None` where it cannot be simulated.
     pub saving: Option<Saving>,
     /// What it rests on.
     pub assumptions: Vec<String>,
@@ -147,9 +147,9 @@ impl Finding {
         }
     }
 
-    /// The message with what the change saves and how to see that again.
+    /// The message, with what the change saves and how to reproduce it.
     #[must_use]
-    pub fn told(&self) -> String {
+    pub fn full_message(&self) -> String {
         let Some(saving) = &self.saving else { return self.message.clone() };
         let time = match saving.time_s {
             t if t >= 0.0005 => format!(" and {t:.3} s"),

@@ -5,10 +5,9 @@
 pub struct Saving {
     /// J.
     pub energy_j: f64,
-    /// J: 90 % of the plausible robots save more than `low_j` and less than `high_j`, 5 % on each side
-    /// left out.
+    /// Lower end of the interval that holds 90 % of the plausible robots (5 % on each side left out), J.
     pub low_j: f64,
-    /// As before.
+    /// Its upper end, J.
     pub high_j: f64,
     /// s; negative where the change takes longer.
     pub time_s: f64,
@@ -17,14 +16,14 @@ pub struct Saving {
 /// A change saves nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it saves nothing; leave it as it is")]
-pub struct Worthless;
+pub struct SavesNothing;
 
-/// What came out.
+/// The outcome of weighing a change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weighed {
-    /// Nothing can be said.
+    /// It cannot be simulated.
     Unknown,
-    /// It saves nothing, or may as well cost.
+    /// It saves nothing, or its interval reaches below zero.
     Nothing,
     /// It saves this.
     Saves(Saving),
@@ -35,10 +34,10 @@ impl Weighed {
     ///
     /// # Errors
     /// The change saves nothing.
-    pub fn saving(self) -> Result<Option<Saving>, Worthless> {
+    pub fn saving(self) -> Result<Option<Saving>, SavesNothing> {
         match self {
             Weighed::Unknown => Ok(None),
-            Weighed::Nothing => Err(Worthless),
+            Weighed::Nothing => Err(SavesNothing),
             Weighed::Saves(saving) => Ok(Some(saving)),
         }
     }

@@ -1,4 +1,4 @@
-//! Stop points that could be passed: what several rules ask of them.
+//! Stop points that could be passed: conditions that several rules share.
 
 use super::context::{Context, Corner};
 use super::edits::NamedZone;
@@ -13,7 +13,7 @@ const STRAIGHT: f64 = 0.005;
 /// Orientations that differ by less are one, rad.
 const UNTURNED: f64 = 0.002;
 
-/// Whether a movement and all behind it are one line.
+/// Whether a movement and all that follow it lie on one line.
 pub(super) fn is_in_line(
     context: &Context<'_>,
     index: usize,
@@ -28,7 +28,7 @@ pub(super) fn is_in_line(
         && corner.room() > 0.0
 }
 
-/// The movements behind a stop point that stops for nothing else.
+/// The movements that follow a stop point, if nothing at it needs a stop.
 pub(super) fn stops_for_movements(context: &Context<'_>, index: usize) -> Option<Vec<usize>> {
     let site = &context.sites[index];
     let routine = context.program.routine(site.place.0);

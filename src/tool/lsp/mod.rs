@@ -240,7 +240,7 @@ fn diagnostic(finding: &Finding, file: &SourceFile) -> Diagnostic {
         }),
         code: Some(Code::String(finding.rule.code.to_owned())),
         source: Some("joulepath".to_owned()),
-        message: finding.told().into(),
+        message: finding.full_message().into(),
         data: Some(json!({ "saving_j": finding.saving.map(|saving| saving.energy_j) })),
         ..Diagnostic::default()
     }

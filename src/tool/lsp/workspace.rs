@@ -14,7 +14,7 @@ use crate::arm::robot::Model;
 use crate::rapid::text::{FileId, SourceFile, Span};
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::timeline::What;
-use crate::tool::lint::engine::{Examined, Kept, examine_file};
+use crate::tool::lint::engine::{Examined, ReadCache, examine_file};
 use crate::tool::lint::{Finding, Programs};
 
 /// Open documents, by URI, and the folders that they lie in.
@@ -28,7 +28,7 @@ pub(super) struct Workspace<R> {
 /// A folder as it was read from disk when a document of it was last opened, saved or closed.
 struct Folder {
     programs: Programs,
-    kept: Kept,
+    kept: ReadCache,
 }
 
 /// What was found in a document.
@@ -104,7 +104,7 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
     /// other open documents of the same programs.
     pub(super) fn analyse(&mut self, uri: &str) -> Vec<(String, Analysis)> {
         let folder = folder_of(uri);
-        let read = || Folder { programs: (self.read)(&folder), kept: Kept::default() };
+        let read = || Folder { programs: (self.read)(&folder), kept: ReadCache::default() };
         let Folder { programs, kept } = self.folders.entry(folder.clone()).or_insert_with(read);
         let mut names: BTreeMap<usize, &str> = BTreeMap::new();
         for (name, file) in

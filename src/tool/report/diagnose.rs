@@ -6,18 +6,18 @@ use serde_json::{Map, Value, json};
 
 use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
 
-/// What a result rests on, beside the result itself.
+/// The basis of a result: robot, logs, notes.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
     /// The robot as it was given.
     pub robot: String,
     /// What was held out: `file`, `trajectory` or `cycles`.
     pub heldout: String,
-    /// The logs that it is of.
+    /// The held-out logs.
     pub graded: Vec<String>,
-    /// Where the model went.
+    /// Where the model was written.
     pub model: String,
-    /// What else a reader has to know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 
@@ -133,7 +133,7 @@ fn said(of: &Said) -> Value {
     })
 }
 
-/// What to measure next: why, and the command.
+/// The next experiment: the reason, and the command.
 pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)> {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
         of.class.len() > 1

@@ -10,7 +10,7 @@ use crate::learn::identify::{
     Descent, Grade, Identified, Misses, Source, Whiteness, collinear, essential,
 };
 
-/// What a result rests on, beside the result itself.
+/// The basis of a result: logs, origin of the torques, notes.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
     /// The logs of the fit.
@@ -21,7 +21,7 @@ pub struct Basis {
     pub date: Option<String>,
     /// Where the torques come from, in words.
     pub torque: String,
-    /// What else a reader has to know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
     /// The paper's fit, for comparison.
     pub descent: Option<Descent>,
@@ -153,7 +153,7 @@ fn grade(grade: Grade) -> &'static str {
     }
 }
 
-/// What the residuals of each joint remember.
+/// Autocorrelation of each joint's residuals.
 fn whiteness(found: &Identified) -> Vec<Value> {
     let joint = |(joint, of): (usize, &Option<Whiteness>)| match of {
         Some(of) => json!({
@@ -250,7 +250,7 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
     let _ = writeln!(text, "quality = {}", quoted(&found.quality.sentence()));
     let _ = writeln!(text, "rank = {}", found.fit.solution.determined.len());
     let list = |values: &[f64]| -> String {
-        // TOML's not a number is in small letters.
+        // TOML writes `nan` in lower case.
         values.iter().map(|x| format!("{x:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
     };
     let _ = writeln!(text, "rms = [{}]", list(&found.training.rms));

@@ -1,4 +1,4 @@
-//! Results for people.
+//! The text of `simulate` and `optimize`.
 
 use std::fmt::Write;
 

@@ -90,7 +90,7 @@ pub struct ExciteArgs {
 pub(super) enum Spacing {
     /// \[s\].
     Seconds(f64),
-    /// As the motion allows.
+    /// As far apart as the motion allows.
     Adaptive,
 }
 

@@ -1,7 +1,6 @@
 //! The motion of an experiment: designed by search, or of plateaus.
 
 use anyhow::bail;
-use indicatif::{ProgressBar, ProgressDrawTarget};
 
 use super::args::{ExciteArgs, Spacing, Variant};
 use crate::arm::kinematics::Body;
@@ -9,6 +8,7 @@ use crate::arm::robot::Model;
 use crate::learn::excite::{
     Blend, Checked, Design, Information, Plateaus, Series, State, blends, check, design,
 };
+use crate::tool::cli::common::progress;
 
 /// Interval of the rows of the table \[s\]: the grid on which limits are checked.
 pub(super) const FINE: f64 = 0.001;
@@ -40,14 +40,11 @@ pub(super) fn designed(
     settings: &Design,
     body: &Body<'_>,
 ) -> anyhow::Result<Motion> {
-    let target =
-        if args.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(None, target);
-    let progress = |done: usize, all: usize| {
+    let bar = progress(args.quiet, None);
+    let found = design(model, settings, &|done: usize, all: usize| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
-    };
-    let found = design(model, settings, &progress)?;
+    })?;
     bar.finish_and_clear();
     let fits = |states: &[State]| {
         let checked = check(model, body, &settings.load, states);

@@ -11,7 +11,7 @@
 //! changes are made in it that have no effect.
 //!
 //! ## How the saving is computed
-//! There is none: what never runs costs nothing in either of two simulated cycles.
+//! There is none: what never runs changes no simulated cycle.
 //!
 //! ## Example
 //! ```text
@@ -84,7 +84,7 @@ fn statements<'c>(context: &Context<'c>, id: RoutineId) -> Vec<&'c Stmt> {
     nodes.filter_map(|node| statement(&node.step)).collect()
 }
 
-/// Routines that the program or an interrupt gets to.
+/// Routines that the program or an interrupt reaches.
 fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
     let mut found = BTreeSet::new();
     let mut open = vec![entry];
@@ -106,7 +106,7 @@ fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
     found
 }
 
-/// Whether something is called that is not among the files: it may call what is.
+/// Whether something outside of the files is called: it may call any routine.
 fn calls_others(context: &Context<'_>) -> bool {
     let mut graphs = context.flow.graphs();
     graphs.any(|(id, ..)| {

@@ -31,7 +31,7 @@
 use super::super::context::Context;
 use super::super::rule::Finding;
 use super::super::saving::Weighed;
-use super::super::trace::Deed;
+use super::super::trace::Action;
 use super::line_in_free_air::as_joint;
 use crate::arm::kinematics::singularity;
 use crate::rapid::ir::instructions::MoveForm;
@@ -65,7 +65,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 fn is_first(context: &Context<'_>, step: usize) -> bool {
-    !context.trace[..step].iter().any(|done| matches!(done.what, Deed::Move(_)))
+    !context.trace[..step].iter().any(|done| matches!(done.what, Action::Move(_)))
 }
 
 fn is_near(context: &Context<'_>, step: usize) -> bool {

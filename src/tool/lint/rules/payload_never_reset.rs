@@ -8,8 +8,8 @@
 //! less than it could, and every figure about energy is wrong.
 //!
 //! ## How the saving is computed
-//! There is none to tell: where the part is let go is not in the program, so there is no second
-//! text to simulate, and with a wrong payload no figure is right.
+//! There is none: the program does not say where the part is released, so there is no second
+//! program to simulate, and with a wrong payload no figure is right.
 //!
 //! ## Example
 //! ```text
@@ -29,7 +29,7 @@
 //! ```
 //!
 //! ## Safety
-//! Without a fix: the place at which the part is let go is the process's.
+//! Without a fix: the process determines where the part is released.
 //!
 //! ## Assumptions
 //! The program is complete: it has its entry.

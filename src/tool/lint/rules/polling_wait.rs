@@ -103,7 +103,7 @@ fn only_waits(context: &Context<'_>, routine: RoutineId, body: &[Stmt]) -> bool 
         if !is_wait && context.flow.class(routine, stmt) != Class::Quiet {
             return false;
         }
-        // A count or a jump may be what ends the loop.
+        // A counter or a jump may end the loop.
         if !is_wait && !matches!(stmt.kind, StmtKind::Call(_)) {
             return false;
         }

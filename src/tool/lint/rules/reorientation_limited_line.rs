@@ -10,7 +10,7 @@
 //!
 //! ## How the saving is computed
 //! The movement is laid on a time line with the turning speed that it has and with 500 °/s, that of
-//! the predefined speeds. Where it has that already nothing is told.
+//! the predefined speeds. Where it already has that, there is no finding.
 //!
 //! ## Example
 //! ```text

@@ -99,7 +99,7 @@ fn could_pass(context: &Context<'_>, index: usize) -> Option<NamedZone> {
         return None;
     }
     let line_behind = next.iter().any(|next| context.sites[*next].is_linear());
-    // What is drawn, cut or welded begins and ends where it is meant to.
+    // The ends of a contour that is drawn, cut or welded stay exact.
     if corner.goes_in && line_behind || corner.comes_out && site.is_linear() {
         return None;
     }

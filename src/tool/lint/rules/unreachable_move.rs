@@ -8,7 +8,7 @@
 //! It does not; but it looks as if the robot did it, and hides what it really does.
 //!
 //! ## How the saving is computed
-//! There is none: what never runs costs nothing in either of two simulated cycles.
+//! There is none: what never runs changes no simulated cycle.
 //!
 //! ## Example
 //! ```text

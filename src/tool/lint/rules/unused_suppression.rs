@@ -2,7 +2,7 @@
 //!
 //! ## What it does
 //! Finds `! joulepath: ignore CODE reason` where no such finding is in the statement it is about.
-//! Of several codes each is judged.
+//! Each of several codes is judged by itself.
 //!
 //! ## Why it wastes energy
 //! It does not, but it hides the next finding of that kind.
@@ -25,8 +25,8 @@
 //! Taking the comment out changes no statement.
 //!
 //! ## Assumptions
-//! A rule that needs a backup is not judged without one, and without a robot no rule about where
-//! and how the robot moves: with one it may find what it does not find without.
+//! Codes of rules that need a backup are not judged, and without a robot neither are codes of rules
+//! about movements: with a backup or a robot such a rule may find something.
 
 use super::super::edits::{fix, replace};
 use super::super::job::Job;

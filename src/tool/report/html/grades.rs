@@ -1,4 +1,4 @@
-//! Grades of an examination as a page: confusion, rates, and what stated probabilities are worth.
+//! Grades of an examination as a page: confusion, rates, reliability of the probabilities.
 
 use std::collections::BTreeSet;
 

@@ -48,7 +48,7 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
         "column": start.column,
         "end_line": end.line,
         "end_column": end.column,
-        "message": finding.told(),
+        "message": finding.full_message(),
         "saving_j": saving.map(|s| s.energy_j),
         "saving_s": saving.map(|s| s.time_s),
         "saving_low_j": saving.map(|s| s.low_j),

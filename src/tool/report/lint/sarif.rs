@@ -58,7 +58,7 @@ fn result(finding: &Finding, fingerprint: &str, files: &[SourceFile]) -> Value {
         "ruleId": finding.rule.code,
         "ruleIndex": index,
         "level": level(finding.rule.severity),
-        "message": { "text": finding.told() },
+        "message": { "text": finding.full_message() },
         "locations": [{ "physicalLocation": place(file, finding.span) }],
         "partialFingerprints": { "joulepath/v1": fingerprint },
     });
