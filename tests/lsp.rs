@@ -64,14 +64,24 @@ impl Client {
     }
 
     fn ask(&mut self, method: &str, params: &Value) -> Value {
+        let answer = self.answer(method, params);
+        assert!(answer.get("error").is_none(), "{answer}");
+        answer["result"].clone()
+    }
+
+    /// The error that a request gets.
+    fn ask_wrongly(&mut self, method: &str, params: &Value) -> Value {
+        self.answer(method, params)["error"].clone()
+    }
+
+    fn answer(&mut self, method: &str, params: &Value) -> Value {
         let id = self.next;
         self.next += 1;
         self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
         loop {
             let message = self.read();
             if message["id"] == id {
-                assert!(message.get("error").is_none(), "{message}");
-                return message["result"].clone();
+                return message;
             }
         }
     }
@@ -133,7 +143,7 @@ fn an_editor_is_served() {
 
     let actions = client.ask(
         "textDocument/codeAction",
-        &json!({ "textDocument": document, "range": tiny["range"], "context": {} }),
+        &json!({ "textDocument": document, "range": tiny["range"], "context": { "diagnostics": [] } }),
     );
     let action = &actions.as_array().unwrap()[0];
     assert_eq!(action["isPreferred"], false, "{action}");
@@ -153,15 +163,38 @@ fn an_editor_is_served() {
     client.stop();
 }
 
+/// With an unknown robot and a folder that does not exist the document is linted alone, without
+/// joules; a malformed request gets an error.
 #[test]
-fn a_robot_that_is_not_known_stops_nothing() {
+fn a_document_is_linted_without_a_robot_and_a_folder() {
     let mut client = Client::start(&json!({ "robot": "no such robot" }));
-    let uri = format!("file://{}/gone/M.mod", Path::new("/").display());
+    let uri = "file:///gone/M.mod";
+    let text = "MODULE M\nPROC main()\n! joulepath: ignore EW999 no such rule\nWaitTime 1;\nMoveL";
     let opened = json!({
-        "textDocument": { "uri": uri, "text": "MODULE M\nPROC main()\nMoveL" }
+        "textDocument": { "uri": uri, "languageId": "rapid", "version": 1, "text": text }
     });
     client.tell("textDocument/didOpen", &opened);
-    client.told();
+    let (name, found) = client.told_of();
+    assert_eq!(name, "M.mod");
+    let [comment] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!((&comment["code"], &comment["severity"]), (&json!("EW001"), &json!(2)));
+    assert_eq!(comment["range"]["start"], json!({ "line": 2, "character": 0 }));
+    assert_eq!(comment["data"], json!({ "saving_j": null }));
+
+    let identifier = json!({ "uri": uri });
+    let asked = json!({ "textDocument": identifier, "position": { "line": 3, "character": 2 } });
+    assert_eq!(client.ask("textDocument/hover", &asked), Value::Null);
+    let asked = json!({
+        "textDocument": identifier, "range": comment["range"], "context": { "diagnostics": found }
+    });
+    let actions = client.ask("textDocument/codeAction", &asked);
+    assert_eq!(actions[0]["isPreferred"], true, "{actions}");
+    assert_eq!(actions[0]["edit"]["changes"][uri][0]["newText"], "", "{actions}");
+
+    let error = client.ask_wrongly("textDocument/hover", &json!({ "textDocument": identifier }));
+    assert_eq!(error["code"], -32602, "{error}");
+    let error = client.ask_wrongly("textDocument/rename", &json!({}));
+    assert_eq!(error["code"], -32601, "{error}");
     client.stop();
 }
 
@@ -254,7 +287,7 @@ fn closing_a_document_is_told_to_the_others() {
     let hover = client.ask("textDocument/hover", &asked);
     assert!(hover["contents"]["value"].as_str().unwrap().starts_with("**MoveL**"), "{hover}");
     assert_eq!(hover["range"]["start"], json!({ "line": 3, "character": 4 }));
-    let asked = json!({ "textDocument": document, "range": found[0]["range"], "context": {} });
+    let asked = json!({ "textDocument": document, "range": found[0]["range"], "context": { "diagnostics": [] } });
     let actions = client.ask("textDocument/codeAction", &asked);
     let edit = &actions[0]["edit"]["changes"][&work][0];
     assert_eq!(actions[0]["isPreferred"], false, "{actions}");

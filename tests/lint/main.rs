@@ -6,6 +6,7 @@ mod fixes;
 mod formats;
 mod hostile;
 mod manuals;
+mod page;
 mod plants;
 mod savings;
 mod schema;
@@ -142,7 +143,7 @@ fn without_a_robot_nothing_is_weighed() {
     for mut fixture in fixtures() {
         fixture.model = None;
         for finding in fixture.report().findings {
-            assert!(finding.saving.is_none(), "{:?} {}", fixture.path, finding.told());
+            assert!(finding.saving.is_none(), "{:?} {}", fixture.path, finding.full_message());
             assert!(finding.rule.needs != Needs::Robot, "{:?} {:?}", fixture.path, finding.rule);
         }
     }

@@ -76,7 +76,7 @@ fn savings_are_those_of_two_simulations() {
             let (energy_after, time_after) = cycle(&with(&fixture, &finding));
             let spared = energy - energy_after;
             let off = (spared - saving.energy_j).abs();
-            let told = finding.told();
+            let told = finding.full_message();
             assert!(off <= JOULES.max(SHARE * spared.abs()), "{spared} J: {told}");
             let late = (time - time_after - saving.time_s).abs();
             assert!(late <= SECONDS, "{} s, told {} s: {told}", time - time_after, saving.time_s);
@@ -103,7 +103,7 @@ fn only_a_comment_is_fixed_safely() {
     let findings = all.iter().flat_map(|fixture| fixture.report().findings);
     for finding in findings {
         let safe = finding.fix.as_ref().is_some_and(|f| f.applicability == Applicability::Safe);
-        assert_eq!(safe, finding.rule.code == "EW001", "{}", finding.told());
+        assert_eq!(safe, finding.rule.code == "EW001", "{}", finding.full_message());
     }
 }
 
@@ -115,7 +115,7 @@ fn what_may_be_the_process_has_no_fix() {
     for fixture in fixtures().into_iter().chain(planted) {
         for finding in fixture.report().findings {
             if matches!(finding.rule.code, "EW102" | "EW402" | "EW403" | "EW406") {
-                assert!(finding.fix.is_none(), "{}", finding.told());
+                assert!(finding.fix.is_none(), "{}", finding.full_message());
                 assert!(finding.rule.manual().contains("Without a fix"), "{}", finding.rule.code);
                 found.insert(finding.rule.code);
             }
@@ -144,5 +144,5 @@ fn waits_behind_a_movement_that_is_left_out_cost_the_same() {
     ENDMODULE";
     let findings = Fixture::new("M.mod".into(), text).report().findings;
     let same = findings.iter().find(|finding| finding.rule.code == "EW401").unwrap();
-    assert_eq!(same.saving, None, "{}", same.told());
+    assert_eq!(same.saving, None, "{}", same.full_message());
 }

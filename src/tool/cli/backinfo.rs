@@ -64,7 +64,7 @@ fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8
     let start = line.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
     let file = start + listed(&line[start..], folder)?;
     let mark = line.iter().position(|byte| *byte == MARK);
-    // The origin behind the mark is the neighbour's own; the space is the form.
+    // The origin after the mark belongs to the neighbour alone; the spaces are copied.
     let tail = mark.map_or(&b""[..], |mark| {
         let named = line[..mark].trim_ascii_end().len();
         let spaces =

@@ -10,7 +10,6 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
-use indicatif::{ProgressBar, ProgressDrawTarget};
 use rayon::prelude::*;
 use serde_json::Value;
 
@@ -125,7 +124,7 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
         period_s: (args.period * 10.0).round() / 10.0,
         ..Settings::new(args.seed)
     };
-    let progress = progress(u64::from(args.count), args.quiet);
+    let progress = common::progress(args.quiet, Some(u64::from(args.count)));
     let labels: anyhow::Result<Vec<_>> = (1..=args.count as usize)
         .into_par_iter()
         .map(|number| {
@@ -152,11 +151,6 @@ fn write_case(out: &Path, case: &Case) -> anyhow::Result<()> {
     output::write_folder(&folder, &files)
 }
 
-fn progress(count: u64, quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    ProgressBar::with_draw_target(Some(count), target)
-}
-
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     let sealed =
         Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
@@ -171,7 +165,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     }
     let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
     for label in &labels {
-        // A name in a key is no path.
+        // A case's name must not lead out of the folder.
         if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
             bail!("{KEY}: '{}' is no name of a case; take the file that was written", label.case);
         }
@@ -179,7 +173,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         if args.leave_out.is_some() && without.is_empty() {
             continue;
         }
-        // Results that are given were computed without what is left out.
+        // Given results were computed without the effects that are left out.
         let (beside, name) = match (&args.results, &args.leave_out) {
             (Some(results), _) => (results, "diagnosis.json".to_owned()),
             (None, None) => (&args.cases, "diagnosis.json".to_owned()),
@@ -208,7 +202,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Effects that the library is without for a case; none where the case is not asked for.
+/// The effects that are left out for a case; none if the case is not graded.
 fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
     match left_out {
         Some(id) if !blind::is_of(label, id) => Vec::new(),
@@ -218,14 +212,13 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
     }
 }
 
-/// What `diagnose` says of a case by a library without some effects, in its JSON, which is kept
-/// under a name.
+/// The JSON of `diagnose` for a case without some effects; it is stored under `name` beside the case.
 fn diagnosed(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
     let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
         .with_context(|| format!("'{}' has no case.json", case.display()))?;
     let value =
         diagnose::of_case(case, &options, without).with_context(|| case.display().to_string())?;
-    // What was said once need not be computed again.
+    // The next grading reads it again.
     let text = format!("{value:#}\n");
     output::write(&case.join(name), text.as_bytes())?;
     Ok(value)

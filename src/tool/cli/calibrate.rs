@@ -1,14 +1,13 @@
 //! `joulepath calibrate`: a robot's estimate narrowed by measured power.
 
 use std::fs::File;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::common::{self, Format, ProgramArgs};
+use super::common::{self, ProgramArgs};
 use super::{output, signals};
 use crate::arm::robot::{Model, to_toml};
 use crate::learn::calibrate::calibrate;
@@ -94,19 +93,16 @@ pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         job.model.name, found.found.cycles, job.entry
     );
     output::write(&args.out, (head + &to_toml(&found.model)).as_bytes())?;
-    let mut out = std::io::stdout().lock();
     let path = args.out.display().to_string();
-    match args.program.format {
-        Format::Json => {
-            serde_json::to_writer_pretty(&mut out, &report::json(&found, &path))?;
-            writeln!(out)?;
-        }
-        Format::Text => write!(out, "{}", report::text(&found, &path))?,
-    }
+    common::print(
+        args.program.format,
+        || report::json(&found, &path),
+        || report::text(&found, &path),
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// Rejected rows that are told one by one.
+/// Rejected rows that are listed one by one.
 const SHOWN: usize = 3;
 
 /// Torques of all joints, logged or from currents, and what keeps currents from being used.

@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use serde_json::Value;
 
 use super::backup::motion_configuration;
 use super::choice;
 use super::input::{self, Input};
-use super::refresh::Streams;
+use super::streams::Streams;
 use crate::arm::effects;
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::{self, Model};
@@ -19,6 +21,10 @@ use crate::rapid::text::{self, FileId, SourceFile, is_encoded_module};
 use crate::retime::motion::{Options, Simulation};
 use crate::tool::config::{self, Config};
 use crate::tool::retrofit::Source;
+
+/// Why programs are run for robots with six joints alone.
+pub const RUN_SIX_JOINTS: &str =
+    "RAPID programs are run for robots with 6: name another with --robot";
 
 /// A program, its robot, and what is known of its cell.
 #[derive(Debug, Default, Args)]
@@ -161,9 +167,7 @@ pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
 /// As of [`prepare`].
 pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> {
     let args = &program.cell;
-    for unreadable in &input.unreadable {
-        note(args.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
-    }
+    note_unreadable(args.quiet, &input);
     let choice = choice::choose(&input)?;
     for text in &choice.notes {
         note(args.quiet, text);
@@ -191,13 +195,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
     if of_backup {
         note(args.quiet, &format!("the robot is {}, as the backup says ({name})", model.name));
     }
-    if model.dof != 6 {
-        bail!(
-            "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
-            model.name,
-            model.dof
-        );
-    }
+    require_six_joints(&model, RUN_SIX_JOINTS)?;
     let of_task = choice.task.and_then(|task| task.entry.clone());
     let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
     let entry = entry.unwrap_or_else(|| "main".into());
@@ -388,7 +386,48 @@ pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
     Ok(values.map(f64::to_radians))
 }
 
-/// A note on standard error, if somebody reads it.
+/// Refuses a robot that does not have the six joints of RAPID; `way_out` ends the message.
+///
+/// # Errors
+/// It has more or fewer.
+pub fn require_six_joints(model: &Model, way_out: &str) -> anyhow::Result<()> {
+    if model.dof != 6 {
+        bail!("{} has {} joints; {way_out}", model.name, model.dof);
+    }
+    Ok(())
+}
+
+/// A bar for progress on standard error; of unknown length without `length`.
+pub fn progress(quiet: bool, length: Option<u64>) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    ProgressBar::with_draw_target(length, target)
+}
+
+/// Prints a result on standard output.
+///
+/// # Errors
+/// Standard output can't be written.
+pub fn print(
+    format: Format,
+    json: impl FnOnce() -> Value,
+    text: impl FnOnce() -> String,
+) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match format {
+        Format::Json => writeln!(out, "{:#}", json())?,
+        Format::Text => out.write_all(text().as_bytes())?,
+    }
+    Ok(())
+}
+
+/// Notes on files that could not be read.
+pub fn note_unreadable(quiet: bool, input: &Input) {
+    for unreadable in &input.unreadable {
+        note(quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
+    }
+}
+
+/// A note on standard error, unless `quiet`.
 pub fn note(quiet: bool, text: &str) {
     if !quiet {
         writeln!(std::io::stderr(), "note: {text}").unwrap_or_default();

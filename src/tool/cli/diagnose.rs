@@ -3,14 +3,13 @@
 mod channels;
 mod pictures;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
@@ -111,11 +110,7 @@ enum TrustArg {
 /// A log or a robot that can't be used, or output that can't be written.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = diagnosed(args)?;
-    let mut out = std::io::stdout().lock();
-    match args.format {
-        Format::Json => writeln!(out, "{:#}", report::json(&found, &basis))?,
-        Format::Text => write!(out, "{}", report::text(&found, &basis))?,
-    }
+    common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
@@ -198,101 +193,41 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         None if args.baseline.is_empty() => Trust::Cad,
         Some(TrustArg::Commissioned) | None => Trust::Commissioned,
     };
-    let hints = Hints { period: args.period, cutoff: None };
-    let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
-    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
-        let one = |read: Read| {
-            // Repetitions of a program are never alike to the millisecond.
-            let is_run = read.log.column(Channel::Command).is_some();
-            let cutoff = is_run.then_some(OF_RUNS);
-            reader.ready(read, Hints { cutoff, ..hints })
-        };
-        read_all(paths, &map, &model)?.into_iter().map(one).collect()
-    };
-    let mut train = read(&args.log)?;
-    let mut held = read(&args.heldout)?;
+    let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, trust)?;
+    // The notes of the logs were shown while they were read.
+    let shown = notes.len();
     let mut basis = report::Basis {
         robot: args.robot.clone(),
-        heldout: "file".to_owned(),
+        heldout: heldout.to_owned(),
+        graded: held.iter().map(|of| of.record.path.clone()).collect(),
+        notes,
         ..report::Basis::default()
     };
-    for other in &held {
-        if let Some(same) = train.iter().find(|of| of.record.1 == other.record.1) {
-            bail!(
-                "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
-                 --heldout out",
-                other.record.0,
-                same.record.0
-            );
-        }
-    }
-    if held.is_empty() && train.len() > 1 {
-        "trajectory".clone_into(&mut basis.heldout);
-        held.extend(train.pop());
-    } else if held.is_empty() {
-        "cycles".clone_into(&mut basis.heldout);
-        let [first, last] = held_out(&model, &train[0])?;
-        (train, held) = (vec![first], vec![last]);
-    }
-    basis.graded = held.iter().map(|of| of.record.0.clone()).collect();
-    let records = |logs: &[Ready]| -> Vec<Record<'_>> {
-        logs.iter().flat_map(|log| Record::all(&model, &log.samples)).collect()
-    };
-    if let Some(factor) = common_factor(&records(&train), trust) {
-        bail!(
-            "the torques of all joints are {factor:.3} times those of the model: give torques in Nm \
-             at the joints, currents as i1… in A, or the --robot that was logged"
-        );
-    }
-    let before = read(&args.baseline)?;
     let lines = match &args.program {
         Some(program) => channels::lines(program, &args.robot)
             .with_context(|| format!("--program {}", program.display()))?,
         None => Vec::new(),
     };
     let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
-    let of_power = diagnose_power(
-        &model,
-        &channels::powers(&before),
-        &channels::powers(&train),
-        &channels::powers(&held),
-        &may,
-    );
-    let of_runs = diagnose_runs(
-        &model,
-        &channels::runs(&before),
-        &channels::runs(&train),
-        &channels::runs(&held),
-        &may,
-    );
-    // Those of the logs have been told.
-    let told = reader.notes.len();
-    basis.notes = reader.notes;
-    // Without a mean there is no noise to weigh effects by.
-    let of_torque = if of_runs.is_some() {
-        basis
-            .notes
-            .push("the logs are runs of a program: torques are not searched for effects".into());
-        Vec::new()
-    } else {
-        wanted.clone()
-    };
-    // What takes a while is not to fail at its end.
+    let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::powers(logs));
+    let of_power = diagnose_power(&model, &before, &now, &graded, &may);
+    let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::runs(logs));
+    let of_runs = diagnose_runs(&model, &before, &now, &graded, &may);
+    // The outputs have to be writable before the search, which takes long.
     for path in args.out.iter().chain(&args.report) {
         output::stage(path, &[])?;
     }
+    // Without a mean over repetitions there is no noise to weigh effects by.
+    let (of_torque, compared) = if of_runs.is_some() {
+        let text = "the logs are runs of a program: torques are not searched for effects";
+        basis.notes.push(text.to_owned());
+        (Vec::new(), &[][..])
+    } else {
+        (wanted.clone(), baseline.as_slice())
+    };
     let settings = Settings { trust, effects: of_torque };
-    let compared = if of_runs.is_some() { &[][..] } else { &before };
     let mut found = of_logs(&model, [&train, &held, compared], &settings, &progress(args.quiet));
-    for said in found.before.iter().flatten() {
-        basis.notes.push(format!("{}: in the baseline already", report::called(said)));
-    }
-    if !compared.is_empty() && found.before.is_none() {
-        basis.notes.push(
-            "the baseline is not compared with the torques: log it as often repeated as the others"
-                .into(),
-        );
-    }
+    basis.notes.extend(baseline_notes(&found, compared));
     if let Some(of) = &of_power {
         found.add_power(of);
     }
@@ -309,21 +244,109 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
                 .into(),
         );
     }
+    let graded = if held.is_empty() { &train } else { &held };
+    write(args, &model, graded, &found, &mut basis)?;
+    for text in &basis.notes[shown..] {
+        common::note(args.quiet, text);
+    }
+    Ok((found, basis))
+}
+
+/// The logs of a diagnosis.
+struct Data {
+    train: Vec<Ready>,
+    held: Vec<Ready>,
+    baseline: Vec<Ready>,
+    /// What is held out: `file`, `trajectory` or `cycles`.
+    heldout: &'static str,
+    notes: Vec<String>,
+}
+
+fn read_data(
+    args: &DiagnoseArgs,
+    model: &Model,
+    map: &ColumnMap,
+    trust: Trust,
+) -> anyhow::Result<Data> {
+    let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
+    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
+        let one = |read: Read| {
+            // Repetitions of a program are never alike to the millisecond.
+            let is_run = read.log.column(Channel::Command).is_some();
+            let cutoff = is_run.then_some(OF_RUNS);
+            reader.ready(read, Hints { period: args.period, cutoff })
+        };
+        read_all(paths, map, model)?.into_iter().map(one).collect()
+    };
+    let mut train = read(&args.log)?;
+    let mut held = read(&args.heldout)?;
+    for other in &held {
+        if let Some(same) = train.iter().find(|of| of.record.hash == other.record.hash) {
+            bail!(
+                "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
+                 --heldout out",
+                other.record.path,
+                same.record.path
+            );
+        }
+    }
+    let heldout = if !held.is_empty() {
+        "file"
+    } else if train.len() > 1 {
+        held.extend(train.pop());
+        "trajectory"
+    } else {
+        let [first, last] = held_out(model, &train[0])?;
+        (train, held) = (vec![first], vec![last]);
+        "cycles"
+    };
+    if let Some(factor) = common_factor(&records(model, &train), trust) {
+        bail!(
+            "the torques of all joints are {factor:.3} times those of the model: give torques in Nm \
+             at the joints, currents as i1… in A, or the --robot that was logged"
+        );
+    }
+    let baseline = read(&args.baseline)?;
+    Ok(Data { train, held, baseline, heldout, notes: reader.notes })
+}
+
+fn records<'a>(model: &'a Model, logs: &[Ready]) -> Vec<Record<'a>> {
+    logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
+}
+
+/// What the baseline has already, or why it is not compared.
+fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
+    let known = found.before.iter().flatten();
+    let mut notes: Vec<String> =
+        known.map(|of| format!("{}: in the baseline already", report::called(of))).collect();
+    if !compared.is_empty() && found.before.is_none() {
+        notes.push(
+            "the baseline is not compared with the torques: log it as often repeated as the others"
+                .into(),
+        );
+    }
+    notes
+}
+
+/// Writes the improved model and the page.
+fn write(
+    args: &DiagnoseArgs,
+    model: &Model,
+    graded: &[Ready],
+    found: &Diagnosis,
+    basis: &mut report::Basis,
+) -> anyhow::Result<()> {
     if let Some(path) = &args.out {
         output::write(path, to_toml(&found.improved.written).as_bytes())
             .with_context(|| path.display().to_string())?;
         basis.model = path.display().to_string();
     }
     if let Some(path) = &args.report {
-        let graded = records(if held.is_empty() { &train } else { &held });
-        let pictures = pictures::pictures(&model, &graded, &found);
-        let page = diagnose_report(&model.name, &found, &basis, &pictures)?;
+        let pictures = pictures::pictures(model, &records(model, graded), found);
+        let page = diagnose_report(&model.name, found, basis, &pictures)?;
         output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
     }
-    for text in &basis.notes[told..] {
-        common::note(args.quiet, text);
-    }
-    Ok((found, basis))
+    Ok(())
 }
 
 fn of_logs(
@@ -347,8 +370,7 @@ fn of_logs(
 
 /// A bar over the phases of a diagnosis; nothing where standard error is no terminal.
 fn progress(quiet: bool) -> ProgressBar {
-    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(Some(Phase::ALL.len() as u64), target);
+    let bar = common::progress(quiet, Some(Phase::ALL.len() as u64));
     let style = ProgressStyle::with_template("{elapsed:>4} {bar:20} {pos}/{len} {msg}");
     if let Ok(style) = style {
         bar.set_style(style);

@@ -1,6 +1,5 @@
 //! `joulepath generate`: points or a trajectory in CSV become RAPID.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -8,7 +7,7 @@ use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::common::{self, Format, ProgramArgs};
+use super::common::{self, ProgramArgs};
 use super::optimize::spacing;
 use super::output;
 use crate::tool::generate::{Form, Generated, Settings, generate, table};
@@ -91,29 +90,11 @@ pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     output::write_folder(&args.out, &files)?;
     let written: Vec<String> =
         files.iter().map(|(path, _)| args.out.join(path).display().to_string()).collect();
-    let mut out = std::io::stdout().lock();
-    match args.program.format {
-        Format::Json => {
-            let value = json(&model.name, &generated, &written);
-            serde_json::to_writer_pretty(&mut out, &value)?;
-            writeln!(out)?;
-        }
-        Format::Text => {
-            writeln!(out, "{} points, {:.3} s", generated.points, generated.duration_s)?;
-            if let Some(measure) = &generated.measure {
-                writeln!(
-                    out,
-                    "of the limits: speed {:.0} %, acceleration {:.0} %, torque {:.0} %",
-                    100.0 * measure.velocity,
-                    100.0 * measure.acceleration,
-                    100.0 * measure.torque
-                )?;
-            }
-            for path in &written {
-                writeln!(out, "wrote {path}")?;
-            }
-        }
-    }
+    common::print(
+        args.program.format,
+        || json(&model.name, &generated, &written),
+        || text(&generated, &written),
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -139,4 +120,18 @@ fn json(robot: &str, generated: &Generated, written: &[String]) -> serde_json::V
         "notes": generated.notes,
         "outputs": written,
     })
+}
+
+fn text(generated: &Generated, written: &[String]) -> String {
+    let mut text = format!("{} points, {:.3} s\n", generated.points, generated.duration_s);
+    if let Some(measure) = &generated.measure {
+        text += &format!(
+            "of the limits: speed {:.0} %, acceleration {:.0} %, torque {:.0} %\n",
+            100.0 * measure.velocity,
+            100.0 * measure.acceleration,
+            100.0 * measure.torque
+        );
+    }
+    written.iter().for_each(|path| text += &format!("wrote {path}\n"));
+    text
 }

@@ -1,6 +1,5 @@
 //! `joulepath identify`: a dynamic model from measured logs.
 
-use std::io::Write as _;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -18,7 +17,7 @@ use crate::learn::identify::{
 use crate::learn::log::ColumnMap;
 use crate::tool::cli::common::Format;
 use crate::tool::report::html::{Traces, identify_report};
-use crate::tool::report::identify as report;
+use crate::tool::report::identify::{self as report, LogRecord};
 
 /// A dynamic model with standard errors from measured logs.
 #[derive(Debug, Args)]
@@ -135,63 +134,9 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
             PERIODS.end()
         );
     }
-    let hints = Hints { period: args.period, cutoff: None };
     let mut basis = report::Basis { date: args.date.clone(), ..report::Basis::default() };
-    let mut reader = Reader { model: &model, map: &map, quiet: args.quiet, notes: Vec::new() };
-    let mut training = Vec::new();
-    for read in read_all(&args.log, &map, &model)? {
-        training.push(reader.ready(read, hints)?);
-    }
-    // One filter for all: what is compared has to have the same band.
-    let cutoff = training.iter().find_map(|ready| match ready.samples.source {
-        Source::Filtered { cutoff } => Some(cutoff),
-        _ => None,
-    });
-    let mut validation = Vec::new();
-    let held_out = Hints { period: args.period, cutoff };
-    for read in read_all(&args.validate, &map, &model)? {
-        let ready = reader.ready(read, held_out)?;
-        basis.validation.push(ready.record);
-        validation.push(ready.samples);
-    }
-    basis.notes = reader.notes;
-    for text in repeated(training.iter().map(|ready| &ready.record), &basis.validation) {
-        tell(args, &mut basis, text);
-    }
-    basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
-    basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
-    let weight = training.iter().find_map(|ready| ready.weight);
-    let samples = joined(training)?;
-    for joint in &samples.resting {
-        let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
-        tell(args, &mut basis, text);
-    }
-    for (joint, share) in samples.share_at_limits().into_iter().enumerate() {
-        if share > 0.0 {
-            let text = format!(
-                "joint {}: the torque stands at a limit for {:.2} % of the time while the joint \
-                 changes its speed: left out, for that joint",
-                joint + 1,
-                100.0 * share
-            );
-            tell(args, &mut basis, text);
-        }
-    }
-    let files: Vec<&str> = basis.logs.iter().map(|log| log.0.as_str()).collect();
-    let when = args.date.as_ref().map_or_else(String::new, |date| format!(", {date}"));
-    let settings = Settings {
-        free: match args.free {
-            FreeArg::All => Free::All,
-            FreeArg::Friction => Free::Friction,
-            FreeArg::Payload => Free::Payload,
-        },
-        weighting: match args.method {
-            Method::Weighted => Weighting::Joint,
-            Method::Ordinary => Weighting::Ordinary,
-        },
-        source: format!("joulepath identify, {}{when}", files.join(", ")),
-    };
-    let mut found = identify(&model, &samples, &validation, &settings)?;
+    let Data { samples, validation, weight } = read_data(args, &model, &map, &mut basis)?;
+    let mut found = identify(&model, &samples, &validation, &settings(args, &basis))?;
     if let Some(factor) = weight {
         found.quality.doubt_weight(factor);
     }
@@ -223,13 +168,89 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     }
     if let Some(path) = &args.report {
         let (shown, title) = match (validation.first(), basis.validation.first()) {
-            (Some(samples), Some(log)) => (samples, log.0.clone()),
+            (Some(samples), Some(log)) => (samples, log.path.clone()),
             _ => (&samples, "the data of the fit".to_owned()),
         };
         let page = identify_report(&found, &basis, &traces(&found, &model, shown, title))?;
         output::write(path, page.as_bytes())?;
     }
     write(args, &found, &basis)
+}
+
+/// The data of an identification.
+struct Data {
+    /// All logs of the fit as one.
+    samples: Samples,
+    validation: Vec<Samples>,
+    /// Ratio of the logged torques to the weight of the robot file's masses, where it is implausible.
+    weight: Option<f64>,
+}
+
+/// Reads the logs; what a reader has to know of them goes into `basis`.
+fn read_data(
+    args: &IdentifyArgs,
+    model: &Model,
+    map: &ColumnMap,
+    basis: &mut report::Basis,
+) -> anyhow::Result<Data> {
+    let hints = Hints { period: args.period, cutoff: None };
+    let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
+    let mut training = Vec::new();
+    for read in read_all(&args.log, map, model)? {
+        training.push(reader.ready(read, hints)?);
+    }
+    // One filter for all: what is compared has to have the same band.
+    let cutoff = training.iter().find_map(|ready| match ready.samples.source {
+        Source::Filtered { cutoff } => Some(cutoff),
+        _ => None,
+    });
+    let mut validation = Vec::new();
+    for read in read_all(&args.validate, map, model)? {
+        let ready = reader.ready(read, Hints { cutoff, ..hints })?;
+        basis.validation.push(ready.record);
+        validation.push(ready.samples);
+    }
+    basis.notes = reader.notes;
+    basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
+    for text in repeated(&basis.logs, &basis.validation) {
+        tell(args, basis, text);
+    }
+    basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
+    let weight = training.iter().find_map(|ready| ready.weight);
+    let samples = joined(training)?;
+    for joint in &samples.resting {
+        let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
+        tell(args, basis, text);
+    }
+    for (joint, share) in samples.share_at_limits().into_iter().enumerate() {
+        if share > 0.0 {
+            let text = format!(
+                "joint {}: the torque stands at a limit for {:.2} % of the time while the joint \
+                 changes its speed: left out, for that joint",
+                joint + 1,
+                100.0 * share
+            );
+            tell(args, basis, text);
+        }
+    }
+    Ok(Data { samples, validation, weight })
+}
+
+fn settings(args: &IdentifyArgs, basis: &report::Basis) -> Settings {
+    let files: Vec<&str> = basis.logs.iter().map(|log| log.path.as_str()).collect();
+    let when = args.date.as_ref().map_or_else(String::new, |date| format!(", {date}"));
+    Settings {
+        free: match args.free {
+            FreeArg::All => Free::All,
+            FreeArg::Friction => Free::Friction,
+            FreeArg::Payload => Free::Payload,
+        },
+        weighting: match args.method {
+            Method::Weighted => Weighting::Joint,
+            Method::Ordinary => Weighting::Ordinary,
+        },
+        source: format!("joulepath identify, {}{when}", files.join(", ")),
+    }
 }
 
 /// Torques and powers for the plots.
@@ -267,15 +288,15 @@ fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
     basis.notes.push(text);
 }
 
-/// Share of a torque that no good model misses.
+/// Largest relative residual of a good model.
 const MISSED: f64 = 0.35;
-/// Share of a torque that is as good as nothing.
+/// Relative residual that counts as zero.
 const NOTHING: f64 = 1e-3;
 
-/// No link of an arm has such a mass \[kg\].
+/// Largest plausible mass of a link \[kg\].
 const HEAVIEST: f64 = 1500.0;
 
-/// What a reader should not overlook.
+/// Warnings on the quality of the result.
 fn doubts(found: &Identified) -> Vec<String> {
     let mut texts = Vec::new();
     let (with, without) = match (&found.validation, &found.unconstrained_validation) {
@@ -328,22 +349,22 @@ fn doubts(found: &Identified) -> Vec<String> {
 }
 
 /// Logs that were given twice.
-fn repeated<'a>(
-    training: impl Iterator<Item = &'a (String, String, usize, usize)>,
-    validation: &[(String, String, usize, usize)],
-) -> Vec<String> {
-    let training: Vec<_> = training.collect();
+fn repeated(training: &[LogRecord], validation: &[LogRecord]) -> Vec<String> {
+    let first = |logs: &[LogRecord], log: &LogRecord| {
+        logs.iter().find(|known| known.hash == log.hash).map(|known| known.path.clone())
+    };
     let mut texts = Vec::new();
-    for (k, (shown, hash, ..)) in training.iter().enumerate() {
-        if let Some((first, ..)) = training[..k].iter().find(|(_, known, ..)| known == hash) {
-            texts.push(format!("{shown} is the same log as {first}: it counts twice"));
+    for (k, log) in training.iter().enumerate() {
+        if let Some(first) = first(&training[..k], log) {
+            texts.push(format!("{} is the same log as {first}: it counts twice", log.path));
         }
     }
-    for (shown, hash, ..) in validation {
-        if let Some((first, ..)) = training.iter().find(|(_, known, ..)| known == hash) {
+    for log in validation {
+        if let Some(first) = first(training, log) {
             texts.push(format!(
-                "--validate {shown} is the log {first} that the model was fitted to: it tells \
-                 nothing of other motions"
+                "--validate {} is the log {first} that the model was fitted to: it tells nothing of \
+                 other motions",
+                log.path
             ));
         }
     }
@@ -359,7 +380,7 @@ fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
     let Some(first) = all.next() else { bail!("--log: give a log") };
     let mut samples = first.samples;
     for next in all {
-        let (shown, next) = (next.record.0, next.samples);
+        let (shown, next) = (next.record.path, next.samples);
         let same = match (&samples.source, &next.source) {
             (Source::Logged, Source::Logged) => true,
             (Source::Filtered { .. }, Source::Filtered { .. })
@@ -394,10 +415,10 @@ fn write(
             .context("the identified numbers are no robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;
     }
-    let mut out = std::io::stdout().lock();
-    match args.format {
-        Format::Json => writeln!(out, "{:#}", report::json(found, basis, &path))?,
-        Format::Text => write!(out, "{}", report::text(found, basis))?,
-    }
+    common::print(
+        args.format,
+        || report::json(found, basis, &path),
+        || report::text(found, basis),
+    )?;
     Ok(ExitCode::SUCCESS)
 }

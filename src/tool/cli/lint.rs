@@ -18,7 +18,7 @@ use crate::arm::robot::Model;
 use crate::rapid::diagnostics::Paint;
 use crate::rapid::text::{FileId, SourceFile, is_encoded_module};
 use crate::tool::config::Config;
-use crate::tool::lint::{self, Applicability, Fixed, Group, Job, Report, Settings, System};
+use crate::tool::lint::{self, Applicability, Fixed, Group, Programs, Report, Settings, System};
 use crate::tool::report;
 
 /// Find wasted energy in RAPID programs.
@@ -107,34 +107,34 @@ pub enum LintFormat {
 pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     let mut setup = Setup::new(args)?;
     let mut report = if args.fix || args.unsafe_fixes || args.diff {
-        let report = fix(args, &mut setup)?;
+        let report = fix(args, &mut setup.programs)?;
         if args.diff {
             return Ok(ExitCode::SUCCESS);
         }
         report
     } else {
-        lint::lint(&setup.job())
+        lint::lint(&setup.programs.job())
     };
     if let Some(path) = &args.write_baseline {
-        let prints = report::lint::fingerprints(&report.findings, &setup.files);
+        let prints = report::lint::fingerprints(&report.findings, &setup.programs.files);
         let text = serde_json::to_string_pretty(&prints)? + "\n";
         output::write(path, text.as_bytes())?;
     }
     if let Some(path) = &setup.baseline {
-        drop_known(&mut report, &setup.files, path)?;
+        drop_known(&mut report, &setup.programs.files, path)?;
     }
     write(args, &setup, &report)?;
     over_limit(&setup, &report)
 }
 
 /// Applies fixes; what is left to find.
-fn fix(args: &LintArgs, setup: &mut Setup) -> anyhow::Result<Report> {
-    if setup.model.is_none() {
+fn fix(args: &LintArgs, programs: &mut Programs) -> anyhow::Result<Report> {
+    if programs.model.is_none() {
         note(args.cell.quiet, "without a robot no fix can be tried: only comments are fixed");
     }
     let most = if args.unsafe_fixes { Applicability::Unsafe } else { Applicability::Safe };
-    let Fixed { files, applied, withdrawn, report } = lint::fix(&setup.job(), most);
-    let pairs = || setup.files.iter().zip(&files).filter(|(old, new)| old.bytes != new.bytes);
+    let Fixed { files, applied, withdrawn, report } = lint::fix(&programs.job(), most);
+    let pairs = || programs.files.iter().zip(&files).filter(|(old, new)| old.bytes != new.bytes);
     if args.diff {
         let mut out = std::io::stdout().lock();
         for (old, new) in pairs() {
@@ -153,20 +153,13 @@ fn fix(args: &LintArgs, setup: &mut Setup) -> anyhow::Result<Report> {
         file.put()?;
     }
     note(args.cell.quiet, &format!("{applied} fixes applied, {withdrawn} taken back"));
-    setup.files = files;
+    programs.files = files;
     Ok(report)
 }
 
-/// What is read before anything is looked at.
-#[derive(Default)]
-pub struct Setup {
-    /// The files; their ids count from 0.
-    pub files: Vec<SourceFile>,
-    groups: Vec<Group>,
-    /// The robot.
-    pub model: Option<Model>,
-    options: crate::retime::motion::Options,
-    settings: Settings,
+/// What is read before anything is linted.
+pub(super) struct Setup {
+    pub(super) programs: Programs,
     baseline: Option<PathBuf>,
     max_waste: Option<Limit>,
 }
@@ -176,11 +169,9 @@ impl Setup {
     ///
     /// # Errors
     /// Nothing can be read, or an option is wrong.
-    pub fn new(args: &LintArgs) -> anyhow::Result<Setup> {
+    pub(super) fn new(args: &LintArgs) -> anyhow::Result<Setup> {
         let input = input::read(&args.cell.paths)?;
-        for unreadable in &input.unreadable {
-            note(args.cell.quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
-        }
+        common::note_unreadable(args.cell.quiet, &input);
         for file in input.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
             let path = &file.source.path;
             note(args.cell.quiet, &format!("'{path}' is an encoded module: nothing in it is seen"));
@@ -197,31 +188,8 @@ impl Setup {
         let baseline = args.baseline.clone().or_else(|| config.lint.baseline.as_ref().map(beside));
         let limit = args.max_waste.as_ref().or(config.lint.max_waste.as_ref());
         let max_waste = limit.map(|text| Limit::parse(text)).transpose()?;
-        Ok(Setup { files, groups, model, options, settings, baseline, max_waste })
-    }
-
-    /// Adds a file to the first program; its index.
-    pub fn add(&mut self, file: SourceFile) -> usize {
-        let index = self.files.len();
-        self.files.push(SourceFile { id: FileId(index as u32), ..file });
-        if self.groups.is_empty() {
-            let entry = "main".to_owned();
-            self.groups.push(Group { files: Vec::new(), entry, system: None });
-        }
-        self.groups[0].files.push(index);
-        index
-    }
-
-    /// What the linter needs of it.
-    #[must_use]
-    pub fn job(&self) -> Job<'_> {
-        Job {
-            files: &self.files,
-            groups: self.groups.clone(),
-            model: self.model.as_ref(),
-            options: self.options.clone(),
-            settings: &self.settings,
-        }
+        let programs = Programs { files, groups, model, options, settings };
+        Ok(Setup { programs, baseline, max_waste })
     }
 }
 
@@ -268,13 +236,7 @@ fn robot(
         named.map(|(root, model)| common::as_configured(root, model, args.quiet))
     };
     let Some(model) = model else { return Ok(None) };
-    if model.dof != 6 {
-        bail!(
-            "{} has {} joints; RAPID programs are run for robots with 6: name another with --robot",
-            model.name,
-            model.dof
-        );
-    }
+    common::require_six_joints(&model, common::RUN_SIX_JOINTS)?;
     Ok(Some(model))
 }
 
@@ -398,7 +360,7 @@ fn drop_known(report: &mut Report, files: &[SourceFile], path: &Path) -> anyhow:
 }
 
 fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> {
-    let files = &setup.files;
+    let files = &setup.programs.files;
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     match args.format {
         LintFormat::Full => {
@@ -427,7 +389,7 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
     if args.statistics {
         write!(std::io::stderr().lock(), "{}", report::lint::text::statistics(report, files))?;
     }
-    let why = match &setup.model {
+    let why = match &setup.programs.model {
         None => "no robot is named (--robot NAME)".to_owned(),
         Some(model) if !model.has_dynamics() => format!("{} has no dynamics", model.name),
         Some(_) if report.cycle_energy_j.is_none() => {

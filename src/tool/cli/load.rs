@@ -14,7 +14,7 @@ const HELP: &str = "give the mass, such as 5; mass and centre of mass in tool0, 
 ///
 /// # Errors
 /// As of [`parse`].
-pub fn of_option(text: Option<&str>) -> anyhow::Result<Load> {
+pub fn from_option(text: Option<&str>) -> anyhow::Result<Load> {
     text.map_or_else(|| Ok(Load::none()), |text| parse("--load", text))
 }
 

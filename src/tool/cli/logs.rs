@@ -14,10 +14,11 @@ use crate::learn::identify::{
     synchronised, torques, weight_factor,
 };
 use crate::learn::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, aligned, are_halves};
+use crate::tool::report::identify::LogRecord;
 
-/// Share of a log that is held out where there is no other one, and repetitions of which none can
-/// be.
+/// Share of a single log that is held out.
 const HELD_OUT: f64 = 0.3;
+/// Most repetitions of which none is held out as a whole.
 const LEAST_CYCLES: usize = 3;
 
 /// A log that was read.
@@ -34,16 +35,15 @@ pub struct Read {
 
 /// A log ready to be used.
 pub struct Ready {
-    /// Path as given, SHA-256, usable rows, rows left out.
-    pub record: (String, String, usize, usize),
+    /// What was read.
+    pub record: LogRecord,
     /// The instants.
     pub samples: Samples,
     /// Where the torques come from.
     pub origin: String,
     /// The usable rows.
     pub log: Log,
-    /// How many times the weight of the robot file's masses the torques carry, where that is
-    /// strange.
+    /// Ratio of the logged torques to the weight of the robot file's masses, where it is implausible.
     pub weight: Option<f64>,
 }
 
@@ -51,11 +51,9 @@ pub struct Ready {
 pub struct Reader<'a> {
     /// The robot.
     pub model: &'a Model,
-    /// Columns under other names.
-    pub map: &'a ColumnMap,
     /// No notes on standard error.
     pub quiet: bool,
-    /// What a reader of the result has to know of the logs.
+    /// Notes on the logs, for the result.
     pub notes: Vec<String>,
 }
 
@@ -127,7 +125,7 @@ impl Reader<'_> {
             self.tell(format!("{shown}: {text}"));
         }
         Ok(Ready {
-            record: (shown, hash, usable, left_out),
+            record: LogRecord { path: shown, hash, rows: usable, left_out },
             samples,
             origin: torque.origin,
             log,
@@ -162,7 +160,7 @@ pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
         let (record, origin) = (of.record.clone(), of.origin.clone());
         Ok(Ready { record, samples, origin, log, weight: of.weight })
     };
-    let shown = &of.record.0;
+    let shown = &of.record.path;
     Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
 }
 
@@ -223,7 +221,7 @@ impl io::Read for Hashed {
     }
 }
 
-/// Torques that do not carry the masses of the robot file.
+/// What torques mean that do not fit the weight of the robot file's masses.
 fn of_weight(factor: f64, joint: usize) -> String {
     let times = |times: f64| if times < 10.0 { times } else { times.round() };
     if factor < 1.0 {
@@ -243,7 +241,7 @@ fn of_weight(factor: f64, joint: usize) -> String {
     }
 }
 
-/// A period that was given and is not that of the motion.
+/// A note where the given period is not that of the motion.
 fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
     let given = period?;
     match source {
@@ -263,10 +261,10 @@ fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
 /// Share by which a period may differ from the one that was given.
 const OTHER_PERIOD: f64 = 0.01;
 
-/// Rows of one kind that are told one by one.
+/// Rows left out for one reason that are listed one by one.
 const TOLD: usize = 3;
 
-/// What was left out; of many rows for one reason the first ones and the number of the others.
+/// The rows left out; of many for one reason the first ones and the number of the others.
 fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
     // Numbers differ from row to row, the words tell the kind.
     let kind = |reason: &str| -> String {

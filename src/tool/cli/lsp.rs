@@ -1,9 +1,13 @@
 //! `joulepath lsp`: the language server.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Args;
 
+use super::common::CellArgs;
+use super::lint::{LintArgs, Setup};
+use crate::tool::lint::Programs;
 use crate::tool::lsp::{self, Options};
 
 /// Serve an editor over standard input and output (Language Server Protocol).
@@ -30,6 +34,22 @@ pub struct LspArgs {
 /// The other side does not speak the protocol.
 pub fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
     let LspArgs { robot, entry, inputs } = args;
-    lsp::serve(Options { robot: robot.clone(), entry: entry.clone(), inputs: inputs.clone() })?;
+    let defaults = Options { robot: robot.clone(), entry: entry.clone(), inputs: inputs.clone() };
+    lsp::serve(defaults, programs)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The programs of a folder; none where it cannot be read or the robot is not known, so that the
+/// open documents stand alone.
+fn programs(options: &Options, folder: &Path) -> Programs {
+    let cell = CellArgs {
+        paths: folder.is_dir().then(|| folder.to_path_buf()).into_iter().collect(),
+        robot: options.robot.clone(),
+        entry: options.entry.clone(),
+        inputs: options.inputs.clone(),
+        quiet: true,
+        ..CellArgs::default()
+    };
+    let args = LintArgs { cell, ..LintArgs::default() };
+    Setup::new(&args).map(|setup| setup.programs).unwrap_or_default()
 }

@@ -27,6 +27,7 @@ pub mod rule;
 pub mod signals;
 pub mod simulate;
 pub mod standstill;
+pub mod streams;
 pub mod streamtest;
 pub mod undo;
 mod written;

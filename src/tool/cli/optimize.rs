@@ -1,6 +1,6 @@
 //! `joulepath optimize`: the main job.
 
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,7 +12,7 @@ use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::written::{now, outside, whole_backup, write_folder, write_in_place};
-use super::{backinfo, input, listing, output, refresh, undo};
+use super::{backinfo, input, listing, output, streams, undo};
 use crate::arm::kinematics::{self, Obstacle, Plane};
 use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
@@ -217,7 +217,7 @@ pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bail!("refresh takes nothing back: joulepath optimize --undo does");
     }
     let mut input = input::read(&args.program.cell.paths)?;
-    let streams = refresh::take_out(&mut input)?;
+    let streams = streams::take_out(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
     work(args, &Job { streams, ..job })
 }
@@ -247,7 +247,7 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
                     .to_owned(),
             );
         }
-        refresh::hand_on(job, &mut result);
+        job.streams.restate(&mut result);
         listing::add(&mut result, &job.input, &job.files);
         if lists {
             backinfo::add(&mut result, &job.input);
@@ -271,27 +271,25 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
         output::write(path, html.as_bytes())?;
         written.push(path.display().to_string());
     }
-    let mut out = std::io::stdout().lock();
-    match args.program.format {
-        Format::Json => {
-            let value = report::json::retrofit(&job.model, &job.entry, places, &result, &written);
-            serde_json::to_writer_pretty(&mut out, &value)?;
-            writeln!(out)?;
+    if args.program.format == Format::Text {
+        for text in report::text::notes(&job.model, places, &result.before.0) {
+            common::note(args.program.cell.quiet, &text);
         }
-        Format::Text => {
-            for text in report::text::notes(&job.model, places, &result.before.0) {
-                common::note(args.program.cell.quiet, &text);
-            }
-            for path in &written {
-                common::note(args.program.cell.quiet, &format!("wrote {path}"));
-            }
-            if args.diff || job.is_refreshed() {
-                write!(out, "{}", diff(job, &result))?;
-            } else {
-                write!(out, "{}", report::text::retrofit(&job.model, places, &result))?;
-            }
+        for path in &written {
+            common::note(args.program.cell.quiet, &format!("wrote {path}"));
         }
     }
+    common::print(
+        args.program.format,
+        || report::json::retrofit(&job.model, &job.entry, places, &result, &written),
+        || {
+            if args.diff || job.is_refreshed() {
+                diff(job, &result)
+            } else {
+                report::text::retrofit(&job.model, places, &result)
+            }
+        },
+    )?;
     let refused = args.strict && result.refused();
     Ok(ExitCode::from(u8::from(refused)))
 }
@@ -438,14 +436,10 @@ fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     for path in &cell.paths {
         done.extend(undo::undo(path)?);
     }
-    let mut out = std::io::stdout().lock();
-    match args.program.format {
-        Format::Json => {
-            serde_json::to_writer_pretty(&mut out, &serde_json::json!({ "undone": done }))?;
-            writeln!(out)?;
-        }
-        Format::Text => done.iter().for_each(|text| common::note(cell.quiet, text)),
+    if args.program.format == Format::Text {
+        done.iter().for_each(|text| common::note(cell.quiet, text));
     }
+    common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -24,7 +24,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// # Errors
 /// As [`write()`], and where a file that is read-only stands at its place.
 pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
-    // A link stays one: what it leads to is written.
+    // A link stays a link: the file that it leads to is written.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     if std::fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly()) {
         anyhow::bail!("'{}' is read-only; make it writable to have it changed", path.display());
@@ -42,7 +42,7 @@ pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
     std::fs::create_dir_all(folder).with_context(closed)?;
     let mut file = tempfile::NamedTempFile::new_in(folder).with_context(closed)?;
     file.write_all(bytes).with_context(|| failed(path))?;
-    // A temporary file is private; what stands for a program is not.
+    // A temporary file is private; a program's file is not.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -92,7 +92,7 @@ pub fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result
         std::fs::set_permissions(whole.path(), permissions).with_context(|| failed(folder))?;
     }
     std::fs::rename(whole.path(), folder).with_context(|| failed(folder))?;
-    // Nothing is left where it was: there is nothing to remove.
+    // The temporary folder was renamed: there is nothing to remove.
     let _ = whole.keep();
     Ok(())
 }

@@ -66,7 +66,7 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     let model = if model.has_dynamics() { model } else { effects::load_estimated(&args.robot)? };
     ready(&model, Use::Predict)?;
-    let load = load::of_option(args.load.as_deref())?;
+    let load = load::from_option(args.load.as_deref())?;
     let map = ColumnMap::parse(&args.map)?;
     let shown = args.log.display();
     let bytes = fs::read(&args.log)
@@ -130,8 +130,8 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Torques with effects that the model's numbers do not hold; `None` where it has none.
-fn shown(model: &Model, load: &Load, motion: &Motion) -> Option<Vec<Vec<f64>>> {
+/// The torques with the model's laws and effects of the whole motion; `None` where it has none.
+fn torques_with_effects(model: &Model, load: &Load, motion: &Motion) -> Option<Vec<Vec<f64>>> {
     if model.laws.is_empty() && model.effects.is_empty() {
         return None;
     }
@@ -150,7 +150,7 @@ fn shown(model: &Model, load: &Load, motion: &Motion) -> Option<Vec<Vec<f64>>> {
 }
 
 /// `t,tau1..taun,p_mech,p_elec`, numbers in shortest round-trip form. Torques are as a log
-/// would have them, powers those of the robot. With the rows of which they are not finite.
+/// would have them, powers those of the robot. Also the rows in which they are not finite.
 fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>) {
     let n = model.dof;
     let mut csv = String::from("t");
@@ -161,7 +161,7 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>)
     let mut data = Data::new();
     let mut beyond = Vec::new();
     let sensors = &model.sensors;
-    let shown = shown(model, load, motion);
+    let effects = torques_with_effects(model, load, motion);
     for (row, t) in motion.time.iter().enumerate() {
         let at = |columns: &[Vec<f64>]| columns.iter().map(|column| column[row]).collect();
         let [mut q, qd, qdd]: [Vec<f64>; 3] = [at(&motion.q), at(&motion.qd), at(&motion.qdd)];
@@ -179,7 +179,7 @@ fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>)
             .zip(logged)
             .map(|(tau, ((error, offset), apparent))| tau * (1.0 + error) + offset + apparent)
             .enumerate()
-            .map(|(joint, tau)| shown.as_ref().map_or(tau, |shown| shown[joint][row]))
+            .map(|(joint, tau)| effects.as_ref().map_or(tau, |of| of[joint][row]))
             .chain([power.mechanical_w(), supply])
             .collect();
         if !values.iter().all(|value| value.is_finite()) {

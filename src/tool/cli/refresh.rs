@@ -1,19 +1,10 @@
 //! `joulepath refresh`: the streams of a retrofitted program, made anew from the data of today.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::bail;
 use clap::Args;
 
-use super::common::Job;
-use super::input::Input;
 use super::optimize::{self, OptimizeArgs};
-use super::{backinfo, listing};
-use crate::rapid::text::SourceFile;
-use crate::tool::retrofit::{
-    BRAKE_NOTE, OutputKind, Retrofit, is_streams, prefix, without_streams,
-};
 
 /// Make the streams of a retrofitted program anew from its present data, and show the difference.
 #[derive(Debug, Args)]
@@ -34,90 +25,4 @@ pub struct RefreshArgs {
 /// The program has no streams, and all that `optimize` refuses.
 pub fn run(args: &RefreshArgs) -> anyhow::Result<ExitCode> {
     optimize::refresh(&args.optimize)
-}
-
-/// What a retrofit added to a program.
-#[derive(Clone, Debug, Default)]
-pub struct Streams {
-    /// The modules of streams.
-    pub modules: Vec<PathBuf>,
-    /// What somebody stated in them: the name of a datum, without its prefix, and its text.
-    stated: Vec<(&'static str, Vec<u8>)>,
-}
-
-/// Data of a module of streams that are stated on the controller.
-const STATED: [&str; 2] = ["RobotType", "SerialNo"];
-
-/// Takes the streams out of a program.
-///
-/// # Errors
-/// There are none.
-pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
-    let mut streams = Streams::default();
-    let mut prefixes: Vec<String> = Vec::new();
-    let mut names: Vec<String> = Vec::new();
-    for file in input.files.iter().filter(|file| is_streams(&file.source.bytes)) {
-        let bytes = &file.source.bytes;
-        streams.modules.push(PathBuf::from(&file.source.path));
-        names.extend(file.relative.rsplit('/').next().map(str::to_owned));
-        prefixes.extend(prefix(bytes).filter(|prefix| !prefixes.contains(prefix)));
-        for name in STATED {
-            // What joulepath itself states is in the head of the module, too.
-            let text = datum(bytes, name).map(|at| bytes[at].to_vec());
-            let text = text.filter(|text| !text.is_empty() && !in_head(bytes, text));
-            streams.stated.extend(text.map(|text| (name, text)));
-        }
-    }
-    if streams.modules.is_empty() {
-        bail!(
-            "no streams of joulepath are among these files, so there is nothing to refresh: name the \
-             folder of a retrofitted program, with its module of streams, or make one with \
-             joulepath optimize"
-        );
-    }
-    let beside = |path: &PathBuf| Some(path.parent()?.join(BRAKE_NOTE));
-    let notes: Vec<PathBuf> = streams.modules.iter().filter_map(beside).collect();
-    streams.modules.extend(notes.into_iter().filter(|note| note.is_file()));
-    input.files.retain(|file| !is_streams(&file.source.bytes));
-    for file in &mut input.files {
-        for prefix in &prefixes {
-            let bytes = without_streams(&file.source, prefix);
-            let SourceFile { id, path, utf16, .. } = file.source.clone();
-            file.source = SourceFile { utf16, ..SourceFile::new(id, path, bytes) };
-        }
-    }
-    for listing in &mut input.listings {
-        listing.bytes = listing::without(&listing.bytes, &names);
-        listing.modules.retain(|path| !streams.modules.contains(&PathBuf::from(path)));
-    }
-    for information in &mut input.information {
-        information.bytes = backinfo::without(&information.bytes, &names);
-    }
-    Ok(streams)
-}
-
-/// Hands on what somebody stated in the modules before.
-pub fn hand_on(job: &Job, result: &mut Retrofit) {
-    for file in result.outputs.iter_mut().filter(|file| file.kind == OutputKind::New) {
-        for (name, text) in &job.streams.stated {
-            if let Some(at) = datum(&file.bytes, name) {
-                file.bytes.splice(at, text.iter().copied());
-            }
-        }
-    }
-}
-
-/// Where the text of a string datum stands: its name, behind the prefix, and its value in quotes.
-fn datum(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
-    let begin = format!("{name}:=\"").into_bytes();
-    let start = bytes.windows(begin.len()).position(|window| window == begin)? + begin.len();
-    let length = bytes[start..].iter().position(|b| *b == b'"')?;
-    Some(start..start + length)
-}
-
-/// Whether the comment at the head of a module says a text.
-fn in_head(bytes: &[u8], text: &[u8]) -> bool {
-    let lines = bytes.split(|b| *b == b'\n').skip(1);
-    let mut head = lines.take_while(|line| line.trim_ascii_start().starts_with(b"!"));
-    head.any(|line| line.windows(text.len()).any(|window| window == text))
 }

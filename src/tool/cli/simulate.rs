@@ -1,6 +1,5 @@
 //! `joulepath simulate`: a program on the virtual controller.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,6 +14,7 @@ use crate::retime::energy::trajectory::{STEP, trajectory};
 use crate::retime::motion;
 use crate::tool::report::html::simulate_report;
 use crate::tool::report::place::Places;
+use crate::tool::report::simulated::Simulated;
 use crate::tool::report::{self};
 use crate::tool::retrofit::read_program;
 
@@ -56,6 +56,13 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     } else {
         plausibility(&job.model, &simulation, &account)
     };
+    let simulated = Simulated {
+        model: &job.model,
+        entry: &job.entry,
+        simulation: &simulation,
+        account: &account,
+        plausible: plausible.as_ref(),
+    };
     if args.trajectory.is_some() || args.report.is_some() {
         let rows = simulation.cycle_s / STEP;
         if rows > MAX_ROWS {
@@ -70,9 +77,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
             output::write(path, report::trajectory::csv(places, &samples).as_bytes())?;
         }
         if let Some(path) = &args.report {
-            let (model, entry) = (&job.model, &job.entry);
-            let energies = (&account, plausible.as_ref());
-            let page = simulate_report(&simulation, energies, &samples, &sources, model, entry)?;
+            let page = simulate_report(simulated, &samples, &sources)?;
             output::write(path, page.as_bytes())?;
         }
     }
@@ -81,31 +86,15 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     for text in &notes {
         common::note(args.program.cell.quiet, text);
     }
-    let mut out = std::io::stdout().lock();
-    match args.program.format {
-        Format::Json => {
-            let (model, entry) = (&job.model, &job.entry);
-            let value = report::json::simulation(
-                model,
-                entry,
-                places,
-                &simulation,
-                &account,
-                plausible.as_ref(),
-                &notes,
-            );
-            serde_json::to_writer_pretty(&mut out, &value)?;
-            writeln!(out)?;
-        }
-        Format::Text => {
-            for text in report::text::notes(&job.model, places, &simulation) {
-                common::note(args.program.cell.quiet, &text);
-            }
-            let plausible = plausible.as_ref();
-            let text =
-                report::text::simulation(&job.model, places, &simulation, &account, plausible);
-            write!(out, "{text}")?;
+    if args.program.format == Format::Text {
+        for text in report::text::notes(&job.model, places, &simulation) {
+            common::note(args.program.cell.quiet, &text);
         }
     }
+    common::print(
+        args.program.format,
+        || report::json::simulation(simulated, places, &notes),
+        || report::text::simulation(simulated, places),
+    )?;
     Ok(ExitCode::SUCCESS)
 }

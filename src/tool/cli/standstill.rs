@@ -1,6 +1,5 @@
 //! `joulepath standstill`: what standing still costs.
 
-use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::bail;
@@ -61,20 +60,14 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         let text = format!("{} has no [brakes]: nothing is said of when they pay", model.name);
         common::note(args.program.cell.quiet, &text);
     }
-    let mut out = std::io::stdout().lock();
-    match args.program.format {
-        Format::Json => {
-            let value = standstill::json(&model, &poses, &assumed);
-            serde_json::to_writer_pretty(&mut out, &value)?;
-            writeln!(out)?;
-        }
-        Format::Text => {
-            for text in assumed {
-                common::note(args.program.cell.quiet, &text);
-            }
-            write!(out, "{}", standstill::text(&poses))?;
-        }
+    if args.program.format == Format::Text {
+        assumed.iter().for_each(|text| common::note(args.program.cell.quiet, text));
     }
+    common::print(
+        args.program.format,
+        || standstill::json(&model, &poses, &assumed),
+        || standstill::text(&poses),
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -84,7 +77,7 @@ fn of_poses(
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
     let model = common::robot(&args.program.cell)?;
     ready(&model, Use::Standstill)?;
-    let load = load::of_option(args.load.as_deref())?;
+    let load = load::from_option(args.load.as_deref())?;
     let plausible = plausible(args, &model);
     let mut poses = Vec::new();
     for text in &args.pose {

@@ -1,7 +1,6 @@
 //! `joulepath streamtest`: does this controller run streams as joulepath assumes?
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -63,9 +62,7 @@ pub struct StreamtestArgs {
 /// A robot without limits, a pose without room, an unusable log, output that can't be written.
 pub fn run(args: &StreamtestArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
-    if model.dof != 6 {
-        bail!("{} has {} joints; RAPID is written for robots with 6", model.name, model.dof);
-    }
+    common::require_six_joints(&model, "RAPID is written for robots with 6")?;
     let start = common::six_degrees("--start", &args.start)?;
     if let Err(violation) = limits_ok(&model, &start) {
         bail!("--start {}: {violation}", args.start);
@@ -106,26 +103,27 @@ fn write(
         output::write(&path, text.as_bytes())?;
         outputs.push(path.display().to_string());
     }
-    let mut out = std::io::stdout().lock();
-    if args.format == Format::Json {
-        let of = |test: &StreamTest| {
+    let json = || {
+        let test = |test: &StreamTest| {
             json!({
                 "what": test.what,
                 "points": test.stream.points().len(),
                 "duration_s": test.stream.duration(),
             })
         };
-        let tests: Vec<_> = tests.iter().map(of).collect();
-        writeln!(out, "{:#}", json!({ "tests": tests, "outputs": outputs }))?;
-    } else {
+        json!({ "tests": tests.iter().map(test).collect::<Vec<_>>(), "outputs": outputs })
+    };
+    let text = || {
+        let mut text = String::new();
         for (index, test) in tests.iter().enumerate() {
             let (points, seconds) = (test.stream.points().len(), test.stream.duration());
-            writeln!(out, "test {}: {}: {points} points, {seconds:.2} s", index + 1, test.what)?;
+            let number = index + 1;
+            let _ = writeln!(text, "test {number}: {}: {points} points, {seconds:.2} s", test.what);
         }
-        for path in outputs {
-            writeln!(out, "wrote {path}")?;
-        }
-    }
+        outputs.iter().for_each(|path| text += &format!("wrote {path}\n"));
+        text
+    };
+    common::print(args.format, json, text)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -181,17 +179,18 @@ fn compare(
         };
         found.push((test, measured));
     }
-    let mut out = std::io::stdout().lock();
     let holds = found.iter().all(|(_, measured)| measured.finding == Finding::Law);
-    if args.format == Format::Json {
+    let json = || {
         let tests: Vec<_> = found.iter().map(|(test, m)| document(test, m)).collect();
-        writeln!(out, "{:#}", json!({ "law_holds": holds, "tests": tests }))?;
-    } else {
-        for (index, (test, m)) in found.iter().enumerate() {
-            writeln!(out, "test {}: {}: {}", index + 1, test.what, text(m))?;
-        }
-        writeln!(out, "{}", conclusion(holds))?;
-    }
+        json!({ "law_holds": holds, "tests": tests })
+    };
+    let lines = || {
+        let tests = found.iter().enumerate();
+        let tests =
+            tests.map(|(i, (test, m))| format!("test {}: {}: {}\n", i + 1, test.what, text(m)));
+        tests.collect::<String>() + conclusion(holds) + "\n"
+    };
+    common::print(args.format, json, lines)?;
     Ok(if holds { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 

@@ -59,14 +59,14 @@ enum Kind {
     Added,
 }
 
-/// What is needed to take changes back, before it is written.
+/// The folder that allows to take changes back, before it is written.
 pub struct Plan<'a> {
     folder: PathBuf,
     files: Vec<(PathBuf, Cow<'a, [u8]>)>,
 }
 
-/// What takes changes of files below `root` back. Modules of streams that are made anew may be there;
-/// what an earlier retrofit kept is replaced then, since its data are those of the past.
+/// Plans how changes of files below `root` are taken back. Modules of streams that are made anew may
+/// exist already; the folder of an earlier retrofit is then replaced, since its data are outdated.
 ///
 /// # Errors
 /// The folder or a new file is there already, or a file lies outside of `root`.

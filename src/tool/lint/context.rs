@@ -5,11 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Isometry3, Vector3};
 
 use super::flow::{Class, Flow, Next, Place, Through};
+use super::group::Group;
 use super::quiet::Quiet;
+use super::saving::Weighed;
 use super::site::{Site, compact, constant, facts_of, site};
 use super::system::System;
-use super::trace::{Deed, Done, executions};
-use super::weigh::{Change, Cycle, Difference, Weighed, difference, weigh};
+use super::trace::{self, Action, Recording, TraceStep, executions};
+use super::weigh::{Change, Cycle, Difference, difference, weigh};
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::Note;
 use crate::rapid::ir::graph::Step as GraphStep;
@@ -31,11 +33,11 @@ pub struct Context<'c> {
     pub entry: Option<RoutineId>,
     /// The robot, if it is known.
     pub model: Option<&'c Model>,
-    /// A cycle of it, if it could be simulated.
+    /// Its simulated cycle, if there is one.
     pub cycle: Option<&'c Cycle>,
     /// What it does, in order; empty without an entry.
-    pub trace: Vec<Done<'c>>,
-    /// What could not be worked out.
+    pub trace: Vec<TraceStep<'c>>,
+    /// What could not be resolved.
     pub unresolved: &'c [Note],
     /// Its control flow.
     pub flow: Flow<'c>,
@@ -46,13 +48,13 @@ pub struct Context<'c> {
     /// The controller's configuration, of a backup.
     pub system: Option<&'c System>,
     by_place: BTreeMap<Place, usize>,
-    /// The movements before each, whatever stands between.
+    /// The movements that precede each movement, whatever stands between.
     before: Vec<Vec<usize>>,
     /// Movements before which the robot may be anywhere.
     starts: BTreeSet<usize>,
 }
 
-/// The way through the goal of a movement, at its worst.
+/// The corner at the goal of a movement, the worst of all its executions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Shortest way to it, m.
@@ -63,7 +65,8 @@ pub struct Corner {
     pub turn: f64,
     /// Largest turn of the tool on the way to it or from it, rad.
     pub turned: f64,
-    /// How far the ways lie along the tool's axis, 0 across it to 1 along it: the larger of both.
+    /// Cosine between the tool's axis and the way to or from the goal, the larger of both: 0 across
+    /// the axis, 1 along it.
     pub along: f64,
     /// Whether the tool comes in along its axis and goes on across it, as where a bead begins.
     pub goes_in: bool,
@@ -71,11 +74,11 @@ pub struct Corner {
     pub comes_out: bool,
 }
 
-/// Movements for each wait or output of a program that works.
+/// Most movements for each wait or output of a program with a purpose besides moving.
 const MOST_MOVES: usize = 12;
-/// Share of a way along the tool's axis up to which it is one across it: tools may lean by 30°.
+/// Largest cosine to the tool's axis of a way across it: tools may lean by 30°.
 const ACROSS: f64 = 0.5;
-/// Share from which on it goes in or out.
+/// Least cosine to the tool's axis of a way in or out.
 const ALONG: f64 = 0.3;
 
 impl Corner {
@@ -86,18 +89,24 @@ impl Corner {
 }
 
 impl<'c> Context<'c> {
-    /// Looks at a program.
-    #[expect(clippy::too_many_arguments, reason = "the parts of one value, named by it")]
+    /// Examines the program of a group, with its simulated cycle, or else with the recording of a
+    /// run without a robot.
     pub fn new(
         files: &'c [SourceFile],
-        program: &'c Program,
-        entry: Option<RoutineId>,
         model: Option<&'c Model>,
+        program: &'c Program,
+        group: &'c Group,
         cycle: Option<&'c Cycle>,
-        trace: Vec<Done<'c>>,
-        unresolved: &'c [Note],
-        system: Option<&'c System>,
+        recording: Option<&'c Recording>,
     ) -> Context<'c> {
+        let entry = program.entry(&group.entry);
+        let (trace, unresolved): (Vec<TraceStep<'c>>, &[Note]) = match (cycle, recording) {
+            (Some(cycle), _) => {
+                (trace::of_simulation(&cycle.simulation), &cycle.simulation.unresolved)
+            }
+            (None, Some(recording)) => (recording.trace(), &recording.notes),
+            (None, None) => (Vec::new(), &[]),
+        };
         let flow = Flow::new(program, entry);
         let quiet = Quiet::new(program);
         let executed = executions(&trace);
@@ -141,7 +150,7 @@ impl<'c> Context<'c> {
             flow,
             quiet,
             sites,
-            system,
+            system: group.system.as_ref(),
             by_place,
             before,
             starts,
@@ -149,7 +158,7 @@ impl<'c> Context<'c> {
     }
 
     /// Whether the robot may be anywhere before a movement: at the start of the program or of a
-    /// routine that nothing calls, behind a call of something unknown, in a handler.
+    /// routine that nothing calls, after a call of something unknown, in a handler.
     pub fn may_start(&self, site: usize) -> bool {
         self.starts.contains(&site)
     }
@@ -169,10 +178,11 @@ impl<'c> Context<'c> {
     }
 
     /// Whether the routines of some movements, or what they call, have a purpose besides moving:
-    /// a wait, an output, or something else that a robot may do where it stands. A cycle with many
-    /// movements for each wait or output is shown for its movements.
+    /// a wait, an output, or something else that a robot may do where it stands. A cycle with very
+    /// many movements for each wait or output is a demonstration of movements and has none.
     pub fn works(&self, sites: &[usize]) -> bool {
-        let is_move = |done: &&Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+        let is_move =
+            |done: &&TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
         let moves = self.trace.iter().filter(is_move).count();
         let rest = self.trace.len() - moves;
         if moves > MOST_MOVES * rest.max(1) {
@@ -197,7 +207,7 @@ impl<'c> Context<'c> {
         false
     }
 
-    /// The calls of instructions with this name (lower case), where control can get.
+    /// The reachable calls of instructions with this name (lower case).
     pub fn calls(&self, key: &'static str) -> Vec<(Place, &'c Stmt, &'c Call)> {
         let mut found = Vec::new();
         for (routine, graph, reachable) in self.flow.graphs() {
@@ -216,12 +226,12 @@ impl<'c> Context<'c> {
         found
     }
 
-    /// What comes behind a movement on every way.
+    /// What follows a movement on every path of the control flow.
     pub fn next(&self, site: usize, through: Through) -> BTreeSet<Next> {
         self.flow.following(self.sites[site].place, through)
     }
 
-    /// The movements behind a movement, if nothing else can come first.
+    /// The movements that follow a movement, if nothing else can come first.
     pub fn next_moves(&self, site: usize, through: Through) -> Option<Vec<usize>> {
         let next = self.next(site, through);
         let moves = next.iter().map(|next| match next {
@@ -229,11 +239,6 @@ impl<'c> Context<'c> {
             _ => None,
         });
         moves.collect::<Option<Vec<usize>>>().filter(|moves| !moves.is_empty())
-    }
-
-    /// The movement statement at a place.
-    pub fn site_at(&self, place: Place) -> Option<usize> {
-        self.by_place.get(&place).copied()
     }
 
     /// The movement statement of a span.
@@ -256,11 +261,6 @@ impl<'c> Context<'c> {
         self.files[span.file.0 as usize].position(span.start).line
     }
 
-    /// Name of the file of a span.
-    pub fn path(&self, span: Span) -> &'c str {
-        &self.files[span.file.0 as usize].path
-    }
-
     /// The simulated movement of a step of the trace.
     pub fn record(&self, step: usize) -> Option<(&'c Run, &'c MoveRecord, &'c Leg)> {
         let (event, index) = self.trace[step].event?;
@@ -276,7 +276,7 @@ impl<'c> Context<'c> {
             return Some(leg.target);
         }
         match &self.trace[step].what {
-            Deed::Move(movement) => match &movement.target {
+            Action::Move(movement) => match &movement.target {
                 Target::Pose(target) if movement.wobj.fixed && movement.tool.robhold => {
                     let shift = movement.settings.displacement.unwrap_or_else(Isometry3::identity);
                     Some(movement.wobj.frame * shift * target.pose)
@@ -289,15 +289,15 @@ impl<'c> Context<'c> {
 
     /// The movement steps next to a step of the trace.
     pub fn neighbours(&self, step: usize) -> Option<(usize, usize)> {
-        let is_move = |done: &Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+        let is_move = |done: &TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
         let before = self.trace[..step].iter().rposition(is_move)?;
         let after = step + 1 + self.trace[step + 1..].iter().position(is_move)?;
-        let moves = |step: usize| matches!(self.trace[step].what, Deed::Move(_));
+        let moves = |step: usize| matches!(self.trace[step].what, Action::Move(_));
         (moves(before) && moves(after)).then_some((before, after))
     }
 
-    /// The way through a movement's goal, at its worst over all executions, or over all ways
-    /// that the text shows.
+    /// The corner at a movement's goal, the worst over all executions, or over all paths of the
+    /// control flow if it was not executed.
     pub fn corner(&self, site: usize) -> Option<Corner> {
         let executed = &self.sites[site].executions;
         if executed.is_empty() {
@@ -309,7 +309,7 @@ impl<'c> Context<'c> {
             Some(corner(&a?, &b?, &c?))
         });
         let corners: Vec<Corner> = corners.collect();
-        // The last movement of the trace has none behind it.
+        // The last movement of the trace has none after it.
         if corners.is_empty() || corners.len() + 1 < executed.len() {
             return None;
         }
@@ -332,7 +332,7 @@ impl<'c> Context<'c> {
         worst(corners)
     }
 
-    /// What a change of movements or waits does to the cycle, if that can be told.
+    /// What a change of movements or waits does to the cycle, if it can be simulated.
     pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference> {
         difference(self.model?, self.cycle?, spans, change)
     }
@@ -376,10 +376,10 @@ fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize>
     starts
 }
 
-/// What the text leaves open of a movement, its executions may tell, if they agree.
-fn complete(site: &mut Site<'_>, trace: &[Done<'_>]) {
+/// Completes what the text leaves open of a movement by its executions, where they agree.
+fn complete(site: &mut Site<'_>, trace: &[TraceStep<'_>]) {
     let mut executions = site.executions.iter().filter_map(|step| match &trace[*step].what {
-        Deed::Move(movement) => Some(facts_of(movement)),
+        Action::Move(movement) => Some(facts_of(movement)),
         _ => None,
     });
     let Some(mut first) = executions.next() else { return };

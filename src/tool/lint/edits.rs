@@ -1,7 +1,7 @@
 //! Changes of the text that rules propose.
 
 use super::context::Context;
-use super::finding::{Applicability, Fix};
+use super::rule::{Applicability, Fix};
 use super::site::Site;
 use crate::rapid::text::{Edit, Span};
 
@@ -25,11 +25,11 @@ const SPEEDS: [u32; 20] = [
 pub(super) struct NamedZone {
     /// `z10` …
     pub(super) name: &'static str,
-    /// What it is.
+    /// Its sizes.
     pub(super) zone: crate::rapid::ir::movement::Zone,
 }
 
-/// The largest predefined zone that needs no more than this, m.
+/// The largest predefined zone whose size is at most `most`, m.
 pub(super) fn zone_within(most: f64) -> Option<NamedZone> {
     let fits = |(_, _, orientation): &&(&str, f64, f64)| *orientation * 1e-3 <= most + 1e-9;
     let (name, tcp, orientation) = ZONES.iter().rev().find(fits)?;
@@ -59,8 +59,8 @@ pub(super) fn fix(applicability: Applicability, edit: Edit) -> Fix {
     Fix { applicability, edits: vec![edit] }
 }
 
-/// Takes a statement out, with its line if nothing else stands on it. `None` where the statement
-/// can't be missing.
+/// Removes a statement, with its line if nothing else stands on it. `None` for the only statement of
+/// a compact `IF`.
 pub(super) fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
     if site.compact {
         return None;

@@ -6,48 +6,22 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::context::Context;
-use super::finding::Finding;
+use super::group::Group;
+use super::job::Job;
 use super::register::ALL;
+use super::rule::Finding;
 use super::rules::unused_suppression;
-use super::settings::Settings;
 use super::suppress::{Suppression, suppressions};
-use super::system::System;
 use super::trace;
 use super::weigh::Cycle;
 use crate::arm::robot::Model;
-use crate::rapid::ir::exec::Note;
 use crate::rapid::ir::hir::Module;
 use crate::rapid::ir::lower;
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::syntax;
-use crate::rapid::text::{SourceFile, Span};
+use crate::rapid::text::Span;
 use crate::retime::energy::account;
-use crate::retime::motion::{Options, simulate};
-
-/// Files that may belong together, and how they run.
-#[derive(Clone, Debug)]
-pub struct Group {
-    /// Ids of the files.
-    pub files: Vec<usize>,
-    /// The routine that starts the program.
-    pub entry: String,
-    /// The configuration of their controller.
-    pub system: Option<System>,
-}
-
-/// What is linted.
-pub struct Job<'j> {
-    /// The files; their ids count from 0.
-    pub files: &'j [SourceFile],
-    /// Which belong together.
-    pub groups: Vec<Group>,
-    /// The robot.
-    pub model: Option<&'j Model>,
-    /// How programs are simulated.
-    pub options: Options,
-    /// What the user asks.
-    pub settings: &'j Settings,
-}
+use crate::retime::motion::simulate;
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -56,13 +30,12 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// Energy of the cycles that were simulated, J; `None` where nothing was, or without dynamics.
     pub cycle_energy_j: Option<f64>,
-    /// Places that could not be worked out.
+    /// Number of places that could not be resolved.
     pub unresolved: usize,
 }
 
 impl Report {
-    /// What all findings with a saving save, J. Findings at one place are alternatives: the
-    /// largest of them counts.
+    /// Sum of the savings, J. Findings at one place are alternatives: only the largest counts.
     #[must_use]
     pub fn saving_j(&self) -> f64 {
         let mut best: BTreeMap<_, f64> = BTreeMap::new();
@@ -82,9 +55,9 @@ struct Read {
     suppressions: Vec<Suppression>,
 }
 
-/// What was read of files, kept from one look at them to the next.
+/// The parsed files of the last examination: a file that did not change is not parsed again.
 #[derive(Default)]
-pub struct Kept {
+pub struct ReadCache {
     files: Vec<(Vec<u8>, Arc<Read>)>,
 }
 
@@ -99,26 +72,26 @@ pub struct Examined {
     pub programs: Vec<Vec<usize>>,
 }
 
-/// Looks at all programs.
+/// Lints all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
-    let read = read(job, &Kept::default());
+    let read = read(job, &ReadCache::default());
     // No cycle is kept: those of a plant's programs would fill the memory.
     let report = |unit: &Group| one(job, unit, &read).0;
     merged(units(job, &read).par_iter().map(report).collect())
 }
 
-/// Looks at all programs, and gives their cycles too.
+/// Lints all programs, and gives their cycles too.
 #[must_use]
 pub fn examine(job: &Job<'_>) -> Examined {
-    let read = read(job, &Kept::default());
+    let read = read(job, &ReadCache::default());
     let units = units(job, &read);
     examine_units(job, &units, &read)
 }
 
-/// Looks at the programs that hold a file; reads files anew only where they have changed.
+/// Lints the programs that hold a file; only changed files are parsed again.
 #[must_use]
-pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut Kept) -> Examined {
+pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut ReadCache) -> Examined {
     let read = read(job, kept);
     let bytes = job.files.iter().map(|file| file.bytes.clone());
     kept.files = bytes.zip(read.iter().cloned()).collect();
@@ -148,7 +121,7 @@ fn merged(reports: Vec<Report>) -> Report {
     all
 }
 
-fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
+fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<Read>> {
     job.files
         .par_iter()
         .enumerate()
@@ -169,7 +142,7 @@ fn read(job: &Job<'_>, kept: &Kept) -> Vec<Arc<Read>> {
 /// an entry.
 #[must_use]
 pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
-    let read = read(job, &Kept::default());
+    let read = read(job, &ReadCache::default());
     let cycle = |unit: &Group| {
         let modules =
             unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
@@ -221,23 +194,8 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         (None, Some(entry)) => Some(trace::record(&program, entry)),
         _ => None,
     };
-    let notes: Vec<Note> = recording.iter().flat_map(|it| it.notes.iter().cloned()).collect();
-    let unresolved = cycle.as_ref().map_or(&notes, |cycle| &cycle.simulation.unresolved);
-    let trace = match (&cycle, &recording) {
-        (Some(cycle), _) => trace::of_simulation(&cycle.simulation),
-        (None, Some(recording)) => recording.trace(),
-        (None, None) => Vec::new(),
-    };
-    let context = Context::new(
-        job.files,
-        &program,
-        entry,
-        job.model,
-        cycle.as_ref(),
-        trace,
-        unresolved,
-        unit.system.as_ref(),
-    );
+    let context =
+        Context::new(job.files, job.model, &program, unit, cycle.as_ref(), recording.as_ref());
     let mut findings = Vec::new();
     for rule in ALL.iter().filter(|rule| job.settings.selects(rule)) {
         (rule.check)(&context, &mut findings);
@@ -252,13 +210,14 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         worth && !settings.ignores_in(finding.rule, path)
     });
     let dynamics = job.model.is_some_and(Model::has_dynamics);
-    // A wait without an end has no energy that others could be added to.
+    // A wait without an end has an infinite energy, which cannot be added up.
     let energy = cycle
         .as_ref()
         .filter(|_| dynamics)
         .map(|cycle| cycle.account.total.energy_j())
         .filter(|energy| energy.is_finite());
-    let report = Report { findings, cycle_energy_j: energy, unresolved: unresolved.len() };
+    let unresolved = context.unresolved.len();
+    let report = Report { findings, cycle_energy_j: energy, unresolved };
     (report, cycle)
 }
 
@@ -269,7 +228,7 @@ fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
     Some(Cycle::new(model, simulation, account, job.options.clone()))
 }
 
-/// Drops what comments take back, and adds what comments take back in vain.
+/// Drops the findings that comments suppress, and adds findings for comments that suppress none.
 fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
     // By file, comment and code of the comment.
     let mut used: BTreeSet<(usize, usize, usize)> = BTreeSet::new();
@@ -298,7 +257,7 @@ fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<
             let codes = suppression.codes.iter().enumerate();
             let unused = codes.filter(|(code, _)| !used.contains(&(*file, index, *code)));
             let unused: Vec<&str> = unused.map(|(_, code)| code.as_str()).collect();
-            unused_suppression::judge(job, suppression, &unused, findings);
+            unused_suppression::judge(job, &ALL, suppression, &unused, findings);
         }
     }
 }

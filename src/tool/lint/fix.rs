@@ -1,19 +1,18 @@
-//! Applies fixes, and takes them back where the cycle does not get better by them.
+//! Applies fixes, and takes back those that do not save energy.
 
-use super::engine::{Examined, Job, cycles, examine, lint};
-use super::finding::{Applicability, Finding};
-use super::rule::Family;
+use super::engine::{Examined, Report, cycles, examine, lint};
+use super::job::Job;
+use super::rule::{Applicability, Family, Finding};
+use super::trace::{self, Action};
 use super::weigh::Cycle;
-use super::{Report, trace};
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, FileId, SourceFile, apply};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::joint_path::{DOF, Joints};
-use crate::tool::lint::trace::Deed;
 
-/// Rounds of fixing what was found after the last one.
+/// Most rounds of linting and fixing.
 const MOST_ROUNDS: usize = 40;
-/// Distance of two places that count as one, rad.
+/// Largest distance between two joint positions that count as one, rad.
 const SAME: f64 = 1e-4;
 /// Rounding of an energy, J.
 const ROUNDING: f64 = 1e-6;
@@ -31,9 +30,9 @@ pub struct Fixed {
     pub report: Report,
 }
 
-/// Applies the fixes up to an applicability until nothing is left that holds. Each is simulated
-/// before and after, and stays only where the cycle takes less energy with the same waits and
-/// outputs in the same order at the same places.
+/// Applies the fixes up to an applicability until none is left that saves energy. The cycle is
+/// simulated before and after each; a fix stays only if the cycle takes less energy with the same
+/// waits and outputs in the same order at the same places.
 #[must_use]
 pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let mut files = job.files.to_vec();
@@ -42,7 +41,7 @@ pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
         let now = with_files(job, &files);
         let Examined { report, cycles: mut before, .. } = examine(&now);
         let chosen = candidates(&report, most);
-        // All at once if they go together, else one after the other.
+        // All at once if they are compatible, else one after the other.
         let mut kept: Vec<&Finding> = Vec::new();
         let mut result = attempt(job, &files, &before, &chosen).map(|(after, _)| after);
         if result.is_some() {
@@ -101,8 +100,8 @@ fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
     list
 }
 
-/// The files with the fixes and their cycles, if they hold: the energy is compared with that of
-/// the cycles before, the process too.
+/// The files with the fixes and their cycles, if these take less energy than those before with the
+/// same process.
 fn attempt(
     job: &Job<'_>,
     files: &[SourceFile],
@@ -152,18 +151,18 @@ fn attempt(
 /// Whether two cycles wait for the same and set the same outputs, in the same order and at the
 /// same places, and end at the same place.
 fn same_process(before: &Cycle, after: &Cycle) -> bool {
-    let deeds = |cycle: &Cycle| -> Vec<String> {
+    let actions = |cycle: &Cycle| -> Vec<String> {
         let trace = trace::of_simulation(&cycle.simulation);
-        let deeds = trace.iter().filter_map(|done| match &done.what {
-            Deed::Output(output) => Some(format!("{} {}", output.signal, output.value)),
-            Deed::Wait(wait, basis) => {
+        let actions = trace.iter().filter_map(|done| match &done.what {
+            Action::Output(output) => Some(format!("{} {}", output.signal, output.value)),
+            Action::Wait(wait, basis) => {
                 let length = wait.duration.unwrap_or_default();
                 Some(format!("{} {:?} {basis:?} {length}", wait.instruction, wait.signal))
             }
-            Deed::Left(_) => Some("elsewhere".to_owned()),
-            Deed::Move(_) => None,
+            Action::Left(_) => Some("elsewhere".to_owned()),
+            Action::Move(_) => None,
         });
-        deeds.collect()
+        actions.collect()
     };
     let places = |cycle: &Cycle| -> Vec<Joints> {
         let events = &cycle.simulation.events;
@@ -190,7 +189,7 @@ fn same_process(before: &Cycle, after: &Cycle) -> bool {
     };
     let (a, b) = (places(before), places(after));
     let near = |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= SAME);
-    deeds(before) == deeds(after)
+    actions(before) == actions(after)
         && a.len() == b.len()
         && a.iter().zip(&b).all(near)
         && sound(after) <= sound(before)

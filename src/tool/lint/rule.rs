@@ -1,19 +1,9 @@
-//! What a rule is.
+//! What a rule is, and what it finds.
 
 use super::context::Context;
-use super::finding::Finding;
+use super::saving::Saving;
 use crate::rapid::diagnostics::Severity;
-
-/// Headings that every manual has, in order.
-pub const HEADINGS: [&str; 7] = [
-    "What it does",
-    "Why it wastes energy",
-    "How the saving is computed",
-    "Example",
-    "Use instead",
-    "Safety",
-    "Assumptions",
-];
+use crate::rapid::text::{Edit, Span};
 
 /// What rules are about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,19 +29,6 @@ pub enum Family {
 }
 
 impl Family {
-    /// All, in the order of their codes.
-    pub const ALL: [Family; 9] = [
-        Family::Comments,
-        Family::Stops,
-        Family::Speed,
-        Family::Dwell,
-        Family::Path,
-        Family::Load,
-        Family::Settings,
-        Family::Program,
-        Family::System,
-    ];
-
     /// Its name: a selector of all its rules.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -99,7 +76,7 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// The manual, as Markdown: a sentence, then a chapter for each of [`HEADINGS`].
+    /// The manual, as Markdown: a sentence, then chapters (`## What it does` …).
     #[must_use]
     pub fn manual(&self) -> String {
         let lines = self.source.lines().map_while(|line| line.strip_prefix("//!"));
@@ -132,4 +109,86 @@ impl std::fmt::Debug for Rule {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} {}", self.code, self.name)
     }
+}
+
+/// Something that wastes energy.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The rule.
+    pub rule: &'static Rule,
+    /// The place.
+    pub span: Span,
+    /// What is wrong there, without the saving: lower case, no full stop.
+    pub message: String,
+    /// The change that saves, in words: "`z50` in place of `fine`".
+    pub change: String,
+    /// What the change saves in a cycle; `None` where it cannot be simulated.
+    pub saving: Option<Saving>,
+    /// What it rests on.
+    pub assumptions: Vec<String>,
+    /// The change as edits.
+    pub fix: Option<Fix>,
+    /// Other places that explain it.
+    pub related: Vec<(Span, String)>,
+}
+
+impl Finding {
+    /// A finding with a message alone.
+    pub fn new(rule: &'static Rule, span: Span, message: impl Into<String>) -> Finding {
+        Finding {
+            rule,
+            span,
+            message: message.into(),
+            change: String::new(),
+            saving: None,
+            assumptions: Vec::new(),
+            fix: None,
+            related: Vec::new(),
+        }
+    }
+
+    /// The message, with what the change saves and how to reproduce it.
+    #[must_use]
+    pub fn full_message(&self) -> String {
+        let Some(saving) = &self.saving else { return self.message.clone() };
+        let time = match saving.time_s {
+            t if t >= 0.0005 => format!(" and {t:.3} s"),
+            t if t <= -0.0005 => format!(" and takes {:.3} s more", -t),
+            _ => String::new(),
+        };
+        format!(
+            "{}; {} saves {:.1} J ({:.1} to {:.1} J){time} per cycle: joulepath simulate before and \
+             after that edit shows it",
+            self.message, self.change, saving.energy_j, saving.low_j, saving.high_j
+        )
+    }
+}
+
+/// Whether the process stays the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Applicability {
+    /// Provably: same path, same order, same end points.
+    Safe,
+    /// Somebody has to look at it first.
+    Unsafe,
+}
+
+impl Applicability {
+    /// Its name in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Applicability::Safe => "safe",
+            Applicability::Unsafe => "unsafe",
+        }
+    }
+}
+
+/// A change of the text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fix {
+    /// Whether the process stays the same.
+    pub applicability: Applicability,
+    /// What to replace; all or nothing.
+    pub edits: Vec<Edit>,
 }

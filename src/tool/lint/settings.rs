@@ -105,13 +105,14 @@ fn fits(pattern: &[u8], text: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::rules::unneeded_stop_point::RULE;
     use super::*;
 
     #[test]
     fn the_closest_threshold_counts() {
         let thresholds = [("all", 1.0), ("stops", 2.0), ("EW1", 3.0), ("ew10", 4.0)];
         let mut settings = Settings::default();
-        let threshold = |settings: &Settings| settings.threshold_j(crate::tool::lint::ALL[1]);
+        let threshold = |settings: &Settings| settings.threshold_j(&RULE);
         assert_eq!(threshold(&settings), THRESHOLD_J);
         for (key, joules) in thresholds {
             settings.thresholds_j.insert(key.to_owned(), joules);

@@ -1,4 +1,4 @@
-//! Movement statements with what the text alone says of them.
+//! Movement statements, with what is known of them from the text alone.
 
 use std::collections::BTreeSet;
 
@@ -21,11 +21,11 @@ use crate::rapid::text::Span;
 pub struct Site<'p> {
     /// Where it stands.
     pub place: Place,
-    /// It.
+    /// The statement.
     pub stmt: &'p Stmt,
     /// The instruction as written.
     pub name: &'p str,
-    /// Where it stands.
+    /// Where the instruction's name stands.
     pub name_span: Span,
     /// Its form.
     pub signature: MoveSignature,
@@ -41,17 +41,17 @@ pub struct Site<'p> {
     pub wobj: Option<&'p Expr>,
     /// Names of the options, in lower case.
     pub options: Vec<&'p str>,
-    /// True where control can get.
+    /// Whether it is reachable.
     pub reachable: bool,
     /// True if it is the one statement of a compact `IF`.
     pub compact: bool,
     /// What is known of it.
     pub facts: Facts,
-    /// Its executions: events of the trace.
+    /// Its executions: indices into the trace.
     pub executions: Vec<usize>,
 }
 
-/// What is known of a movement whenever it runs, without a robot.
+/// What is known of a movement without a robot, for every execution.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     /// Its zone.
@@ -137,7 +137,7 @@ fn named(expr: &Expr) -> Option<&str> {
     }
 }
 
-/// The movement statement of a call, its arguments by their meaning.
+/// The movement statement of a call; `None` if it calls no movement instruction.
 pub fn site<'p>(
     program: &Program,
     quiet: &Quiet<'_>,
@@ -237,7 +237,7 @@ fn names_local(quiet: &Quiet<'_>, routine: RoutineId, expr: &Expr) -> bool {
     }
 }
 
-/// What an execution says of a movement.
+/// The facts of an executed movement.
 pub fn facts_of(movement: &Movement) -> Facts {
     let goal = match &movement.target {
         Target::Joints(q) => Goal::Joints(*q),
@@ -246,7 +246,7 @@ pub fn facts_of(movement: &Movement) -> Facts {
     Facts { zone: Some(movement.zone), speed: Some(movement.speed), goal: Some(goal) }
 }
 
-/// The statements that are all that a compact `IF` has, by their spans.
+/// Spans of the statements that are the only one of a compact `IF`.
 pub fn compact(routine: &Routine) -> BTreeSet<Span> {
     let mut found = BTreeSet::new();
     for block in routine.blocks() {

@@ -1,4 +1,4 @@
-//! Comments that take findings back: `! joulepath: ignore EW101 reason`.
+//! Comments that suppress findings: `! joulepath: ignore EW101 reason`.
 
 use super::rule::Rule;
 use crate::rapid::syntax::{Parse, TokenKind};
@@ -7,7 +7,7 @@ use crate::rapid::text::{SourceFile, Span};
 /// What such a comment begins with, behind the `!`.
 const WORDS: [&str; 2] = ["joulepath:", "ignore"];
 
-/// One comment that takes findings back.
+/// One comment that suppresses findings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suppression {
     /// The comment.
@@ -19,14 +19,14 @@ pub struct Suppression {
 }
 
 impl Suppression {
-    /// Which of its codes name a rule.
+    /// The indices of its codes that mean a rule.
     pub fn naming(&self, rule: &Rule) -> impl Iterator<Item = usize> {
         (0..self.codes.len()).filter(|index| rule.is_meant(&self.codes[*index]))
     }
 }
 
-/// The comments of a file that take findings back. At the end of a line they are about that
-/// line, on a line of their own about the next line with a statement.
+/// The comments of a file that suppress findings. At the end of a line they concern that line, on
+/// a line of their own the next line with a statement.
 pub fn suppressions(file: &SourceFile, parse: &Parse) -> Vec<Suppression> {
     let tokens = parse.tree.tokens();
     let mut found = Vec::new();
@@ -52,7 +52,7 @@ pub fn suppressions(file: &SourceFile, parse: &Parse) -> Vec<Suppression> {
     found
 }
 
-/// The codes of a comment, if it takes findings back.
+/// The codes of a comment, if it suppresses findings.
 fn codes(comment: &str) -> Option<Vec<String>> {
     let mut rest = comment.trim_start().strip_prefix('!')?.trim_start();
     for word in WORDS {

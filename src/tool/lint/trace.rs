@@ -1,4 +1,4 @@
-//! What a program does, in order: from its simulation, or without a robot as far as it goes.
+//! What a program does, in order: from its simulation, or from a run without a robot.
 
 use std::collections::BTreeMap;
 
@@ -9,23 +9,23 @@ use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{WaitBasis, What};
 
-/// Steps that are kept of a program.
+/// Most steps of a recording.
 const MOST_STEPS: usize = 50_000;
 
 /// One thing that a program does.
 #[derive(Debug)]
-pub struct Done<'c> {
-    /// The event of the simulation, and the movement in it.
+pub struct TraceStep<'c> {
+    /// Index of the event of the simulation, and of the movement in it.
     pub event: Option<(usize, usize)>,
     /// s; 0 where it is not known.
     pub duration: f64,
-    /// What.
-    pub what: Deed<'c>,
+    /// The action.
+    pub what: Action<'c>,
 }
 
 /// What a program does.
 #[derive(Debug)]
-pub enum Deed<'c> {
+pub enum Action<'c> {
     /// It moves.
     Move(&'c Movement),
     /// It waits.
@@ -36,28 +36,28 @@ pub enum Deed<'c> {
     Left(Span),
 }
 
-impl Deed<'_> {
+impl Action<'_> {
     /// The statement.
     pub fn span(&self) -> Span {
         match self {
-            Deed::Move(movement) => movement.span,
-            Deed::Wait(wait, _) => wait.span,
-            Deed::Output(output) => output.span,
-            Deed::Left(span) => *span,
+            Action::Move(movement) => movement.span,
+            Action::Wait(wait, _) => wait.span,
+            Action::Output(output) => output.span,
+            Action::Left(span) => *span,
         }
     }
 }
 
 /// The trace of a simulation.
-pub fn of_simulation(simulation: &Simulation) -> Vec<Done<'_>> {
+pub fn of_simulation(simulation: &Simulation) -> Vec<TraceStep<'_>> {
     let mut trace = Vec::new();
     // Outputs between fly-by movements stand before the run that they belong into.
     let mut held: Vec<(usize, usize, &Output)> = Vec::new();
     for (event, it) in simulation.events.iter().enumerate() {
-        let output = |(event, _, output)| Done {
+        let output = |(event, _, output)| TraceStep {
             event: Some((event, 0)),
             duration: 0.0,
-            what: Deed::Output(output),
+            what: Action::Output(output),
         };
         match &it.what {
             What::Output(output, position) => {
@@ -67,40 +67,40 @@ pub fn of_simulation(simulation: &Simulation) -> Vec<Done<'_>> {
                 for (index, record) in run.moves.iter().enumerate() {
                     let due = held.iter().take_while(|(_, position, _)| *position <= index).count();
                     trace.extend(held.drain(..due).map(output));
-                    trace.push(Done {
+                    trace.push(TraceStep {
                         event: Some((event, index)),
                         duration: record.duration,
-                        what: Deed::Move(&record.movement),
+                        what: Action::Move(&record.movement),
                     });
                 }
             }
             What::Wait(wait) => {
                 trace.extend(held.drain(..).map(output));
-                trace.push(Done {
+                trace.push(TraceStep {
                     event: Some((event, 0)),
                     duration: it.duration,
-                    what: Deed::Wait(&wait.wait, wait.basis),
+                    what: Action::Wait(&wait.wait, wait.basis),
                 });
             }
             What::Left(left) => {
                 trace.extend(held.drain(..).map(output));
-                trace.push(Done { event: None, duration: 0.0, what: Deed::Left(left.span) });
+                trace.push(TraceStep { event: None, duration: 0.0, what: Action::Left(left.span) });
             }
         }
     }
-    trace.extend(held.into_iter().map(|(event, _, output)| Done {
+    trace.extend(held.into_iter().map(|(event, _, output)| TraceStep {
         event: Some((event, 0)),
         duration: 0.0,
-        what: Deed::Output(output),
+        what: Action::Output(output),
     }));
     trace
 }
 
-/// What a program was seen to do without a robot.
+/// The actions of a program that ran without a robot.
 #[derive(Debug, Default)]
 pub struct Recording {
     steps: Vec<Recorded>,
-    /// What could not be followed.
+    /// What could not be executed.
     pub notes: Vec<Note>,
 }
 
@@ -121,18 +121,18 @@ pub fn record(program: &Program, entry: RoutineId) -> Recording {
 
 impl Recording {
     /// The trace.
-    pub fn trace(&self) -> Vec<Done<'_>> {
+    pub fn trace(&self) -> Vec<TraceStep<'_>> {
         let done = |step| {
             let (duration, what) = match step {
-                &Recorded::Left(span) => (0.0, Deed::Left(span)),
-                Recorded::Move(movement) => (0.0, Deed::Move(movement)),
-                Recorded::Output(output) => (0.0, Deed::Output(output)),
+                &Recorded::Left(span) => (0.0, Action::Left(span)),
+                Recorded::Move(movement) => (0.0, Action::Move(movement)),
+                Recorded::Output(output) => (0.0, Action::Output(output)),
                 Recorded::Wait(wait) => {
                     let stated = wait.duration.map_or(WaitBasis::Unknown, |_| WaitBasis::Stated);
-                    (wait.duration.unwrap_or(0.0), Deed::Wait(wait, stated))
+                    (wait.duration.unwrap_or(0.0), Action::Wait(wait, stated))
                 }
             };
-            Done { event: None, duration, what }
+            TraceStep { event: None, duration, what }
         };
         self.steps.iter().map(done).collect()
     }
@@ -166,8 +166,8 @@ impl Machine for Recording {
     }
 }
 
-/// The executions of each statement, as indices of the trace.
-pub fn executions(trace: &[Done<'_>]) -> BTreeMap<Span, Vec<usize>> {
+/// The executions of each statement, as indices into the trace.
+pub fn executions(trace: &[TraceStep<'_>]) -> BTreeMap<Span, Vec<usize>> {
     let mut found: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
     for (index, done) in trace.iter().enumerate() {
         found.entry(done.what.span()).or_default().push(index);

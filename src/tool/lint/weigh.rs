@@ -1,10 +1,10 @@
 //! What a change of some movements or waits would save: the part of the cycle around them is
-//! laid on a time line again, and the difference is taken.
+//! simulated again, and the difference is taken.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use super::finding::{Per, Saving};
+use super::saving::{Saving, Weighed};
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::{Movement, Output, Wait};
@@ -17,18 +17,18 @@ use crate::retime::motion::timeline::{Event, Run, Simulation, WaitBasis, What};
 use crate::retime::motion::{Options, Step, replay};
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Largest distance between two places that count as one, rad.
+/// Largest distance between two joint positions that count as one, rad.
 const SAME: f64 = 1e-4;
-/// Runs behind a change that may begin elsewhere because of it.
+/// Most runs after a change that may begin elsewhere because of it.
 const MOST_BEHIND: usize = 3;
-/// Executions of one statement beyond which no saving is told.
+/// Most executions of a statement for which a saving is computed.
 const MOST_EXECUTIONS: usize = 2_000;
 
 /// One simulated cycle of a program.
 pub struct Cycle {
     /// What happened.
     pub simulation: Simulation,
-    /// The joules of it.
+    /// Its energy.
     pub account: Account,
     /// Robots as plausible as the one it was simulated with.
     robots: Option<Robots>,
@@ -36,12 +36,12 @@ pub struct Cycle {
     pub options: Options,
     /// The events that hold each statement, in order.
     events: BTreeMap<Span, Vec<usize>>,
-    /// Whether the program goes on beside a movement.
+    /// Whether the program goes on during a movement (`\Conc`).
     concurrent: bool,
 }
 
 impl Cycle {
-    /// Of a simulation and its energy.
+    /// A cycle from its simulation and energy.
     pub fn new(model: &Model, simulation: Simulation, account: Account, options: Options) -> Cycle {
         let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
         let mut concurrent = false;
@@ -77,37 +77,7 @@ impl Cycle {
     }
 }
 
-/// A change saves nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it saves nothing; leave it as it is")]
-pub struct Worthless;
-
-/// What came out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Weighed {
-    /// Nothing can be said.
-    Unknown,
-    /// It saves nothing, or may as well cost.
-    Nothing,
-    /// It saves this.
-    Saves(Saving),
-}
-
-impl Weighed {
-    /// The saving, if there is one.
-    ///
-    /// # Errors
-    /// The change saves nothing.
-    pub fn saving(self) -> Result<Option<Saving>, Worthless> {
-        match self {
-            Weighed::Unknown => Ok(None),
-            Weighed::Nothing => Err(Worthless),
-            Weighed::Saves(saving) => Ok(Some(saving)),
-        }
-    }
-}
-
-/// What becomes of a step whose statement was asked for.
+/// The steps that replace a step of a changed statement.
 pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 
 /// What a change does to the cycle.
@@ -115,11 +85,12 @@ pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 pub struct Difference {
     /// Energy that it saves.
     pub saved: EnergyParts,
-    /// The same of all parts with plausible robots \[J\]; empty where nothing of the robot is uncertain.
+    /// Energy that it saves with each plausible robot \[J\]; empty where nothing of the robot is
+    /// uncertain.
     pub plausible_j: Vec<f64>,
     /// Time that it saves, s.
     pub time_s: f64,
-    /// Time that it would take more without any wait that takes it up, s.
+    /// Time that the cycle would be longer if no wait absorbed it, s.
     pub longer_s: f64,
 }
 
@@ -136,7 +107,7 @@ impl Difference {
         if low_j <= 0.0 {
             return Weighed::Nothing;
         }
-        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s, per: Per::Cycle })
+        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s })
     }
 }
 
@@ -145,8 +116,8 @@ pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) 
     difference(model, cycle, spans, change).map_or(Weighed::Unknown, |it| it.weighed())
 }
 
-/// What a change of every execution of the statements at `spans` does; `None` where it can't be
-/// told.
+/// What a change of every execution of the statements at `spans` does; `None` where it cannot be
+/// simulated.
 pub fn difference(
     model: &Model,
     cycle: &Cycle,
@@ -172,7 +143,7 @@ pub fn difference(
         saved += at_rest(model, &rest.load, &rest.q, lasts) * -rest.longer_s.signum();
     }
     let plausible_j = match &cycle.robots {
-        // What costs with the robot itself is not told.
+        // A change that costs energy with the robot itself is not reported anyway.
         Some(robots) if saved.energy_j() > 0.0 => {
             let sums = sums(model, cycle, &parts, &rests);
             let changes = robots.changes(model, &sums);
@@ -202,11 +173,11 @@ fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Mom
     sums
 }
 
-/// A part of the cycle, as events, with what it is after a change.
+/// A part of the cycle, as events, and its simulation after a change.
 struct Replayed {
     range: RangeInclusive<usize>,
     after: Simulation,
-    /// The rest behind it, s.
+    /// By how much the rest after it gets longer, s.
     longer_s: f64,
 }
 
@@ -217,7 +188,7 @@ struct Rest {
     longer_s: f64,
 }
 
-/// The parts of the cycle that a change touches, and the rests behind them.
+/// The parts of the cycle that a change touches, and the rests after them.
 fn replayed(
     model: &Model,
     cycle: &Cycle,
@@ -251,8 +222,8 @@ fn replayed(
     Some((replayed, rests))
 }
 
-/// From the run at or before an event to the next run; to the event alone if it is a run that
-/// stops at its end after the change as before: the next run begins as it did.
+/// From the run at or before an event to the next run. The event alone if it is a run that stops at
+/// its end after the change too: then the next run begins as it did.
 fn window(
     simulation: &Simulation,
     event: usize,
@@ -287,15 +258,15 @@ fn movement_before(simulation: &Simulation, event: usize) -> Option<&Movement> {
     })
 }
 
-/// The next run behind an event, or the last event.
+/// The next run after an event, or the last event.
 fn next_run(simulation: &Simulation, event: usize) -> usize {
     let last = simulation.events.len() - 1;
     let mut behind = event + 1..=last;
     behind.find(|i| matches!(simulation.events[*i].what, What::Run(_))).unwrap_or(last)
 }
 
-/// The window with its replay, made longer until the robot stands where it stood, and the rest
-/// that a movement right behind would add, s.
+/// The window, made longer until the robot ends where it ended before the change, with its replay
+/// and the rest that a movement right after it would add, s.
 fn settle_window(
     model: &Model,
     cycle: &Cycle,
@@ -337,7 +308,7 @@ fn apart(a: &Joints, b: &Joints) -> f64 {
     (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
-/// What was done in a window, with the change, and where the robot stood at first.
+/// The steps of a window with the change, and where the robot stood at its start.
 fn steps(
     cycle: &Cycle,
     window: RangeInclusive<usize>,
@@ -394,8 +365,8 @@ fn steps(
     Some((start?, steps))
 }
 
-/// The rest between the last run of a window and a run right behind it, which a replay does not
-/// know.
+/// The rest between the last run of a window and a run right after it, which a replay does not
+/// include.
 fn rest_behind(
     simulation: &Simulation,
     window: &RangeInclusive<usize>,
@@ -411,8 +382,8 @@ fn rest_behind(
     }
 }
 
-/// The time that the whole cycle saves; waits for inputs whose time is stated take up what
-/// comes before them. Also what these waits take more.
+/// The rests by which waits for inputs of stated time get longer, and the time that the whole cycle
+/// saves: such a wait absorbs a delay before it.
 fn laid_out(
     cycle: &Cycle,
     inputs: &BTreeMap<String, f64>,
@@ -420,7 +391,7 @@ fn laid_out(
 ) -> (Vec<Rest>, f64) {
     let simulation = &cycle.simulation;
     if inputs.is_empty() {
-        // No wait takes anything up: what is laid out again is all that changes.
+        // No wait absorbs a delay: only the replayed parts change.
         let saved = replayed.iter().map(|Replayed { range, after, longer_s }| {
             let before: f64 = simulation.events[range.clone()].iter().map(|it| it.duration).sum();
             before - after.events.iter().map(|it| it.duration).sum::<f64>() - longer_s
@@ -451,7 +422,7 @@ struct Clock<'c> {
 }
 
 impl Clock<'_> {
-    /// Lets an event pass; what a wait takes more than its own time says.
+    /// Advances by an event; the rest by which a wait gets longer.
     fn passes(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
         let mut duration = event.duration;
         let mut more = None;

@@ -1,4 +1,4 @@
-//! How often a text names something, where the tree does not tell.
+//! How often a text names something, where the syntax tree is of no use.
 
 use crate::rapid::text::SourceFile;
 

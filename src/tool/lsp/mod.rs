@@ -1,25 +1,34 @@
-//! The language server: findings with joules while one types.
+//! The language server: shows findings with joules while the user types.
 //!
 //! It speaks the Language Server Protocol over standard input and output. A document is linted
-//! with the files of its folder; what the editor holds stands for what is on disk. A change is
-//! followed by a look at the programs that hold the document, and at no other of the folder.
+//! with the files of its folder; the text in the editor replaces the text on disk. After a change
+//! only the programs that hold the document are examined again.
 
 mod position;
 mod workspace;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::Path;
 
+use gen_lsp_types::{
+    Code, CodeAction, CodeActionKind, CodeActionOptions, CodeActionParams, Contents, Diagnostic,
+    DiagnosticSeverity, DidChangeTextDocumentParams, DidCloseTextDocumentParams,
+    DidOpenTextDocumentParams, DidSaveTextDocumentParams, Hover, HoverParams, InitializeResult,
+    LspNotificationMethod, LspRequestMethod, MarkupContent, MarkupKind, Position,
+    PositionEncodingKind, PublishDiagnosticsParams, Range, ServerCapabilities, ServerInfo,
+    TextDocumentSyncKind, TextDocumentSyncOptions, TextEdit, Uri, WorkspaceEdit,
+};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
-use serde_json::{Value, json};
+use serde_json::{Value, from_value, json};
 
 use position::{offset_of, range_of};
 use workspace::{Analysis, Workspace};
 
 use crate::rapid::diagnostics::Severity;
 use crate::rapid::text::SourceFile;
-use crate::tool::lint::{Applicability, Finding};
+use crate::tool::lint::{Applicability, Finding, Programs};
 
-/// What an editor may tell when it starts the server.
+/// Options that an editor may send when it starts the server.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(default)]
 pub struct Options {
@@ -47,30 +56,26 @@ pub enum LspError {
     Io(#[from] std::io::Error),
 }
 
-/// Serves until the editor says that it is over.
+/// Serves until the editor ends the session. `read` reads the programs of a folder.
 ///
 /// # Errors
 /// The other side does not speak the protocol, or is gone.
-pub fn serve(defaults: Options) -> Result<(), LspError> {
+pub fn serve(
+    defaults: Options,
+    read: impl Fn(&Options, &Path) -> Programs,
+) -> Result<(), LspError> {
     let (connection, threads) = Connection::stdio();
-    let capabilities = json!({
-        "positionEncoding": "utf-16",
-        "textDocumentSync": { "openClose": true, "change": 2, "save": true },
-        "hoverProvider": true,
-        "codeActionProvider": { "codeActionKinds": ["quickfix"] },
-    });
     let (id, params) = connection.initialize_start()?;
-    let told = params.get("initializationOptions").cloned().unwrap_or_default();
-    let told: Options = serde_json::from_value(told).unwrap_or_default();
+    let sent = params.get("initializationOptions").cloned().unwrap_or_default();
+    let sent: Options = from_value(sent).unwrap_or_default();
     let options = Options {
-        robot: told.robot.or(defaults.robot),
-        entry: told.entry.or(defaults.entry),
-        inputs: if told.inputs.is_empty() { defaults.inputs } else { told.inputs },
+        robot: sent.robot.or(defaults.robot),
+        entry: sent.entry.or(defaults.entry),
+        inputs: if sent.inputs.is_empty() { defaults.inputs } else { sent.inputs },
     };
-    let about = json!({ "name": "joulepath", "version": env!("CARGO_PKG_VERSION") });
-    connection
-        .initialize_finish(id, json!({ "capabilities": capabilities, "serverInfo": about }))?;
-    let mut server = Server { workspace: Workspace::new(options), told: BTreeMap::new() };
+    connection.initialize_finish(id, json!(about()))?;
+    let workspace = Workspace::new(|folder| read(&options, folder));
+    let mut server = Server { workspace, analyses: BTreeMap::new() };
     for message in &connection.receiver {
         let answers = match message {
             Message::Request(request) => {
@@ -79,7 +84,8 @@ pub fn serve(defaults: Options) -> Result<(), LspError> {
                 }
                 vec![Message::Response(server.answer(request))]
             }
-            Message::Notification(notification) => server.notice(&notification),
+            // There is no answer to a notification, so a malformed one is ignored.
+            Message::Notification(notification) => server.notice(notification).unwrap_or_default(),
             Message::Response(_) => Vec::new(),
         };
         for answer in answers {
@@ -91,150 +97,199 @@ pub fn serve(defaults: Options) -> Result<(), LspError> {
     Ok(())
 }
 
-struct Server {
-    workspace: Workspace,
-    /// What was found in each document, by its name.
-    told: BTreeMap<String, Analysis>,
+/// The capabilities of the server, its name and version.
+fn about() -> InitializeResult {
+    InitializeResult {
+        capabilities: ServerCapabilities {
+            position_encoding: Some(PositionEncodingKind::UTF16),
+            text_document_sync: Some(
+                TextDocumentSyncOptions {
+                    open_close: Some(true),
+                    change: Some(TextDocumentSyncKind::Incremental),
+                    save: Some(true.into()),
+                    ..TextDocumentSyncOptions::default()
+                }
+                .into(),
+            ),
+            hover_provider: Some(true.into()),
+            code_action_provider: Some(
+                CodeActionOptions {
+                    code_action_kinds: Some(vec![CodeActionKind::QuickFix]),
+                    ..CodeActionOptions::default()
+                }
+                .into(),
+            ),
+            ..ServerCapabilities::default()
+        },
+        server_info: Some(ServerInfo {
+            name: "joulepath".to_owned(),
+            version: Some(env!("CARGO_PKG_VERSION").to_owned()),
+        }),
+    }
 }
 
-impl Server {
-    fn notice(&mut self, notification: &Notification) -> Vec<Message> {
-        let params = &notification.params;
-        let document = &params["textDocument"];
-        let Some(uri) = document["uri"].as_str().map(str::to_owned) else { return Vec::new() };
-        match notification.method.as_str() {
-            "textDocument/didOpen" => {
-                let text = document["text"].as_str().unwrap_or_default();
-                self.workspace.open(&uri, text.to_owned());
+struct Server<R> {
+    workspace: Workspace<R>,
+    /// The last analysis of each open document, by URI.
+    analyses: BTreeMap<String, Analysis>,
+}
+
+impl<R: Fn(&Path) -> Programs> Server<R> {
+    /// Takes in a notification; the diagnostics that change because of it.
+    fn notice(&mut self, notification: Notification) -> serde_json::Result<Vec<Message>> {
+        let Notification { method, params } = notification;
+        let uri = match LspNotificationMethod::from(method.as_str()) {
+            LspNotificationMethod::TextDocumentDidOpen => {
+                let document = from_value::<DidOpenTextDocumentParams>(params)?.text_document;
+                self.workspace.open(&document.uri.0, document.text);
+                document.uri.0
             }
-            "textDocument/didChange" => {
-                for change in params["contentChanges"].as_array().into_iter().flatten() {
+            LspNotificationMethod::TextDocumentDidChange => {
+                let params: DidChangeTextDocumentParams = from_value(params)?;
+                let uri = params.text_document.text_document_identifier.uri.0;
+                for change in params.content_changes {
                     self.workspace.change(&uri, change);
                 }
+                uri
             }
-            "textDocument/didSave" => self.workspace.forget(&uri),
-            "textDocument/didClose" => {
-                self.workspace.close(&uri);
-                self.told.remove(&uri);
-                let mut messages = vec![publish(&uri, &[])];
-                // What is on disk counts again for the documents beside it.
-                let mut open = self.workspace.beside(&uri);
-                while let Some(other) = open.pop_first() {
-                    messages.extend(self.look(&other, &mut open));
-                }
-                return messages;
+            LspNotificationMethod::TextDocumentDidSave => {
+                let params: DidSaveTextDocumentParams = from_value(params)?;
+                self.workspace.forget(&params.text_document.uri.0);
+                params.text_document.uri.0
             }
-            _ => return Vec::new(),
-        }
-        self.look(&uri, &mut BTreeSet::new())
+            LspNotificationMethod::TextDocumentDidClose => {
+                let params: DidCloseTextDocumentParams = from_value(params)?;
+                return Ok(self.close(params.text_document.uri.0));
+            }
+            _ => return Ok(Vec::new()),
+        };
+        Ok(self.examine(&uri, &mut BTreeSet::new()))
     }
 
-    /// What is found in a document and in those of its programs, which need no look of their own.
-    fn look(&mut self, uri: &str, open: &mut BTreeSet<String>) -> Vec<Message> {
-        let mut messages = Vec::new();
-        for (uri, analysis) in self.workspace.analyse(uri) {
-            open.remove(&uri);
-            let shown: Vec<Value> =
-                analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
-            messages.push(publish(&uri, &shown));
-            self.told.insert(uri, analysis);
+    /// Closes a document, and examines its neighbours with what is on disk.
+    fn close(&mut self, uri: String) -> Vec<Message> {
+        self.workspace.close(&uri);
+        self.analyses.remove(&uri);
+        let mut stale = self.workspace.beside(&uri);
+        let mut messages = vec![publish(uri, Vec::new())];
+        while let Some(other) = stale.pop_first() {
+            messages.extend(self.examine(&other, &mut stale));
         }
         messages
     }
 
-    fn answer(&self, request: Request) -> Response {
-        let uri = request.params["textDocument"]["uri"].as_str().unwrap_or_default();
-        let analysis = self.told.get(uri);
-        match request.method.as_str() {
-            "textDocument/hover" => {
-                let hover = analysis.and_then(|it| hover(it, &request.params["position"]));
-                Response::new_ok(request.id, hover)
-            }
-            "textDocument/codeAction" => {
-                let actions = analysis.map(|it| actions(it, uri, &request.params["range"]));
-                Response::new_ok(request.id, actions.unwrap_or_default())
-            }
+    /// The diagnostics of a document and of the open documents of its programs, which are taken
+    /// out of `stale`.
+    fn examine(&mut self, uri: &str, stale: &mut BTreeSet<String>) -> Vec<Message> {
+        let mut messages = Vec::new();
+        for (uri, analysis) in self.workspace.analyse(uri) {
+            stale.remove(&uri);
+            let diagnostics =
+                analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
+            messages.push(publish(uri.clone(), diagnostics));
+            self.analyses.insert(uri, analysis);
+        }
+        messages
+    }
+
+    fn answer(&self, Request { id, method, params }: Request) -> Response {
+        let answer = match LspRequestMethod::from(method.as_str()) {
+            LspRequestMethod::TextDocumentHover => self.hover(params),
+            LspRequestMethod::TextDocumentCodeAction => self.code_actions(params),
             method => {
                 let message = format!("{method} is not served");
-                Response::new_err(request.id, ErrorCode::MethodNotFound as i32, message)
+                return Response::new_err(id, ErrorCode::MethodNotFound as i32, message);
             }
-        }
+        };
+        answer.map_or_else(
+            |error| {
+                Response::new_err(id.clone(), ErrorCode::InvalidParams as i32, error.to_string())
+            },
+            |result| Response::new_ok(id.clone(), result),
+        )
+    }
+
+    fn hover(&self, params: Value) -> serde_json::Result<Value> {
+        let place = from_value::<HoverParams>(params)?.text_document_position_params;
+        let analysis = self.analyses.get(&place.text_document.uri.0);
+        Ok(json!(analysis.and_then(|analysis| hover(analysis, place.position))))
+    }
+
+    fn code_actions(&self, params: Value) -> serde_json::Result<Value> {
+        let CodeActionParams { text_document, range, .. } = from_value(params)?;
+        let analysis = self.analyses.get(&text_document.uri.0);
+        let actions = analysis.map(|analysis| code_actions(analysis, &text_document.uri, range));
+        Ok(json!(actions.unwrap_or_default()))
     }
 }
 
-fn publish(uri: &str, diagnostics: &[Value]) -> Message {
+fn publish(uri: String, diagnostics: Vec<Diagnostic>) -> Message {
     Message::Notification(Notification {
-        method: "textDocument/publishDiagnostics".to_owned(),
-        params: json!({ "uri": uri, "diagnostics": diagnostics }),
+        method: LspNotificationMethod::TextDocumentPublishDiagnostics.to_string(),
+        params: json!(PublishDiagnosticsParams { uri: Uri(uri), version: None, diagnostics }),
     })
 }
 
-fn diagnostic(finding: &Finding, file: &SourceFile) -> Value {
-    let severity = match finding.rule.severity {
-        Severity::Error => 1,
-        Severity::Warning => 2,
-        Severity::Info => 3,
-    };
-    json!({
-        "range": range_of(file, finding.span),
-        "severity": severity,
-        "code": finding.rule.code,
-        "source": "joulepath",
-        "message": finding.told(),
-        "data": { "saving_j": finding.saving.map(|saving| saving.energy_j) },
-    })
+fn diagnostic(finding: &Finding, file: &SourceFile) -> Diagnostic {
+    Diagnostic {
+        range: range_of(file, finding.span),
+        severity: Some(match finding.rule.severity {
+            Severity::Error => DiagnosticSeverity::Error,
+            Severity::Warning => DiagnosticSeverity::Warning,
+            Severity::Info => DiagnosticSeverity::Information,
+        }),
+        code: Some(Code::String(finding.rule.code.to_owned())),
+        source: Some("joulepath".to_owned()),
+        message: finding.full_message().into(),
+        data: Some(json!({ "saving_j": finding.saving.map(|saving| saving.energy_j) })),
+        ..Diagnostic::default()
+    }
 }
 
-/// Time and energy of the movements or waits at a place.
-fn hover(analysis: &Analysis, position: &Value) -> Option<Value> {
-    let at = offset_of(analysis.file(), position)?;
-    let costs = analysis.costs_at(at)?;
-    let span = costs.span;
+/// Time and energy of the movement or wait at a position, over all its executions in a cycle.
+fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
+    let costs = analysis.costs_at(offset_of(analysis.file(), position))?;
     let times = match costs.times {
         1 => String::new(),
         times => format!(", {times} times a cycle together"),
     };
     let joules = costs.energy_j.map_or_else(String::new, |joules| format!("{joules:.1} J, "));
-    let text = format!("**{}**: {joules}{:.3} s{times}", costs.what, costs.time_s);
-    let contents = json!({ "kind": "markdown", "value": text });
-    Some(json!({ "contents": contents, "range": range_of(analysis.file(), span) }))
+    let value = format!("**{}**: {joules}{:.3} s{times}", costs.what, costs.time_s);
+    Some(Hover {
+        contents: Contents::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value }),
+        range: Some(range_of(analysis.file(), costs.span)),
+    })
 }
 
-/// The fixes of what was found in a range.
-fn actions(analysis: &Analysis, uri: &str, range: &Value) -> Vec<Value> {
+/// The fixes of the findings that touch a range. A fix that changes another file is left to the
+/// command line.
+fn code_actions(analysis: &Analysis, uri: &Uri, range: Range) -> Vec<CodeAction> {
     let file = analysis.file();
-    let (Some(start), Some(end)) =
-        (offset_of(file, &range["start"]), offset_of(file, &range["end"]))
-    else {
-        return Vec::new();
-    };
-    let here = analysis.own().filter(|it| it.span.start <= end && start <= it.span.end);
+    let (start, end) = (offset_of(file, range.start), offset_of(file, range.end));
+    let touched = analysis.own().filter(|it| it.span.start <= end && start <= it.span.end);
     let action = |finding: &Finding| {
         let fix = finding.fix.as_ref()?;
-        // A change of another file is for the command line.
-        let own = fix.edits.iter().all(|edit| edit.span.file == file.id);
-        let edits: Vec<Value> = fix
-            .edits
-            .iter()
-            .map(|edit| {
-                let text = String::from_utf8_lossy(&edit.text);
-                json!({ "range": range_of(file, edit.span), "newText": text })
-            })
-            .collect();
+        fix.edits.iter().all(|edit| edit.span.file == file.id).then_some(())?;
+        let edit = |edit: &crate::rapid::text::Edit| TextEdit {
+            range: range_of(file, edit.span),
+            new_text: String::from_utf8_lossy(&edit.text).into_owned(),
+        };
+        let edits = fix.edits.iter().map(edit).collect();
         let doubt = match fix.applicability {
             Applicability::Safe => "",
             Applicability::Unsafe => " (unsafe)",
         };
-        let title = format!("{}: {}{doubt}", finding.rule.code, finding.change);
-        own.then(|| {
-            json!({
-                "title": title,
-                "kind": "quickfix",
-                "isPreferred": fix.applicability == Applicability::Safe,
-                "diagnostics": [diagnostic(finding, file)],
-                "edit": { "changes": { uri: edits } },
-            })
+        Some(CodeAction {
+            title: format!("{}: {}{doubt}", finding.rule.code, finding.change),
+            kind: Some(CodeActionKind::QuickFix),
+            diagnostics: Some(vec![diagnostic(finding, file)]),
+            is_preferred: Some(fix.applicability == Applicability::Safe),
+            edit: Some(WorkspaceEdit {
+                changes: Some(HashMap::from([(uri.clone(), edits)])),
+                ..WorkspaceEdit::default()
+            }),
+            ..CodeAction::default()
         })
     };
-    here.filter_map(action).collect()
+    touched.filter_map(action).collect()
 }

@@ -4,29 +4,31 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use serde_json::Value;
+use gen_lsp_types::{
+    TextDocumentContentChangeEvent, TextDocumentContentChangePartial as Partial,
+    TextDocumentContentChangeWholeDocument as Whole,
+};
 
-use super::Options;
 use super::position::offset_of;
+use crate::arm::robot::Model;
 use crate::rapid::text::{FileId, SourceFile, Span};
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::timeline::What;
-use crate::tool::cli::common::CellArgs;
-use crate::tool::cli::lint::{LintArgs, Setup};
-use crate::tool::lint::Finding;
-use crate::tool::lint::engine::{Examined, Kept, examine_file};
+use crate::tool::lint::engine::{Examined, ReadCache, examine_file};
+use crate::tool::lint::{Finding, Programs};
 
-/// Open documents, by their names, and the folders they lie in.
-pub(super) struct Workspace {
-    options: Options,
+/// Open documents, by URI, and the folders that they lie in.
+pub(super) struct Workspace<R> {
+    /// Reads the programs of a folder.
+    read: R,
     open: BTreeMap<String, SourceFile>,
     folders: BTreeMap<PathBuf, Folder>,
 }
 
 /// A folder as it was read from disk when a document of it was last opened, saved or closed.
 struct Folder {
-    setup: Setup,
-    kept: Kept,
+    programs: Programs,
+    kept: ReadCache,
 }
 
 /// What was found in a document.
@@ -46,9 +48,9 @@ pub(super) struct Costs {
     pub(super) energy_j: Option<f64>,
 }
 
-impl Workspace {
-    pub(super) fn new(options: Options) -> Workspace {
-        Workspace { options, open: BTreeMap::new(), folders: BTreeMap::new() }
+impl<R: Fn(&Path) -> Programs> Workspace<R> {
+    pub(super) fn new(read: R) -> Workspace<R> {
+        Workspace { read, open: BTreeMap::new(), folders: BTreeMap::new() }
     }
 
     pub(super) fn open(&mut self, uri: &str, text: String) {
@@ -57,22 +59,31 @@ impl Workspace {
         self.forget(uri);
     }
 
-    /// The folder of a document is read from disk at the next look.
+    /// The folder of a document is read from disk at the next analysis.
     pub(super) fn forget(&mut self, uri: &str) {
         self.folders.remove(&folder_of(uri));
     }
 
-    /// A change of a range, or of the whole text.
-    pub(super) fn change(&mut self, uri: &str, change: &Value) {
+    /// Changes a range of a document, or the whole text where the range ends before it starts.
+    pub(super) fn change(&mut self, uri: &str, change: TextDocumentContentChangeEvent) {
         let Some(file) = self.open.get(uri) else { return };
-        let text = change["text"].as_str().unwrap_or_default();
-        let range = &change["range"];
-        let bytes = match (offset_of(file, &range["start"]), offset_of(file, &range["end"])) {
-            (Some(start), Some(end)) if start <= end => {
-                let (before, after) = (&file.bytes[..start as usize], &file.bytes[end as usize..]);
-                [before, text.as_bytes(), after].concat()
+        let bytes = match change {
+            TextDocumentContentChangeEvent::TextDocumentContentChangePartial(Partial {
+                range,
+                text,
+                ..
+            }) => {
+                let (start, end) = (offset_of(file, range.start), offset_of(file, range.end));
+                if start <= end {
+                    let before = &file.bytes[..start as usize];
+                    [before, text.as_bytes(), &file.bytes[end as usize..]].concat()
+                } else {
+                    text.into_bytes()
+                }
             }
-            _ => text.as_bytes().to_vec(),
+            TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(Whole {
+                text,
+            }) => text.into_bytes(),
         };
         let file = SourceFile::new(FileId(0), file.path.clone(), bytes);
         self.open.insert(uri.to_owned(), file);
@@ -89,52 +100,34 @@ impl Workspace {
         self.open.keys().filter(|other| folder_of(other) == folder).cloned().collect()
     }
 
-    /// Looks at the programs that a document belongs to. What was found in it, and in the other
-    /// open documents of the same programs.
+    /// Examines the programs that a document belongs to: the analyses of this document and of the
+    /// other open documents of the same programs.
     pub(super) fn analyse(&mut self, uri: &str) -> Vec<(String, Analysis)> {
         let folder = folder_of(uri);
-        let options = &self.options;
-        let read = || Folder::read(options, &folder);
-        let Folder { setup, kept } = self.folders.entry(folder.clone()).or_insert_with(read);
-        let mut places: BTreeMap<usize, &str> = BTreeMap::new();
+        let read = || Folder { programs: (self.read)(&folder), kept: ReadCache::default() };
+        let Folder { programs, kept } = self.folders.entry(folder.clone()).or_insert_with(read);
+        let mut names: BTreeMap<usize, &str> = BTreeMap::new();
         for (name, file) in
             self.open.iter().filter(|(name, _)| *name == uri || folder_of(name) == folder)
         {
-            let known = setup.files.iter().position(|known| known.path == file.path);
-            let index = known.unwrap_or_else(|| setup.add(file.clone()));
-            setup.files[index] = SourceFile { id: FileId(index as u32), ..file.clone() };
-            places.insert(index, name);
+            let known = programs.files.iter().position(|known| known.path == file.path);
+            let index = known.unwrap_or_else(|| programs.add(file.clone()));
+            programs.files[index] = SourceFile { id: FileId(index as u32), ..file.clone() };
+            names.insert(index, name);
         }
-        let Some(own) = places.iter().find(|(_, name)| **name == uri).map(|(index, _)| *index)
+        let Some(own) = names.iter().find(|(_, name)| **name == uri).map(|(index, _)| *index)
         else {
             return Vec::new();
         };
-        let dynamics = setup.model.as_ref().is_some_and(crate::arm::robot::Model::has_dynamics);
-        let examined = Rc::new(examine_file(&setup.job(), own, kept));
+        let dynamics = programs.model.as_ref().is_some_and(Model::has_dynamics);
+        let examined = Rc::new(examine_file(&programs.job(), own, kept));
         let together = |index: &usize| examined.programs.iter().all(|files| files.contains(index));
-        let shown = places.into_iter().filter(|(index, _)| *index == own || together(index));
+        let concerned = names.into_iter().filter(|(index, _)| *index == own || together(index));
         let analysis = |(index, name): (usize, &str)| {
-            let file = setup.files[index].clone();
+            let file = programs.files[index].clone();
             (name.to_owned(), Analysis { file, examined: Rc::clone(&examined), dynamics })
         };
-        shown.map(analysis).collect()
-    }
-}
-
-impl Folder {
-    fn read(options: &Options, folder: &Path) -> Folder {
-        let folder = Some(folder.to_path_buf()).filter(|folder| folder.is_dir());
-        let cell = CellArgs {
-            paths: folder.into_iter().collect(),
-            robot: options.robot.clone(),
-            entry: options.entry.clone(),
-            inputs: options.inputs.clone(),
-            quiet: true,
-            ..CellArgs::default()
-        };
-        let args = LintArgs { cell, ..LintArgs::default() };
-        // A folder that can't be read, or a robot that is not known: the documents stand alone.
-        Folder { setup: Setup::new(&args).unwrap_or_default(), kept: Kept::default() }
+        concerned.map(analysis).collect()
     }
 }
 

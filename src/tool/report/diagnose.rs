@@ -6,18 +6,18 @@ use serde_json::{Map, Value, json};
 
 use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
 
-/// What a result rests on, beside the result itself.
+/// The basis of a result: robot, logs, notes.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
     /// The robot as it was given.
     pub robot: String,
     /// What was held out: `file`, `trajectory` or `cycles`.
     pub heldout: String,
-    /// The logs that it is of.
+    /// The held-out logs.
     pub graded: Vec<String>,
-    /// Where the model went.
+    /// Where the model was written.
     pub model: String,
-    /// What else a reader has to know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 
@@ -25,54 +25,60 @@ pub struct Basis {
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
     let all = |of: &[Said]| -> Vec<Value> { of.iter().map(said).collect() };
-    let generic: Vec<Value> = found
-        .anything
-        .iter()
-        .map(|of| {
-            json!({
-                "id": of.id,
-                "joint": of.joint.map(|joint| joint + 1),
-                "share_percent": 100.0 * of.share,
-            })
+    let generic = found.anything.iter().map(|of| {
+        json!({
+            "id": of.id,
+            "joint": of.joint.map(|joint| joint + 1),
+            "share_percent": 100.0 * of.share,
         })
-        .collect();
-    let places: Vec<Value> = found
-        .places
-        .iter()
-        .map(|of| {
-            json!({
-                "joint": of.joint.map(|joint| joint + 1),
-                "regime": of.regime,
-                "file": of.line.as_ref().map(|(file, _)| file),
-                "line": of.line.as_ref().map(|(_, line)| line),
-                "movement": of.movement,
-                "t_start_s": of.span.map(|[start, _]| start),
-                "t_end_s": of.span.map(|[_, end]| end),
-                "share_percent": 100.0 * of.share,
-                "by_effect_percent": by_effect(of),
-            })
+    });
+    json!({
+        "verdict": found.verdict.name(),
+        "effects": all(&found.effects),
+        "candidates": all(&found.candidates),
+        "generic": generic.collect::<Vec<_>>(),
+        "where": found.places.iter().map(place).collect::<Vec<_>>(),
+        "gap": gap(found, basis),
+        "next_experiment": next(found, basis)
+            .map(|(why, command)| json!({"why": why, "command": command})),
+        "model_error_percent": 100.0 * found.error,
+        "null_nats": found.chance,
+        "reasons": found.reasons,
+        "notes": basis.notes,
+        "model": basis.model,
+    })
+}
+
+fn place(of: &Place) -> Value {
+    json!({
+        "joint": of.joint.map(|joint| joint + 1),
+        "regime": of.regime,
+        "file": of.line.as_ref().map(|(file, _)| file),
+        "line": of.line.as_ref().map(|(_, line)| line),
+        "movement": of.movement,
+        "t_start_s": of.span.map(|[start, _]| start),
+        "t_end_s": of.span.map(|[_, end]| end),
+        "share_percent": 100.0 * of.share,
+        "by_effect_percent": by_effect(of),
+    })
+}
+
+/// Residuals of the held-out logs, by channel.
+fn gap(found: &Diagnosis, basis: &Basis) -> Vec<Value> {
+    let joints = found.shrink.joints.iter().enumerate().map(|(joint, of)| {
+        json!({
+            "joint": joint + 1,
+            "noise": of.noise,
+            "torque": of.torque,
+            "model": of.model,
+            "refit": of.refit,
+            "refit_plus_effect": of.refit_plus_effect,
         })
-        .collect();
-    let joints: Vec<Value> = found
-        .shrink
-        .joints
-        .iter()
-        .enumerate()
-        .map(|(joint, of)| {
-            json!({
-                "joint": joint + 1,
-                "noise": of.noise,
-                "torque": of.torque,
-                "model": of.model,
-                "refit": of.refit,
-                "refit_plus_effect": of.refit_plus_effect,
-            })
-        })
-        .collect();
+    });
     let mut gap = vec![json!({
         "channel": "torque",
         "unit": "Nm",
-        "per_joint": joints,
+        "per_joint": joints.collect::<Vec<_>>(),
         "heldout": basis.heldout,
         "shrink_percent": interval(&found.shrink.total),
         "shrink_by_effect_percent": interval(&found.shrink.by_effect),
@@ -94,21 +100,7 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
             "shrink_by_effect_percent": {"value": shrinks, "low": null, "high": null},
         }));
     }
-    json!({
-        "verdict": found.verdict.name(),
-        "effects": all(&found.effects),
-        "candidates": all(&found.candidates),
-        "generic": generic,
-        "where": places,
-        "gap": gap,
-        "next_experiment": next(found, basis)
-            .map(|(why, command)| json!({"why": why, "command": command})),
-        "model_error_percent": 100.0 * found.error,
-        "null_nats": found.chance,
-        "reasons": found.reasons,
-        "notes": basis.notes,
-        "model": basis.model,
-    })
+    gap
 }
 
 /// Shares of effects; none where they are not told.
@@ -141,7 +133,7 @@ fn said(of: &Said) -> Value {
     })
 }
 
-/// What to measure next: why, and the command.
+/// The next experiment: the reason, and the command.
 pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)> {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
         of.class.len() > 1

@@ -10,21 +10,34 @@ use crate::learn::identify::{
     Descent, Grade, Identified, Misses, Source, Whiteness, collinear, essential,
 };
 
-/// What a result rests on, beside the result itself.
+/// The basis of a result: logs, origin of the torques, notes.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
-    /// Logs: path as given, SHA-256, usable rows, rows left out.
-    pub logs: Vec<(String, String, usize, usize)>,
-    /// The same that were only predicted.
-    pub validation: Vec<(String, String, usize, usize)>,
+    /// The logs of the fit.
+    pub logs: Vec<LogRecord>,
+    /// The logs that were only predicted.
+    pub validation: Vec<LogRecord>,
     /// When the logs were recorded, where that is known.
     pub date: Option<String>,
     /// Where the torques come from, in words.
     pub torque: String,
-    /// What else a reader has to know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
     /// The paper's fit, for comparison.
     pub descent: Option<Descent>,
+}
+
+/// A log that was read.
+#[derive(Clone, Debug)]
+pub struct LogRecord {
+    /// As given.
+    pub path: String,
+    /// SHA-256 of the file.
+    pub hash: String,
+    /// Usable rows.
+    pub rows: usize,
+    /// Rows left out.
+    pub left_out: usize,
 }
 
 /// Names of the parameters of a joint with their units, as the model keeps them.
@@ -34,28 +47,11 @@ const JOINT_UNITS: [&str; JOINT] = ["kg m2", "Nm s/rad", "Nm", "Nm"];
 /// The contract's JSON.
 pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
     let fit = &found.fit;
-    let parameters: Vec<Value> = fit
-        .solution
-        .determined
-        .iter()
-        .enumerate()
-        .map(|(k, row)| {
-            json!({
-                "name": found.name(*row),
-                "value": fit.solution.beta[*row],
-                "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
-            })
-        })
-        .collect();
     let held_out = found.validation.as_ref();
     let names = |rows: &[usize]| rows.iter().map(|row| found.name(*row)).collect::<Vec<_>>();
-    let logs = |logs: &[(String, String, usize, usize)]| -> Vec<Value> {
-        let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| json!({"path": path, "sha256": hash, "rows": rows, "left_out": left_out});
-        logs.iter().map(log).collect()
-    };
     json!({
         "robot": found.model.name,
-        "base_parameters": parameters,
+        "base_parameters": base_parameters(found),
         "rank": fit.solution.determined.len(),
         "not_determined": undetermined(found),
         "rms": {
@@ -110,15 +106,41 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
         "logs": logs(&basis.logs),
         "validation_logs": logs(&basis.validation),
         "notes": basis.notes,
-        "descent": basis.descent.as_ref().map(|of| json!({
-            "first_rms": of.misses[0], "rms": of.misses[1], "steps": of.steps,
-            "rms_by_joint": of.rms,
-            "mass": of.links.iter().map(|link| link.mass).collect::<Vec<_>>(),
-            "com": of.links.iter().map(|link| link.com.as_slice().to_vec()).collect::<Vec<_>>(),
-            "moments": of.links.iter()
-                .map(|link| link.inertia.diagonal().as_slice().to_vec()).collect::<Vec<_>>(),
-        })),
+        "descent": basis.descent.as_ref().map(descent),
         "model": path,
+    })
+}
+
+/// The parameters that the data determine, with their standard deviations.
+fn base_parameters(found: &Identified) -> Vec<Value> {
+    let fit = &found.fit;
+    let parameter = |(k, row): (usize, &usize)| {
+        json!({
+            "name": found.name(*row),
+            "value": fit.solution.beta[*row],
+            "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
+        })
+    };
+    fit.solution.determined.iter().enumerate().map(parameter).collect()
+}
+
+fn logs(logs: &[LogRecord]) -> Vec<Value> {
+    let log = |log: &LogRecord| {
+        json!({
+            "path": log.path, "sha256": log.hash, "rows": log.rows, "left_out": log.left_out,
+        })
+    };
+    logs.iter().map(log).collect()
+}
+
+fn descent(of: &Descent) -> Value {
+    json!({
+        "first_rms": of.misses[0], "rms": of.misses[1], "steps": of.steps,
+        "rms_by_joint": of.rms,
+        "mass": of.links.iter().map(|link| link.mass).collect::<Vec<_>>(),
+        "com": of.links.iter().map(|link| link.com.as_slice().to_vec()).collect::<Vec<_>>(),
+        "moments": of.links.iter()
+            .map(|link| link.inertia.diagonal().as_slice().to_vec()).collect::<Vec<_>>(),
     })
 }
 
@@ -131,7 +153,7 @@ fn grade(grade: Grade) -> &'static str {
     }
 }
 
-/// What the residuals of each joint remember.
+/// Autocorrelation of each joint's residuals.
 fn whiteness(found: &Identified) -> Vec<Value> {
     let joint = |(joint, of): (usize, &Option<Whiteness>)| match of {
         Some(of) => json!({
@@ -228,7 +250,7 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
     let _ = writeln!(text, "quality = {}", quoted(&found.quality.sentence()));
     let _ = writeln!(text, "rank = {}", found.fit.solution.determined.len());
     let list = |values: &[f64]| -> String {
-        // TOML's not a number is in small letters.
+        // TOML writes `nan` in lower case.
         values.iter().map(|x| format!("{x:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
     };
     let _ = writeln!(text, "rms = [{}]", list(&found.training.rms));
@@ -242,7 +264,7 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
             entry["name"], entry["why"]
         );
     }
-    for (path, hash, rows, left_out) in &basis.logs {
+    for LogRecord { path, hash, rows, left_out } in &basis.logs {
         let _ = write!(
             text,
             "\n[[identification.log]]\npath = {}\nsha256 = \"{hash}\"\nrows = {rows}\n\

@@ -5,9 +5,10 @@ use serde_json::{Value, json};
 
 use super::mark::mark;
 use super::place::Places;
+use super::simulated::Simulated;
 use crate::arm::robot::Model;
-use crate::retime::energy::plausible::{Contribution, Interval, Plausibility};
-use crate::retime::energy::{Account, EnergyParts};
+use crate::retime::energy::EnergyParts;
+use crate::retime::energy::plausible::{Contribution, Interval};
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{WaitBasis, What};
 use crate::retime::optimize::check::Check;
@@ -44,15 +45,8 @@ impl Parts {
 }
 
 /// The result of `simulate`.
-pub fn simulation(
-    model: &Model,
-    entry: &str,
-    places: Places<'_>,
-    simulation: &Simulation,
-    account: &Account,
-    plausible: Option<&Plausibility>,
-    notes: &[String],
-) -> Value {
+pub fn simulation(of: Simulated<'_>, places: Places<'_>, notes: &[String]) -> Value {
+    let Simulated { model, entry, simulation, account, plausible } = of;
     let known = model.has_dynamics();
     let mut moves = Vec::new();
     let mut waits = Vec::new();

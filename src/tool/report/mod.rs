@@ -9,6 +9,7 @@ pub mod lint;
 mod mark;
 pub mod place;
 mod plausible;
+pub mod simulated;
 pub mod standstill;
 pub mod svg;
 pub mod table;

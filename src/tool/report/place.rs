@@ -20,7 +20,7 @@ pub struct Place {
 }
 
 impl<'a> Places<'a> {
-    /// Of these files, indexed by their ids.
+    /// Places in these files, indexed by their ids.
     pub fn new(files: &'a [SourceFile]) -> Places<'a> {
         Places { files }
     }

@@ -1,4 +1,4 @@
-//! What plausible robots say of a result, in sentences.
+//! Intervals of a result over plausible robots, in sentences.
 
 use crate::retime::energy::plausible::{Contribution, Interval, LEAST, Plausibility};
 use crate::tool::retrofit::Retrofit;

@@ -1,28 +1,23 @@
-//! Results for people.
+//! The text of `simulate` and `optimize`.
 
 use std::fmt::Write;
 
 use super::mark::mark;
 use super::place::Places;
 use super::plausible::{energies, saving};
+use super::simulated::Simulated;
 use super::table::{Align, table};
 use crate::arm::robot::prior::is_mass_known;
 use crate::arm::robot::{Model, Provenance};
 use crate::rapid::ir::movement::Movement;
-use crate::retime::energy::plausible::Plausibility;
-use crate::retime::energy::{Account, EnergyParts};
+use crate::retime::energy::EnergyParts;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{WaitBasis, What};
-use crate::tool::retrofit::{LowerLimits, Retrofit, SegmentKind};
+use crate::tool::retrofit::{LowerLimits, Retrofit, Segment, SegmentKind};
 
 /// The table of a simulation.
-pub fn simulation(
-    model: &Model,
-    places: Places<'_>,
-    simulation: &Simulation,
-    account: &Account,
-    plausible: Option<&Plausibility>,
-) -> String {
+pub fn simulation(of: Simulated<'_>, places: Places<'_>) -> String {
+    let Simulated { model, simulation, account, plausible, .. } = of;
     let known = model.has_dynamics();
     let joules = |parts: &EnergyParts| {
         if known { format!("{:.1}", parts.energy_j()) } else { "-".to_owned() }
@@ -144,41 +139,8 @@ pub fn notes(model: &Model, places: Places<'_>, simulation: &Simulation) -> Vec<
 
 /// The table of a retrofit.
 pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> String {
-    let mut rows = Vec::new();
-    for segment in &retrofit.segments {
-        if segment.executions == 0 {
-            continue;
-        }
-        let saved = segment.energy_before_j - segment.energy_after_j;
-        let what = match (segment.kind, segment.rewritten) {
-            (SegmentKind::Idle, _) => "dwell",
-            (SegmentKind::Timing, true) if segment.points == 0 => "new speeds",
-            (SegmentKind::Path, true) => "free stream",
-            (SegmentKind::Timing, true) => "stream",
-            (SegmentKind::Timing | SegmentKind::Path, false) => "as it was",
-        };
-        let runs = if segment.rewritten {
-            format!("{}/{}", segment.rewritten_executions, segment.executions)
-        } else {
-            segment.executions.to_string()
-        };
-        let mut reason = segment.reason.as_ref().map(ToString::to_string).unwrap_or_default();
-        if segment.potential_j > 0.0 {
-            let _ = write!(reason, " ({:.1} J)", segment.potential_j);
-        }
-        rows.push(vec![
-            places.of(segment.span).to_string(),
-            what.to_owned(),
-            runs,
-            format!("{:.3}", segment.time_before_s),
-            format!("{:.3}", segment.time_after_s),
-            format!("{:.1}", segment.energy_before_j),
-            format!("{:.1}", segment.energy_after_j),
-            if segment.rewritten { format!("{saved:.1}") } else { String::new() },
-            reason,
-        ]);
-    }
-    let (before, after) = (&retrofit.original, &retrofit.optimized);
+    let executed = retrofit.segments.iter().filter(|segment| segment.executions > 0);
+    let mut rows: Vec<Vec<String>> = executed.map(|segment| segment_row(places, segment)).collect();
     if let Some(padding) = &retrofit.padding {
         rows.push(vec![
             "end of the cycle".to_owned(),
@@ -192,6 +154,7 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
             "the original waits, so that both sides take the same time".to_owned(),
         ]);
     }
+    let (before, after) = (&retrofit.original, &retrofit.optimized);
     rows.push(vec![
         "cycle".to_owned(),
         String::new(),
@@ -203,60 +166,9 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         format!("{:.1}", before.energy_j - after.energy_j),
         String::new(),
     ]);
-    let worst = &retrofit.verification.worst;
-    let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
-    let mut out = format!(
-        "{}: motion energy {:.1} J -> {:.1} J (saves {:.1} %), energy with waits and base load \
-         saves {:.1} %\nverified: {}; at most {:.0} % of joint speed, {:.0} % of acceleration, \
-         {:.0} % of torque, {:.0} % of TCP speed; path within {:.2} mm, polygon \
-         of the points within {:.2} mm, ends within {:.1e} rad\n",
-        model.name,
-        before.motion_energy_j,
-        after.motion_energy_j,
-        retrofit.motion_saving_percent(),
-        retrofit.saving_percent(),
-        match (retrofit.verification.passed, is_rewritten) {
-            (false, _) => "FAILED",
-            (true, true) => "passed",
-            (true, false) => "nothing was changed",
-        },
-        100.0 * worst.velocity,
-        100.0 * worst.acceleration,
-        100.0 * worst.torque,
-        100.0 * worst.tcp_speed,
-        1e3 * worst.deviation_m,
-        1e3 * worst.polygon_m,
-        worst.endpoint_error_rad,
-    );
-    for line in saving(retrofit) {
+    let mut out = headline(model, retrofit);
+    for line in saving(retrofit).into_iter().chain(remarks(retrofit)) {
         let _ = writeln!(out, "{line}");
-    }
-    if retrofit.guard_instructions > 0 {
-        let _ = writeln!(
-            out,
-            "guards run {} RAPID instructions in a cycle, about {:.1} ms (0.05 ms each, assumed)",
-            retrofit.guard_instructions,
-            retrofit.guards_ms()
-        );
-    }
-    if is_rewritten && !retrofit.lower_limits.is_empty() {
-        let lower = |lower: &LowerLimits| {
-            let percent = 100.0 * (1.0 - lower.share);
-            format!("{percent:.0} %: {:.2} s for {:.2} s", lower.optimized_s, lower.original_s)
-        };
-        let cycles: Vec<String> = retrofit.lower_limits.iter().map(lower).collect();
-        let _ = writeln!(
-            out,
-            "if the true limits are lower than assumed, the cycle takes, retrofit for original: {}",
-            cycles.join(", ")
-        );
-    }
-    if retrofit.potential_j > 0.0 {
-        let _ = writeln!(
-            out,
-            "brakes in dwells could save {:.1} J more, by a setting of the controller",
-            retrofit.potential_j
-        );
     }
     out.push('\n');
     out.push_str(&table(
@@ -274,4 +186,98 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         &rows,
     ));
     out
+}
+
+fn segment_row(places: Places<'_>, segment: &Segment) -> Vec<String> {
+    let saved = segment.energy_before_j - segment.energy_after_j;
+    let what = match (segment.kind, segment.rewritten) {
+        (SegmentKind::Idle, _) => "dwell",
+        (SegmentKind::Timing, true) if segment.points == 0 => "new speeds",
+        (SegmentKind::Path, true) => "free stream",
+        (SegmentKind::Timing, true) => "stream",
+        (SegmentKind::Timing | SegmentKind::Path, false) => "as it was",
+    };
+    let runs = if segment.rewritten {
+        format!("{}/{}", segment.rewritten_executions, segment.executions)
+    } else {
+        segment.executions.to_string()
+    };
+    let mut reason = segment.reason.as_ref().map(ToString::to_string).unwrap_or_default();
+    if segment.potential_j > 0.0 {
+        let _ = write!(reason, " ({:.1} J)", segment.potential_j);
+    }
+    vec![
+        places.of(segment.span).to_string(),
+        what.to_owned(),
+        runs,
+        format!("{:.3}", segment.time_before_s),
+        format!("{:.3}", segment.time_after_s),
+        format!("{:.1}", segment.energy_before_j),
+        format!("{:.1}", segment.energy_after_j),
+        if segment.rewritten { format!("{saved:.1}") } else { String::new() },
+        reason,
+    ]
+}
+
+/// What a retrofit saves, and what the verification says of it.
+fn headline(model: &Model, retrofit: &Retrofit) -> String {
+    let (before, after) = (&retrofit.original, &retrofit.optimized);
+    let worst = &retrofit.verification.worst;
+    format!(
+        "{}: motion energy {:.1} J -> {:.1} J (saves {:.1} %), energy with waits and base load \
+         saves {:.1} %\nverified: {}; at most {:.0} % of joint speed, {:.0} % of acceleration, \
+         {:.0} % of torque, {:.0} % of TCP speed; path within {:.2} mm, polygon \
+         of the points within {:.2} mm, ends within {:.1e} rad\n",
+        model.name,
+        before.motion_energy_j,
+        after.motion_energy_j,
+        retrofit.motion_saving_percent(),
+        retrofit.saving_percent(),
+        match (retrofit.verification.passed, is_rewritten(retrofit)) {
+            (false, _) => "FAILED",
+            (true, true) => "passed",
+            (true, false) => "nothing was changed",
+        },
+        100.0 * worst.velocity,
+        100.0 * worst.acceleration,
+        100.0 * worst.torque,
+        100.0 * worst.tcp_speed,
+        1e3 * worst.deviation_m,
+        1e3 * worst.polygon_m,
+        worst.endpoint_error_rad,
+    )
+}
+
+fn is_rewritten(retrofit: &Retrofit) -> bool {
+    retrofit.segments.iter().any(|segment| segment.rewritten)
+}
+
+/// Costs of the guards, lower limits, and what the controller's settings could save.
+fn remarks(retrofit: &Retrofit) -> Vec<String> {
+    let mut lines = Vec::new();
+    if retrofit.guard_instructions > 0 {
+        lines.push(format!(
+            "guards run {} RAPID instructions in a cycle, about {:.1} ms (0.05 ms each, assumed)",
+            retrofit.guard_instructions,
+            retrofit.guards_ms()
+        ));
+    }
+    if is_rewritten(retrofit) && !retrofit.lower_limits.is_empty() {
+        let lower = |lower: &LowerLimits| {
+            let percent = 100.0 * (1.0 - lower.share);
+            format!("{percent:.0} %: {:.2} s for {:.2} s", lower.optimized_s, lower.original_s)
+        };
+        let cycles: Vec<String> = retrofit.lower_limits.iter().map(lower).collect();
+        lines.push(format!(
+            "if the true limits are lower than assumed, the cycle takes, retrofit for original: {}",
+            cycles.join(", ")
+        ));
+    }
+    if retrofit.potential_j > 0.0 {
+        lines.push(format!(
+            "brakes in dwells could save {:.1} J more, by a setting of the controller",
+            retrofit.potential_j
+        ));
+    }
+    lines
 }

@@ -1,20 +1,20 @@
-//! What of a logged motion looks like another unit.
+//! Signs that a logged motion is in other units than expected.
 
 use crate::arm::robot::Model;
 use crate::learn::log::Motion;
 
-/// By how much a joint may be outside its range \[rad\].
+/// How far outside its range a joint may be \[rad\].
 const OUTSIDE: f64 = 0.2;
-/// Times the largest speed that a log may show.
+/// Largest ratio of a logged speed to the speed limit.
 const FASTER: f64 = 1.5;
 /// Interval of rows that is too long to differentiate a motion \[s\].
 const SPARSE: f64 = 0.5;
-/// Share of what the rates say by which positions change at least.
+/// Least ratio of the change of positions to the integral of the rates.
 const LEAST: f64 = 0.05;
 /// Figures from here on are shown with an exponent.
 const HUGE: f64 = 1e9;
 
-/// The doubts, each in words with the way out.
+/// The warnings, each with the way out.
 pub(super) fn doubts(model: &Model, motion: &Motion) -> Vec<String> {
     let mut found: Vec<String> =
         (0..model.dof).filter_map(|joint| position(model, motion, joint)).collect();

@@ -1,7 +1,6 @@
 //! `joulepath robots check`: whether a robot is sound, and what it lacks.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use serde_json::{Map, Value, json};
@@ -9,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::arm::effects;
 use crate::arm::kinematics::{fk, ik_near, limits_ok, radical_inverse};
 use crate::arm::robot::{self, Lack, Model, Use, implausible, lacking};
-use crate::tool::cli::common::Format;
+use crate::tool::cli::common::{Format, print};
 
 /// Poses over the ranges of the joints at which forward and inverse kinematics
 /// are held against each other.
@@ -37,19 +36,15 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
         findings.push(checked(&effects::load(name)?, &effects::load_estimated(name)?));
     }
     let passed = findings.iter().filter(|finding| finding.problems.is_empty()).count();
-    let mut out = std::io::stdout().lock();
-    match format {
-        Format::Text => {
-            for finding in &findings {
-                write!(out, "{}", text(finding))?;
-            }
-            writeln!(out, "{passed} of {} sound", findings.len())?;
-        }
-        Format::Json => {
-            let robots: Vec<Value> = findings.iter().map(document).collect();
-            writeln!(out, "{:#}", json!({ "robots": robots, "passed": passed }))?;
-        }
-    }
+    let json = || {
+        let robots: Vec<Value> = findings.iter().map(document).collect();
+        json!({ "robots": robots, "passed": passed })
+    };
+    let lines = || {
+        findings.iter().map(text).collect::<String>()
+            + &format!("{passed} of {} sound\n", findings.len())
+    };
+    print(format, json, lines)?;
     Ok(if passed == findings.len() { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 

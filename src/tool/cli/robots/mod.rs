@@ -4,13 +4,12 @@ mod check;
 mod import;
 mod show;
 
-use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
 use serde_json::json;
 
-use super::common::Format;
+use super::common::{Format, print};
 use crate::arm::robot;
 
 /// List the known robots, show or check one, or import one.
@@ -60,17 +59,6 @@ pub fn run(args: &RobotsArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn list(format: Format) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    match format {
-        Format::Text => {
-            for name in robot::names() {
-                writeln!(out, "{name}")?;
-            }
-        }
-        Format::Json => {
-            let names: Vec<&str> = robot::names().collect();
-            writeln!(out, "{:#}", json!({ "robots": names }))?;
-        }
-    }
-    Ok(())
+    let json = || json!({ "robots": robot::names().collect::<Vec<_>>() });
+    print(format, json, || robot::names().map(|name| format!("{name}\n")).collect())
 }

@@ -1,7 +1,6 @@
 //! `joulepath robots show`: what is known of a robot.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 
 use serde_json::{Value, json};
 
@@ -9,17 +8,12 @@ use crate::arm::effects;
 use crate::arm::robot::prior::{Plausible, Spread};
 use crate::arm::robot::{Model, Provenance};
 use crate::retime::energy::plausible::{DRAWS, Interval};
-use crate::tool::cli::common::Format;
+use crate::tool::cli::common::{Format, print};
 
 /// Shows one robot.
 pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
     let model = effects::load_estimated(robot)?;
-    let mut out = std::io::stdout().lock();
-    match format {
-        Format::Text => write!(out, "{}", text(&model))?,
-        Format::Json => writeln!(out, "{:#}", document(&model))?,
-    }
-    Ok(())
+    print(format, || document(&model), || text(&model))
 }
 
 fn text(model: &Model) -> String {

@@ -34,9 +34,9 @@
 use std::sync::Arc;
 
 use super::super::context::Context;
-use super::super::finding::{Applicability, Finding, Fix};
-use super::super::trace::Deed;
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding, Fix};
+use super::super::saving::Weighed;
+use super::super::trace::Action;
 use super::racing_to_wait::{run_of, slower_run, waits_behind};
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::rapid::text::{Edit, Span};
@@ -98,10 +98,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Whether nothing is lowered yet.
+/// Whether all movements have full acceleration.
 fn is_full(context: &Context<'_>, index: usize) -> bool {
     context.sites[index].executions.iter().all(|step| match &context.trace[*step].what {
-        Deed::Move(movement) => {
+        Action::Move(movement) => {
             let settings = &movement.settings;
             settings.acceleration == 1.0 && settings.ramp == 1.0 && settings.fine_point_ramp == 1.0
         }

@@ -28,8 +28,8 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::Deed;
+use super::super::rule::Finding;
+use super::super::trace::Action;
 use crate::rapid::text::Span;
 use crate::retime::energy::brakes::spared_j;
 use crate::retime::energy::power::holding_w;
@@ -49,7 +49,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
     let mut told: BTreeSet<Span> = BTreeSet::new();
     for done in &context.trace {
-        let Deed::Wait(wait, _) = &done.what else { continue };
+        let Action::Wait(wait, _) = &done.what else { continue };
         if done.duration < LONG || told.contains(&wait.span) {
             continue;
         }

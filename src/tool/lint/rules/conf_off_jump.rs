@@ -9,8 +9,8 @@
 //! the next cycle.
 //!
 //! ## How the saving is computed
-//! None is told: what the right configuration is the program does not say, and with `ConfL \\On`
-//! it would stop here; there is no second text to simulate.
+//! There is none: the program does not say which configuration is right, and with `ConfL \On` the
+//! robot would stop here, so there is no second program to simulate.
 //!
 //! ## Example
 //! ```text
@@ -30,17 +30,17 @@
 //! The robot starts where the simulation does.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::{Deed, Done};
+use super::super::rule::Finding;
+use super::super::trace::{Action, TraceStep};
 use crate::arm::kinematics::{Conf, ik_conf};
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Target;
 
 rule!("EW604", "conf-off-jump", Settings, Robot, Warning, "conf_off_jump.rs");
 
-/// Half a turn is the other solution of the wrist; this is more, rad.
+/// More than half a turn, which only leads to the other solution of the wrist, rad.
 const TURN: f64 = 1.25 * std::f64::consts::PI;
-/// Axes that can turn on: 4 and 6.
+/// Axes that can turn by whole turns: 4 and 6.
 const AXES: [usize; 2] = [3, 5];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
@@ -78,9 +78,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// Whether a movement goes to the configuration that is stated for it.
-fn keeps(done: &Done<'_>) -> bool {
+fn keeps(done: &TraceStep<'_>) -> bool {
     match &done.what {
-        Deed::Move(movement) => match movement.form {
+        Action::Move(movement) => match movement.form {
             MoveForm::AbsJ => true,
             MoveForm::Joint => movement.settings.conf_joint,
             _ => movement.settings.conf_linear,

@@ -11,7 +11,7 @@
 //! changes are made in it that have no effect.
 //!
 //! ## How the saving is computed
-//! There is none: what never runs costs nothing in either of two simulated cycles.
+//! There is none: what never runs changes no simulated cycle.
 //!
 //! ## Example
 //! ```text
@@ -37,8 +37,8 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
 use super::super::flow::Class;
+use super::super::rule::Finding;
 use crate::rapid::builtins::{self, Instruction, MoveForm};
 use crate::rapid::ir::graph::Step;
 use crate::rapid::ir::hir::{Callee, RoutineKind, Scope, Stmt, StmtKind};
@@ -81,7 +81,7 @@ fn statements<'c>(context: &Context<'c>, id: RoutineId) -> Vec<&'c Stmt> {
     nodes.filter_map(|node| statement(&node.step)).collect()
 }
 
-/// Routines that the program or an interrupt gets to.
+/// Routines that the program or an interrupt reaches.
 fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
     let mut found = BTreeSet::new();
     let mut open = vec![entry];
@@ -103,7 +103,7 @@ fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
     found
 }
 
-/// Whether something is called that is not among the files: it may call what is.
+/// Whether something outside of the files is called: it may call any routine.
 fn calls_others(context: &Context<'_>) -> bool {
     let mut graphs = context.flow.graphs();
     graphs.any(|(id, ..)| {

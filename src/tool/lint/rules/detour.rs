@@ -33,7 +33,7 @@
 //! else.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::move_to_same_place::same_goal;
 use super::there_and_back::only_next;
 use crate::rapid::text::Span;
@@ -53,7 +53,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
                 break;
             }
             if same_goal(context, first, next) {
-                // Where all that is done is to move, that is the purpose.
+                // A program that does nothing but move has its movements for a purpose.
                 let works = context.works(&[chain.as_slice(), &[next]].concat());
                 if chain.len() > 2 && chain.len() + 1 < context.sites.len() && works {
                     findings.extend(told(context, &chain, next));
@@ -68,7 +68,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn told(context: &Context<'_>, chain: &[usize], last: usize) -> Option<Finding> {
     let spans: Vec<Span> = chain.iter().map(|site| context.sites[*site].stmt.span).collect();
     let saving = context.weigh(&spans, &|_| Vec::new()).saving().ok()?;
-    // Nothing can be said of a way over points that are not known.
+    // A way over unknown points cannot be judged.
     if chain.iter().any(|site| context.sites[*site].facts.goal.is_none()) {
         return None;
     }

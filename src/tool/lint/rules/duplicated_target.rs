@@ -30,7 +30,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use crate::rapid::ir::exec::value_of;
 use crate::rapid::ir::hir::{DataKind, ExprKind};
 use crate::rapid::ir::program::{DataId, Symbol};

@@ -33,9 +33,9 @@
 //! There is room for the way to the other pose.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::{Deed, executions};
-use super::super::weigh::Weighed;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
+use super::super::trace::{Action, executions};
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::Model;
@@ -65,7 +65,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
     let executions = executions(&context.trace);
     for (step, done) in context.trace.iter().enumerate() {
-        let (Deed::Wait(wait, WaitBasis::Stated), Some((event, _))) = (&done.what, done.event)
+        let (Action::Wait(wait, WaitBasis::Stated), Some((event, _))) = (&done.what, done.event)
         else {
             continue;
         };
@@ -77,7 +77,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let here: f64 = holding_w(model, &record.load, &record.q).iter().sum();
         let (pose, there) = lightest(model, &record.load, &record.q);
         let before = context.trace[..step].iter().rev().find_map(|done| match &done.what {
-            Deed::Move(movement) => Some(*movement),
+            Action::Move(movement) => Some(*movement),
             _ => None,
         });
         let Some(template) = before.filter(|_| there < (1.0 - SPARED) * here) else { continue };

@@ -2,14 +2,14 @@
 //!
 //! ## What it does
 //! Finds signals in the `EIO.cfg` of a backup whose name or label speaks of energy saving, that
-//! are tied to no system input or output, no cross connection, and no statement of any task. What
-//! a signal is for is written nowhere else in a backup: so words have to tell it.
+//! are tied to no system input or output, no cross connection, and no statement of any task. A
+//! backup says nowhere else what a signal is for, so the words of its name and label decide.
 //!
 //! ## Why it wastes energy
 //! Somebody meant the cell to save energy in breaks; it does not.
 //!
 //! ## How the saving is computed
-//! There is none to tell: how long the breaks are, the backup does not say.
+//! There is none: the backup does not say how long the breaks are.
 //!
 //! ## Example
 //! ```text
@@ -23,15 +23,15 @@
 //! Without a fix.
 //!
 //! ## Assumptions
-//! What the configuration names only where it declares signals is used by nothing in it.
+//! A signal that the configuration names only in its declaration is not used by the configuration.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use super::super::words;
 
 rule!("EW802", "energy-signal-unused", System, Backup, Info, "energy_signal_unused.rs");
 
-/// Saving, as names and labels that speak of energy say it.
+/// Words for saving in names and labels that mention energy.
 const SAVING: [&str; 4] = ["sav", "spar", "ahorr", "risparm"];
 /// Words for saving energy, also as in a controller's own signals.
 const SHORT: [&str; 4] = ["enensav", "powersav", "power sav", "profienergy"];

@@ -45,8 +45,8 @@
 use std::collections::BTreeMap;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::{Deed, Done};
+use super::super::rule::Finding;
+use super::super::trace::{Action, TraceStep};
 use crate::rapid::builtins::MoveForm;
 
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
@@ -72,7 +72,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let resets = resets(context);
     let carries = resets.into_iter().find(|(step, off)| carries(context, *step, *off));
     let carries = carries.map(|(step, _)| step);
-    let Some(Deed::Output(output)) = carries.map(|step| &context.trace[step].what) else { return };
+    let Some(Action::Output(output)) = carries.map(|step| &context.trace[step].what) else {
+        return;
+    };
     let message = format!(
         "{} is set where the tool goes in and out, and reset at another such place: a part is \
          carried, but no GripLoad says what it weighs",
@@ -86,7 +88,7 @@ fn resets(context: &Context<'_>) -> Vec<(usize, usize)> {
     let mut next: BTreeMap<String, usize> = BTreeMap::new();
     let mut found = Vec::new();
     for (step, done) in context.trace.iter().enumerate().rev() {
-        let Deed::Output(output) = &done.what else { continue };
+        let Action::Output(output) = &done.what else { continue };
         let key = output.signal.to_lowercase();
         if output.value == "0" {
             next.insert(key, step);
@@ -106,7 +108,7 @@ fn carries(context: &Context<'_>, step: usize, off: usize) -> bool {
     let mut moves = 0;
     let mut carried = false;
     for done in &context.trace[step..off] {
-        let Deed::Move(movement) = &done.what else { continue };
+        let Action::Move(movement) = &done.what else { continue };
         moves += 1;
         let joint = matches!(movement.form, MoveForm::Joint | MoveForm::AbsJ);
         carried |= joint || movement.speed.tcp >= FAST;
@@ -131,11 +133,11 @@ struct End {
 
 /// The place at which the robot stands in a step; `None` if it passes.
 fn end(context: &Context<'_>, step: usize) -> Option<End> {
-    let moved = |done: &Done<'_>| matches!(done.what, Deed::Move(_) | Deed::Left(_));
+    let moved = |done: &TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
     let here = context.trace[..step].iter().rposition(moved)?;
     let out = step + context.trace[step..].iter().position(moved)?;
     match &context.trace[here].what {
-        Deed::Move(movement) if movement.zone.fine => {}
+        Action::Move(movement) if movement.zone.fine => {}
         _ => return None,
     }
     let into = context.trace[..here].iter().rposition(moved);
@@ -144,6 +146,6 @@ fn end(context: &Context<'_>, step: usize) -> Option<End> {
         let [a, b, c] = [pose(into?)?, pose(here)?, pose(out)?];
         Some((b - a).angle(&(c - b)))
     };
-    let waits = context.trace[here..out].iter().any(|d| matches!(d.what, Deed::Wait(..)));
+    let waits = context.trace[here..out].iter().any(|d| matches!(d.what, Action::Wait(..)));
     Some(End { turn: turn(), waits })
 }

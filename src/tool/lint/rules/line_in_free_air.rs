@@ -34,9 +34,9 @@
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace};
-use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Movement;
 use crate::retime::motion::Step;

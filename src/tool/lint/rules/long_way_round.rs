@@ -32,9 +32,9 @@ use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace};
-use super::super::finding::{Applicability, Finding};
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use super::super::site::Site;
-use super::super::weigh::Weighed;
 use super::super::words;
 use crate::rapid::ir::hir::{ArgKind, Expr, ExprKind, Ident};
 use crate::rapid::ir::movement::{Movement, RobTarget, Target};
@@ -44,7 +44,7 @@ use crate::retime::motion::Step;
 
 rule!("EW405", "long-way-round", Path, Robot, Warning, "long_way_round.rs");
 
-/// Axes that can turn on (4 and 6) with the components of the configuration that count their
+/// Axes that can turn by whole turns (4 and 6) with the components of the configuration that count their
 /// quarter turns.
 const AXES: [(usize, usize); 2] = [(3, 1), (5, 2)];
 /// Quarter turns of a whole turn.
@@ -154,7 +154,7 @@ fn words_of_program(context: &Context<'_>, key: &str) -> usize {
     files.iter().map(|file| words::in_file(&context.files[file.0 as usize], key)).sum()
 }
 
-/// The data that a target is, or that it is a place beside of.
+/// The name of a target's data, also inside `Offs` and the like.
 fn named(target: &Expr) -> Option<&Ident> {
     match &target.kind {
         ExprKind::Ref(name) => Some(name),

@@ -33,9 +33,9 @@
 
 use super::super::context::Context;
 use super::super::edits::replace;
-use super::super::finding::{Applicability, Finding, Fix};
-use super::super::trace::Deed;
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding, Fix};
+use super::super::saving::Weighed;
+use super::super::trace::Action;
 use super::accelerated_to_wait::with_acceleration;
 use super::setting_never_restored::percent;
 use crate::rapid::ir::hir::ArgKind;
@@ -52,7 +52,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         calls.iter().map(|(place, _, call)| percent(context, place.0, call)).collect();
     for ((_, stmt, call), value) in calls.iter().zip(&values) {
         let Some(value) = value.filter(|value| *value < 100.0) else { continue };
-        // Movements are known by the value: it has to be this statement's alone.
+        // Movements are recognised by the value: only this statement may set it.
         let alone = values.iter().filter(|other| **other == Some(value)).count() == 1;
         let [acceleration, ramp] = call.args.as_slice() else { continue };
         let (ArgKind::Positional(acceleration), ArgKind::Positional(ramp)) =
@@ -93,7 +93,7 @@ pub(super) fn under(
         let mut executions = site.executions.iter();
         !site.executions.is_empty()
             && executions.all(|step| match &context.trace[*step].what {
-                Deed::Move(movement) => is_under(&movement.settings),
+                Action::Move(movement) => is_under(&movement.settings),
                 _ => false,
             })
     });

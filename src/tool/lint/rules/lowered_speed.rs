@@ -30,8 +30,8 @@
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace};
-use super::super::finding::{Applicability, Finding};
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use super::lowered_acceleration::under;
 use super::setting_never_restored::percent;
 use crate::rapid::ir::hir::ArgKind;

@@ -5,8 +5,8 @@
 //! each of them 1 s and more.
 //!
 //! ## Why it wastes energy
-//! A controller closes the brakes after a time at standstill. Each movement starts that time
-//! anew, so the motors hold the arm all the while.
+//! A controller closes the brakes after a time at standstill. Each movement restarts that time,
+//! so the motors hold the arm during the whole wait.
 //!
 //! ## How the saving is computed
 //! The cycle is laid on a time line without the movement: that is what leaving it out saves by
@@ -34,9 +34,9 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::Deed;
-use super::super::weigh::Weighed;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
+use super::super::trace::Action;
 use crate::rapid::text::Span;
 use crate::retime::energy::brakes::spared_j;
 use crate::retime::energy::power::holding_w;
@@ -56,13 +56,13 @@ const BOTH: f64 = 5.0;
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mut told: BTreeSet<Span> = BTreeSet::new();
     for step in 1..context.trace.len().saturating_sub(1) {
-        let Deed::Move(movement) = &context.trace[step].what else { continue };
+        let Action::Move(movement) = &context.trace[step].what else { continue };
         let wait = |step: usize| match &context.trace[step].what {
-            Deed::Wait(..) => Some(context.trace[step].duration).filter(|t| *t >= WAIT),
+            Action::Wait(..) => Some(context.trace[step].duration).filter(|t| *t >= WAIT),
             _ => None,
         };
         let (Some(before), Some(after)) = (wait(step - 1), wait(step + 1)) else { continue };
-        // Executions are weighed together: each statement once.
+        // All executions of a statement are weighed together.
         if before + after < BOTH || !is_tiny(context, step) || !told.insert(movement.span) {
             continue;
         }
@@ -82,7 +82,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 fn is_tiny(context: &Context<'_>, step: usize) -> bool {
-    let before = context.trace[..step].iter().rposition(|done| matches!(done.what, Deed::Move(_)));
+    let before =
+        context.trace[..step].iter().rposition(|done| matches!(done.what, Action::Move(_)));
     let (Some(before), Some(here)) = (before.and_then(|b| context.pose(b)), context.pose(step))
     else {
         return false;

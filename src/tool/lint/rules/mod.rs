@@ -3,16 +3,15 @@
 /// The rule of a file: code, name, family, what it needs, severity, the file itself.
 macro_rules! rule {
     ($code:literal, $name:literal, $family:ident, $needs:ident, $severity:ident, $file:literal) => {
-        pub(in crate::tool::lint) static RULE: crate::tool::lint::rule::Rule =
-            crate::tool::lint::rule::Rule {
-                code: $code,
-                name: $name,
-                family: crate::tool::lint::rule::Family::$family,
-                needs: crate::tool::lint::rule::Needs::$needs,
-                severity: crate::rapid::diagnostics::Severity::$severity,
-                source: include_str!($file),
-                check,
-            };
+        pub(crate) static RULE: crate::tool::lint::rule::Rule = crate::tool::lint::rule::Rule {
+            code: $code,
+            name: $name,
+            family: crate::tool::lint::rule::Family::$family,
+            needs: crate::tool::lint::rule::Needs::$needs,
+            severity: crate::rapid::diagnostics::Severity::$severity,
+            source: include_str!($file),
+            check,
+        };
     };
 }
 

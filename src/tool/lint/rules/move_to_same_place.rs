@@ -9,8 +9,8 @@
 //! have been a corner.
 //!
 //! ## How the saving is computed
-//! The cycle is laid on a time line without it. The virtual controller takes no time for no way:
-//! where that is all there is, nothing is told.
+//! The cycle is laid on a time line without it. A movement without a path takes the virtual
+//! controller no time: where nothing else changes, there is no finding.
 //!
 //! ## Example
 //! ```text
@@ -31,8 +31,8 @@
 
 use super::super::context::Context;
 use super::super::edits::{fix, remove};
-use super::super::finding::{Applicability, Finding};
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use crate::rapid::ir::hir::{Expr, ExprKind};
 use crate::rapid::ir::program::Symbol;
 
@@ -47,8 +47,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !before.iter().all(|before| same_goal(context, *before, index)) {
             continue;
         }
-        // A movement that passes the point before this one is made to stop by it: that has a
-        // purpose.
+        // After a fly-by point this movement makes the robot stop: that has a purpose.
         if site.is_stop() && before.iter().any(|before| !context.sites[*before].is_stop()) {
             continue;
         }

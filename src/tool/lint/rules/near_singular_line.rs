@@ -29,9 +29,9 @@
 //! The robot has a spherical wrist. First movements are not judged: where they begin is assumed.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::Deed;
-use super::super::weigh::Weighed;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
+use super::super::trace::Action;
 use super::line_in_free_air::as_joint;
 use crate::arm::kinematics::singularity;
 use crate::rapid::builtins::MoveForm;
@@ -65,7 +65,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 fn is_first(context: &Context<'_>, step: usize) -> bool {
-    !context.trace[..step].iter().any(|done| matches!(done.what, Deed::Move(_)))
+    !context.trace[..step].iter().any(|done| matches!(done.what, Action::Move(_)))
 }
 
 fn is_near(context: &Context<'_>, step: usize) -> bool {

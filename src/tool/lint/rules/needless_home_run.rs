@@ -34,10 +34,10 @@
 //! the program also ends and the robot stops.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use super::super::site::{Site, facts_of};
-use super::super::trace::Deed;
-use super::super::weigh::Weighed;
+use super::super::trace::Action;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::graph::Step as GraphStep;
 use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
@@ -46,11 +46,11 @@ use crate::retime::motion::Step;
 
 rule!("EW406", "needless-home-run", Path, Text, Info, "needless_home_run.rs");
 
-/// Visits in a cycle that are too many whatever they cost.
+/// Least number of visits in a cycle that are reported without a robot.
 const MANY: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let is_move = |step: usize| matches!(context.trace[step].what, Deed::Move(_));
+    let is_move = |step: usize| matches!(context.trace[step].what, Action::Move(_));
     let moves: Vec<usize> = (0..context.trace.len()).filter(|step| is_move(*step)).collect();
     let Some(home) = moves.first().and_then(|step| goal(context, *step)) else { return };
     // A program that begins at a pose begins at home if it ends there too.
@@ -58,7 +58,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if home.pose().is_some() && ends.is_none_or(|ends| !ends.is_same(&home)) {
         return;
     }
-    // What is done before it goes home is done elsewhere.
+    // Nothing is done at home, and the movements before and after it lead elsewhere.
     let idle = |step: usize| {
         let away = |step: usize| goal(context, step).is_none_or(|goal| !goal.is_same(&home));
         let before = context.trace[..step].iter().rposition(|done| moves_or_leaves(&done.what));
@@ -68,7 +68,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             && is_move(step + 1)
             && away(step + 1)
     };
-    // Where nothing is done between two visits, home is a point of a way.
+    // Without work between two visits home is only a point of a path.
     let is_home = |step: &usize| goal(context, *step).is_some_and(|goal| goal.is_same(&home));
     let is_work = |step: &usize| !moves_or_leaves(&context.trace[*step].what);
     let homes: Vec<usize> = moves.iter().copied().filter(is_home).collect();
@@ -129,14 +129,14 @@ struct CallSite<'c> {
     text: &'c str,
 }
 
-/// The calls of the routine of a movement of which each execution is for nothing.
+/// The calls of a movement's routine whose executions are all needless.
 fn idle_calls<'c>(
     context: &Context<'c>,
     site: &Site<'_>,
     idle: &impl Fn(usize) -> bool,
 ) -> Vec<CallSite<'c>> {
     let called_at = |step: usize| match &context.trace[step].what {
-        Deed::Move(movement) => movement.called_at,
+        Action::Move(movement) => movement.called_at,
         _ => None,
     };
     let mut found = Vec::new();
@@ -166,7 +166,7 @@ fn does_nothing_else(context: &Context<'_>, site: &Site<'_>) -> bool {
         })
 }
 
-/// Nothing, of a movement that runs for a call.
+/// The change that removes a movement, for the executions that belong to a call.
 fn without(step: &Step, call: Span) -> Vec<Step> {
     match step {
         Step::Move(movement) if movement.called_at == Some(call) => Vec::new(),
@@ -174,13 +174,13 @@ fn without(step: &Step, call: Span) -> Vec<Step> {
     }
 }
 
-fn moves_or_leaves(deed: &Deed<'_>) -> bool {
-    matches!(deed, Deed::Move(_) | Deed::Left(_))
+fn moves_or_leaves(action: &Action<'_>) -> bool {
+    matches!(action, Action::Move(_) | Action::Left(_))
 }
 
 fn goal(context: &Context<'_>, step: usize) -> Option<super::super::site::Goal> {
     match &context.trace[step].what {
-        Deed::Move(movement) => facts_of(movement).goal,
+        Action::Move(movement) => facts_of(movement).goal,
         _ => None,
     }
 }

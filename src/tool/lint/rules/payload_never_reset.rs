@@ -8,8 +8,8 @@
 //! less than it could, and every figure about energy is wrong.
 //!
 //! ## How the saving is computed
-//! There is none to tell: where the part is let go is not in the program, so there is no second
-//! text to simulate, and with a wrong payload no figure is right.
+//! There is none: the program does not say where the part is released, so there is no second
+//! program to simulate, and with a wrong payload no figure is right.
 //!
 //! ## Example
 //! ```text
@@ -29,13 +29,13 @@
 //! ```
 //!
 //! ## Safety
-//! Without a fix: the place at which the part is let go is the process's.
+//! Without a fix: the process determines where the part is released.
 //!
 //! ## Assumptions
 //! The program is complete: it has its entry.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::ArgKind;
 use crate::rapid::ir::value::Datum;
 

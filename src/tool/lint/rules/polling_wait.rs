@@ -33,8 +33,8 @@
 //! A name that nothing declares is an input.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
 use super::super::flow::Class;
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::{Block, Callee, Expr, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
@@ -103,7 +103,7 @@ fn only_waits(context: &Context<'_>, routine: RoutineId, body: &[Stmt]) -> bool 
         if !is_wait && context.flow.class(routine, stmt) != Class::Quiet {
             return false;
         }
-        // A count or a jump may be what ends the loop.
+        // A counter or a jump may end the loop.
         if !is_wait && !matches!(stmt.kind, StmtKind::Call(_)) {
             return false;
         }

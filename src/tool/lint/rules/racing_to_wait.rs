@@ -33,11 +33,11 @@
 
 use super::super::context::Context;
 use super::super::edits::{replace, slower};
-use super::super::finding::{Applicability, Finding, Fix};
 use super::super::flow::{Next, Through};
+use super::super::rule::{Applicability, Finding, Fix};
+use super::super::saving::Weighed;
 use super::super::site::Site;
-use super::super::trace::Deed;
-use super::super::weigh::Weighed;
+use super::super::trace::Action;
 use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::ir::hir::{Callee, StmtKind};
 use crate::rapid::ir::movement::{Movement, Speed};
@@ -73,7 +73,7 @@ pub(super) fn waits_behind(context: &Context<'_>, index: usize) -> Option<(Strin
     let mut found: Option<(String, f64)> = None;
     for step in &context.sites[index].executions {
         let done = context.trace.get(step + 1)?;
-        let Deed::Wait(wait, WaitBasis::Input) = &done.what else { return None };
+        let Action::Wait(wait, WaitBasis::Input) = &done.what else { return None };
         if done.duration < SHORTEST {
             return None;
         }
@@ -163,7 +163,7 @@ fn hurries(context: &Context<'_>, index: usize) -> Option<Finding> {
     site.facts.speed.filter(|speed| speed.tcp >= HURRY)?;
     let known = site.executions.iter().any(|step| {
         context.trace.get(step + 1).is_some_and(|done| match &done.what {
-            Deed::Wait(_, basis) => *basis != WaitBasis::Unknown,
+            Action::Wait(_, basis) => *basis != WaitBasis::Unknown,
             _ => false,
         })
     });

@@ -10,7 +10,7 @@
 //!
 //! ## How the saving is computed
 //! The movement is laid on a time line with the turning speed that it has and with 500 °/s, that of
-//! the predefined speeds. Where it has that already nothing is told.
+//! the predefined speeds. Where it already has that, there is no finding.
 //!
 //! ## Example
 //! ```text
@@ -29,8 +29,8 @@
 //! The rate of turning is that of the speed data.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::weigh::Weighed;
+use super::super::rule::Finding;
+use super::super::saving::Weighed;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Speed};
 use crate::retime::motion::Step;

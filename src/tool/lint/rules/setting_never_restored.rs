@@ -9,7 +9,7 @@
 //! the base load runs for longer, and no cycle is as it was tried.
 //!
 //! ## How the saving is computed
-//! None is told: what is lost, the next cycle loses, and one simulated cycle does not show it.
+//! There is none: the next cycle loses the energy, and one simulated cycle does not show it.
 //! EW602 and EW603 weigh the setting itself.
 //!
 //! ## Example
@@ -34,8 +34,8 @@
 //! The program is complete: it has its entry.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::Deed;
+use super::super::rule::Finding;
+use super::super::trace::Action;
 use crate::rapid::ir::hir::{ArgKind, Call};
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::rapid::ir::program::RoutineId;
@@ -54,7 +54,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         .trace
         .iter()
         .filter_map(|done| match &done.what {
-            Deed::Move(movement) => Some(*movement),
+            Action::Move(movement) => Some(*movement),
             _ => None,
         })
         .collect();

@@ -34,8 +34,8 @@
 //! The input comes when `--input` or the configuration says, whenever the outputs are set.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::Deed;
+use super::super::rule::Finding;
+use super::super::trace::Action;
 use super::racing_to_wait::slower_run;
 use crate::rapid::text::Span;
 use crate::retime::motion::timeline::WaitBasis;
@@ -68,8 +68,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn wait_behind(context: &Context<'_>, step: usize) -> Option<(String, Span, f64)> {
     for (count, done) in context.trace[step + 1..].iter().enumerate().take(MOST_BETWEEN) {
         match &done.what {
-            Deed::Output(_) | Deed::Wait(_, WaitBasis::Stated) => {}
-            Deed::Wait(wait, WaitBasis::Input) if count > 0 && done.duration >= SHORTEST => {
+            Action::Output(_) | Action::Wait(_, WaitBasis::Stated) => {}
+            Action::Wait(wait, WaitBasis::Input) if count > 0 && done.duration >= SHORTEST => {
                 return Some((wait.signal.as_ref()?.to_string(), wait.span, done.duration));
             }
             _ => return None,

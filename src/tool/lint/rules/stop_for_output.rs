@@ -36,9 +36,9 @@
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
-use super::super::finding::Finding;
 use super::super::flow::{Next, Through};
-use super::unneeded_stop_point::with_zone;
+use super::super::rule::Finding;
+use super::super::stops::with_zone;
 use crate::rapid::ir::hir::RoutineKind;
 
 rule!("EW104", "stop-for-output", Stops, Text, Info, "stop_for_output.rs");

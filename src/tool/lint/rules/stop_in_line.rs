@@ -33,18 +33,14 @@
 //! ## Assumptions
 //! Directions that differ by less than 0.3° are one line.
 
-use super::super::context::{Context, Corner};
+use super::super::context::Context;
 use super::super::edits::zone_within;
-use super::super::finding::Finding;
-use super::unneeded_stop_point::{stops_for_movements, with_zone};
+use super::super::rule::Finding;
+use super::super::stops::{is_in_line, stops_for_movements, with_zone};
 use crate::rapid::builtins::MoveForm;
 
 rule!("EW102", "stop-in-line", Stops, Text, Warning, "stop_in_line.rs");
 
-/// Directions that differ by less are one, rad.
-const STRAIGHT: f64 = 0.005;
-/// Orientations that differ by less are one, rad.
-const UNTURNED: f64 = 0.002;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone that is proposed, m.
@@ -66,19 +62,4 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         finding.saving = saving;
         findings.push(finding);
     }
-}
-
-/// Whether a movement and all behind it are one line.
-pub(super) fn is_in_line(
-    context: &Context<'_>,
-    index: usize,
-    next: &[usize],
-    corner: &Corner,
-) -> bool {
-    let is_line = |site: &usize| context.sites[*site].signature.form == MoveForm::Linear;
-    is_line(&index)
-        && next.iter().all(is_line)
-        && corner.turn < STRAIGHT
-        && corner.turned < UNTURNED
-        && corner.room() > 0.0
 }

@@ -5,11 +5,11 @@
 //! programs most of whose movements it can make.
 //!
 //! ## Why it wastes energy
-//! The robot stops there with an error, and stands with its drives on until somebody comes; what
-//! stands behind it is in no figure.
+//! The robot stops there with an error, and stands with its drives on until somebody comes; no
+//! figure counts the statements after it.
 //!
 //! ## How the saving is computed
-//! There is none: a movement that cannot be made is in neither of two simulated cycles.
+//! There is none: a movement that cannot be made is in no simulated cycle.
 //!
 //! ## Example
 //! ```text
@@ -22,7 +22,7 @@
 //! ```
 //!
 //! ## Safety
-//! Without a fix: where it should go, the program does not say.
+//! Without a fix: the program does not say where it should go.
 //!
 //! ## Assumptions
 //! Robot, tool and work object are those that `--robot` and the program name. Where more than one
@@ -32,8 +32,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::{Deed, record};
+use super::super::rule::Finding;
+use super::super::trace::{Action, record};
 use crate::arm::kinematics::{IkError, ik_near, limits_ok};
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::{Movement, Target};
@@ -50,8 +50,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mut left: BTreeSet<Span> = BTreeSet::new();
     for done in &context.trace {
         match done.what {
-            Deed::Move(movement) => moves.insert(movement.span),
-            Deed::Left(span) => left.insert(span),
+            Action::Move(movement) => moves.insert(movement.span),
+            Action::Left(span) => left.insert(span),
             _ => false,
         };
     }
@@ -61,7 +61,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let recording = record(context.program, entry);
     let mut reasons: BTreeMap<Span, Option<String>> = BTreeMap::new();
     for done in recording.trace() {
-        if let Deed::Move(movement) = done.what {
+        if let Action::Move(movement) = done.what {
             let reason = reasons.entry(movement.span).or_default();
             if reason.is_none() {
                 *reason = out_of_reach(model, movement);

@@ -33,8 +33,8 @@
 //! Ways that are gone several times are left alone.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
 use super::super::flow::Through;
+use super::super::rule::Finding;
 use super::move_to_same_place::same_goal;
 use crate::rapid::builtins::MoveForm;
 
@@ -59,7 +59,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let again = only_next(context, back).is_some_and(|next| same_goal(context, there, next));
         let before = context.before(first);
         let shaken = before.iter().any(|before| same_goal(context, *before, there));
-        // Where all that is done is to move, that is the purpose.
+        // A program that does nothing but move has its movements for a purpose.
         let works = context.works(&[first, there, back]);
         if !idle(there) || !idle(back) || again || shaken || !works {
             continue;
@@ -80,7 +80,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The one movement behind a movement, if that comes from nowhere else and nothing is between.
+/// The only movement that follows a movement, if nothing stands between and no other leads to it.
 pub(super) fn only_next(context: &Context<'_>, site: usize) -> Option<usize> {
     let next = context.next_moves(site, Through::Quiet)?;
     let [next] = next.as_slice() else { return None };

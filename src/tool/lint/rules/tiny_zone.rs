@@ -34,9 +34,9 @@
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace, zone_within};
-use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
-use super::unneeded_stop_point::with_zone;
+use super::super::rule::{Applicability, Finding};
+use super::super::stops::with_zone;
 use crate::rapid::ir::hir::RoutineKind;
 
 rule!("EW103", "tiny-zone", Stops, Text, Info, "tiny_zone.rs");

@@ -31,7 +31,7 @@
 //! the tool is, but take its load: they count too.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::ArgKind;
 use crate::rapid::ir::value::Datum;
 

@@ -28,7 +28,7 @@
 //! Nothing sets the mass while the program runs.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 use crate::rapid::ir::exec::value_of;
 use crate::rapid::ir::hir::{Data, Expr, ExprKind};
 use crate::rapid::ir::program::{DataId, Symbol};

@@ -40,12 +40,10 @@ use std::collections::BTreeSet;
 
 use super::super::context::{Context, Corner};
 use super::super::edits::{NamedZone, fix, replace, zone_within};
-use super::super::finding::{Applicability, Finding};
 use super::super::flow::Through;
+use super::super::rule::{Applicability, Finding};
+use super::super::stops::{is_in_line, stops_for_movements, with_zone};
 use crate::rapid::builtins::MoveForm;
-use crate::rapid::ir::hir::RoutineKind;
-use crate::rapid::ir::movement::Movement;
-use crate::retime::motion::Step;
 
 rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point.rs");
 
@@ -70,7 +68,7 @@ const MOST: f64 = 0.075;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for index in 0..context.sites.len() {
-        let Some((zone, _)) = could_pass(context, index) else { continue };
+        let Some(zone) = could_pass(context, index) else { continue };
         let site = &context.sites[index];
         let Some(argument) = site.zone else { continue };
         let weighed = context.weigh(&[site.stmt.span], &|step| with_zone(step, zone));
@@ -88,8 +86,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The zone with which a stop point could be passed, and whether the way is a straight line.
-pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZone, bool)> {
+/// The zone with which a stop point could be passed; `None` on a straight line, too: that is
+/// EW102.
+fn could_pass(context: &Context<'_>, index: usize) -> Option<NamedZone> {
     let site = &context.sites[index];
     let next = stops_for_movements(context, index)?;
     if site.facts.speed.is_none_or(|speed| speed.tcp < PROCESS) {
@@ -100,7 +99,7 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         return None;
     }
     let line_behind = next.iter().any(|next| context.sites[*next].is_linear());
-    // What is drawn, cut or welded begins and ends where it is meant to.
+    // The ends of a contour that is drawn, cut or welded stay exact.
     if corner.goes_in && line_behind || corner.comes_out && site.is_linear() {
         return None;
     }
@@ -109,9 +108,8 @@ pub(super) fn could_pass(context: &Context<'_>, index: usize) -> Option<(NamedZo
         return None;
     }
     let most = if lines { BETWEEN_LINES } else { MOST };
-    let zone = zone_within((SHARE * corner.room()).min(most))?;
-    Some((zone, super::stop_in_line::is_in_line(context, index, &next, &corner)))
-        .filter(|(_, in_line)| !in_line)
+    zone_within((SHARE * corner.room()).min(most))
+        .filter(|_| !is_in_line(context, index, &next, &corner))
 }
 
 /// Whether a stop point lies on or ends a contour that the tool draws, cuts or glues: there is an
@@ -135,38 +133,4 @@ fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corn
         }
     }
     row.len() >= MANY
-}
-
-/// The movements behind a stop point that stops for nothing else.
-pub(super) fn stops_for_movements(context: &Context<'_>, index: usize) -> Option<Vec<usize>> {
-    let site = &context.sites[index];
-    let routine = context.program.routine(site.place.0);
-    let handlers = !routine.error.is_empty() || routine.undo.is_some();
-    let first = site.executions.first().is_some_and(|step| context.neighbours(*step).is_none());
-    if !site.is_stop()
-        || !site.is_plain()
-        || !site.reachable
-        || matches!(routine.kind, RoutineKind::Trap)
-        || first
-        || handlers && context.in_handler(site)
-    {
-        return None;
-    }
-    let next = context.next_moves(index, Through::Quiet)?;
-    let fits = |other: &usize| {
-        let other = &context.sites[*other];
-        other.is_plain() && other.tool_key() == site.tool_key() && site.tool_key().is_some()
-    };
-    next.iter().all(fits).then_some(next)
-}
-
-/// A movement with another zone.
-pub(super) fn with_zone(step: &Step, zone: NamedZone) -> Vec<Step> {
-    match step {
-        Step::Move(movement) => {
-            let movement = Movement { zone: zone.zone, ..(**movement).clone() };
-            vec![Step::Move(Box::new(movement))]
-        }
-        other => vec![other.clone()],
-    }
 }

@@ -8,7 +8,7 @@
 //! It does not; but it looks as if the robot did it, and hides what it really does.
 //!
 //! ## How the saving is computed
-//! There is none: what never runs costs nothing in either of two simulated cycles.
+//! There is none: what never runs changes no simulated cycle.
 //!
 //! ## Example
 //! ```text
@@ -29,7 +29,7 @@
 //! Handlers can always be reached: every statement may raise an error.
 
 use super::super::context::Context;
-use super::super::finding::Finding;
+use super::super::rule::Finding;
 
 rule!("EW701", "unreachable-move", Program, Text, Warning, "unreachable_move.rs");
 

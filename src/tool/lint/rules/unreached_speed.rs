@@ -10,8 +10,8 @@
 //!
 //! ## How the saving is computed
 //! The movement is laid on a time line with the largest predefined speed below the one that is
-//! reached; the joules count the base load of the longer time. That is done where what is above
-//! that speed, run at that speed instead, takes less.
+//! reached; the joules include the base load of the longer time. That is done only where an estimate
+//! says that the parts above that speed take less energy at that speed.
 //!
 //! ## Example
 //! ```text
@@ -27,12 +27,12 @@
 //! Unsafe: same path and same order, but the cycle may take some hundredths of a second more.
 //!
 //! ## Assumptions
-//! At most 0.1 s more are taken for joules in one cycle.
+//! A cycle may get at most 0.1 s longer.
 
 use super::super::context::Context;
 use super::super::edits::{fix, replace, slower};
-use super::super::finding::{Applicability, Finding};
-use super::super::weigh::Weighed;
+use super::super::rule::{Applicability, Finding};
+use super::super::saving::Weighed;
 use super::racing_to_wait::{waits_behind, with_speed};
 use crate::arm::dynamics::{Data, Load};
 use crate::arm::robot::Model;
@@ -61,7 +61,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !site.is_plain() || waits_behind(context, index).is_some() {
             continue;
         }
-        // What is programmed is reached where it sets the pace.
+        // Where the programmed speed limits the movement, it is reached.
         let programmed = |step: &usize| {
             let pace = context.record(*step).map(|(_, record, _)| record.pace);
             pace == Some(Pace::Speed(SpeedBound::Programmed))
@@ -73,7 +73,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let Some(looks) = looks.collect::<Option<Vec<Looks<'_>>>>() else { continue };
         let speeds = looks.iter().flat_map(|looks| &looks.states).map(|(_, speed)| *speed);
         let reached = speeds.fold(0.0, f64::max);
-        // What turns for longer than it moves is slow for that reason.
+        // A movement that reorients for longer than it translates is slow for that reason.
         let turns = |step: &usize| {
             context.record(*step).is_some_and(|(_, record, _)| record.pace.name() == TURNING)
         };
@@ -103,10 +103,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// What is seen of one execution.
+/// Samples of one execution.
 struct Looks<'c> {
     load: &'c Load,
-    /// Time that each look stands for, s.
+    /// Time that each sample stands for, s.
     each: f64,
     /// States, with the speed of the tool, m/s.
     states: Vec<(JointState, f64)>,
@@ -125,8 +125,8 @@ fn looks<'c>(context: &Context<'c>, step: usize) -> Option<Looks<'c>> {
     run.problem.is_none().then(|| Looks { load: &run.load, each, states: states() })
 }
 
-/// Whether running at the speed `below` (m/s) where a movement is faster takes less than the longer
-/// time costs: seldom, and to lay it on a time line takes far longer than to find out.
+/// Estimates whether limiting a movement to the speed `below` (m/s) saves more than the longer time
+/// costs. It seldom does, and the estimate is far cheaper than a simulation.
 fn may_save(model: &Model, looks: &[Looks<'_>], below: f64) -> bool {
     let mut data = Data::new();
     let mut saved = 0.0;

@@ -2,8 +2,8 @@
 //!
 //! ## What it does
 //! Finds movements that run, but whose target, speed or zone is not in the files or not known.
-//! Where many names are missing, the first of them is told. A place that the robot reads of itself
-//! (`CRobT`) nobody can state: it is left alone.
+//! Where many names are missing, only the first is reported. Positions that the program reads from
+//! the robot (`CRobT`) are left alone: nobody can state them.
 //!
 //! ## Why it wastes energy
 //! What can't be worked out is in no figure, and whatever it wastes is not found.
@@ -23,14 +23,14 @@
 //! Without a fix.
 //!
 //! ## Assumptions
-//! Out of reach is another matter: the robot may be another one.
+//! Targets out of reach are not reported here: the robot may be a different one.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::super::context::Context;
-use super::super::finding::Finding;
-use super::super::trace::{Deed, record};
+use super::super::rule::Finding;
+use super::super::trace::{Action, record};
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::text::Span;
 
@@ -44,20 +44,20 @@ const OWN: &str = "depends on where the robot is";
 const FEW: usize = 3;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let left = || context.trace.iter().any(|done| matches!(done.what, Deed::Left(_)));
+    let left = || context.trace.iter().any(|done| matches!(done.what, Action::Left(_)));
     let Some(entry) = context.entry.filter(|_| left()) else { return };
-    // What another robot could do the program says well enough.
+    // Movements that only this robot cannot make are resolved.
     let recording = record(context.program, entry);
     let resolved: BTreeSet<Span> = recording
         .trace()
         .iter()
-        .filter(|done| matches!(done.what, Deed::Move(_)))
+        .filter(|done| matches!(done.what, Action::Move(_)))
         .map(|done| done.what.span())
         .collect();
     let mut told: BTreeSet<&str> = BTreeSet::new();
     let mut missing: Vec<Finding> = Vec::new();
     for done in &context.trace {
-        let Deed::Left(span) = done.what else { continue };
+        let Action::Left(span) = done.what else { continue };
         let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else { continue };
         let facts = &site.facts;
         let open = facts.goal.is_none() || facts.speed.is_none() || facts.zone.is_none();
@@ -74,7 +74,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
     }
     if missing.len() > FEW {
-        // A module is missing, and that is one cause too.
+        // A missing module is one cause, too.
         let others = missing.split_off(1);
         let _ = write!(missing[0].message, " (and {} other names are not)", others.len());
         missing[0].related = others.into_iter().map(|it| (it.span, it.message)).collect();

@@ -2,7 +2,7 @@
 //!
 //! ## What it does
 //! Finds `! joulepath: ignore CODE reason` where no such finding is in the statement it is about.
-//! Of several codes each is judged.
+//! Each of several codes is judged by itself.
 //!
 //! ## Why it wastes energy
 //! It does not, but it hides the next finding of that kind.
@@ -25,19 +25,17 @@
 //! Taking the comment out changes no statement.
 //!
 //! ## Assumptions
-//! A rule that needs a backup is not judged without one, and without a robot no rule about where
-//! and how the robot moves: with one it may find what it does not find without.
+//! Codes of rules that need a backup are not judged, and without a robot neither are codes of rules
+//! about movements: with a backup or a robot such a rule may find something.
 
 use super::super::edits::{fix, replace};
-use super::super::engine::Job;
-use super::super::finding::{Applicability, Finding};
-use super::super::register::ALL;
-use super::super::rule::{Family, Needs, Rule};
+use super::super::job::Job;
+use super::super::rule::{Applicability, Family, Finding, Needs, Rule};
 use super::super::suppress::Suppression;
 use crate::rapid::diagnostics::Severity;
 
 /// A comment takes back a finding that is not there.
-pub(in crate::tool::lint) static RULE: Rule = Rule {
+pub(crate) static RULE: Rule = Rule {
     code: "EW001",
     name: "unused-suppression",
     family: Family::Comments,
@@ -49,13 +47,14 @@ pub(in crate::tool::lint) static RULE: Rule = Rule {
 };
 
 /// Adds a finding for the codes of a comment that took nothing back, as far as their rules ran.
-pub(in crate::tool::lint) fn judge(
+pub(crate) fn judge(
     job: &Job<'_>,
+    rules: &[&'static Rule],
     suppression: &Suppression,
     unused: &[&str],
     findings: &mut Vec<Finding>,
 ) {
-    let meant = |code: &str| ALL.iter().filter(|rule| rule.is_meant(code)).collect::<Vec<_>>();
+    let meant = |code: &str| rules.iter().filter(|rule| rule.is_meant(code)).collect::<Vec<_>>();
     let idle = |rule: &Rule| {
         !job.settings.selects(rule)
             || rule.needs == Needs::Backup

@@ -1,10 +1,10 @@
 //! A diagnosis as a page: what was found, where, and how far the gap shrinks.
 
 use serde::Serialize;
-use tera::{Context, Tera};
+use tera::Context;
 
-use super::ReportError;
 use super::format::{INTERVAL, fixed};
+use super::page::{ReportError, render};
 use super::reliability::reliability;
 use crate::examine::blind::Bin;
 use crate::gap::{
@@ -26,13 +26,13 @@ const MODELS: [&str; 3] = ["j2", "j4", "j3"];
 pub struct Pictures {
     /// Shares of the squared gap.
     pub attribution: Attribution,
-    /// What the nominal, the refitted and the improved model miss over time.
+    /// Residuals of the nominal, the refitted and the improved model over time.
     pub trace: Option<Trace>,
-    /// By joint: what these miss over speed and over position.
+    /// By joint: these residuals over speed and over position.
     pub profiles: Vec<Vec<[Profile; 3]>>,
     /// Torques of the effects.
     pub shapes: Vec<Shape>,
-    /// The program around the places that are told.
+    /// The program around the places of the gap.
     pub sources: Vec<Excerpt>,
 }
 
@@ -131,10 +131,9 @@ pub fn diagnose_report(
     let mut context = Context::new();
     let asserted = found.effects.iter().map(|of| effect(of, true));
     let considered = found.candidates.iter().map(|of| effect(of, false));
-    // Regimes of joints are in the table of who takes what away.
+    // The regimes of the joints are in the table of the attribution.
     let whole = |of: &&Place| of.joint.is_none() || of.regime == "all";
     let places: Vec<PlaceRow> = found.places.iter().filter(whole).map(place).collect();
-    context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", robot);
     context.insert("verdict", sentence(found.verdict));
     context.insert("heldout", &heldout(basis));
@@ -156,16 +155,10 @@ pub fn diagnose_report(
     context.insert("reliability", &reliability(&COUNTED.map(counted)));
     context.insert("error", &fixed(100.0 * found.error, 2));
     context.insert("model", &basis.model);
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("report.css", include_str!("../../../../templates/report.css")),
-        ("reliability.html", include_str!("../../../../templates/reliability.html.tera")),
-        ("diagnose.html", include_str!("../../../../templates/diagnose.html.tera")),
-    ])?;
-    Ok(tera.render("diagnose.html", &context)?)
+    render(include_str!("../../../../templates/diagnose.html.tera"), context)
 }
 
-/// What took no part.
+/// What was held out, in words.
 fn heldout(basis: &Basis) -> String {
     let logs = basis.graded.join(", ");
     match basis.heldout.as_str() {
@@ -262,7 +255,7 @@ fn place(of: &Place) -> PlaceRow {
 fn cells(of: &Attribution) -> Vec<CellRow> {
     let percent = |x: f64| Share {
         text: fixed(100.0 * x, 1),
-        // Half of the gap in one place is as dark as it gets.
+        // The darkest colour stands for half of the gap or more.
         heat: format!("{:.0}", (200.0 * x).clamp(0.0, 100.0)),
     };
     let row = |joint: usize, regime: String, gap: f64, taken: &[f64]| {

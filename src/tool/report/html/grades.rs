@@ -1,12 +1,12 @@
-//! Grades of an examination as a page: confusion, rates, and what stated probabilities are worth.
+//! Grades of an examination as a page: confusion, rates, reliability of the probabilities.
 
 use std::collections::BTreeSet;
 
 use serde::Serialize;
-use tera::{Context, Tera};
+use tera::Context;
 
-use super::ReportError;
 use super::format::{fixed, percent};
+use super::page::{ReportError, render};
 use super::reliability::reliability;
 use crate::examine::blind::{Asked, Grades, Rate};
 
@@ -48,7 +48,6 @@ pub fn grades_report(grades: &Grades) -> Result<String, ReportError> {
     let wrong =
         grades.wrong.iter().map(|of| WrongRow { case: &of.case, truth: &of.truth, said: &of.said });
     let mut context = Context::new();
-    context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("cases", &grades.cases);
     context.insert("left_out", &grades.left_out);
     context.insert("outcomes", &outcomes);
@@ -57,13 +56,7 @@ pub fn grades_report(grades: &Grades) -> Result<String, ReportError> {
     context.insert("reliability", &reliability(&grades.reliability));
     context.insert("shrink", &grades.shrink_of_oracle.map(|share| fixed(share, 2)));
     context.insert("wrong", &wrong.collect::<Vec<_>>());
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("report.css", include_str!("../../../../templates/report.css")),
-        ("reliability.html", include_str!("../../../../templates/reliability.html.tera")),
-        ("grades.html", include_str!("../../../../templates/grades.html.tera")),
-    ])?;
-    Ok(tera.render("grades.html", &context)?)
+    render(include_str!("../../../../templates/grades.html.tera"), context)
 }
 
 fn rate(of: &Rate) -> RateRow {

@@ -1,12 +1,12 @@
 //! An identification as a page: what the model is good for, and what it is not.
 
 use serde::Serialize;
-use tera::{Context, Tera};
+use tera::Context;
 
-use super::ReportError;
 use super::format::{INTERVAL, fixed};
+use super::page::{ReportError, render};
 use crate::learn::identify::{Identified, collinear, essential};
-use crate::tool::report::identify::{Basis, undetermined, white};
+use crate::tool::report::identify::{Basis, LogRecord, undetermined, white};
 use crate::tool::report::svg::{Curve, Plot, Size};
 
 /// Size of the plots, px.
@@ -74,36 +74,6 @@ pub fn identify_report(
     traces: &Traces,
 ) -> Result<String, ReportError> {
     let fit = &found.fit;
-    let held_out = found.validation.as_ref().map_or(&found.cross_rms, |misses| &misses.rms);
-    let free = found.unconstrained_validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms);
-    let joints: Vec<JointRow> = (0..found.base.dof)
-        .map(|joint| JointRow {
-            joint: joint + 1,
-            train: fixed(found.training.rms[joint], 3),
-            held_out: fixed(held_out[joint], 3),
-            free: fixed(free[joint], 3),
-            relative: fixed(100.0 * found.training.relative[joint], 1),
-            memory: fixed(fit.memory[joint], 2),
-            white: white(fit.whiteness[joint].as_ref()),
-        })
-        .collect();
-    let kept = essential(fit);
-    let parameters: Vec<ParameterRow> = fit
-        .solution
-        .determined
-        .iter()
-        .enumerate()
-        .map(|(k, row)| {
-            let (value, sd) = (fit.solution.beta[*row], fit.covariance[(k, k)].max(0.0).sqrt());
-            ParameterRow {
-                name: found.name(*row),
-                value: fixed(value, 5),
-                low: fixed(value - INTERVAL * sd, 5),
-                high: fixed(value + INTERVAL * sd, 5),
-                essential: kept.contains(row),
-            }
-        })
-        .collect();
     let missing: Vec<Missing> = undetermined(found)
         .iter()
         .map(|entry| {
@@ -119,7 +89,6 @@ pub fn identify_report(
         })
         .collect();
     let mut context = Context::new();
-    context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", &found.model.name);
     context.insert(
         "basis",
@@ -130,29 +99,57 @@ pub fn identify_report(
     context.insert("raw", &fixed(fit.condition.raw, 0));
     context.insert("consistent", &found.physically_consistent);
     context.insert("torque", &basis.torque);
-    context.insert("joints", &joints);
-    context.insert("parameters", &parameters);
+    context.insert("joints", &joint_rows(found));
+    context.insert("parameters", &parameter_rows(found));
     context.insert("missing", &missing);
     context.insert("alike", &alike);
     context.insert("notes", &basis.notes);
     context.insert("quality", &found.quality.sentence());
-    let log = |(path, hash, rows, left_out): &(String, String, usize, usize)| LogRow {
-        path: path.clone(),
-        hash: hash.chars().take(SHOWN).collect(),
-        rows: *rows,
-        left_out: *left_out,
+    let log = |log: &LogRecord| LogRow {
+        path: log.path.clone(),
+        hash: log.hash.chars().take(SHOWN).collect(),
+        rows: log.rows,
+        left_out: log.left_out,
     };
     context.insert("logs", &basis.logs.iter().map(log).collect::<Vec<_>>());
     context.insert("date", &basis.date);
     context.insert("coupling", &found.coupling.map(|coupling| fixed(coupling, 3)));
     context.insert("title", &traces.title);
     context.insert("plots", &plots(traces));
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("report.css", include_str!("../../../../templates/report.css")),
-        ("identify.html", include_str!("../../../../templates/identify.html.tera")),
-    ])?;
-    Ok(tera.render("identify.html", &context)?)
+    render(include_str!("../../../../templates/identify.html.tera"), context)
+}
+
+fn joint_rows(found: &Identified) -> Vec<JointRow> {
+    let fit = &found.fit;
+    let held_out = found.validation.as_ref().map_or(&found.cross_rms, |misses| &misses.rms);
+    let free = found.unconstrained_validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms);
+    (0..found.base.dof)
+        .map(|joint| JointRow {
+            joint: joint + 1,
+            train: fixed(found.training.rms[joint], 3),
+            held_out: fixed(held_out[joint], 3),
+            free: fixed(free[joint], 3),
+            relative: fixed(100.0 * found.training.relative[joint], 1),
+            memory: fixed(fit.memory[joint], 2),
+            white: white(fit.whiteness[joint].as_ref()),
+        })
+        .collect()
+}
+
+fn parameter_rows(found: &Identified) -> Vec<ParameterRow> {
+    let fit = &found.fit;
+    let kept = essential(fit);
+    let row = |(k, row): (usize, &usize)| {
+        let (value, sd) = (fit.solution.beta[*row], fit.covariance[(k, k)].max(0.0).sqrt());
+        ParameterRow {
+            name: found.name(*row),
+            value: fixed(value, 5),
+            low: fixed(value - INTERVAL * sd, 5),
+            high: fixed(value + INTERVAL * sd, 5),
+            essential: kept.contains(row),
+        }
+    };
+    fit.solution.determined.iter().enumerate().map(row).collect()
 }
 
 fn plots(traces: &Traces) -> Vec<String> {

@@ -7,6 +7,7 @@ mod format;
 mod grades;
 mod identify;
 mod movements;
+mod page;
 mod proof;
 mod reliability;
 mod samples;
@@ -20,23 +21,18 @@ mod ways;
 pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
 pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
+pub use page::ReportError;
 pub use simulation::simulate_report;
 
-use tera::{Context, Tera};
+use tera::Context;
+
+use page::render;
 
 use super::place::Places;
 use super::plausible::saving;
 use crate::arm::robot::Model;
 use crate::rapid::text::SourceFile;
 use crate::tool::retrofit::{Retrofit, Source};
-
-/// Why there is no report.
-#[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// A template failed.
-    #[error("a template of the report failed: {0}")]
-    Template(#[from] tera::Error),
-}
 
 /// The report of a retrofit as one HTML file: figures of the cycle, a table of the segments,
 /// plots of what was rewritten, dwells, the source with its joules, verification and assumptions.
@@ -57,7 +53,6 @@ pub fn optimize_report(
         .collect();
     let places = Places::new(&originals);
     let mut context = Context::new();
-    context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", &model.name);
     context.insert("entry", entry);
     context.insert("plausible", &saving(retrofit));
@@ -71,10 +66,5 @@ pub fn optimize_report(
     context.insert("sources", &source::sources(retrofit, &originals));
     context.insert("verification", &proof::verification(retrofit));
     context.insert("basis", &proof::basis(retrofit, model, places));
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("report.css", include_str!("../../../../templates/report.css")),
-        ("report.html", include_str!("../../../../templates/report.html.tera")),
-    ])?;
-    Ok(tera.render("report.html", &context)?)
+    render(include_str!("../../../../templates/report.html.tera"), context)
 }

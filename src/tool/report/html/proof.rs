@@ -1,4 +1,4 @@
-//! What the verifier saw, and what the figures rest on.
+//! The verification, and the assumptions behind the figures.
 
 use serde::Serialize;
 
@@ -113,7 +113,7 @@ fn tiny(x: f64) -> String {
     if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
 }
 
-/// What the figures rest on.
+/// The assumptions behind the figures.
 #[derive(Serialize)]
 pub(super) struct Basis {
     robot: Vec<String>,

@@ -1,4 +1,4 @@
-//! What stated probabilities are worth: how often effects were there, over what was stated of them.
+//! The reliability diagram: how often effects were present, over their stated probability.
 
 use serde::Serialize;
 

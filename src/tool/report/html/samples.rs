@@ -112,7 +112,7 @@ ENDMODULE";
         let energy: f64 = run_energy(&model, run).iter().map(EnergyParts::energy_j).sum();
         assert!((area - energy).abs() < QUADRATURE * energy, "{area} J for {energy} J");
 
-        // The line may be as fast as programmed, the joint movement as fast as it is.
+        // A line may be as fast as programmed, a joint movement only as fast as it is.
         assert!((samples.last().unwrap().ceiling - 0.3).abs() < 1e-6);
         let fastest = samples.iter().map(|s| s.tcp_speed).fold(0.0, f64::max);
         assert!((samples[0].ceiling - fastest).abs() < 0.01 * fastest);

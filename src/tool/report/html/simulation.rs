@@ -5,21 +5,21 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::Serialize;
-use tera::{Context, Tera};
+use tera::Context;
 
-use super::ReportError;
 use super::format::{joules, seconds};
+use super::page::{ReportError, render};
 use super::source::text;
 use crate::arm::robot::Model;
 use crate::rapid::text::{SourceFile, Span};
 use crate::retime::energy::Account;
-use crate::retime::energy::plausible::Plausibility;
 use crate::retime::energy::trajectory::Sample;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{WaitBasis, What};
 use crate::retime::path::joint_path::DOF;
 use crate::tool::report::place::Places;
 use crate::tool::report::plausible::energies;
+use crate::tool::report::simulated::Simulated;
 use crate::tool::report::svg::{Curve, Plot, Rule, Scale, Size, escape};
 
 const SIZE: Size = Size { width: 1260.0, height: 280.0 };
@@ -88,18 +88,15 @@ struct Noted {
 /// # Errors
 /// A template that does not fit its data.
 pub fn simulate_report(
-    simulation: &Simulation,
-    (account, plausible): (&Account, Option<&Plausibility>),
+    of: Simulated<'_>,
     samples: &[Sample],
     files: &[SourceFile],
-    model: &Model,
-    entry: &str,
 ) -> Result<String, ReportError> {
+    let Simulated { model, entry, simulation, account, plausible } = of;
     let places = Places::new(files);
     let steps = steps(simulation, account);
     let known = model.has_dynamics();
     let mut context = Context::new();
-    context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("robot", &model.name);
     context.insert("entry", entry);
     context.insert("cycle", &seconds(simulation.cycle_s));
@@ -121,12 +118,7 @@ pub fn simulate_report(
     let mut assumed = simulation.assumed.clone();
     assumed.extend(model.assumed());
     context.insert("assumed", &assumed);
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("report.css", include_str!("../../../../templates/report.css")),
-        ("simulation.html", include_str!("../../../../templates/simulation.html.tera")),
-    ])?;
-    Ok(tera.render("simulation.html", &context)?)
+    render(include_str!("../../../../templates/simulation.html.tera"), context)
 }
 
 fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {

@@ -28,7 +28,7 @@ pub fn github(report: &Report, files: &[SourceFile]) -> String {
             property(&file.path),
             start.line,
             end.line,
-            data(&finding.told())
+            data(&finding.full_message())
         )
     });
     shown.collect()

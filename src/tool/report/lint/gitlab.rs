@@ -19,7 +19,7 @@ pub fn gitlab(report: &Report, files: &[SourceFile]) -> Value {
             Severity::Info => "info",
         };
         json!({
-            "description": finding.told(),
+            "description": finding.full_message(),
             "check_name": finding.rule.code,
             "fingerprint": fingerprint,
             "severity": severity,

@@ -35,7 +35,7 @@ pub fn junit(report: &Report, files: &[SourceFile]) -> String {
                 name = finding.rule.name,
                 line = at.line,
                 column = at.column,
-                message = escaped(&finding.told()),
+                message = escaped(&finding.full_message()),
             );
         }
         suites.push_str("  </testsuite>\n");

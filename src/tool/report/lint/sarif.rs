@@ -58,7 +58,7 @@ fn result(finding: &Finding, fingerprint: &str, files: &[SourceFile]) -> Value {
         "ruleId": finding.rule.code,
         "ruleIndex": index,
         "level": level(finding.rule.severity),
-        "message": { "text": finding.told() },
+        "message": { "text": finding.full_message() },
         "locations": [{ "physicalLocation": place(file, finding.span) }],
         "partialFingerprints": { "joulepath/v1": fingerprint },
     });
@@ -68,7 +68,7 @@ fn result(finding: &Finding, fingerprint: &str, files: &[SourceFile]) -> Value {
             "saving_s": saving.time_s,
             "saving_low_j": saving.low_j,
             "saving_high_j": saving.high_j,
-            "per": saving.per.name(),
+            "per": "cycle",
         });
     }
     if let Some(fix) = &finding.fix {

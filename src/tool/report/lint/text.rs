@@ -32,7 +32,7 @@ pub fn concise(report: &Report, files: &[SourceFile]) -> String {
 }
 
 fn diagnostic(finding: &Finding) -> Diagnostic {
-    let mut diagnostic = Diagnostic::error(finding.span, finding.told());
+    let mut diagnostic = Diagnostic::error(finding.span, finding.full_message());
     diagnostic.severity = finding.rule.severity;
     diagnostic.code = Some(finding.rule.code.to_owned());
     diagnostic.label = Some(finding.rule.name.to_owned());

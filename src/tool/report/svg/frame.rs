@@ -31,7 +31,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// With these scales.
+    /// A frame with these scales.
     pub fn new(size: Size, x: Scale, y: Scale) -> Frame {
         Frame { size, x, y }
     }

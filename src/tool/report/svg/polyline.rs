@@ -1,8 +1,8 @@
-//! Curves with as few points as the eye needs.
+//! Curves reduced to the points that can be seen.
 
 use std::fmt::Write;
 
-/// Points of one curve at most.
+/// Most points of a curve.
 pub const MAX_POINTS: usize = 400;
 /// Distance that cannot be seen, px.
 const INVISIBLE: f64 = 0.15;

@@ -50,16 +50,6 @@ impl Scale {
         Scale::new(low, high, count)
     }
 
-    /// Low end.
-    pub fn low(&self) -> f64 {
-        self.low
-    }
-
-    /// High end.
-    pub fn high(&self) -> f64 {
-        self.high
-    }
-
     /// Where `x` lies, 0 at the low end, 1 at the high end.
     pub fn share(&self, x: f64) -> f64 {
         (x - self.low) / (self.high - self.low)
@@ -109,8 +99,8 @@ mod tests {
                 for count in 1..9 {
                     let scale = Scale::new(low, high, count);
                     let slack = 1e-5 * scale.step;
-                    assert!(scale.low() <= low.min(high) + slack, "{low} {high} {scale:?}");
-                    assert!(scale.high() >= low.max(high) - slack, "{low} {high} {scale:?}");
+                    assert!(scale.low <= low.min(high) + slack, "{low} {high} {scale:?}");
+                    assert!(scale.high >= low.max(high) - slack, "{low} {high} {scale:?}");
                     assert!((2..=2 * count + 3).contains(&scale.ticks().len()), "{scale:?}");
                 }
             }
@@ -121,7 +111,7 @@ mod tests {
     fn what_is_not_finite_gives_a_scale() {
         for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(Scale::new(x, x, 5).share(0.0).is_finite());
-            assert!(Scale::with_zero([x, 2.0], 5).high() >= 2.0);
+            assert!(Scale::with_zero([x, 2.0], 5).high >= 2.0);
         }
     }
 }

@@ -1,9 +1,8 @@
-//! The page about all rules.
+//! The page about all rules, `docs/lints.md`.
 
 use std::fmt::Write as _;
 
-use super::register::ALL;
-use super::rule::{Family, Needs};
+use joulepath::tool::lint::{ALL, Needs};
 
 /// What the page begins with.
 const HEAD: &str = "# Lints
@@ -44,17 +43,16 @@ EW101 = 5.0
 ```
 ";
 
-/// `docs/lints.md`.
-#[must_use]
-pub fn page() -> String {
+pub(crate) fn page() -> String {
     let mut out = String::from(HEAD);
-    for family in Family::ALL {
+    // The rules are in the order of their families.
+    for rules in ALL.chunk_by(|a, b| a.family == b.family) {
         let _ = write!(
             out,
             "\n## {}\n\n| code | name | finds | needs |\n|---|---|---|---|\n",
-            family.name()
+            rules[0].family.name()
         );
-        for rule in ALL.iter().filter(|rule| rule.family == family) {
+        for rule in rules {
             let needs = match rule.needs {
                 Needs::Text => "–",
                 Needs::Robot => "a robot",
@@ -69,7 +67,7 @@ pub fn page() -> String {
                 summary = rule.summary(),
             );
         }
-        for rule in ALL.iter().filter(|rule| rule.family == family) {
+        for rule in rules {
             // Chapters of a manual stand two levels below the family.
             let manual = rule.manual().replace("\n## ", "\n#### ");
             let _ = write!(out, "\n### {} {}\n\n{manual}", rule.code, rule.name);

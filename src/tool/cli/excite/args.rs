@@ -1,0 +1,152 @@
+//! The options of `joulepath excite`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+
+use crate::learn::excite::State;
+use crate::tool::cli::common::Format;
+
+/// Largest distance of adaptive points from the path \[rad\].
+const OFF_PATH: f64 = 1e-3;
+/// Largest time between points \[s\].
+pub(super) const WIDEST: f64 = 0.1;
+
+/// A motion that lets a robot's parameters be told from its torques, as RAPID with a logger.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: joulepath excite --robot IRB1600-10/1.45 --plane \"1,0,0,-0.8\" --out excitation"
+)]
+pub struct ExciteArgs {
+    /// The robot: a name (joulepath robots list) or a robot file.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) robot: String,
+
+    /// Where the RAPID modules and excitation.csv go.
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: PathBuf,
+
+    /// What is to be told.
+    #[arg(long, value_enum, default_value_t = Variant::Full)]
+    pub(super) variant: Variant,
+
+    /// Base frequency, Hz.
+    #[arg(long, allow_negative_numbers = true, value_name = "HZ", default_value_t = 0.1)]
+    pub(super) base_frequency: f64,
+
+    /// Harmonics of it that are used.
+    #[arg(long, allow_negative_numbers = true, value_name = "K,…", value_delimiter = ',', default_values_t = [1, 4, 7])]
+    pub(super) harmonics: Vec<usize>,
+
+    /// Repetitions.
+    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 7)]
+    pub(super) cycles: usize,
+
+    /// Keep arm and tool where n·x ≥ d: a normal and a distance in m, base frame; repeatable.
+    #[arg(long = "plane", value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
+    pub(super) planes: Vec<String>,
+
+    /// Keep arm and tool out of the box between two corners, m, base frame; repeatable.
+    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true)]
+    pub(super) boxes: Vec<String>,
+
+    /// Share of the joints' speed limits that is used.
+    #[arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.8)]
+    pub(super) speed_share: f64,
+
+    /// Time between the points of the stream, seconds, or `adaptive`: as far apart as keeps the
+    /// path within 1 mrad.
+    #[arg(long, allow_negative_numbers = true, value_name = "SECONDS", default_value = "0.01")]
+    pub(super) spacing: Spacing,
+
+    /// Where the logger has torques from.
+    #[arg(long, value_enum, default_value_t = TorqueArg::TestSignal)]
+    pub(super) torque: TorqueArg,
+
+    /// Where the tool reaches, tool0, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(super) tool: Option<String>,
+
+    /// What the flange carries: KG, KG,X,Y,Z (mm) or a loaddata of RAPID.
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub(super) load: Option<String>,
+
+    /// Another seed starts the search elsewhere.
+    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+
+    /// How the result is written.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
+
+    /// No notes and no progress on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// Time between points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Spacing {
+    /// \[s\].
+    Seconds(f64),
+    /// As far apart as the motion allows.
+    Adaptive,
+}
+
+impl FromStr for Spacing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Spacing, String> {
+        if text == "adaptive" {
+            return Ok(Spacing::Adaptive);
+        }
+        match text.parse() {
+            Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => {
+                Ok(Spacing::Seconds(seconds))
+            }
+            _ => Err("give a number of seconds above 0, or adaptive".into()),
+        }
+    }
+}
+
+impl Spacing {
+    /// The time between points of a motion with these states \[s\].
+    pub(super) fn seconds(self, states: &[State]) -> f64 {
+        match self {
+            Spacing::Seconds(seconds) => seconds,
+            Spacing::Adaptive => {
+                let hardest = states.iter().flat_map(|[_, _, qdd]| qdd.iter());
+                let hardest = hardest.fold(0.0, |m: f64, x| m.max(x.abs()));
+                // A corner is cut in the middle between points: q̈ Δt²/8 off.
+                (8.0 * OFF_PATH / hardest).sqrt().min(WIDEST)
+            }
+        }
+    }
+}
+
+/// Where the logger has torques from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum TorqueArg {
+    /// Test signal 4002, arm side.
+    TestSignal,
+    /// `GetMotorTorque`, for controllers without test signals; needs the robot's gear ratios.
+    MotorTorque,
+}
+
+/// Experiments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Variant {
+    /// All parameters.
+    Full,
+    /// Weights: slowly, each pose from both sides.
+    Gravity,
+    /// Friction over speed: each joint alone, six speeds both ways.
+    Friction,
+    /// What the flange carries: run it with and without.
+    Payload,
+    /// Axis 5 alone, 5 and 6 against each other, 6 alone.
+    Wrist,
+    /// The full motion again and again, from cold to warm.
+    Warming,
+}

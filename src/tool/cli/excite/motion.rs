@@ -1,0 +1,116 @@
+//! The motion of an experiment: designed by search, or of plateaus.
+
+use anyhow::bail;
+
+use super::args::{ExciteArgs, Spacing, Variant};
+use crate::arm::kinematics::Body;
+use crate::arm::robot::Model;
+use crate::learn::excite::{
+    Blend, Checked, Design, Information, Plateaus, Series, State, blends, check, design,
+};
+use crate::tool::cli::common::progress;
+
+/// Interval of the rows of the table \[s\]: the grid on which limits are checked.
+pub(super) const FINE: f64 = 0.001;
+/// Resolution of the time between points in the RAPID \[s\].
+const TICK: f64 = 1e-4;
+/// How many times as many points as asked for a period may have, to be divided exactly.
+const MORE_POINTS: f64 = 1.3;
+/// How many times as far apart the points of straight moves may be.
+const EVEN: f64 = 10.0;
+/// Repetitions that take a robot from cold to warm.
+const WARMING: usize = 120;
+
+/// A motion to be written.
+pub(super) struct Motion {
+    pub(super) period: f64,
+    pub(super) cycles: usize,
+    /// One repetition.
+    pub(super) states: Vec<State>,
+    /// The states every `spacing`.
+    pub(super) points: Vec<State>,
+    pub(super) blends: Option<[Blend; 2]>,
+    pub(super) information: Option<Information>,
+    pub(super) checked: Checked,
+}
+
+pub(super) fn designed(
+    args: &ExciteArgs,
+    model: &Model,
+    settings: &Design,
+    body: &Body<'_>,
+) -> anyhow::Result<Motion> {
+    let bar = progress(args.quiet, None);
+    let found = design(model, settings, &|done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    let fits = |states: &[State]| {
+        let checked = check(model, body, &settings.load, states);
+        let r = &checked.ratios;
+        [r.position, r.acceleration, r.torque].iter().all(|ratio| *ratio <= 1.0)
+            && r.velocity <= settings.speed_share
+            && checked.to_obstacles >= 0.0
+            && checked.to_itself >= 0.0
+    };
+    let Some((series, blends)) = blends(model, &found.series, &fits) else {
+        bail!("no way from rest into the motion keeps the limits: give another --seed");
+    };
+    let states = sampled(&series);
+    // A period is a whole number of points; a slow motion needs no more of them.
+    let spacing = match args.spacing {
+        Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
+        Spacing::Adaptive => 1.0,
+    } * args.spacing.seconds(&states);
+    let points = whole(series.period(), spacing);
+    let cycles =
+        if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
+    Ok(Motion {
+        period: series.period(),
+        cycles,
+        states,
+        points: series.sampled(points),
+        blends: Some(blends),
+        information: Some(found.information),
+        checked: found.checked,
+    })
+}
+
+/// Number of points of a period that are at most `spacing` \[s\] apart; if possible one that divides
+/// the period into whole ticks: otherwise repetitions would last longer than the period.
+fn whole(period: f64, spacing: f64) -> usize {
+    let least = (period / spacing - 1e-6).ceil().max(3.0) as usize;
+    let most = (MORE_POINTS * least as f64) as usize;
+    let is_exact = |points: &usize| {
+        let ticks = period / (TICK * *points as f64);
+        (ticks - ticks.round()).abs() < 1e-6 * ticks
+    };
+    (least..=most).find(is_exact).unwrap_or(least)
+}
+
+fn sampled(series: &Series) -> Vec<State> {
+    series.sampled((series.period() / FINE).round().max(1.0) as usize)
+}
+
+pub(super) fn along_plateaus(
+    args: &ExciteArgs,
+    model: &Model,
+    settings: &Design,
+    body: &Body<'_>,
+    plateaus: &Plateaus,
+) -> Motion {
+    let states = plateaus.sampled(FINE);
+    Motion {
+        period: plateaus.duration(),
+        cycles: 1,
+        points: plateaus.sampled(match args.spacing {
+            Spacing::Seconds(seconds) => EVEN * seconds,
+            Spacing::Adaptive => args.spacing.seconds(&states),
+        }),
+        blends: None,
+        information: None,
+        checked: check(model, body, &settings.load, &states),
+        states,
+    }
+}

@@ -1,0 +1,286 @@
+//! Which files a path stands for: a file, a folder that is walked, or the modules of a `.pgf`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::rapid::text::decode;
+use crate::tool::cli::backup;
+
+/// Extensions of files with RAPID text, in lower case.
+const MODULES: [&str; 5] = ["mod", "sys", "prg", "modx", "sysx"];
+/// Extension of a program file, which lists modules.
+const PROGRAM: &str = "pgf";
+/// What a folder was searched for, for messages.
+const SOUGHT: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
+/// Deepest folder that is searched.
+const MAX_FOLDERS: usize = 32;
+
+/// A file or folder that could not be read.
+#[derive(Clone, Debug)]
+pub struct Unreadable {
+    /// Its path.
+    pub path: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Why nothing was read.
+#[derive(Debug, Error)]
+pub enum InputError {
+    /// No path was given.
+    #[error("no file or folder given; name a RAPID file, a folder or a .pgf program")]
+    Nothing,
+    /// A folder without RAPID.
+    #[error(
+        "no RAPID in '{path}': looked in it and its folders for {SOUGHT}; name a file to read it \
+         whatever its extension"
+    )]
+    NoRapid {
+        /// The folder.
+        path: String,
+    },
+    /// A `.pgf` whose modules are not there.
+    #[error("'{path}' lists no module that can be read; name the module files themselves")]
+    EmptyProgram {
+        /// The program file.
+        path: String,
+    },
+    /// A `.pgf` that lists a file outside of its folder: such a file would be copied and changed
+    /// with the program.
+    #[error(
+        "{program}:{line}: '{module}' is not a file below the folder of the program ({why}); move \
+         it there and list it by its name, or name the module files in place of the .pgf"
+    )]
+    Outside {
+        /// The program file.
+        program: String,
+        /// From 1.
+        line: usize,
+        /// As listed.
+        module: String,
+        /// What leads outside.
+        why: &'static str,
+    },
+    /// Something that cannot be read.
+    #[error("cannot read '{path}': {reason}; check the path and its permissions")]
+    Unreadable {
+        /// The path.
+        path: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A file to be read.
+pub(super) struct Found {
+    pub(super) path: PathBuf,
+    /// Its path below the input, with `/`.
+    pub(super) relative: String,
+    /// Whether the command line names it, or a program file that lists it.
+    pub(super) named: bool,
+    /// Of a program file: the paths of its modules.
+    pub(super) modules: Option<Vec<String>>,
+}
+
+/// The files that a path names; what of a folder cannot be read goes into `unreadable`.
+pub(super) fn find(
+    path: &Path,
+    unreadable: &mut Vec<Unreadable>,
+) -> Result<Vec<Found>, InputError> {
+    let metadata = fs::metadata(path)
+        .map_err(|error| InputError::Unreadable { path: shown(path), reason: error.to_string() })?;
+    if metadata.is_dir() {
+        if let Err(error) = fs::read_dir(path) {
+            let reason = error.to_string();
+            return Err(InputError::Unreadable { path: shown(path), reason });
+        }
+        let mut files = Vec::new();
+        walk(path, 0, &mut files, unreadable);
+        let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =
+            files.into_iter().partition(|file| has_extension(file, &[PROGRAM]));
+        let mut listings = Vec::new();
+        for program in programs {
+            let of_program = match listed(&program) {
+                Err(error @ InputError::Outside { .. }) => return Err(error),
+                listed => listed.unwrap_or_default(),
+            };
+            listings.push(found_listing(path, program, &of_program));
+            modules.extend(of_program.into_iter().filter(|module| module.is_file()));
+        }
+        modules.sort_by_key(|file| shown(file));
+        modules.dedup_by_key(|file| shown(file));
+        if modules.is_empty() {
+            return Err(InputError::NoRapid { path: shown(path) });
+        }
+        let modules = modules.into_iter().map(|file| found_below(path, file, false));
+        return Ok(modules.chain(listings).collect());
+    }
+    if has_extension(path, &[PROGRAM]) {
+        return program(path, unreadable);
+    }
+    Ok(vec![found_below(path.parent().unwrap_or(Path::new("")), path.to_path_buf(), true)])
+}
+
+fn found_below(root: &Path, path: PathBuf, named: bool) -> Found {
+    let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
+    Found { path, relative, named, modules: None }
+}
+
+fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
+    let modules = modules.iter().map(|module| shown(module)).collect();
+    Found { modules: Some(modules), ..found_below(root, path, true) }
+}
+
+/// Where two files would go to the same place below `--out`, all of them go below the deepest
+/// folder that they share.
+pub(super) fn tell_apart(found: &mut [Found]) {
+    let mut places = BTreeSet::new();
+    if found.iter().all(|file| places.insert(file.relative.clone())) {
+        return;
+    }
+    let absolute: Vec<PathBuf> = found
+        .iter()
+        .map(|file| fs::canonicalize(&file.path).unwrap_or_else(|_| file.path.clone()))
+        .collect();
+    let mut shared = absolute[0].parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    while !absolute.iter().all(|path| path.starts_with(&shared)) && shared.pop() {}
+    for (file, absolute) in found.iter_mut().zip(&absolute) {
+        file.relative = below(absolute.strip_prefix(&shared).unwrap_or(absolute));
+    }
+}
+
+/// A path without anything that would lead out of a folder.
+pub(super) fn below(path: &Path) -> String {
+    let parts = path.components().filter_map(|part| match part {
+        Component::Normal(name) => Some(name.to_string_lossy()),
+        _ => None,
+    });
+    parts.collect::<Vec<_>>().join("/")
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// The modules that a program file lists.
+fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
+    let modules = listed(path)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = Vec::new();
+    let listing = found_listing(folder, path.to_path_buf(), &modules);
+    for module in modules {
+        if module.is_file() {
+            files.push(found_below(folder, module, true));
+        } else {
+            let reason = format!("listed in '{}' but not there", shown(path));
+            unreadable.push(Unreadable { path: shown(&module), reason });
+        }
+    }
+    if files.is_empty() {
+        return Err(InputError::EmptyProgram { path: shown(path) });
+    }
+    files.push(listing);
+    Ok(files)
+}
+
+/// The paths between `<Module>` and `</Module>`, relative to the program file.
+fn listed(path: &Path) -> Result<Vec<PathBuf>, InputError> {
+    const BEGIN: &str = "<Module>";
+    let unreadable = |reason| InputError::Unreadable { path: shown(path), reason };
+    let bytes = bytes_of(path).map_err(unreadable)?;
+    let text = decode(&bytes).text;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut modules = Vec::new();
+    for (at, _) in text.match_indices(BEGIN) {
+        let rest = &text[at + BEGIN.len()..];
+        let name = unescaped(rest.split("</Module>").next().unwrap_or_default().trim());
+        if name.is_empty() {
+            continue;
+        }
+        let module = below_in_any_case(folder, &name);
+        if let Some(why) = leads_outside(folder, &name, &module) {
+            let line = 1 + text[..at].matches('\n').count();
+            return Err(InputError::Outside { program: shown(path), line, module: name, why });
+        }
+        modules.push(module);
+    }
+    Ok(modules)
+}
+
+/// What leads out of the folder of a program file in the name of a module that it lists.
+fn leads_outside(folder: &Path, name: &str, module: &Path) -> Option<&'static str> {
+    if name.starts_with(['/', '\\']) {
+        return Some("the path is absolute");
+    }
+    if name.contains(':') {
+        return Some("the path names a drive or device");
+    }
+    if name.split(['/', '\\']).any(|part| part == "..") {
+        return Some("the path has '..'");
+    }
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (Ok(module), Ok(folder)) = (fs::canonicalize(module), fs::canonicalize(folder)) else {
+        return None;
+    };
+    (!module.starts_with(folder)).then_some("a symbolic link leads out of it")
+}
+
+/// A path of a controller, whose file system has its own separators and knows no case.
+fn below_in_any_case(folder: &Path, path: &str) -> PathBuf {
+    let parts = path.split(['/', '\\']).filter(|part| !part.is_empty());
+    parts.fold(folder.to_path_buf(), |folder, part| {
+        backup::child(&folder, part).unwrap_or_else(|| folder.join(part))
+    })
+}
+
+/// XML text without its escapes.
+fn unescaped(text: &str) -> String {
+    let escapes = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
+    escapes.iter().fold(text.to_owned(), |text, (escape, sign)| text.replace(escape, sign))
+}
+
+/// Collects the files with RAPID below a folder. Links to folders are not
+/// followed: they could lead in a circle.
+fn walk(folder: &Path, depth: usize, files: &mut Vec<PathBuf>, unreadable: &mut Vec<Unreadable>) {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) => {
+            unreadable.push(Unreadable { path: shown(folder), reason: error.to_string() });
+            return;
+        }
+    };
+    for entry in entries.filter_map(Result::ok) {
+        let path = entry.path();
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_folder && depth < MAX_FOLDERS {
+            walk(&path, depth + 1, files, unreadable);
+        } else if (has_extension(&path, &MODULES) || has_extension(&path, &[PROGRAM]))
+            && path.is_file()
+        {
+            files.push(path);
+        }
+    }
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension()
+        .and_then(|extension| extension.to_str())
+        .is_some_and(|extension| extensions.contains(&extension.to_ascii_lowercase().as_str()))
+}
+
+pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
+    let bytes = fs::read(path).map_err(|error| error.to_string())?;
+    if u32::try_from(bytes.len()).is_err() {
+        return Err("larger than 4 GiB".to_owned());
+    }
+    Ok(bytes)
+}
+
+/// A path as it is shown, with `/`.
+pub(super) fn shown(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    if std::path::MAIN_SEPARATOR == '/' { text.into_owned() } else { text.replace('\\', "/") }
+}

@@ -1,0 +1,14 @@
+//! Which files make one program.
+
+use super::system::System;
+
+/// Files that may belong together, and how they run.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Ids of the files.
+    pub files: Vec<usize>,
+    /// The routine that starts the program.
+    pub entry: String,
+    /// The configuration of their controller.
+    pub system: Option<System>,
+}
