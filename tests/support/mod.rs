@@ -80,7 +80,7 @@ pub(crate) fn check_tree(parse: &Parse, bytes: &[u8]) {
             }
         }
     }
-    assert_eq!(walked, parse.tree.tokens().len(), "tokens in the walk");
+    assert_eq!(walked, parse.tree.tokens().count(), "tokens in the walk");
     for error in &parse.errors {
         assert!(error.start <= error.end && error.end as usize <= bytes.len());
     }
@@ -88,7 +88,7 @@ pub(crate) fn check_tree(parse: &Parse, bytes: &[u8]) {
 
 /// The work of the parser grows with the number of tokens only.
 pub(crate) fn check_work(parse: &Parse) {
-    let tokens = parse.tree.tokens().len() as u64;
+    let tokens = parse.tree.tokens().count() as u64;
     assert!(parse.steps <= STEPS_PER_TOKEN * (tokens + 1), "{} for {tokens}", parse.steps);
 }
 

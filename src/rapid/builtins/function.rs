@@ -61,7 +61,7 @@ impl Function {
 
     /// The kind of the signal that is its first positional argument.
     pub fn signal(&self) -> Option<SignalKind> {
-        positional(self.arguments).next()?.signal
+        positional(self.arguments).next()?.signal()
     }
 
     /// Whether it is known to leave its arguments as they are.
@@ -74,10 +74,5 @@ impl Function {
                 | Source::Kinematics
                 | Source::Mounting
         )
-    }
-
-    /// Whether its value comes from the robot: where it stands and how it is built.
-    pub fn reads_robot(&self) -> bool {
-        matches!(self.source, Source::Position | Source::Kinematics | Source::Mounting)
     }
 }

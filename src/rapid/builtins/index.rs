@@ -23,6 +23,12 @@ static BY_NAME: LazyLock<HashMap<String, &Instruction>> = LazyLock::new(|| {
     all.map(|entry| (entry.name.to_lowercase(), entry)).collect()
 });
 
+/// Worked out once: the executor asks for each movement that it runs.
+static SIGNATURES: LazyLock<HashMap<&str, MoveSignature>> = LazyLock::new(|| {
+    let all = BY_NAME.iter();
+    all.filter_map(|(key, entry)| Some((key.as_str(), entry.movement()?))).collect()
+});
+
 static FUNCTIONS_BY_NAME: LazyLock<HashMap<String, &Function>> = LazyLock::new(|| {
     functions::FUNCTIONS.iter().map(|entry| (entry.name.to_lowercase(), entry)).collect()
 });
@@ -40,7 +46,7 @@ pub fn function(key: &str) -> Option<&'static Function> {
 
 /// The signature of a movement instruction; `key` in lower case.
 pub fn movement(key: &str) -> Option<MoveSignature> {
-    instruction(key)?.movement()
+    SIGNATURES.get(key).copied()
 }
 
 /// Whether the procedure of this name (in any case) is an instruction that moves.

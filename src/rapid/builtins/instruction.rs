@@ -1,6 +1,8 @@
 //! What is known of an instruction.
 
-use super::parameter::{Parameter, parameters, positional};
+use super::parameter::positional;
+#[cfg(test)]
+use super::parameter::{Parameter, parameters};
 use super::types::SignalKind;
 
 /// The form of a movement instruction: which positional arguments it takes.
@@ -249,13 +251,14 @@ impl Instruction {
     }
 
     /// The parameters in order.
-    pub fn parameters(&self) -> impl Iterator<Item = Parameter> {
+    #[cfg(test)]
+    pub(super) fn parameters(&self) -> impl Iterator<Item = Parameter> {
         parameters(self.arguments)
     }
 
     /// The kind of the signal that is its first positional argument.
     pub fn signal(&self) -> Option<SignalKind> {
-        positional(self.arguments).next()?.signal
+        positional(self.arguments).next()?.signal()
     }
 
     /// Whether it moves.

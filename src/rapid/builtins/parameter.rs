@@ -7,15 +7,21 @@ use super::types::{SignalKind, data_type};
 
 /// A parameter of an instruction or a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parameter {
+pub(super) struct Parameter {
     /// As RAPID writes it.
-    pub name: &'static str,
+    pub(super) name: &'static str,
     /// Whether it is an option: `\Name`.
-    pub optional: bool,
+    pub(super) optional: bool,
     /// Whether the argument is written to.
-    pub written: bool,
+    pub(super) written: bool,
+    type_name: &'static str,
+}
+
+impl Parameter {
     /// The kind of the signal, if it is one.
-    pub signal: Option<SignalKind>,
+    pub(super) fn signal(&self) -> Option<SignalKind> {
+        data_type(self.type_name)?.signal
+    }
 }
 
 /// The parameters of a list, in order.
@@ -25,8 +31,7 @@ pub(super) fn parameters(list: &'static str) -> impl Iterator<Item = Parameter> 
         let written = text.ends_with('=');
         let (name, type_name) = text.split_once(':').unwrap_or((text, ""));
         let name = name.trim_start_matches('\\').trim_end_matches('=');
-        let signal = data_type(type_name).and_then(|ty| ty.signal);
-        Parameter { name, optional, written, signal }
+        Parameter { name, optional, written, type_name }
     })
 }
 

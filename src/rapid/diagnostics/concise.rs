@@ -1,6 +1,6 @@
 //! One line per diagnostic.
 
-use super::Diagnostic;
+use super::diagnostic::Diagnostic;
 use crate::rapid::text::SourceFile;
 
 /// `path:line:column: severity[code]: message`, without a line end.

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use super::{Diagnostic, Note, Severity, concise};
+use super::concise::concise;
+use super::diagnostic::{Diagnostic, Note, Severity};
 use crate::rapid::text::{SourceFile, Span};
 
 /// Longest line that is shown, in bytes; about longer ones only the concise
@@ -173,7 +174,7 @@ fn decoded(file: &SourceFile, range: Range<u32>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rapid::diagnostics::Label;
+    use crate::rapid::diagnostics::diagnostic::Label;
     use crate::rapid::text::FileId;
 
     fn span(start: u32, end: u32) -> Span {

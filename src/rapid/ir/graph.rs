@@ -38,7 +38,7 @@ pub enum Step<'h> {
     /// The condition of an `IF`, `ELSEIF` or `WHILE`.
     Condition(&'h Expr),
     /// The head of a `FOR`: counts, and leaves the loop behind its last value.
-    Count(&'h Stmt),
+    Count,
     /// The value of a `TEST`.
     Test(&'h Expr),
 }
@@ -159,7 +159,7 @@ impl<'h> Builder<'h> {
                 // `WHILE TRUE` ends by a jump, a return or an error alone.
                 if matches!(condition.kind, ExprKind::Bool(true)) { Ends::new() } else { ends }
             }
-            StmtKind::For { body, .. } => self.repeat(Step::Count(stmt), body, &from),
+            StmtKind::For { body, .. } => self.repeat(Step::Count, body, &from),
             StmtKind::Test { value, cases, default } => {
                 let id = self.node(Step::Test(value), &from);
                 let mut ends = Ends::new();
@@ -224,9 +224,8 @@ mod tests {
                 let name = match node.step {
                     Step::Entry => "entry",
                     Step::Exit => "exit",
-                    Step::Statement(stmt) | Step::Count(stmt) => {
-                        word(stmt.span.start).unwrap_or("")
-                    }
+                    Step::Count => "FOR",
+                    Step::Statement(stmt) => word(stmt.span.start).unwrap_or(""),
                     Step::Condition(expr) | Step::Test(expr) => word(expr.span.start).unwrap_or(""),
                 };
                 let next: Vec<String> =

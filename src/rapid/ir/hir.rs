@@ -61,14 +61,10 @@ pub struct Module {
 /// A user type.
 #[derive(Clone, Debug)]
 pub struct TypeDef {
-    /// `LOCAL` or global.
-    pub scope: Scope,
     /// Its name.
     pub name: Ident,
     /// What it is.
     pub kind: TypeDefKind,
-    /// The whole declaration.
-    pub span: Span,
 }
 
 /// Record or alias.
@@ -151,8 +147,8 @@ pub struct Routine {
 pub enum RoutineKind {
     /// Procedure.
     Proc,
-    /// Function and the name of its type.
-    Func(Ident),
+    /// Function.
+    Func,
     /// Interrupt routine.
     Trap,
 }
@@ -179,13 +175,8 @@ pub struct Param {
     pub type_name: Ident,
     /// Its name.
     pub name: Ident,
-    /// Number of `*` dimensions.
-    pub dims: usize,
     /// `\name`.
     pub optional: bool,
-    /// Index of the group of mutually exclusive parameters it belongs to
-    /// (parameters with the same number exclude each other).
-    pub group: usize,
 }
 
 /// A statement list.

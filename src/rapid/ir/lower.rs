@@ -13,7 +13,7 @@ use super::hir::{
     Block, Call, Callee, Data, DataKind, Expr, Ident, Module, Name, Param, ParamMode, Routine,
     RoutineKind, Scope, Stmt, StmtKind, TypeDef, TypeDefKind,
 };
-use crate::rapid::syntax::{Node, NodeKind, Parse, Token, TokenKind, ast};
+use crate::rapid::syntax::{Node, NodeKind, Parse, TokenKind, ast};
 use crate::rapid::text::{self, Charset, FileId, Span};
 
 /// The modules of a file, in order. Declarations that no `MODULE` encloses form
@@ -88,7 +88,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn module(&self, module: ast::Module<'_>) -> Module {
-        let node = module.node();
+        let node = module.0;
         let mut lowered = self.empty_module(node);
         lowered.name = self.ident_in(module.name(), node);
         lowered.attributes = module
@@ -128,16 +128,11 @@ impl<'a> Lowering<'a> {
                     .collect(),
             )
         };
-        TypeDef {
-            scope: scope(node.own_tokens().next().map(Token::kind)),
-            name: self.ident_in(node.child(NodeKind::Name), node),
-            kind,
-            span: self.span(node),
-        }
+        TypeDef { name: self.ident_in(node.child(NodeKind::Name), node), kind }
     }
 
     fn data(&self, data: ast::Data<'_>) -> Data {
-        let node = data.node();
+        let node = data.0;
         let broken = node.children().any(|child| child.kind() == NodeKind::Error);
         let init = data.value().map(|value| self.expr(value));
         Data {
@@ -156,21 +151,16 @@ impl<'a> Lowering<'a> {
     }
 
     fn routine(&self, routine: ast::Routine<'_>) -> Routine {
-        let node = routine.node();
+        let node = routine.0;
         let kind = match node.kind() {
-            NodeKind::FuncDeclaration => {
-                RoutineKind::Func(self.ident_in(routine.type_name(), node))
-            }
+            NodeKind::FuncDeclaration => RoutineKind::Func,
             NodeKind::TrapDeclaration => RoutineKind::Trap,
             _ => RoutineKind::Proc,
         };
         let params = routine
             .parameter_groups()
-            .enumerate()
-            .flat_map(|(group, parameters)| {
-                parameters.parameters().map(move |parameter| (group, parameters, parameter))
-            })
-            .map(|(group, parameters, parameter)| self.param(group, parameters, parameter))
+            .flat_map(|group| group.parameters().map(move |parameter| (group, parameter)))
+            .map(|(group, parameter)| self.param(group, parameter))
             .collect();
         let handler = |kind| routine.handlers(kind).next().map(|node| self.block_in(node));
         Routine {
@@ -194,13 +184,8 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn param(
-        &self,
-        group: usize,
-        parameters: ast::ParameterGroup<'_>,
-        parameter: ast::Parameter<'_>,
-    ) -> Param {
-        let node = parameter.node();
+    fn param(&self, group: ast::ParameterGroup<'_>, parameter: ast::Parameter<'_>) -> Param {
+        let node = parameter.0;
         Param {
             mode: match parameter.mode() {
                 Some(TokenKind::Var) => ParamMode::Var,
@@ -210,9 +195,7 @@ impl<'a> Lowering<'a> {
             },
             type_name: self.ident_in(parameter.type_name(), node),
             name: self.ident_in(parameter.name(), node),
-            dims: parameter.dimensions(),
-            optional: parameters.is_optional(),
-            group,
+            optional: group.is_optional(),
         }
     }
 

@@ -104,11 +104,6 @@ impl Origin {
     pub fn iter(&self) -> impl Iterator<Item = &Dependence> {
         self.0.iter()
     }
-
-    /// True for constants.
-    pub fn is_constant(&self) -> bool {
-        self.0.is_empty()
-    }
 }
 
 /// A value with its type and origin.
@@ -122,30 +117,7 @@ pub struct Value {
     pub origin: Origin,
 }
 
-/// How far a value can be relied on.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Knowledge<'v> {
-    /// It is the same whenever it is read.
-    Known,
-    /// As it was stored last: it depends on this `PERS`.
-    LastKnown(&'v Arc<str>),
-    /// It can't be told from the program.
-    Unknown(&'v Unknown),
-}
-
 impl Value {
-    /// How far it can be relied on.
-    pub fn knowledge(&self) -> Knowledge<'_> {
-        if let Some(unknown) = self.datum.first_unknown() {
-            return Knowledge::Unknown(unknown);
-        }
-        let stored = self.origin.iter().find_map(|dependence| match dependence {
-            Dependence::Persistent(name) | Dependence::TrustedPersistent(name) => Some(name),
-            _ => None,
-        });
-        stored.map_or(Knowledge::Known, Knowledge::LastKnown)
-    }
-
     /// A constant of a type.
     pub fn constant(datum: Datum, type_key: &str) -> Value {
         Value { datum, type_key: type_key.into(), origin: Origin::default() }

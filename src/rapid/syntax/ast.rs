@@ -9,19 +9,16 @@ macro_rules! views {
     ($($(#[$doc:meta])* $name:ident($($kind:ident)|+);)*) => {$(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
-        pub struct $name<'t>(Node<'t>);
+        pub struct $name<'t>(
+            /// The node itself.
+            pub Node<'t>,
+        );
 
         impl<'t> $name<'t> {
             /// The view of a node of the right kind.
             #[must_use]
             pub fn cast(node: Node<'t>) -> Option<Self> {
                 matches!(node.kind(), $(NodeKind::$kind)|+).then_some(Self(node))
-            }
-
-            /// The node itself.
-            #[must_use]
-            pub fn node(self) -> Node<'t> {
-                self.0
             }
         }
     )*};
@@ -125,12 +122,6 @@ impl<'t> Routine<'t> {
         scope(self.0)
     }
 
-    /// The type of a function's value.
-    #[must_use]
-    pub fn type_name(self) -> Option<Node<'t>> {
-        self.0.child(NodeKind::TypeName)
-    }
-
     /// Its name.
     #[must_use]
     pub fn name(self) -> Option<Node<'t>> {
@@ -145,12 +136,6 @@ impl<'t> Routine<'t> {
     /// The data declared before its statements.
     pub fn data(self) -> impl Iterator<Item = Data<'t>> {
         self.0.children().filter_map(Data::cast)
-    }
-
-    /// Its statements.
-    #[must_use]
-    pub fn body(self) -> Option<Node<'t>> {
-        self.0.child(NodeKind::Block)
     }
 
     /// The statements of its handlers of a kind.
@@ -195,14 +180,6 @@ impl<'t> Parameter<'t> {
     #[must_use]
     pub fn name(self) -> Option<Node<'t>> {
         self.0.child(NodeKind::Name)
-    }
-
-    /// Number of `*` in `{*, *}`.
-    #[must_use]
-    pub fn dimensions(self) -> usize {
-        self.0.child(NodeKind::OpenDimensions).map_or(0, |dimensions| {
-            dimensions.own_tokens().filter(|token| token.kind() == TokenKind::Star).count()
-        })
     }
 }
 

@@ -354,12 +354,12 @@ mod tests {
 
     fn kinds(bytes: &[u8]) -> Vec<TokenKind> {
         let tokens = tokenize(bytes);
-        (0..tokens.len()).map(|i| tokens.kind(i)).collect()
+        (0..tokens.count()).map(|i| tokens.kind(i)).collect()
     }
 
     fn texts(bytes: &[u8]) -> Vec<&[u8]> {
         let tokens = tokenize(bytes);
-        (0..tokens.len())
+        (0..tokens.count())
             .map(|i| tokens.range(i))
             .map(|range| &bytes[range.start as usize..range.end as usize])
             .collect()

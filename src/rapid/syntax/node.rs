@@ -11,7 +11,8 @@ macro_rules! node_kinds {
         }
 
         impl NodeKind {
-            /// All kinds.
+            /// All kinds, for tests.
+            #[cfg(feature = "internals")]
             pub const ALL: &[NodeKind] = &[$(NodeKind::$kind,)*];
 
             /// Its production in `grammar/`.

@@ -13,9 +13,6 @@ macro_rules! token_kinds {
         }
 
         impl TokenKind {
-            /// All kinds.
-            pub const ALL: &[TokenKind] = &[$(TokenKind::$kind,)*];
-
             /// What messages call it.
             #[must_use]
             pub fn describe(self) -> &'static str {
@@ -266,14 +263,8 @@ impl Tokens {
 
     /// How many there are.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.kinds.len()
-    }
-
-    /// Whether there is none, as in an empty file.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.kinds.is_empty()
     }
 
     /// Kind of a token; past the last, `EndOfFile`.

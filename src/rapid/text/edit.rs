@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::Span;
+use super::span::Span;
 
 /// Replaces the bytes of `span` by `text`; an empty span inserts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ pub fn apply(bytes: &[u8], edits: &[Edit]) -> Result<Vec<u8>, EditError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rapid::text::FileId;
+    use crate::rapid::text::span::FileId;
 
     fn edit(start: u32, end: u32, text: &str) -> Edit {
         Edit { span: Span { file: FileId(0), start, end }, text: text.as_bytes().to_vec() }

@@ -1,6 +1,6 @@
 //! From byte offsets to lines and columns.
 
-use super::{Charset, encoding};
+use super::encoding::Charset;
 
 /// A place as people count it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,12 +23,6 @@ pub struct LineIndex {
 }
 
 impl LineIndex {
-    /// Indexes a file in its detected encoding.
-    #[must_use]
-    pub fn new(bytes: &[u8]) -> LineIndex {
-        LineIndex::with_charset(bytes, encoding::charset(bytes))
-    }
-
     /// Indexes a file whose encoding is known.
     #[must_use]
     pub fn with_charset(bytes: &[u8], charset: Charset) -> LineIndex {
@@ -87,9 +81,14 @@ impl LineIndex {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rapid::text::encoding::charset;
+
+    fn index(bytes: &[u8]) -> LineIndex {
+        LineIndex::with_charset(bytes, charset(bytes))
+    }
 
     fn positions(bytes: &[u8]) -> Vec<(u32, u32)> {
-        let index = LineIndex::new(bytes);
+        let index = index(bytes);
         (0..=bytes.len() as u32)
             .map(|at| index.position(at))
             .map(|position| (position.line, position.column))
@@ -102,9 +101,9 @@ mod tests {
             positions(b"a\r\nb\rc\nd"),
             [(1, 1), (1, 2), (1, 3), (2, 1), (2, 2), (3, 1), (3, 2), (4, 1), (4, 2)]
         );
-        assert_eq!(LineIndex::new(b"a\r\nb\rc\nd").count(), 4);
-        assert_eq!(LineIndex::new(b"a\n").count(), 1);
-        assert_eq!(LineIndex::new(b"").count(), 0);
+        assert_eq!(index(b"a\r\nb\rc\nd").count(), 4);
+        assert_eq!(index(b"a\n").count(), 1);
+        assert_eq!(index(b"").count(), 0);
     }
 
     #[test]
@@ -121,7 +120,7 @@ mod tests {
     fn columns_count_characters_of_two_byte_encodings() {
         let text = "! 机器人回到原点位置，等待信号 x";
         let (bytes, _, _) = encoding_rs::GBK.encode(text);
-        let index = LineIndex::new(&bytes);
+        let index = index(&bytes);
         let column = index.position(bytes.len() as u32 - 1).column;
         assert_eq!(column as usize, text.chars().count());
     }
@@ -129,7 +128,7 @@ mod tests {
     #[test]
     fn lines_tile_the_file() {
         let bytes = b"one\r\n\rthree\n";
-        let index = LineIndex::new(bytes);
+        let index = index(bytes);
         let joined: Vec<u8> = (1..=index.count())
             .flat_map(|line| {
                 let range = index.range(line);

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use super::encoding::{self, Charset};
 use super::lines::{LineIndex, Position};
-use super::{FileId, Span, Utf16};
+use super::span::{FileId, Span};
+use super::utf16::Utf16;
 
 /// A source file: its bytes are never changed.
 #[derive(Clone, Debug)]

@@ -144,7 +144,7 @@ fn taken(files: &[SourceFile]) -> BTreeSet<String> {
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         taken.insert(stem.to_lowercase());
         let tokens = tokenize(&file.bytes);
-        for index in (0..tokens.len()).filter(|i| tokens.kind(*i) == TokenKind::Identifier) {
+        for index in (0..tokens.count()).filter(|i| tokens.kind(*i) == TokenKind::Identifier) {
             let range = tokens.range(index);
             let word = &file.bytes[range.start as usize..range.end as usize];
             taken.insert(String::from_utf8_lossy(word).to_lowercase());

@@ -30,7 +30,7 @@ impl Suppression {
 pub fn suppressions(file: &SourceFile, parse: &Parse) -> Vec<Suppression> {
     let tokens = parse.tree.tokens();
     let mut found = Vec::new();
-    for index in 0..tokens.len() {
+    for index in 0..tokens.count() {
         if tokens.kind(index) != TokenKind::Comment {
             continue;
         }
@@ -45,7 +45,7 @@ pub fn suppressions(file: &SourceFile, parse: &Parse) -> Vec<Suppression> {
             let end = tokens.range(before).end;
             file.position(end.saturating_sub(1)).line == own
         });
-        let next = (index + 1..tokens.len()).find(solid).map(line_of);
+        let next = (index + 1..tokens.count()).find(solid).map(line_of);
         let line = if shares { own } else { next.unwrap_or(own) };
         found.push(Suppression { span, codes, line });
     }

@@ -193,7 +193,7 @@ pub(super) fn one_line(files: &[Source], span: Span) -> String {
     let text = files[span.file.0 as usize].file.text(span);
     let tokens = tokenize(text.as_bytes());
     let mut line = String::new();
-    for index in (0..tokens.len()).filter(|i| !tokens.kind(*i).is_trivia()) {
+    for index in (0..tokens.count()).filter(|i| !tokens.kind(*i).is_trivia()) {
         let range = tokens.range(index);
         let word = &text[range.start as usize..range.end as usize];
         let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');

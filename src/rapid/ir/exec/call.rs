@@ -164,7 +164,7 @@ impl Executor<'_> {
     /// Whether what runs is a function: its callers can't name its data.
     pub(super) fn is_in_function(&self) -> bool {
         let routine = self.frame().id.map(|id| self.program.routine(id));
-        routine.is_some_and(|routine| matches!(routine.kind, RoutineKind::Func(_)))
+        routine.is_some_and(|routine| matches!(routine.kind, RoutineKind::Func))
     }
 
     /// Something that may move the robot or take time in a way that is not known.

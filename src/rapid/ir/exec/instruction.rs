@@ -17,7 +17,7 @@ impl Executor<'_> {
             return Flow::Next;
         };
         let arguments = Arguments::new(self, args);
-        if let Some(signature) = instruction.movement() {
+        if let Some(signature) = builtins::movement(key) {
             self.movement(stmt, text, signature, &arguments);
             return Flow::Next;
         }

@@ -1,6 +1,6 @@
 //! Getting on where the keywords of blocks are missing, misspelt or left over.
 
-use super::recovery::{closes_routine, ends_block};
+use super::recovery::{closes_block, closes_routine, ends_block};
 use super::{Open, Parser, SplitIf, excerpt};
 use crate::rapid::syntax::node::NodeKind;
 use crate::rapid::syntax::token::TokenKind;
@@ -355,15 +355,6 @@ impl Parser<'_> {
         }
         true
     }
-}
-
-/// Keywords that close a block statement or a routine.
-pub(super) fn closes_block(kind: TokenKind) -> bool {
-    closes_routine(kind)
-        || matches!(
-            kind,
-            TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest
-        )
 }
 
 /// Whether a word differs from a keyword by one letter that is wrong, missing

@@ -1,8 +1,8 @@
 //! Expressions: `grammar/expressions.ebnf`.
 
 use super::Parser;
-use crate::rapid::syntax::MAX_EXPRESSION_HEIGHT;
 use crate::rapid::syntax::node::NodeKind;
+use crate::rapid::syntax::parsed::MAX_EXPRESSION_HEIGHT;
 use crate::rapid::syntax::token::TokenKind;
 use crate::rapid::syntax::tolerance::Tolerance;
 use crate::rapid::syntax::tree::Mark;

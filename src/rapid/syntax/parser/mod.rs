@@ -16,25 +16,31 @@ mod routines;
 mod statements;
 
 use super::error::{Related, SyntaxError};
+use super::lexer;
 use super::node::NodeKind;
+use super::parsed::{MAX_DEPTH, Parse};
 use super::token::{TokenKind, Tokens};
 use super::tolerance::{Tolerance, Tolerated};
 use super::tree::{Builder, Mark};
-use super::{MAX_DEPTH, Parse, lexer};
 
 /// Nodes for eight tokens in ordinary programs, for the first allocation.
 const NODES_FOR_EIGHT: usize = 5;
 /// Longest excerpt of the source in a message, in characters.
 const EXCERPT: usize = 24;
 
-pub(super) fn parse(bytes: &[u8]) -> Parse {
+/// Parses a file. Any bytes give a tree whose tokens joined are those bytes.
+///
+/// Offsets are `u32`: of a file of 4 GiB or more the tail is one token that no
+/// production claims, and an error says so.
+#[must_use]
+pub fn parse(bytes: &[u8]) -> Parse {
     let tokens = lexer::tokenize(bytes);
     let mut parser = Parser {
         bytes,
         tokens: &tokens,
         position: 0,
         end: 0,
-        builder: Builder::with_capacity(tokens.len() / 8 * NODES_FOR_EIGHT),
+        builder: Builder::with_capacity(tokens.count() / 8 * NODES_FOR_EIGHT),
         errors: Vec::new(),
         tolerances: Vec::new(),
         quiet: false,
@@ -168,7 +174,7 @@ impl<'a> Parser<'a> {
     }
 
     fn bump(&mut self) {
-        if self.position < self.tokens.len() {
+        if self.position < self.tokens.count() {
             let before = self.position;
             self.position += 1;
             self.end = self.position;

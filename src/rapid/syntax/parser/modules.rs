@@ -75,7 +75,7 @@ impl Parser<'_> {
                 self.leaf(NodeKind::Error);
             }
         }
-        self.builder.finish(mark, NodeKind::File, self.tokens.len());
+        self.builder.finish(mark, NodeKind::File, self.tokens.count());
     }
 
     /// `%%% VERSION:1 LANGUAGE:ENGLISH %%%`

@@ -1,6 +1,5 @@
 //! Getting on after an error.
 
-use super::blocks::closes_block;
 use super::{Line, Parser};
 use crate::rapid::syntax::node::NodeKind;
 use crate::rapid::syntax::token::TokenKind;
@@ -199,6 +198,15 @@ impl Parser<'_> {
 
 pub(super) fn closes_routine(kind: TokenKind) -> bool {
     matches!(kind, TokenKind::EndProc | TokenKind::EndFunc | TokenKind::EndTrap)
+}
+
+/// Keywords that close a block statement or a routine.
+pub(super) fn closes_block(kind: TokenKind) -> bool {
+    closes_routine(kind)
+        || matches!(
+            kind,
+            TokenKind::EndIf | TokenKind::EndFor | TokenKind::EndWhile | TokenKind::EndTest
+        )
 }
 
 /// Keywords at which a block of statements ends.

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::rapid::ir::lower;
-use crate::rapid::ir::value::Knowledge;
 use crate::rapid::syntax;
 use crate::rapid::text::FileId;
 
@@ -220,13 +219,21 @@ fn expressions_have_their_values() {
 }
 
 #[test]
-fn it_is_told_how_far_a_value_can_be_relied_on() {
-    assert_eq!(evaluated("nTwo*nNever").knowledge(), Knowledge::Known);
-    assert_eq!(evaluated("nStored+1").knowledge(), Knowledge::LastKnown(&"nStored".into()));
-    assert_eq!(evaluated("Twice(nStored)").knowledge(), Knowledge::LastKnown(&"nStored".into()));
-    assert_eq!(evaluated("tGrip.tload.mass").knowledge(), Knowledge::LastKnown(&"tGrip".into()));
+fn values_depend_on_stored_data_or_are_unknown() {
+    let stored = |text: &str| {
+        evaluated(text).origin.iter().find_map(|dependence| match dependence {
+            Dependence::Persistent(name) | Dependence::TrustedPersistent(name) => {
+                Some(name.to_string())
+            }
+            _ => None,
+        })
+    };
+    assert_eq!(stored("nTwo*nNever"), None);
+    assert_eq!(stored("nStored+1").as_deref(), Some("nStored"));
+    assert_eq!(stored("Twice(nStored)").as_deref(), Some("nStored"));
+    assert_eq!(stored("tGrip.tload.mass").as_deref(), Some("tGrip"));
     let value = evaluated("[nTwo, 3*CRobT().trans.x]");
-    let Knowledge::Unknown(unknown) = value.knowledge() else { unreachable!("it is not known") };
+    let Some(unknown) = value.datum.first_unknown() else { unreachable!("it is not known") };
     let text = format!("{MODULE}\nMODULE Extra\nCONST num nAsked:=[nTwo, 3*");
     assert_eq!(unknown.span.start as usize, text.len(), "where the doubt arises");
 }
