@@ -311,7 +311,7 @@ impl<'a> Work<'a> {
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
-        let mut problem = Reason::NoSaving;
+        let mut problem = None;
         for _ in 0..ATTEMPTS {
             let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
@@ -325,10 +325,10 @@ impl<'a> Work<'a> {
                         return Ok(self.retiming(attempt.stream, attempt.check, None));
                     }
                     Ok(attempt) => {
-                        problem = Reason::NoStream(attempt.check.fault());
+                        problem = Some(Reason::NoStream(attempt.check.fault()));
                         best = Some(attempt);
                     }
-                    Err(reason) => problem = reason,
+                    Err(reason) => problem = Some(reason),
                 }
             }
             match best {
@@ -336,7 +336,7 @@ impl<'a> Work<'a> {
                 None => margins.lighten(),
             }
         }
-        Err(problem)
+        Err(problem.unwrap_or_else(|| Reason::NoStream(String::new())))
     }
 
     /// The fastest stream made as slow, where the time is too short for more.
