@@ -243,7 +243,7 @@ impl RunProblem<'_> {
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
-        let mut problem = Reason::NoSaving;
+        let mut problem = None;
         for _ in 0..ATTEMPTS {
             let (grid, limits) = self.grid(&margins)?;
             let fast = fastest_profile(&grid, &limits)?;
@@ -257,10 +257,10 @@ impl RunProblem<'_> {
                         return Ok(self.retiming(attempt.stream, None));
                     }
                     Ok(attempt) => {
-                        problem = Reason::NoStream(attempt.check.fault());
+                        problem = Some(Reason::NoStream(attempt.check.fault()));
                         best = Some(attempt);
                     }
-                    Err(reason) => problem = reason,
+                    Err(reason) => problem = Some(reason),
                 }
             }
             match best {
@@ -268,7 +268,7 @@ impl RunProblem<'_> {
                 None => margins.lighten(),
             }
         }
-        Err(problem)
+        Err(problem.unwrap_or_else(|| Reason::NoStream(String::new())))
     }
 
     /// The fastest stream, slowed to the given time, where no better stream was found.

@@ -1,7 +1,7 @@
 //! The time of a cycle as the sharing of it sees it.
 
+use super::job::Original;
 use super::lowered::lateness;
-use super::original::Original;
 use super::settings::Settings;
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::emission_context::{EmissionContext, argument, compared, place};
-use super::original::Original;
+use super::job::Original;
 use super::relocated_waits::RelocatedWait;
 use crate::rapid::ir::movement::Argument;
 use crate::rapid::ir::number::number;

@@ -7,10 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::files::Source;
 use super::interrupts::written_by_interrupts;
 use super::settings::{Form, Settings};
+use super::statements::calls;
 use crate::rapid::builtins::{is_controller_specific, is_movement};
-use crate::rapid::ir::hir::{
-    ArgKind, Block, Callee, DataKind, Expr, ExprKind, Scope, StmtKind, UnaryOp,
-};
+use crate::rapid::ir::hir::{Arg, ArgKind, DataKind, Expr, ExprKind, Scope, UnaryOp};
 use crate::rapid::ir::movement::Argument;
 use crate::rapid::ir::program::{DataId, Program, RoutineId};
 use crate::rapid::ir::reads::{Reads, reads};
@@ -48,7 +47,14 @@ impl<'p> Guards<'p> {
             for (index, routine) in module.routines.iter().enumerate() {
                 let id = RoutineId { module: m, index };
                 for block in routine.blocks() {
-                    collect(block, id, &mut arguments);
+                    for (_, name, call) in calls(block) {
+                        if is_movement(&name.key) || name.key == "waittime" {
+                            let args = call.args.iter();
+                            let own = args.filter(|a| !matches!(a.kind, ArgKind::Conditional(..)));
+                            let own = own.filter_map(Arg::value);
+                            arguments.extend(own.map(|expr| (expr.span, (id, expr))));
+                        }
+                    }
                 }
             }
             for (index, data) in module.data.iter().enumerate() {
@@ -159,32 +165,6 @@ fn is_computed(expr: &Expr) -> bool {
         ExprKind::Unary(UnaryOp::Minus, number) => !matches!(number.kind, ExprKind::Num(_)),
         ExprKind::Aggregate(items) => items.iter().any(is_computed),
         _ => true,
-    }
-}
-
-/// The arguments of the movements and waits of a block.
-fn collect<'p>(
-    block: &'p Block,
-    routine: RoutineId,
-    found: &mut BTreeMap<Span, (RoutineId, &'p Expr)>,
-) {
-    for stmt in block {
-        if let StmtKind::Call(call) = &stmt.kind
-            && let Callee::Name(name) = &call.callee
-            && (is_movement(&name.key) || name.key == "waittime")
-        {
-            for arg in &call.args {
-                if let ArgKind::Positional(expr)
-                | ArgKind::Named(_, expr)
-                | ArgKind::Optional(_, Some(expr)) = &arg.kind
-                {
-                    found.insert(expr.span, (routine, expr));
-                }
-            }
-        }
-        for inner in stmt.kind.blocks() {
-            collect(inner, routine, found);
-        }
     }
 }
 

@@ -6,8 +6,8 @@
 use super::candidate::{Candidate, State, with_states};
 use super::error::RetrofitError;
 use super::files::{OutputFile, unchanged};
-use super::original::Original;
-use super::tolerances::ENDPOINT_TOLERANCE;
+use super::job::Original;
+use super::simulated::ENDPOINT_TOLERANCE;
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::Span;

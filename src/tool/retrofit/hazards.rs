@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::guards::Guards;
 use super::interrupts::interrupt_hazard;
 use super::settings::Form;
+use super::statements::calls;
 use crate::rapid::builtins::{self, Cause, is_movement};
 use crate::rapid::ir::hir::{BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::movement::Stop;
@@ -146,9 +147,8 @@ fn handlers(program: &Program) -> BTreeMap<Span, Reason> {
         let in_body = std::ptr::eq(block, &raw const routine.body);
         let why = if in_body { handler_of(routine) } else { Some("it stands in a handler".into()) };
         if let Some(why) = why {
-            movements(block, &mut |span| {
-                found.insert(span, Reason::Handler(why.clone()));
-            });
+            let movements = calls(block).filter(|(_, name, _)| is_movement(&name.key));
+            found.extend(movements.map(|(stmt, ..)| (stmt.span, Reason::Handler(why.clone()))));
         }
     }
     found
@@ -219,19 +219,4 @@ fn is_number(number: &Expr, cause: Cause) -> bool {
 
 fn routines(program: &Program) -> impl Iterator<Item = &Routine> {
     program.modules.iter().flat_map(|module| &module.routines)
-}
-
-/// Calls `found` with each movement statement of a block.
-fn movements(block: &Block, found: &mut dyn FnMut(Span)) {
-    for stmt in block {
-        if let StmtKind::Call(call) = &stmt.kind
-            && let Callee::Name(name) = &call.callee
-            && is_movement(&name.key)
-        {
-            found(stmt.span);
-        }
-        for inner in stmt.kind.blocks() {
-            movements(inner, found);
-        }
-    }
 }

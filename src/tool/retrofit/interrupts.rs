@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::statements::statements;
 use crate::rapid::builtins::{self, Function, Instruction, Source, is_movement, may_write};
 use crate::rapid::ir::hir::{Arg, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
@@ -28,11 +29,10 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
     let mut found = Vec::new();
     for (m, module) in program.modules.iter().enumerate() {
         for block in module.routines.iter().flat_map(Routine::blocks) {
-            let mut traps = Vec::new();
-            connected(block, &mut traps);
-            for trap in traps {
+            for stmt in statements(block) {
+                let StmtKind::Connect { trap, .. } = &stmt.kind else { continue };
                 let mut reach = Reach::default();
-                reach.call(program, m, &trap);
+                reach.call(program, m, &trap.text);
                 // A list of routines to look at, not a recursion: calls may be deep.
                 while let Some(id) = reach.open.pop() {
                     let routine = program.routine(id);
@@ -43,22 +43,11 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
                         reach.block(program, id.module, block);
                     }
                 }
-                found.push((trap, reach));
+                found.push((trap.text.clone(), reach));
             }
         }
     }
     found
-}
-
-fn connected(block: &Block, traps: &mut Vec<String>) {
-    for stmt in block {
-        if let StmtKind::Connect { trap, .. } = &stmt.kind {
-            traps.push(trap.text.clone());
-        }
-        for inner in stmt.kind.blocks() {
-            connected(inner, traps);
-        }
-    }
 }
 
 /// What an interrupt routine runs, directly or not.

@@ -1,9 +1,41 @@
 //! A program with the robot and the settings for which it is retrofitted.
 
-use super::original::Original;
+use super::candidate::Candidate;
+use super::files::Source;
+use super::lowered::Lowered;
 use super::settings::Settings;
+use super::simulated::Simulated;
 use crate::arm::robot::Model;
+use crate::rapid::ir::program::{Program, RoutineId};
 use crate::retime::energy::plausible::Robots;
+use crate::retime::motion::timeline::{Run, What};
+use crate::retime::optimize::site::Site;
+
+/// The original program: its text, its cycle, and the places where it may change.
+pub(super) struct Original<'a> {
+    pub(super) files: &'a [Source],
+    pub(super) program: &'a Program,
+    pub(super) entry: RoutineId,
+    pub(super) cycle: Simulated,
+    pub(super) sites: Vec<Site>,
+    /// Its cycle under lower limits than assumed.
+    pub(super) lowered: Vec<Lowered>,
+}
+
+impl Original<'_> {
+    /// The events in which a candidate runs, as indices of the simulation's.
+    pub(super) fn events(&self, candidate: &Candidate) -> &[usize] {
+        &self.sites[candidate.site].variants[candidate.variant].events
+    }
+
+    /// The first run of a candidate; all of them are alike.
+    pub(super) fn run(&self, candidate: &Candidate) -> Option<&Run> {
+        match &self.cycle.simulation.events[*self.events(candidate).first()?].what {
+            What::Run(run) => Some(run),
+            _ => None,
+        }
+    }
+}
 
 /// What all stages work on.
 pub(super) struct Job<'a> {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::figures::{Figures, Segment, SegmentKind};
-use super::original::Original;
+use super::job::Original;
 use super::padding::Padding;
 use super::settings::{Budget, Objective, Settings};
 use super::simulated::Simulated;

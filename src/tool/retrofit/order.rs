@@ -1,6 +1,6 @@
 //! The order of what a program does, before and after.
 
-use super::tolerances::ENDPOINT_TOLERANCE;
+use super::simulated::ENDPOINT_TOLERANCE;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timed::TimedMotion;
 use crate::retime::motion::timeline::{Event, Run, What};

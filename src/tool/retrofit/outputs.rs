@@ -7,7 +7,7 @@ use super::emission_context::EmissionContext;
 use super::emitted_sites::{emitted_site, emitted_wait};
 use super::error::RetrofitError;
 use super::files::{OutputFile, unchanged};
-use super::original::Original;
+use super::job::Original;
 use super::relocated_waits::RelocatedWait;
 use crate::rapid::text::{self, SourceFile, Span};
 use crate::tool::emit;

@@ -5,8 +5,7 @@
 //! open brakes. Without this wait the base load of the longer cycle would count for one side
 //! only.
 
-use super::simulated::Simulated;
-use super::tolerances::TIME_TOLERANCE;
+use super::simulated::{Simulated, TIME_TOLERANCE};
 use crate::arm::robot::Model;
 use crate::retime::energy::EnergyParts;
 use crate::retime::energy::account::at_rest;

@@ -12,9 +12,8 @@ use super::goals::{check_factor, goals};
 use super::guards::Guards;
 use super::guided::guided;
 use super::hazards::marked_sites;
-use super::job::Job;
+use super::job::{Job, Original};
 use super::lowered::lowered;
-use super::original::Original;
 use super::planning::Planning;
 use super::read::read_program;
 use super::relocated_waits::relocated_waits;
@@ -30,7 +29,6 @@ use crate::arm::robot::{Model, Use, ready};
 use crate::retime::energy::plausible::Robots;
 use crate::retime::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::retime::optimize::idle::dwells;
-use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::PathUse;
 
 /// Retrofits a program. `progress` is told how many of how many pieces are done.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::candidate::{Candidate, State};
 use super::figures::{Segment, SegmentKind};
-use super::original::Original;
+use super::job::Original;
 use super::relocated_waits::RelocatedWait;
 use super::simulated::Simulated;
 use crate::rapid::text::Span;

@@ -8,6 +8,11 @@ use crate::retime::motion::timeline::What;
 use crate::retime::motion::{Options, Simulation, simulate};
 use crate::retime::path::joint_path::Joints;
 
+/// Rounding of a time, s.
+pub(super) const TIME_TOLERANCE: f64 = 1e-6;
+/// Distance of a joint from where it should be, after the rounding of emitted text, rad.
+pub(super) const ENDPOINT_TOLERANCE: f64 = 1e-4;
+
 /// One cycle of a program with its energy.
 pub(super) struct Simulated {
     pub(super) simulation: Simulation,

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::files::Source;
+use super::statements::calls;
 use crate::rapid::builtins::{MoveForm, movement};
-use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use crate::rapid::ir::hir::{Arg, ArgKind, Expr, ExprKind, Routine};
 use crate::rapid::ir::program::Program;
 use crate::rapid::text::Span;
 
@@ -20,8 +21,21 @@ pub(super) struct Argument {
 pub(super) fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<Span, Argument> {
     let mut found = BTreeMap::new();
     let routines = program.modules.iter().flat_map(|module| &module.routines);
-    for block in routines.flat_map(Routine::blocks) {
-        of_block(block, &|speed| argument(program, files, speed), &mut found);
+    for (stmt, name, call) in routines.flat_map(Routine::blocks).flat_map(calls) {
+        let Some(signature) = movement(&name.key) else { continue };
+        let via = usize::from(signature.form == MoveForm::Circular);
+        let mut positional =
+            call.args.iter().filter(|arg| matches!(arg.kind, ArgKind::Positional(_)));
+        let speed = positional.nth(signature.before + via + 1).and_then(Arg::value);
+        let plain = call.args.iter().all(|arg| match &arg.kind {
+            ArgKind::Positional(_) => true,
+            ArgKind::Optional(name, _) => name.key != "v" && name.key != "t",
+            ArgKind::Named(name, _) => name.key == "wobj" || name.key == "z",
+            ArgKind::Conditional(..) => false,
+        });
+        let speed = speed.filter(|_| plain);
+        let argument = speed.and_then(|speed| argument(program, files, speed));
+        found.extend(argument.map(|argument| (stmt.span, argument)));
     }
     found
 }
@@ -59,38 +73,5 @@ fn is_datum(expr: &Expr) -> bool {
             is_datum(base) && indices.iter().all(is_index)
         }
         _ => false,
-    }
-}
-
-fn of_block(
-    block: &Block,
-    argument: &dyn Fn(&Expr) -> Option<Argument>,
-    found: &mut BTreeMap<Span, Argument>,
-) {
-    for stmt in block {
-        if let StmtKind::Call(call) = &stmt.kind
-            && let Callee::Name(name) = &call.callee
-            && let Some(signature) = movement(&name.key)
-        {
-            let via = usize::from(signature.form == MoveForm::Circular);
-            let mut positional =
-                call.args.iter().filter(|arg| matches!(arg.kind, ArgKind::Positional(_)));
-            let speed = positional.nth(signature.before + via + 1);
-            let plain = call.args.iter().all(|arg| match &arg.kind {
-                ArgKind::Positional(_) => true,
-                ArgKind::Optional(name, _) => name.key != "v" && name.key != "t",
-                ArgKind::Named(name, _) => name.key == "wobj" || name.key == "z",
-                ArgKind::Conditional(..) => false,
-            });
-            if let Some(Arg { kind: ArgKind::Positional(speed), .. }) = speed
-                && plain
-                && let Some(argument) = argument(speed)
-            {
-                found.insert(stmt.span, argument);
-            }
-        }
-        for inner in stmt.kind.blocks() {
-            of_block(inner, argument, found);
-        }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::candidate::{Candidate, State, with_states};
-use super::original::Original;
+use super::job::Original;
 use super::settings::Settings;
 use super::speed_arguments::{Argument, speed_arguments};
 use crate::rapid::ir::movement::Speed;

@@ -1,7 +1,7 @@
 //! What a retrofit saves over plausible robots.
 
 use super::candidate::{Candidate, State};
-use super::original::Original;
+use super::job::Original;
 use super::padding::Padding;
 use super::simulated::Simulated;
 use crate::arm::robot::Model;

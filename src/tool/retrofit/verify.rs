@@ -6,14 +6,13 @@ use super::candidate::Candidate;
 use super::error::RetrofitError;
 use super::figures::Verification;
 use super::files::{OutputFile, OutputKind, Source, read_again};
+use super::job::Original;
 use super::order::same_order;
-use super::original::Original;
 use super::read::read_program;
 use super::relocated_waits::{Fault, RelocatedWait, folded};
 use super::settings::{Budget, Settings};
-use super::simulated::Simulated;
+use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
-use super::tolerances::TIME_TOLERANCE;
 use super::{verify_speeds, verify_streams};
 use crate::arm::robot::Model;
 use crate::rapid::syntax;
@@ -195,5 +194,64 @@ fn keeps_cycle(budget: Budget, before_s: f64, after_s: f64) -> bool {
         Budget::AsBefore => after_s <= before_s + TIME_TOLERANCE,
         Budget::Takt(takt) => after_s <= takt.max(before_s) + TIME_TOLERANCE,
         Budget::Factor(_) => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+    use super::super::files::unchanged;
+    use super::*;
+    use crate::arm::robot::find;
+    use crate::rapid::text::{FileId, SourceFile};
+
+    const PROGRAM: &str = "MODULE m\n\
+        CONST robtarget pC:=[[850,300,1000],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+        PROC main()\n\
+        MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\n\
+        MoveJ pC,v500,fine,tool0;\n\
+        SetDO doA,1;\nWaitTime 0.5;\nSetDO doB,1;\n\
+        ENDPROC\nENDMODULE\n";
+
+    /// Whether the program holds as before with some text in place of other text.
+    fn holds(from: &str, to: &str, rewrite: Rewrite<'_>) -> bool {
+        let file = SourceFile::new(FileId(0), "m.mod".into(), PROGRAM.into());
+        let files = [Source { file, relative: "m.mod".into() }];
+        let (model, settings) = (find("IRB1600-10/1.45").unwrap(), Settings::default());
+        let (program, entry) = read_program(&files, "main").unwrap();
+        let cycle = Simulated::new(&program, entry, &model, &settings.options);
+        assert_eq!((cycle.simulation.events.len(), cycle.simulation.unresolved.len()), (5, 0));
+        let (sites, lowered) = (Vec::new(), Vec::new());
+        let original = Original { files: &files, program: &program, entry, cycle, sites, lowered };
+        let mut outputs = unchanged(&files);
+        let text = PROGRAM.replace(from, to);
+        outputs[0] = OutputFile::changed(0, &files[0], text.into_bytes());
+        let attempt = verify(&original, &outputs, &model, &settings, rewrite);
+        let order = "movements, waits and outputs come in the same order";
+        let checks = &attempt.verification.checks;
+        let held = checks.iter().find(|(what, _)| what == order).unwrap().1;
+        assert_eq!(held, attempt.verification.passed, "{checks:?}");
+        held
+    }
+
+    #[test]
+    fn another_order_in_the_emitted_text_fails() {
+        let rewrites = [
+            Rewrite::Speeds { slots: &[], factors: &[] },
+            Rewrite::Streams { candidates: &[], waits: &[] },
+        ];
+        for rewrite in rewrites {
+            assert!(holds("", "", rewrite));
+            assert!(!holds("WaitTime 0.5;", "SetDO doA,0;WaitTime 0.5;", rewrite));
+        }
+        let speeds = rewrites[0];
+        assert!(!holds(
+            "SetDO doA,1;\nWaitTime 0.5;\nSetDO doB,1;",
+            "SetDO doB,1;\nWaitTime 0.5;\nSetDO doA,1;",
+            speeds
+        ));
+        assert!(!holds("SetDO doA,1;\nWaitTime 0.5;", "WaitTime 0.5;\nSetDO doA,1;", speeds));
+        assert!(!holds("MoveJ pC", "MoveL pC", speeds));
     }
 }

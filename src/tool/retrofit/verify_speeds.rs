@@ -1,6 +1,6 @@
 //! The verification of other programmed speeds: the same path, and no speed above a ceiling.
 
-use super::original::Original;
+use super::job::Original;
 use super::settings::Settings;
 use super::speed_slots::Slot;
 use crate::arm::dynamics::Data;

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::candidate::Candidate;
+use super::job::Original;
 use super::order::same_event;
-use super::original::Original;
 use super::settings::Settings;
-use super::tolerances::{ENDPOINT_TOLERANCE, TIME_TOLERANCE};
+use super::simulated::{ENDPOINT_TOLERANCE, TIME_TOLERANCE};
 use crate::arm::robot::Model;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::stream::Stream;
