@@ -164,6 +164,7 @@ mod tests {
 
     use std::f64::consts::TAU;
 
+    use super::super::uniform::Section;
     use super::*;
 
     const STEP: f64 = 0.01;
