@@ -251,6 +251,11 @@ pub mod dynamics {
     };
 }
 
+/// What robots have beyond rigid bodies and plain friction: a register of laws.
+pub mod effects {
+    pub use crate::arm::effects::{ALL, Channel, Effect, Parameter, Scope, find};
+}
+
 /// The virtual controller: a program becomes a timed motion.
 pub mod motion {
     pub use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};

@@ -37,7 +37,6 @@ use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::rule::Finding;
 use super::super::stops::{is_in_line, stops_for_movements, with_zone};
-use crate::rapid::builtins::MoveForm;
 
 rule!("EW102", "stop-in-line", Stops, Text, Warning, "stop_in_line.rs");
 
