@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use rust_source::tokens;
+use rust_source::tokens::tokens;
 
 /// Terms that the glossary has at least.
 const MIN_TERMS: usize = 40;

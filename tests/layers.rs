@@ -6,6 +6,7 @@ mod layer_paths;
 mod rust_source;
 
 use std::collections::BTreeSet;
+use std::fs;
 
 use layer_paths::circles::circles;
 use layer_paths::{Named, named};
@@ -318,13 +319,11 @@ fn documentation_shows_the_rooms() {
         [] => room.name.to_owned(),
         imports => format!("{}({})", room.name, imports.join(", ")),
     };
-    let table: String = WINGS
-        .iter()
-        .map(|wing| {
-            let rooms: Vec<String> = wing.rooms.iter().map(shown).collect();
-            format!("{}/\n    {}\n", wing.name, rooms.join("\n    "))
-        })
-        .collect();
+    let shown = |wing: &Wing| {
+        let rooms: Vec<String> = wing.rooms.iter().map(shown).collect();
+        [wing.name, "/\n    ", &rooms.join("\n    "), "\n"].concat()
+    };
+    let table: String = WINGS.iter().map(shown).collect();
     let text = include_str!("../docs/architecture.md");
     assert!(text.contains(&format!("```\n{table}```")), "docs/architecture.md lacks:\n{table}");
 }
@@ -424,4 +423,40 @@ fn unused_entries_are_found() {
     };
     assert!(unused("pub struct Nothing;"));
     assert!(!unused("use crate::rapid::text::Span;"));
+}
+
+/// Each public module of the front door with the names that it exports, the root first.
+fn exported(source: &str) -> String {
+    let mut shown = String::new();
+    for part in source.split("\npub mod ") {
+        let name = part.split_once(" {").map_or("", |(name, _)| name);
+        let name = if name.chars().all(char::is_alphanumeric) { name } else { "crate" };
+        let exports = part.split("pub use ").skip(1).map(|text| format!("use {text}"));
+        let mut names: Vec<String> = exports
+            .flat_map(|text| named("src/lib.rs", &text))
+            .filter_map(|named| named.path.last().cloned())
+            .collect();
+        names.sort();
+        shown += &format!("{name}: {}\n", names.join(", "));
+    }
+    shown
+}
+
+#[test]
+fn exported_names_are_these() {
+    let source = fs::read_to_string("src/lib.rs").unwrap();
+    // The modules of the front door stand behind the declarations of the wings.
+    let doors = source.rfind("pub mod tool;").unwrap() + "pub mod tool;".len();
+    insta::assert_snapshot!("exported_names", exported(&source[doors..]));
+}
+
+#[test]
+fn wings_are_private_or_hidden() {
+    let source = fs::read_to_string("src/lib.rs").unwrap();
+    for wing in &WINGS {
+        let wing = wing.name;
+        let private = format!("#[cfg(not(feature = \"internals\"))]\nmod {wing};\n");
+        let hidden = format!("#[cfg(feature = \"internals\")]\n#[doc(hidden)]\npub mod {wing};\n");
+        assert!(source.contains(&private) && source.contains(&hidden), "{wing}");
+    }
 }

@@ -4,10 +4,11 @@
 
 mod rust_source;
 
-use rust_source::{Token, files, tokens};
+use rust_source::files;
+use rust_source::tokens::{Token, tokens};
 
 /// Lines beyond which a file has more than one purpose.
-const MAX_LINES: usize = 600;
+const MAX_LINES: usize = 500;
 
 /// Stands for the rest of an attribute that gives no reason.
 const BARE: &str = "";

@@ -2,7 +2,7 @@
 
 pub(crate) mod circles;
 
-use crate::rust_source::{Token, tokens};
+use crate::rust_source::tokens::{Token, tokens};
 
 /// A path with `use` groups written out and `self` and `super` resolved.
 pub(crate) struct Named {

@@ -1,11 +1,9 @@
 //! Rust sources as tokens: enough to ask which paths and macros they name.
 
-mod tokens;
+pub(crate) mod tokens;
 
 use std::fs;
 use std::path::Path;
-
-pub(crate) use tokens::{Token, tokens};
 
 /// A file of the crate.
 #[derive(Clone)]

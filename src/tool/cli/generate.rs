@@ -1,5 +1,6 @@
 //! `joulepath generate`: points or a trajectory in CSV become RAPID.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -125,13 +126,16 @@ fn json(robot: &str, generated: &Generated, written: &[String]) -> serde_json::V
 fn text(generated: &Generated, written: &[String]) -> String {
     let mut text = format!("{} points, {:.3} s\n", generated.points, generated.duration_s);
     if let Some(measure) = &generated.measure {
-        text += &format!(
-            "of the limits: speed {:.0} %, acceleration {:.0} %, torque {:.0} %\n",
+        let _ = writeln!(
+            text,
+            "of the limits: speed {:.0} %, acceleration {:.0} %, torque {:.0} %",
             100.0 * measure.velocity,
             100.0 * measure.acceleration,
             100.0 * measure.torque
         );
     }
-    written.iter().for_each(|path| text += &format!("wrote {path}\n"));
+    for path in written {
+        let _ = writeln!(text, "wrote {path}");
+    }
     text
 }

@@ -437,7 +437,9 @@ fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         done.extend(undo::undo(path)?);
     }
     if args.program.format == Format::Text {
-        done.iter().for_each(|text| common::note(cell.quiet, text));
+        for text in &done {
+            common::note(cell.quiet, text);
+        }
     }
     common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)?;
     Ok(ExitCode::SUCCESS)

@@ -61,7 +61,9 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         common::note(args.program.cell.quiet, &text);
     }
     if args.program.format == Format::Text {
-        assumed.iter().for_each(|text| common::note(args.program.cell.quiet, text));
+        for text in &assumed {
+            common::note(args.program.cell.quiet, text);
+        }
     }
     common::print(
         args.program.format,

@@ -120,7 +120,9 @@ fn write(
             let number = index + 1;
             let _ = writeln!(text, "test {number}: {}: {points} points, {seconds:.2} s", test.what);
         }
-        outputs.iter().for_each(|path| text += &format!("wrote {path}\n"));
+        for path in &outputs {
+            let _ = writeln!(text, "wrote {path}");
+        }
         text
     };
     common::print(args.format, json, text)?;

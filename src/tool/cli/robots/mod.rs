@@ -60,5 +60,5 @@ pub fn run(args: &RobotsArgs) -> anyhow::Result<ExitCode> {
 
 fn list(format: Format) -> anyhow::Result<()> {
     let json = || json!({ "robots": robot::names().collect::<Vec<_>>() });
-    print(format, json, || robot::names().map(|name| format!("{name}\n")).collect())
+    print(format, json, || robot::names().flat_map(|name| [name, "\n"]).collect())
 }
