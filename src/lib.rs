@@ -203,7 +203,7 @@ pub mod retime;
 #[doc(hidden)]
 pub mod tool;
 
-pub use tool::cli::main as command_line;
+pub use tool::cli::command_line;
 
 /// RAPID text, its tokens and its lossless syntax tree.
 pub mod syntax {

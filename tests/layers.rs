@@ -427,19 +427,19 @@ fn unused_entries_are_found() {
 
 /// Each public module of the front door with the names that it exports, the root first.
 fn exported(source: &str) -> String {
-    let mut shown = String::new();
-    for part in source.split("\npub mod ") {
+    let module = |part: &str| {
         let name = part.split_once(" {").map_or("", |(name, _)| name);
-        let name = if name.chars().all(char::is_alphanumeric) { name } else { "crate" };
+        let name =
+            if name.is_empty() || name.contains(char::is_whitespace) { "crate" } else { name };
         let exports = part.split("pub use ").skip(1).map(|text| format!("use {text}"));
         let mut names: Vec<String> = exports
             .flat_map(|text| named("src/lib.rs", &text))
             .filter_map(|named| named.path.last().cloned())
             .collect();
         names.sort();
-        shown += &format!("{name}: {}\n", names.join(", "));
-    }
-    shown
+        [name, ": ", &names.join(", "), "\n"].concat()
+    };
+    source.split("\npub mod ").map(module).collect()
 }
 
 #[test]

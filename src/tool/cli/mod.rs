@@ -70,7 +70,7 @@ enum Command {
 
 /// Runs the command that the arguments ask for.
 #[must_use]
-pub fn main() -> ExitCode {
+pub fn command_line() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Parse(args) => parse::run(&args),
         Command::Lint(args) => lint::run(&args),
