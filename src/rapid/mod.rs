@@ -1,5 +1,11 @@
 //! The language: RAPID text, its syntax, and what a program does, as far as its text tells.
 //!
+//! - [`text`]: files, byte spans, encodings, edits;
+//! - [`syntax`]: a lexer and parser that never fail and lose no byte;
+//! - [`diagnostics`]: messages with their place in the source;
+//! - [`builtins`]: the table of RAPID's instructions, functions, types and predefined data;
+//! - [`ir`]: modules, symbols, values, and the execution to movements, waits and outputs.
+//!
 //! It uses no other wing: it knows no robot.
 
 pub mod builtins;

@@ -1,4 +1,11 @@
-//! What users call: the retrofit, linter, emitted RAPID, reports, command line and language server.
+//! What users call and see.
+//!
+//! - [`emit`], [`retrofit`], [`generate`]: RAPID text from streams, the main job, programs from points;
+//! - [`lint`]: wasted energy, with joules and fixes;
+//! - [`report`]: results as text, JSON and HTML;
+//! - [`config`]: `joulepath.toml`;
+//! - `lsp`: the language server;
+//! - [`cli`]: the commands.
 //!
 //! It uses all other wings.
 
