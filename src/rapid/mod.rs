@@ -1,6 +1,5 @@
-//! The language: RAPID text, its syntax, and what a program does, as far as its text tells.
-//!
-//! It uses no other wing: it knows no robot.
+//! RAPID: text, syntax and the effects of a program that follow from its text alone.
+//! Independent of the robot and of the other wings.
 
 pub mod builtins;
 pub mod diagnostics;
