@@ -34,7 +34,7 @@ pub struct Function {
     arguments: &'static str,
     /// What its value depends on.
     pub source: Source,
-    /// Whether its value does not depend on whether the robot has reached its target.
+    /// True if its value is the same before and after the robot reaches its target.
     pub on_the_fly: bool,
 }
 

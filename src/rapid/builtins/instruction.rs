@@ -192,7 +192,7 @@ pub struct Instruction {
     writes: Writes,
     /// Its effect on the simulation.
     pub effect: Effect,
-    /// Whether its effect does not depend on whether the robot has reached its target: settings for
+    /// True if its effect is the same before and after the robot reaches its target: settings for
     /// the next movement, counters, messages.
     pub on_the_fly: bool,
     /// Whether it changes how movements run, or discards the rest of a path.

@@ -390,7 +390,7 @@ pub enum ArgKind {
     Named(Ident, Expr),
     /// `\name := expr`, or `\name` for a switch.
     Optional(Ident, Option<Expr>),
-    /// `\name ? parameter`: given if the parameter is.
+    /// `\name ? parameter`: stated only if the call of the routine states the parameter.
     Conditional(Ident, Expr),
 }
 
@@ -428,7 +428,7 @@ pub enum ExprKind {
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// `*` in place of a position.
     AnyPosition,
-    /// `<EXP>` and its like, or an omitted value.
+    /// A placeholder such as `<EXP>`, or an omitted value.
     Placeholder,
     /// A syntax error.
     Broken,

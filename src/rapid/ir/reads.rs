@@ -16,7 +16,7 @@ pub struct Reads {
     pub data: BTreeSet<DataId>,
     /// Whether it reads a parameter that is passed by reference.
     pub by_reference: bool,
-    /// Names that no module declares: signals, presumably.
+    /// Names that no module declares, assumed to be signals.
     pub signals: BTreeSet<String>,
     /// Whether it consists only of literals and built-in names: its value never changes.
     pub fixed: bool,

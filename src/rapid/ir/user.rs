@@ -1,4 +1,4 @@
-//! The data of the module `user`, which every controller has but the input rarely contains.
+//! The data of the module `user`, which every controller has but the given files rarely contain.
 
 use std::sync::Arc;
 

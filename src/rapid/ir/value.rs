@@ -15,7 +15,7 @@ pub enum Datum {
     Text(Arc<str>),
     /// Record or array, components in order.
     List(Vec<Datum>),
-    /// A name that no module declares: an I/O signal of the system, presumably.
+    /// A name that no module declares, assumed to be an I/O signal of the system.
     Signal(Arc<str>),
     /// Unknown, with the reason.
     Unknown(Arc<Unknown>),

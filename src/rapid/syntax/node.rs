@@ -168,7 +168,7 @@ impl NodeKind {
         (NodeKind::AnyPosition..=NodeKind::BinaryExpression).contains(&self)
     }
 
-    /// Whether the production is a statement, but no data, empty statement or placeholder.
+    /// Whether the production is a statement other than data, an empty one or a placeholder.
     #[must_use]
     pub fn is_statement(self) -> bool {
         matches!(

@@ -13,7 +13,7 @@ pub(super) enum Condition {
     Known(bool),
     /// It depends on inputs at assumed levels.
     Assumed(bool),
-    /// The reason, in parentheses.
+    /// Unknown, with the reason in parentheses.
     Unknown(String),
 }
 

@@ -16,11 +16,11 @@ pub trait Machine {
     fn repeats(&mut self) {}
     /// The program left the loop that [`Machine::repeats`] announced.
     fn leaves_loop(&mut self) {}
-    /// Whether an input has changed, if its time is known. Once it has, the time restarts.
+    /// Whether an input has changed, if its time is known; if so, its next delay starts then.
     fn has_come(&mut self, _signal: &str) -> Option<bool> {
         None
     }
-    /// Time until an input changes, if known, s.
+    /// Time, from the start of the program, at which an input changes, if known, s.
     fn comes_at(&mut self, _signal: &str) -> Option<f64> {
         None
     }

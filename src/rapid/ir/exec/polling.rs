@@ -41,7 +41,7 @@ impl Mark {
 
 /// The kind of a pass.
 pub(super) enum Pass {
-    /// The loop does not depend on an input.
+    /// The loop continues for a reason other than an input.
     Ordinary,
     /// The input has not changed: another pass follows.
     Waiting,
@@ -49,7 +49,7 @@ pub(super) enum Pass {
     Came,
     /// The last pass: the loop ended before the input changed.
     TimedOut,
-    /// Equal to all passes that follow.
+    /// The loop does not end.
     Endless,
 }
 

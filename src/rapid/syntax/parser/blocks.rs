@@ -72,7 +72,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Number of tokens of `ENIDF`, `END IF`, `END` or `END_IF` for `ENDIF`, alone on its line, or 0.
+    /// Number of tokens of `ENIDF`, `END IF`, `END`, `END_IF` for `ENDIF`, alone on its line, or 0.
     fn misspelling(&mut self, closer: TokenKind) -> usize {
         let foreign = self.foreign_closer(closer);
         if foreign > 0 {
