@@ -59,7 +59,7 @@ pub fn is_of_move_family(name: &str) -> bool {
     instruction(&name.to_ascii_lowercase()).is_some_and(Instruction::is_of_move_family)
 }
 
-/// Whether a call of this name (lower case), not declared in the program, may write to its arguments.
+/// Whether an undeclared procedure of this name (lower case) may write to its arguments.
 pub fn may_write(key: &str) -> bool {
     instruction(key).is_none_or(Instruction::may_write)
 }
