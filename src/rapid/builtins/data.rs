@@ -2,23 +2,23 @@
 //!
 //! Values: RAPID reference of `RobotWare` 6 (speeddata, zonedata, stoppointdata).
 
-/// Speeds that exist as `vN`, mm/s; the last two in `RobotWare` 5 and later.
+/// Predefined speeds `vN`, mm/s; the last two in `RobotWare` 5 and later.
 const SPEEDS: [u32; 25] = [
     5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500,
     3000, 4000, 5000, 6000, 7000,
 ];
-/// TCP speed of `vmax` where the robot does not state another, mm/s.
+/// TCP speed of `vmax` unless the robot states another, mm/s.
 const VMAX: f64 = 7000.0;
-/// Reorientation, linear and rotating external axis speed of all `vN`.
+/// Speeds of reorientation (°/s), linear (mm/s) and rotating (°/s) external axes of all `vN`.
 const OTHER_SPEEDS: [f64; 3] = [500.0, 5000.0, 1000.0];
 
-/// Speeds of turning external axes that exist as `vrotN`, °/s.
+/// Predefined speeds `vrotN` of rotating external axes, °/s.
 const TURNING: [u32; 7] = [1, 2, 5, 10, 20, 50, 100];
-/// Speeds of linear external axes that exist as `vlinN`, mm/s.
+/// Predefined speeds `vlinN` of linear external axes, mm/s.
 const LINEAR: [u32; 7] = [10, 20, 50, 100, 200, 500, 1000];
 /// Stop points `inposN`: % of the errors of position and speed that `fine` allows.
 const IN_POSITION: [u32; 3] = [20, 50, 100];
-/// Longest time that they wait, s.
+/// Longest waiting time of `inposN`, s.
 const IN_POSITION_WAIT: f64 = 2.0;
 /// Stop points `stoptimeT` and `fllwtimeT`, s.
 const STOP_TIMES: [(&str, f64); 3] = [("0_5", 0.5), ("1_0", 1.0), ("1_5", 1.5)];
@@ -42,18 +42,18 @@ const ZONES: [(&str, [f64; 6]); 15] = [
     ("fine", [0.0; 6]),
 ];
 
-/// What raises an error.
+/// The cause of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// A movement without process or `\Conc`, while it runs.
     Movement,
-    /// The evaluation of an argument: a division, an element that there is not.
+    /// The evaluation of an argument: a division by zero, an index out of range.
     Argument,
     /// Something else.
     Other,
 }
 
-/// Error numbers that handlers compare `ERRNO` with; a number stands for itself. Sorted by name.
+/// Error numbers for comparison with `ERRNO`, and their causes. Sorted by name.
 const ERRORS: [(&str, Cause); 21] = [
     ("ERR_ACC_TOO_LOW", Cause::Other),
     ("ERR_AO_LIM", Cause::Other),
@@ -77,7 +77,7 @@ const ERRORS: [(&str, Cause); 21] = [
     ("ERR_WHLSEARCH", Cause::Other),
     ("LONG_JMP_ALL_ERR", Cause::Movement),
 ];
-/// Error numbers that have no value here: a comparison with one is not followed.
+/// Error numbers without a value here: a comparison with one is not evaluated.
 const WITHOUT_VALUE: [&str; 3] = ["ERR_ARRAYINDEX", "ERR_COLL_STOP", "LONG_JMP_ALL_ERR"];
 
 /// A value.
@@ -111,8 +111,8 @@ fn error_entry(key: &str) -> Option<(&'static str, Cause)> {
     ERRORS.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(key))
 }
 
-/// Whether the predefined data of this name (lower case) differ from controller to controller: the
-/// value of `vmax` is the robot's own, and versions differ in what `tool0`, `wobj0` and `load0` hold.
+/// Whether predefined data of this name (lower case) differ between controllers: `vmax` depends
+/// on the robot; `tool0`, `wobj0` and `load0` depend on the version.
 pub fn is_controller_specific(key: &str) -> bool {
     matches!(key, "vmax" | "tool0" | "wobj0" | "load0")
 }
@@ -175,7 +175,7 @@ fn numbered(key: &str) -> Option<Predefined> {
     known(key.strip_prefix('v')?, &SPEEDS).map(|v| speed([v, ori, leax, reax]))
 }
 
-/// The number in a name, if it is one of the list.
+/// The number in a name, if the list contains it.
 fn known(text: &str, list: &[u32]) -> Option<f64> {
     let number: u32 = text.parse().ok()?;
     list.contains(&number).then_some(f64::from(number))
@@ -185,7 +185,7 @@ fn nums<const N: usize>(values: [f64; N]) -> Literal {
     Literal::List(values.map(Literal::Num).to_vec())
 }
 
-/// The controller refuses a mass of 0: `tool0` and `load0` weigh a gram.
+/// The mass of `tool0` and `load0` is 1 g: the controller rejects a mass of 0.
 fn light_load() -> Literal {
     let mut parts = vec![Literal::Num(0.001), nums([0.0, 0.0, 0.001]), nums([1.0, 0.0, 0.0, 0.0])];
     parts.extend([0.0; 3].map(Literal::Num));
@@ -201,7 +201,7 @@ fn speed(speeds: [f64; 4]) -> Predefined {
     Predefined { type_name: "speeddata", value: nums(speeds) }
 }
 
-/// A stop point of this type: % of the errors of `fine`, time of standing and of following, s.
+/// A stop point of this type: % of the errors of `fine`, stop time and follow time, s.
 fn stop(kind: f64, percent: f64, stands: f64, follows: f64) -> Predefined {
     let inpos = if percent > 0.0 { [percent, percent, 0.0, IN_POSITION_WAIT] } else { [0.0; 4] };
     let value = Literal::List(vec![

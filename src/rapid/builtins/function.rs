@@ -1,54 +1,54 @@
-//! What is known of a function.
+//! Properties of a built-in function.
 
 use super::parameter::positional;
 use super::types::SignalKind;
 
-/// Where the value of a function comes from.
+/// What the value of a function depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// From its arguments alone; `ir/functions` calculates it.
+    /// Only its arguments; `ir/functions` calculates it.
     Arguments,
-    /// From its arguments alone, but nothing here calculates it.
+    /// Only its arguments, but it is not implemented.
     NotCalculated,
-    /// From the call of the routine: `Present`.
+    /// The call of the routine: `Present`.
     Call,
-    /// From the signal that is its argument.
+    /// The signal that is its argument.
     Signal,
-    /// From where the robot stands.
+    /// The position of the robot.
     Position,
-    /// From the arm's kinematics.
+    /// The kinematics of the robot.
     Kinematics,
-    /// From where mechanical units are mounted.
+    /// The mounting of mechanical units.
     Mounting,
-    /// From files, clock and mode of the controller.
+    /// Files, clock or mode of the controller.
     Controller,
-    /// From what the program or the operator did before.
+    /// Earlier actions of the program or the operator.
     State,
 }
 
-/// One of RAPID's functions.
+/// A built-in function.
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
     /// As RAPID writes it.
     pub name: &'static str,
     arguments: &'static str,
-    /// Where its value comes from.
+    /// What its value depends on.
     pub source: Source,
-    /// Whether it is of no concern to its value whether the robot has arrived.
+    /// True if its value is the same before and after the robot reaches its target.
     pub on_the_fly: bool,
 }
 
-/// A function that [`Source::Arguments`] gives.
+/// A function with [`Source::Arguments`].
 pub(super) const fn calculated(name: &'static str, arguments: &'static str) -> Function {
     Function { name, arguments, source: Source::Arguments, on_the_fly: true }
 }
 
-/// The same for a function of `dnum`. That it needs no robot that has arrived is not made use of.
+/// The same for a function of `dnum`, without `on_the_fly`.
 pub(super) const fn calculated_dnum(name: &'static str, arguments: &'static str) -> Function {
     Function { on_the_fly: false, ..calculated(name, arguments) }
 }
 
-/// A function whose value comes from elsewhere.
+/// A function with another source.
 pub(super) const fn from(source: Source, name: &'static str, arguments: &'static str) -> Function {
     let on_the_fly = matches!(source, Source::NotCalculated | Source::Call);
     Function { name, arguments, source, on_the_fly }
@@ -64,7 +64,7 @@ impl Function {
         positional(self.arguments).next()?.signal()
     }
 
-    /// Whether it is known to leave its arguments as they are.
+    /// Whether it is known not to write to its arguments.
     pub fn only_reads(&self) -> bool {
         matches!(
             self.source,

@@ -1,4 +1,4 @@
-//! The functions.
+//! The table of built-in functions.
 
 use super::function::Source::{
     Call, Controller, Kinematics, Mounting, NotCalculated, Position, Signal, State,

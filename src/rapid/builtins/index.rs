@@ -23,7 +23,7 @@ static BY_NAME: LazyLock<HashMap<String, &Instruction>> = LazyLock::new(|| {
     all.map(|entry| (entry.name.to_lowercase(), entry)).collect()
 });
 
-/// Worked out once: the executor asks for each movement that it runs.
+/// Computed once, because the executor needs one for each movement.
 static SIGNATURES: LazyLock<HashMap<&str, MoveSignature>> = LazyLock::new(|| {
     let all = BY_NAME.iter();
     all.filter_map(|(key, entry)| Some((key.as_str(), entry.movement()?))).collect()
@@ -33,8 +33,8 @@ static FUNCTIONS_BY_NAME: LazyLock<HashMap<String, &Function>> = LazyLock::new(|
     functions::FUNCTIONS.iter().map(|entry| (entry.name.to_lowercase(), entry)).collect()
 });
 
-/// The instruction of this name; `key` in lower case. One that is neither here nor in the program
-/// is unknown: it may move the robot and write to its arguments.
+/// The instruction of this name; `key` in lower case. A name that is neither here nor in the
+/// program may move the robot and write to its arguments.
 pub fn instruction(key: &str) -> Option<&'static Instruction> {
     BY_NAME.get(key).copied()
 }
@@ -54,12 +54,12 @@ pub fn is_movement(name: &str) -> bool {
     instruction(&name.to_ascii_lowercase()).is_some_and(Instruction::is_movement)
 }
 
-/// Whether it is one of the Move, Trigg or Search family, which do nothing for a process.
+/// Whether it belongs to the Move, Trigg or Search family, which run no process.
 pub fn is_of_move_family(name: &str) -> bool {
     instruction(&name.to_ascii_lowercase()).is_some_and(Instruction::is_of_move_family)
 }
 
-/// Whether a call of this name (lower case), not declared in the program, may write to its arguments.
+/// Whether an undeclared procedure of this name (lower case) may write to its arguments.
 pub fn may_write(key: &str) -> bool {
     instruction(key).is_none_or(Instruction::may_write)
 }

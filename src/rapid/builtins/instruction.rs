@@ -1,4 +1,4 @@
-//! What is known of an instruction.
+//! Properties of a built-in instruction.
 
 use super::parameter::positional;
 #[cfg(test)]
@@ -29,7 +29,7 @@ pub enum MoveKind {
     Event,
     /// It stops or stores its position when a signal changes.
     Search,
-    /// It belongs to a process that is off: a movement between welds.
+    /// It belongs to a process package, with the process off: a movement between welds.
     Transfer,
     /// It welds with an arc.
     ArcWeld,
@@ -41,7 +41,7 @@ pub enum MoveKind {
     Application,
 }
 
-/// How the positional arguments of a movement instruction are arranged.
+/// The order of the positional arguments of a movement instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MoveSignature {
     /// Interpolation.
@@ -54,12 +54,11 @@ pub struct MoveSignature {
     pub between: usize,
     /// True if it has a zone argument; without one it ends as a stop point.
     pub zone: bool,
-    /// True for Move… with nothing but movement in it; Trigg…, Search…, Move…DO and
-    /// the like do more than move.
+    /// True for `Move…` without further effect, unlike `Trigg…`, `Search…`, `Move…DO`.
     pub plain: bool,
 }
 
-/// The one argument that an instruction writes to.
+/// The single argument that an instruction writes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
     /// Its place among the positional arguments.
@@ -68,35 +67,34 @@ pub struct Written {
     pub name: &'static str,
 }
 
-/// Which of its arguments an instruction may write to, where no parameter is marked.
+/// The arguments that an instruction may write to, if none is marked in its parameter list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Writes {
     Nothing,
-    /// Each argument that stands for data.
+    /// Every argument that is a data object.
     Any,
-    /// Nothing is known: it may move the robot and write to each argument, as a call of a routine
-    /// that is in no file.
+    /// It may move the robot and write to every argument, like an undeclared routine.
     Unknown,
 }
 
-/// For what an instruction waits.
+/// What an instruction waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wait {
-    /// For a time.
+    /// A time.
     Time,
-    /// For an input.
+    /// An input.
     Input,
-    /// For an output.
+    /// An output.
     Output,
-    /// For a condition.
+    /// A condition.
     Condition,
-    /// For somebody at the teach pendant.
+    /// The operator.
     Operator,
-    /// For something else outside the program.
+    /// Another event outside the program.
     Outside,
 }
 
-/// The level that an instruction gives to an output.
+/// The level to which an instruction sets an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// Its second argument.
@@ -105,16 +103,16 @@ pub enum Level {
     High,
     /// 0.
     Low,
-    /// 1, and 0 soon after.
+    /// 1, then 0 after the pulse.
     Pulse,
-    /// The other one.
+    /// The inverse of its level.
     Inverse,
 }
 
 /// How an instruction counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
-    /// It adds its second argument, 1 without one.
+    /// It adds its second argument, or 1 without one.
     Up,
     /// It subtracts 1.
     Down,
@@ -157,7 +155,7 @@ pub enum Setting {
     WorldAccLim,
 }
 
-/// What an instruction does to what is simulated, besides moving and writing to its arguments.
+/// The effect of an instruction on the simulation, besides movement and written arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Nothing.
@@ -170,7 +168,7 @@ pub enum Effect {
     ZoneOutput,
     /// It counts in its first argument.
     Count(Count),
-    /// It stops the program until somebody starts it again.
+    /// It stops the program until the operator restarts it.
     Stop,
     /// It ends the cycle.
     ExitCycle,
@@ -178,13 +176,13 @@ pub enum Effect {
     Setting(Setting),
     /// It changes how movements run, in a way that is not simulated.
     Unmodelled,
-    /// It ends what these instructions (lower case), which are not simulated, have set.
+    /// It ends the unmodelled settings of these instructions (lower case).
     Ends(&'static [&'static str]),
-    /// It writes to data, or calls a procedure, which it finds by a name that is a value.
+    /// It writes to data, or calls a procedure, whose name is computed at execution.
     FindsByName,
 }
 
-/// One of RAPID's instructions.
+/// A built-in instruction.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruction {
     /// As RAPID writes it.
@@ -192,16 +190,16 @@ pub struct Instruction {
     arguments: &'static str,
     motion: Option<(MoveForm, MoveKind)>,
     writes: Writes,
-    /// What it does to what is simulated.
+    /// Its effect on the simulation.
     pub effect: Effect,
-    /// Whether it is of no concern to anybody whether the robot has arrived when it runs: settings
-    /// that take effect with the next movement, counters, messages.
+    /// True if its effect is the same before and after the robot reaches its target: settings for
+    /// the next movement, counters, messages.
     pub on_the_fly: bool,
-    /// Whether it changes how movements run, or what is left of them.
+    /// Whether it changes how movements run, or discards the rest of a path.
     pub changes_motion: bool,
 }
 
-/// An instruction that writes to no argument that is not marked.
+/// An instruction that writes only to marked arguments.
 pub(super) const fn plain(name: &'static str, arguments: &'static str) -> Instruction {
     Instruction {
         name,
@@ -214,12 +212,12 @@ pub(super) const fn plain(name: &'static str, arguments: &'static str) -> Instru
     }
 }
 
-/// An instruction that may write to each of its arguments.
+/// An instruction that may write to every argument.
 pub(super) const fn writing(name: &'static str, arguments: &'static str) -> Instruction {
     Instruction { writes: Writes::Any, ..plain(name, arguments) }
 }
 
-/// An instruction that counts as one of which nothing is known.
+/// An instruction that is treated like an undeclared routine.
 pub(super) const fn unknown(name: &'static str, arguments: &'static str) -> Instruction {
     Instruction { writes: Writes::Unknown, ..plain(name, arguments) }
 }
@@ -266,12 +264,12 @@ impl Instruction {
         self.motion.is_some()
     }
 
-    /// Whether it is one of the Move, Trigg or Search family, which do nothing for a process.
+    /// Whether it belongs to the Move, Trigg or Search family, which run no process.
     pub fn is_of_move_family(&self) -> bool {
         matches!(self.motion, Some((_, MoveKind::Plain | MoveKind::Event | MoveKind::Search)))
     }
 
-    /// How its arguments are arranged, if it moves.
+    /// The order of its arguments, if it moves.
     pub fn movement(&self) -> Option<MoveSignature> {
         let (form, kind) = self.motion?;
         let place = |names: &[&str]| {
@@ -289,14 +287,14 @@ impl Instruction {
         })
     }
 
-    /// The argument to which it writes, if that is one of several.
+    /// The argument to which it writes, if one is marked.
     pub fn written(&self) -> Option<Written> {
         let mut places = positional(self.arguments).enumerate();
         let (position, parameter) = places.find(|(_, parameter)| parameter.written)?;
         Some(Written { position, name: parameter.name })
     }
 
-    /// Whether it is known what it does.
+    /// Whether its effect is known.
     pub fn is_known(&self) -> bool {
         self.writes != Writes::Unknown
     }
@@ -306,7 +304,7 @@ impl Instruction {
         self.is_movement() || !self.is_known()
     }
 
-    /// Whether it writes to arguments, as far as is known.
+    /// Whether it is known to write to arguments.
     pub fn is_writing(&self) -> bool {
         self.writes == Writes::Any || self.written().is_some()
     }
@@ -326,7 +324,7 @@ impl Instruction {
         matches!(self.effect, Effect::Output(_))
     }
 
-    /// Whether it writes to data, or calls a procedure, which it finds by a name that is a value.
+    /// Whether it writes to data, or calls a procedure, whose name is computed at execution.
     pub fn finds_by_name(&self) -> bool {
         self.effect == Effect::FindsByName
     }
@@ -336,12 +334,12 @@ impl Instruction {
         self.effect == Effect::Wait(Wait::Input)
     }
 
-    /// Whether it waits for somebody at the robot.
+    /// Whether it waits for the operator.
     pub fn asks_operator(&self) -> bool {
         matches!(self.effect, Effect::Stop | Effect::Wait(Wait::Operator))
     }
 
-    /// Whether it waits for somebody or something outside, for how long is not in the program.
+    /// Whether it waits for the operator or another outside event, for an unknown time.
     pub fn waits_outside(&self) -> bool {
         matches!(self.effect, Effect::Wait(Wait::Operator | Wait::Outside))
     }

@@ -1,9 +1,9 @@
 //! The table of RAPID's built-ins: instructions, functions, data types and predefined data.
 //!
-//! Every question about a built-in name is answered here. To add an instruction, add one line to
-//! the table of its topic; if it does something that the executor does not know yet, add a variant
-//! to [`Effect`] and its function in `ir/exec`. Names and arguments: RAPID reference of
-//! `RobotWare` 6; those of process instructions: the application manuals.
+//! All facts about built-in names are here. To add an instruction, add one line to the table of
+//! its topic; if the executor has no code for its effect, add a variant to [`Effect`] and a
+//! function in `ir/exec`. Names and arguments: RAPID reference of `RobotWare` 6; those of process
+//! instructions: the application manuals.
 
 mod communication;
 mod data;

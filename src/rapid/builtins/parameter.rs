@@ -1,7 +1,7 @@
-//! Lists of parameters, written in one line of text.
+//! Parameter lists as text: `"\\Conc Signal:signaldo SearchPoint= ToPoint"`.
 //!
-//! `"\\Conc Signal:signaldo SearchPoint= ToPoint"`: an option has a backslash, an argument that is
-//! written to ends with `=`, a type stands behind a colon where something depends on it.
+//! An option starts with a backslash; a written argument ends with `=`; a type that is needed
+//! follows a colon.
 
 use super::types::{SignalKind, data_type};
 

@@ -1,8 +1,8 @@
-//! Process instructions: they weld or dispense while they move the robot.
+//! Process instructions: welding or dispensing during a movement.
 //!
-//! Arguments as in the application manuals of arc welding, spot welding, dispensing and the
-//! Continuous Application Platform. Those whose arguments are not certain are left out: an unknown
-//! instruction may move the robot anywhere.
+//! Arguments: application manuals of arc welding, spot welding, dispensing and the Continuous
+//! Application Platform. Instructions with uncertain arguments are left out: an unknown
+//! instruction counts as one that may move the robot.
 
 use super::instruction::MoveForm::{AbsJ, Circular, ExternalJoint, Joint, Linear};
 use super::instruction::MoveKind::{Application, ArcWeld, Dispense, SpotWeld, Transfer};

@@ -45,7 +45,7 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     plain("Unload", "\\ErrIfChanged \\Save FilePath \\File"),
 ];
 
-/// Names that the reference does not have: misspelt, or of another controller.
+/// Names that are not in the reference: misspelt, or of another controller.
 pub(super) const DOUBTFUL: &[Instruction] = &[
     plain("ActivEventBuffer", ""),
     plain("BreakPoint", ""),

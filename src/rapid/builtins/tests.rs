@@ -27,7 +27,7 @@ fn each_table_is_sorted_and_no_name_is_there_twice() {
     assert_eq!((names.len(), all), (355, 355));
 }
 
-/// How many names the lists had that the table replaced.
+/// The number of names with each property, so that no name gets lost.
 #[test]
 fn the_table_has_all_names_of_the_lists_before_it() {
     let count = |has: fn(&Instruction) -> bool| {
@@ -67,7 +67,7 @@ fn movements_are_told_from_their_neighbours() {
     for name in ["ArcLStart", "SPOTL", "ArcC2End", "ArcL1"] {
         assert!(is_movement(name) && !is_of_move_family(name), "{name}");
     }
-    // Conditions, interrupts and procedures that only sound alike.
+    // Conditions, interrupts and procedures with similar names.
     for name in ["TriggIO", "TriggEquip", "MoveHome", "StartMove", "Search", "ArcL3", "ArcRefresh"]
     {
         assert!(!is_movement(name), "{name}");

@@ -1,8 +1,8 @@
-//! Data types and the components of records, in their order.
+//! Data types and the components of records, in the order of an aggregate.
 //!
-//! Source: RAPID reference, data types; aggregates fill them in this order.
+//! Source: RAPID reference, data types.
 
-/// What a signal can be.
+/// The kind of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalKind {
     /// 0 or 1.
@@ -20,7 +20,7 @@ pub struct DataType {
     pub name: &'static str,
     /// Name and type of each component of a record; none of an atomic type.
     pub components: &'static [(&'static str, &'static str)],
-    /// The kind of the signals, if they are of this type.
+    /// The kind of signal, if it is a signal type.
     pub signal: Option<SignalKind>,
 }
 

@@ -1,34 +1,34 @@
-//! A remark about a place in the source.
+//! A message about a place in the source.
 
 use crate::rapid::text::Span;
 
-/// How much it matters.
+/// The severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information.
     Info,
-    /// Should be changed.
+    /// The program should be changed.
     Warning,
-    /// Cannot be used as it is.
+    /// The program cannot be used.
     Error,
 }
 
-/// A remark about a place in the source.
+/// A message about a place in the source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// The place.
     pub span: Span,
-    /// How much it matters.
+    /// The severity.
     pub severity: Severity,
-    /// Code of the rule it comes from, if from one.
+    /// Code of the rule that reports it, if any.
     pub code: Option<String>,
-    /// What is said: lower case, no full stop.
+    /// The text: lower case, no full stop.
     pub message: String,
-    /// What is said about the place itself, beside it.
+    /// The text beside the place.
     pub label: Option<String>,
     /// Further places.
     pub labels: Vec<Label>,
-    /// Further remarks without a place.
+    /// Further messages without a place.
     pub notes: Vec<Note>,
 }
 
@@ -37,21 +37,21 @@ pub struct Diagnostic {
 pub struct Label {
     /// The place.
     pub span: Span,
-    /// What is said about it.
+    /// The text beside it.
     pub message: String,
 }
 
-/// A remark below the source.
+/// A message below the source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Note {
-    /// A circumstance.
+    /// Additional information.
     Note(String),
-    /// A way out.
+    /// A proposed solution.
     Help(String),
 }
 
 impl Diagnostic {
-    /// An error with nothing but its message.
+    /// An error with only a message.
     #[must_use]
     pub fn error(span: Span, message: String) -> Diagnostic {
         Diagnostic {

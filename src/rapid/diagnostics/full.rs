@@ -1,4 +1,4 @@
-//! Diagnostics with the source they are about, as rustc shows them.
+//! Diagnostics with the lines of the source, in the format of rustc.
 
 use std::ops::Range;
 
@@ -8,10 +8,9 @@ use super::concise::concise;
 use super::diagnostic::{Diagnostic, Note, Severity};
 use crate::rapid::text::{SourceFile, Span};
 
-/// Longest line that is shown, in bytes; about longer ones only the concise
-/// form is given.
+/// Longest line that is shown, bytes; for a longer one the concise form is used.
 const LONGEST_LINE: u32 = 2_000;
-/// Lines between two places that are shown in one piece; more are left out.
+/// Largest distance of two places that are shown in one piece, lines.
 const PIECE: u32 = 20;
 
 /// Whether colours are used.
@@ -23,8 +22,7 @@ pub enum Paint {
     Ansi,
 }
 
-/// Renders a diagnostic about `file`, without a line end. Labels in other files
-/// are left out.
+/// Renders a diagnostic about `file`, without a line end. Labels in other files are omitted.
 #[must_use]
 pub fn full(diagnostic: &Diagnostic, file: &SourceFile, paint: Paint) -> String {
     let labels = diagnostic.labels.iter().filter(|label| label.span.file == file.id);
@@ -90,13 +88,12 @@ struct Piece<'a> {
     places: Vec<(Place<'a>, Range<usize>)>,
 }
 
-/// The lines to show, the piece with the first place first; `None` if a line
-/// is too long.
+/// The pieces to show, that of the first place first; `None` if a line is too long.
 fn pieces<'a>(places: &[Place<'a>], file: &SourceFile) -> Option<Vec<Piece<'a>>> {
     let lines = |place: &Place<'_>| {
         let first = file.position(place.span.start).line;
         let last = file.position(place.span.end).line;
-        // Of a long place its first line is enough.
+        // Of a long place only the first line is shown.
         (first, if last - first > PIECE { first } else { last })
     };
     let primary = lines(places.first()?);
@@ -154,14 +151,14 @@ fn piece<'a>(
     Some(Piece { first_line, text, places })
 }
 
-/// The start of the character that `offset` is in: an offset inside a
-/// character decodes to something else than the character.
+/// The start of the character that contains `offset`. Bytes cut inside a character decode to
+/// another length.
 fn boundary(text: &str, offset: usize) -> usize {
     (0..=offset).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }
 
-/// Decoded bytes, without the byte order mark. Control characters would break
-/// the layout: they show as U+FFFD.
+/// Decoded bytes without the byte order mark. Control characters, which would break the layout,
+/// become U+FFFD.
 fn decoded(file: &SourceFile, range: Range<u32>) -> String {
     let span = Span { file: file.id, start: range.start, end: range.end };
     let text = file.text(span);

@@ -1,4 +1,4 @@
-//! What is said about source text, and how it is shown.
+//! Messages about source text, and their display.
 
 mod concise;
 mod diagnostic;

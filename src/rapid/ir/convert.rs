@@ -6,15 +6,15 @@ use super::movement::{LoadData, RobTarget, Speed, Stop, Tool, WorkObject, Zone};
 use super::value::Datum;
 
 const MM: f64 = 1e-3;
-/// A quaternion whose norm is farther from 1 is not one: the controller refuses it.
+/// Largest deviation of an orientation's norm from 1 that the controller accepts.
 const NORM_TOLERANCE: f64 = 0.01;
 
-/// No robot carries more, kg.
+/// Largest mass of a load that is accepted as plausible, kg.
 const HEAVIEST: f64 = 1e4;
 
 type Converted<T> = Result<T, String>;
 
-/// Numbers of a list of exactly `N`.
+/// The numbers of a list with exactly `N` components.
 pub(super) fn nums<const N: usize>(datum: &Datum, what: &str) -> Converted<[f64; N]> {
     let list = list(datum, what)?;
     if list.len() != N {
@@ -93,7 +93,7 @@ pub(super) fn pose_parts(pose: &Isometry3<f64>) -> [Datum; 2] {
     [Datum::nums([t.x, t.y, t.z]), Datum::nums([q.w, q.i, q.j, q.k])]
 }
 
-/// The external axes of a `robtarget` or `jointtarget`, as written.
+/// The external axes of a `robtarget` or `jointtarget`, in RAPID's units.
 pub(super) fn external(target: &Datum) -> Option<[f64; 6]> {
     nums(list(target, "the target").ok()?.last()?, "the external axes").ok()
 }
@@ -108,7 +108,7 @@ pub(super) fn robtarget(datum: &Datum) -> Converted<RobTarget> {
     })
 }
 
-/// A `jointtarget`: rad.
+/// The robot axes of a `jointtarget`, rad.
 pub(super) fn jointtarget(datum: &Datum) -> Converted<[f64; 6]> {
     let [joints, _] = parts::<2>(datum, "the jointtarget")?;
     Ok(nums::<6>(joints, "the jointtarget")?.map(f64::to_radians))

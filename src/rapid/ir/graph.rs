@@ -1,7 +1,7 @@
 //! The control flow of a routine as a graph.
 //!
-//! A node is a statement that does something or a decision; statements that only hold others
-//! have none. Loops are cycles whatever their bounds are: `exec` unrolls them while it runs.
+//! A node is a decision or a statement without inner statements. Loops are cycles whatever
+//! their bounds: `exec` unrolls them at execution.
 
 use std::collections::BTreeMap;
 
@@ -17,12 +17,12 @@ pub struct Graph<'h> {
     pub nodes: Vec<Node<'h>>,
 }
 
-/// A node with its ways on.
+/// A node with its outgoing edges.
 #[derive(Debug)]
 pub struct Node<'h> {
     /// What happens.
     pub step: Step<'h>,
-    /// Where it goes on, and when.
+    /// The outgoing edges: condition and target.
     pub next: Vec<(When, NodeId)>,
 }
 
@@ -31,44 +31,42 @@ pub struct Node<'h> {
 pub enum Step<'h> {
     /// The routine begins.
     Entry,
-    /// The routine ends, or the program does.
+    /// The routine or the program ends.
     Exit,
-    /// A statement without statements in it.
+    /// A statement without inner statements.
     Statement(&'h Stmt),
     /// The condition of an `IF`, `ELSEIF` or `WHILE`.
     Condition(&'h Expr),
-    /// The head of a `FOR`: counts, and leaves the loop behind its last value.
+    /// The head of a `FOR`: counts, and leaves the loop after the last value.
     Count,
     /// The value of a `TEST`.
     Test(&'h Expr),
 }
 
-/// When a way is taken.
+/// The condition of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum When {
     /// Always.
     Always,
-    /// The condition holds; the loop counts on.
+    /// The condition holds; the `FOR` loop continues.
     True,
-    /// The condition does not hold; the loop is at its end.
+    /// The condition does not hold; the `FOR` loop ends.
     False,
-    /// The value is one of this `CASE`, from 0.
+    /// The value is in this `CASE`, counted from 0.
     Case(usize),
     /// The value is in no `CASE`.
     Otherwise,
     /// An error is raised.
     Error,
-    /// A handler gives back to the statement whose error it took, or to the next: which one
-    /// that is the program does not tell. Leads to the exit.
+    /// `RETRY` or `TRYNEXT`: the statement to resume is unknown, so the edge leads to the exit.
     Resume,
 }
 
-/// Where control comes from to the next statement.
+/// The open edges that lead to the next statement.
 type Ends = Vec<(When, NodeId)>;
 
 impl<'h> Graph<'h> {
-    /// The graph of a routine with its error handlers; `BACKWARD` and `UNDO` are no part of its
-    /// flow.
+    /// The graph of a routine with its error handlers, without `BACKWARD` and `UNDO`.
     pub fn new(routine: &'h Routine) -> Graph<'h> {
         let node = |step| Node { step, next: Vec::new() };
         let mut builder = Builder {
@@ -89,15 +87,15 @@ impl<'h> Graph<'h> {
         untaken.append(&mut builder.raises);
         builder.connect(&untaken, EXIT);
         for (from, label) in std::mem::take(&mut builder.jumps) {
-            // A label that is not there is an error of the program.
+            // A missing label is an error in the program.
             let to = builder.labels.get(label).copied().unwrap_or(EXIT);
             builder.connect(&[(When::Always, from)], to);
         }
         builder.graph
     }
 
-    /// Which nodes can be reached from the entry. Errors can arise in every statement, so a
-    /// handler is reached by its `RAISE`s only where it has any.
+    /// Which nodes can be reached from the entry. Only `RAISE` has an edge to a handler: without
+    /// `RAISE` in the routine, a handler counts as unreachable.
     pub fn reachable(&self) -> Vec<bool> {
         let mut reached = vec![false; self.nodes.len()];
         let mut open = vec![ENTRY];
@@ -138,7 +136,7 @@ impl<'h> Builder<'h> {
         block.iter().fold(from, |from, stmt| self.statement(stmt, from))
     }
 
-    /// Adds a statement behind `from`. The depth of the recursion is limited by the parser.
+    /// Adds a statement after `from`. The depth of the recursion is limited by the parser.
     fn statement(&mut self, stmt: &'h Stmt, mut from: Ends) -> Ends {
         match &stmt.kind {
             StmtKind::If { branches, otherwise } => {
@@ -156,7 +154,7 @@ impl<'h> Builder<'h> {
             }
             StmtKind::While { condition, body } => {
                 let ends = self.repeat(Step::Condition(condition), body, &from);
-                // `WHILE TRUE` ends by a jump, a return or an error alone.
+                // `WHILE TRUE` ends only by a jump, a return or an error.
                 if matches!(condition.kind, ExprKind::Bool(true)) { Ends::new() } else { ends }
             }
             StmtKind::For { body, .. } => self.repeat(Step::Count, body, &from),
@@ -211,7 +209,7 @@ mod tests {
     use crate::rapid::syntax;
     use crate::rapid::text::FileId;
 
-    /// Each node as its first word with the nodes behind it, by their numbers.
+    /// One line per node: its number, its first word and its outgoing edges.
     fn shown(body: &str) -> String {
         let text = format!("MODULE M\nPROC p()\n{body}\nENDPROC\nENDMODULE");
         let parse = syntax::parse(text.as_bytes());

@@ -1,23 +1,22 @@
 //! The program as a tree of plain data, lowered from the syntax tree.
 //!
-//! Every node carries the span of its source; nothing is evaluated yet. A part
-//! that the parser could not understand becomes `Broken`, a `<SMT>`-like
-//! placeholder `Placeholder`.
+//! Every node has the span of its source; nothing is evaluated. A part with a syntax error
+//! becomes `Broken`, a placeholder such as `<SMT>` becomes `Placeholder`.
 
 use std::ops::Deref;
 use std::sync::Arc;
 
 use crate::rapid::text::Span;
 
-/// An identifier and where it stands; its text is shared by all its uses in a file.
+/// An identifier and its place; all uses of a name in a file share its text.
 #[derive(Clone, Debug)]
 pub struct Ident {
     name: Arc<Name>,
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
 }
 
-/// The text of an identifier: RAPID compares them without case.
+/// The text of an identifier, which RAPID compares without regard to case.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Name {
     /// As written.
@@ -76,7 +75,7 @@ pub enum TypeDefKind {
     Alias(Ident),
 }
 
-/// How far a name reaches.
+/// Visibility of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// The whole task (routine data: the routine).
@@ -153,7 +152,7 @@ pub enum RoutineKind {
     Trap,
 }
 
-/// How an argument reaches the routine.
+/// How an argument is passed to the routine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParamMode {
     /// By value.
@@ -187,8 +186,7 @@ pub type Block = Vec<Stmt>;
 pub struct Stmt {
     /// What it does.
     pub kind: StmtKind,
-    /// From its first token to its last (`;`, `ENDIF` …), without the white
-    /// space and comments around it.
+    /// From its first token to its last (`;`, `ENDIF` …), without surrounding blanks and comments.
     pub span: Span,
 }
 
@@ -263,7 +261,7 @@ pub enum StmtKind {
     },
     /// A data declaration between statements (real files have them).
     Data(Data),
-    /// `<SMT>` and its like, or a lone `;`.
+    /// A placeholder such as `<SMT>`, or a lone `;`.
     Placeholder,
     /// A statement with a syntax error.
     Broken,
@@ -280,7 +278,7 @@ impl Routine {
 }
 
 impl StmtKind {
-    /// The statement lists directly inside.
+    /// The statement lists directly inside the statement.
     pub fn blocks(&self) -> Vec<&Block> {
         match self {
             StmtKind::If { branches, otherwise } => {
@@ -294,7 +292,7 @@ impl StmtKind {
         }
     }
 
-    /// The expressions of the statement itself, without those of the statements inside.
+    /// The expressions of the statement itself, without those of inner statements.
     pub fn exprs(&self) -> Vec<&Expr> {
         match self {
             StmtKind::Assign { target, value } => vec![target, value],
@@ -321,7 +319,7 @@ impl StmtKind {
 }
 
 impl Arg {
-    /// What it hands over; none for a switch.
+    /// Its value; none for a switch.
     pub fn value(&self) -> Option<&Expr> {
         match &self.kind {
             ArgKind::Positional(expr)
@@ -334,7 +332,7 @@ impl Arg {
 }
 
 impl Expr {
-    /// The expressions directly inside.
+    /// The expressions directly inside the expression.
     pub fn parts(&self) -> Vec<&Expr> {
         match &self.kind {
             ExprKind::Field(base, _) | ExprKind::Unary(_, base) => vec![base],
@@ -346,7 +344,7 @@ impl Expr {
         }
     }
 
-    /// The data of which it is a place: `d` of `d.x{2}.y`.
+    /// The data object that it is a part of: `d` of `d.x{2}.y`.
     pub fn base(&self) -> Option<&Ident> {
         match &self.kind {
             ExprKind::Ref(name) => Some(name),
@@ -359,13 +357,13 @@ impl Expr {
 /// A procedure call or instruction.
 #[derive(Clone, Debug)]
 pub struct Call {
-    /// Who is called.
+    /// The called procedure.
     pub callee: Callee,
-    /// With what.
+    /// The arguments.
     pub args: Vec<Arg>,
 }
 
-/// Who is called.
+/// The called procedure.
 #[derive(Clone, Debug)]
 pub enum Callee {
     /// By name; `module:name` keeps the name after the colon.
@@ -392,7 +390,7 @@ pub enum ArgKind {
     Named(Ident, Expr),
     /// `\name := expr`, or `\name` for a switch.
     Optional(Ident, Option<Expr>),
-    /// `\name ? parameter`: given if the parameter is.
+    /// `\name ? parameter`: stated only if the call of the routine states the parameter.
     Conditional(Ident, Expr),
 }
 
@@ -430,7 +428,7 @@ pub enum ExprKind {
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// `*` in place of a position.
     AnyPosition,
-    /// `<EXP>` and its like, or an omitted value.
+    /// A placeholder such as `<EXP>`, or an omitted value.
     Placeholder,
     /// A syntax error.
     Broken,

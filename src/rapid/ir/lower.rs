@@ -1,7 +1,7 @@
-//! Syntax tree → plain data.
+//! Lowering of the syntax tree to plain data.
 //!
-//! Lowering evaluates nothing and drops nothing that runs: what has a syntax
-//! error becomes `Broken`, so that nobody takes half a statement for a whole.
+//! Lowering evaluates nothing and omits no statement: one with a syntax error becomes `Broken`,
+//! so that no later stage uses only a part of it.
 
 mod expressions;
 
@@ -16,8 +16,7 @@ use super::hir::{
 use crate::rapid::syntax::{Node, NodeKind, Parse, TokenKind, ast};
 use crate::rapid::text::{self, Charset, FileId, Span};
 
-/// The modules of a file, in order. Declarations that no `MODULE` encloses form
-/// a module with an empty name.
+/// The modules of a file, in order. Declarations outside `MODULE` form a module without a name.
 #[must_use]
 pub fn lower(file: FileId, parse: &Parse, bytes: &[u8]) -> Vec<Module> {
     let charset = text::charset(bytes);
@@ -39,7 +38,7 @@ struct Lowering<'a> {
     file: FileId,
     bytes: &'a [u8],
     charset: Charset,
-    /// The names met so far, by their bytes.
+    /// The names found so far, by their bytes.
     names: RefCell<HashMap<&'a [u8], Arc<Name>>>,
 }
 
@@ -63,7 +62,7 @@ impl<'a> Lowering<'a> {
         Ident::new(self.name(node.text(self.bytes)), self.span(node))
     }
 
-    /// The name, or an empty one where `around` lacks it.
+    /// The identifier, or an empty one if `around` does not contain it.
     fn ident_in(&self, node: Option<Node<'_>>, around: Node<'_>) -> Ident {
         node.map_or_else(
             || {
@@ -228,7 +227,7 @@ impl<'a> Lowering<'a> {
         Some(Stmt { kind, span: self.span(node) })
     }
 
-    /// A statement without statements in it, and without errors.
+    /// A statement without inner statements and without syntax errors.
     fn simple_statement(&self, node: Node<'_>) -> Option<StmtKind> {
         let first = node.children().next();
         let name = || node.child(NodeKind::Name).map(|name| self.ident(name));
@@ -337,8 +336,8 @@ fn scope(keyword: Option<TokenKind>) -> Scope {
     }
 }
 
-/// Lowers the nodes of a list of known length: a vector that grows takes up to twice the memory,
-/// which is most of the time of a large file.
+/// Lowers a list of known length. A growing vector needs up to twice the memory, which dominates
+/// the time for a large file.
 fn exact<'t, T>(
     nodes: impl Iterator<Item = Node<'t>>,
     count: usize,

@@ -1,4 +1,4 @@
-//! From syntax to movements: modules, symbols, values, execution. Knows no robot.
+//! From syntax to movements: modules, symbols, values, execution. Independent of the robot.
 
 mod convert;
 pub mod exec;

@@ -8,7 +8,7 @@ use super::value::{Datum, Origin};
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::text::Span;
 
-/// Where a movement goes.
+/// The target of a movement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// Axis positions, rad (RAPID: degrees); the robot's six axes.
@@ -48,21 +48,20 @@ pub struct Zone {
     pub angle: f64,
 }
 
-/// What a stop point waits for before the next movement begins.
+/// The condition at a stop point for the start of the next movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// Nothing but standing: `fine`.
+    /// Standstill: `fine`.
     Fine,
-    /// A time, s: `stoptime` and `fllwtime`.
+    /// A waiting time, s: `stoptime` and `fllwtime`.
     Time(f64),
-    /// A share of the errors of position and speed at which `fine` is reached, but at least and
-    /// at most so long, s: `inpos`.
+    /// Errors of position and speed below a share of those allowed for `fine`: `inpos`.
     InPosition {
         /// 1 = as for `fine`.
         share: f64,
-        /// s.
+        /// Shortest time, s.
         least: f64,
-        /// s.
+        /// Longest time, s.
         most: f64,
     },
 }
@@ -83,7 +82,7 @@ pub struct LoadData {
 /// A `tooldata`.
 #[derive(Clone, Debug)]
 pub struct Tool {
-    /// As the program names it.
+    /// Its name in the program.
     pub name: Arc<str>,
     /// True if the robot holds the tool, false for a stationary tool.
     pub robhold: bool,
@@ -94,7 +93,7 @@ pub struct Tool {
 }
 
 impl PartialEq for Tool {
-    /// RAPID's names have no case.
+    /// Compares names without regard to case.
     fn eq(&self, other: &Tool) -> bool {
         self.name.to_lowercase() == other.name.to_lowercase()
             && self.robhold == other.robhold
@@ -114,7 +113,7 @@ pub struct WorkObject {
     pub fixed: bool,
 }
 
-/// Motion settings that persist until changed.
+/// Motion settings in force until changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// `VelSet` override, 1 = 100 %.
@@ -133,9 +132,9 @@ pub struct Settings {
     pub path_acceleration: [f64; 2],
     /// `WorldAccLim`: largest acceleration of the TCP, m/s².
     pub world_acceleration: f64,
-    /// `PathResol`, 1 = 100 %: how densely a path is interpolated; none where it is not known.
+    /// `PathResol`, 1 = 100 %: how densely a path is interpolated; none if unknown.
     pub path_resolution: Option<f64>,
-    /// `CirPathMode`: how arcs turn the tool, as the controller numbers it.
+    /// `CirPathMode`: how the tool turns on arcs, by the controller's number.
     pub circle_mode: u8,
     /// `ConfJ`.
     pub conf_joint: bool,
@@ -145,24 +144,23 @@ pub struct Settings {
     pub displacement: Option<Isometry3<f64>>,
     /// `GripLoad`, in the tool's frame.
     pub grip_load: Option<LoadData>,
-    /// The same as the program has it.
+    /// `GripLoad` as RAPID data.
     pub grip_load_data: Option<Datum>,
-    /// `SingArea` other than `\Off`, as written: lines and arcs may turn the tool otherwise than
-    /// programmed.
+    /// `SingArea` other than `\Off`, as written: the orientation on lines and arcs may deviate.
     pub sing_area: Option<Arc<str>>,
     /// Settings in force that this compiler does not model, by instruction name.
     pub other: Vec<Arc<str>>,
 }
 
 impl Settings {
-    /// True under `SingArea\Wrist`: lines and arcs turn the wrist axis by axis.
+    /// True for `SingArea\Wrist`: on lines and arcs the wrist axes are interpolated one by one.
     pub fn axiswise_wrist(&self) -> bool {
         self.sing_area.as_ref().is_some_and(|area| area.to_lowercase().ends_with("\\wrist"))
     }
 }
 
 impl Default for Settings {
-    /// As after the start of the program from `main`.
+    /// The settings after a start of the program from `main`.
     fn default() -> Settings {
         Settings {
             speed_override: 1.0,
@@ -186,12 +184,12 @@ impl Default for Settings {
     }
 }
 
-/// An argument of a movement with the value that it had.
+/// An argument of a movement with its value at execution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Argument {
     /// The expression.
     pub span: Span,
-    /// Name of the type that the instruction takes there.
+    /// Name of the type of the parameter.
     pub type_name: &'static str,
     /// Its value.
     pub datum: Datum,
@@ -204,20 +202,20 @@ pub struct Movement {
     pub instruction: Arc<str>,
     /// Interpolation.
     pub form: MoveForm,
-    /// True for Move… that do nothing but move.
+    /// True for `Move…` instructions without further effect.
     pub plain: bool,
     /// The statement.
     pub span: Span,
-    /// Name of the routine that holds it.
+    /// Name of the routine that contains it.
     pub routine: Arc<str>,
-    /// The call through which its routine runs; none in the routine that starts the program.
+    /// The call of its routine; none in the routine that starts the program.
     pub called_at: Option<Span>,
     /// Circle point of a circular movement.
     pub via: Option<RobTarget>,
     /// Where it goes.
     pub target: Target,
-    /// The external axes of the target as written: mm or degrees, which of them the program does
-    /// not tell, 9E9 for an axis that is not there. `None` where they are not known.
+    /// The external axes of the target, in mm or degrees depending on the axis (not stated in the
+    /// program); 9E9 for an axis that does not exist. `None` if unknown.
     pub external: Option<[f64; 6]>,
     /// Speed, `\V` applied.
     pub speed: Speed,
@@ -225,11 +223,11 @@ pub struct Movement {
     pub time: Option<f64>,
     /// Zone, `\Z` and `\Inpos` applied.
     pub zone: Zone,
-    /// `\Inpos`: what it waits for at a stop point.
+    /// `\Inpos`: the condition at a stop point.
     pub stop: Stop,
     /// Tool.
     pub tool: Tool,
-    /// The argument that names it.
+    /// The argument that states the tool.
     pub tool_span: Span,
     /// Work object.
     pub wobj: WorkObject,
@@ -237,19 +235,19 @@ pub struct Movement {
     pub total_load: Option<LoadData>,
     /// Settings in force.
     pub settings: Arc<Settings>,
-    /// `\Conc`: following logic runs during the movement.
+    /// `\Conc`: the following statements run during the movement.
     pub concurrent: bool,
     /// Optional arguments that change the movement in ways not modelled (`\Corr`, `\ID` …).
     pub other_arguments: Vec<Arc<str>>,
-    /// What the arguments were computed from.
+    /// The dependences of the arguments.
     pub origin: Origin,
-    /// The arguments that say where and how it moves.
+    /// The arguments that determine path and speed.
     pub arguments: Vec<Argument>,
 }
 
 impl Movement {
-    /// The TCP speed that a line or arc states, m/s; infinite for a joint movement, along which it
-    /// holds on the average alone.
+    /// The TCP speed stated for a line or arc, m/s; infinite for a joint movement, whose stated
+    /// speed is only an average.
     pub fn line_speed(&self) -> f64 {
         match self.form {
             MoveForm::Linear | MoveForm::Circular => self.speed.tcp.min(self.settings.speed_max),
@@ -258,14 +256,14 @@ impl Movement {
     }
 }
 
-/// A movement that can't be worked out.
+/// A movement with unknown arguments.
 #[derive(Clone, Debug)]
 pub struct Unresolved {
     /// The statement.
     pub span: Span,
-    /// Why, in the user's words.
+    /// Why, in words.
     pub reason: String,
-    /// True if the robot may stand somewhere else afterwards.
+    /// True if the robot may be elsewhere afterwards.
     pub moves: bool,
 }
 
@@ -276,22 +274,21 @@ pub struct Wait {
     pub instruction: Arc<str>,
     /// The statement.
     pub span: Span,
-    /// Name of the routine that holds it.
+    /// Name of the routine that contains it.
     pub routine: Arc<str>,
-    /// Length in s where the program states it.
+    /// Duration, s, if the program states it.
     pub duration: Option<f64>,
-    /// The argument that states it, where that depends on literals and constants alone.
+    /// The argument with the duration, if it consists only of literals and constants.
     pub constant: Option<Span>,
-    /// `\MaxTime`: longest that it lasts, s.
+    /// `\MaxTime`: longest duration, s.
     pub max_time: Option<f64>,
-    /// The input that it waits for.
+    /// The awaited input.
     pub signal: Option<Arc<str>>,
-    /// For what it waits, in words, where neither is known.
+    /// The cause in words, if neither duration nor input is known.
     pub other: Option<String>,
     /// `GripLoad` in force, in the tool's frame.
     pub grip_load: Option<LoadData>,
-    /// Where external axes stand after a movement of theirs, as written; `None` where it is none,
-    /// or they are not known.
+    /// For a movement of external axes: their positions after it, in RAPID's units, if known.
     pub external: Option<[f64; 6]>,
 }
 

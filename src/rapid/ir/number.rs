@@ -1,7 +1,7 @@
 //! Numbers as RAPID text.
 
-/// Decimals of an axis position in degrees. A `num` holds six or seven digits; the rest keeps
-/// a simulation of the text from drifting against the one that it was written for.
+/// Decimals of an axis position in degrees. More than the six or seven digits of a `num`: a
+/// simulation of the emitted text stays close to the original simulation.
 pub const JOINT_DECIMALS: usize = 6;
 /// Decimals of a time in seconds.
 pub const TIME_DECIMALS: usize = 4;
@@ -23,7 +23,7 @@ pub fn joints(q: &[f64]) -> String {
     parts.join(",")
 }
 
-/// What reading an emitted axis position gives, rad.
+/// An axis position after writing it as text and reading it back, rad.
 pub fn joint_as_emitted(x: f64) -> f64 {
     let scale = f64::from(10_u32.pow(JOINT_DECIMALS as u32));
     ((x.to_degrees() * scale).round() / scale).to_radians()

@@ -30,7 +30,7 @@ pub struct RoutineId {
     pub index: usize,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
     /// Data at module level.
@@ -44,7 +44,7 @@ pub enum Symbol {
 /// A name that is declared more than once in one scope.
 #[derive(Clone, Debug)]
 pub struct Clash {
-    /// As the first declaration writes it.
+    /// The name as in the first declaration.
     pub name: Ident,
     /// The module in which it is local; `None` for global names.
     pub module: Option<usize>,
@@ -52,12 +52,12 @@ pub struct Clash {
     pub spans: Vec<Span>,
 }
 
-/// Who may change data.
+/// What may change data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Writer {
     /// A statement of the program.
     Program,
-    /// Only a call, by this name, of a routine that is not in the program.
+    /// Only a call of an undeclared routine with this name.
     UnknownCall(Arc<str>),
 }
 
@@ -73,11 +73,11 @@ pub struct Program {
     written: BTreeMap<DataId, Writer>,
 }
 
-/// What declares each name, by the module in which it is local.
+/// The declarations of each name, by the module in which it is local.
 type Declarations<'a> = BTreeMap<(Option<usize>, &'a str), Vec<(Symbol, &'a Ident)>>;
 
 impl Program {
-    /// Builds the symbol tables; a name that is declared twice stands for nothing.
+    /// Builds the symbol tables; a name that is declared twice becomes [`Symbol::Ambiguous`].
     pub fn new(mut modules: Vec<Module>) -> Program {
         modules.extend(user::missing(&modules));
         let mut declared = Declarations::new();
@@ -112,12 +112,12 @@ impl Program {
         program
     }
 
-    /// What `key` means in a module.
+    /// The meaning of `key` in a module.
     pub fn resolve(&self, module: usize, key: &str) -> Option<Symbol> {
         self.local[module].get(key).or_else(|| self.global.get(key)).copied()
     }
 
-    /// What `key` means outside all modules.
+    /// The meaning of `key` among the global names.
     pub fn resolve_global(&self, key: &str) -> Option<Symbol> {
         self.global.get(key).copied()
     }
@@ -137,7 +137,7 @@ impl Program {
         self.written.contains_key(&id)
     }
 
-    /// Who may change this data.
+    /// What may change this data, if anything.
     pub fn writer(&self, id: DataId) -> Option<&Writer> {
         self.written.get(&id)
     }
@@ -180,10 +180,10 @@ impl Program {
         None
     }
 
-    /// Module data that some assignment, or an argument that is written through, names.
+    /// The module data that an assignment or a call may write.
     fn find_written(&self) -> BTreeMap<DataId, Writer> {
         let mut found = Written::default();
-        // A parameter found written makes its callers' arguments written: repeat until stable.
+        // A written parameter makes the arguments of its callers written: repeat until stable.
         loop {
             found.changed = false;
             for (module, body) in self.modules.iter().enumerate() {
@@ -209,8 +209,7 @@ struct Written {
     changed: bool,
 }
 
-/// Adds a writer; a statement of the program says more than a call that is not known. True if
-/// that is news.
+/// Adds a writer; [`Writer::Program`] replaces [`Writer::UnknownCall`]. True if this changed it.
 fn add<K: Ord>(written: &mut BTreeMap<K, Writer>, key: K, writer: &Writer) -> bool {
     match written.entry(key) {
         Entry::Vacant(place) => {
@@ -254,7 +253,7 @@ impl RoutineScope<'_> {
             Callee::Name(name) => self.program.resolve(self.id.module, &name.key),
             Callee::Late(_) => None,
         };
-        // What a routine that is no routine of the program does to its arguments.
+        // The effect of an undeclared routine on its arguments.
         let outside = match (&call.callee, callee) {
             (Callee::Name(name), None) if !builtins::may_write(&name.key) => return,
             (Callee::Name(name), None)

@@ -1,5 +1,5 @@
-//! What the evaluation of an expression reads, and whether it does more: told from the text, for
-//! every way through the functions that it calls.
+//! Static analysis of an expression: what its evaluation reads and whether it has side effects,
+//! over all paths through the functions that it calls.
 
 use std::collections::BTreeSet;
 
@@ -12,22 +12,21 @@ use crate::rapid::builtins::{self, Instruction, Source};
 /// What an expression depends on.
 #[derive(Clone, Debug, Default)]
 pub struct Reads {
-    /// Data of modules.
+    /// Data at module level.
     pub data: BTreeSet<DataId>,
-    /// Whether it reads a parameter that stands for data of a caller.
+    /// Whether it reads a parameter that is passed by reference.
     pub by_reference: bool,
-    /// Names that no module declares: signals, presumably.
+    /// Names that no module declares, assumed to be signals.
     pub signals: BTreeSet<String>,
-    /// Whether it names nothing but what every controller knows: it never changes.
+    /// Whether it consists only of literals and built-in names: its value never changes.
     pub fixed: bool,
-    /// Whether its evaluation may end in an error: a division, or an element that there may not be.
+    /// Whether its evaluation may raise an error: a division or an array index.
     pub may_raise: bool,
-    /// The first thing that it does besides giving a value, or that it depends on and nobody can
-    /// compare.
+    /// The first side effect, or dependence on a state that no condition can test, in words.
     pub effect: Option<String>,
 }
 
-/// What the evaluation of `expr` in a routine reads.
+/// What the evaluation of `expr` in the scope of a routine reads.
 pub fn reads(program: &Program, routine: RoutineId, expr: &Expr) -> Reads {
     let mut walk = Walk { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
     walk.expr(routine, expr);
@@ -36,10 +35,10 @@ pub fn reads(program: &Program, routine: RoutineId, expr: &Expr) -> Reads {
 
 struct Walk<'p> {
     program: &'p Program,
-    /// Functions that were looked at.
+    /// Functions that were already analysed.
     seen: BTreeSet<RoutineId>,
     found: Reads,
-    /// Whether anything was named that may change.
+    /// Whether the expression contains something that may change.
     changes: bool,
 }
 
@@ -187,7 +186,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A function that calls a procedure does more than give a value, but for counters of its own.
+    /// A call in a function is a side effect, except an instruction that counts in its own data.
     fn call(&mut self, at: RoutineId, call: &Call) {
         let own = &self.program.routine(at).name.text;
         match &call.callee {
@@ -209,7 +208,7 @@ impl Walk<'_> {
         }
     }
 
-    /// What a function writes has to be its own.
+    /// A function that writes to data that are not its own has a side effect.
     fn target(&mut self, at: RoutineId, target: &Expr) {
         match &target.kind {
             ExprKind::Field(base, _) => self.target(at, base),

@@ -1,7 +1,7 @@
 //! The I/O signals that a program names.
 //!
-//! A signal is declared in the system's configuration, not in RAPID: a name that nothing declares
-//! is one. Its kind follows from the instructions that use it, else from the customary prefix.
+//! Signals are declared in the system configuration, not in RAPID: an undeclared name counts as
+//! a signal. Its kind follows from the instructions that use it, else from the usual prefix.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::rapid::builtins::{self, Function, Instruction, SignalKind};
 pub struct Signal {
     /// As first written.
     pub name: String,
-    /// Its kind, where the program or its name tells.
+    /// Its kind, if its use or its name determines it.
     pub kind: Option<SignalKind>,
 }
 
@@ -39,7 +39,7 @@ pub fn signals(program: &Program) -> BTreeMap<String, Signal> {
     found.signals
 }
 
-/// `diPart`, `do_1`: the customary prefixes, which a word such as `distance` has not.
+/// The kind by the usual prefix: `diPart`, `do_1`, but not a word such as `distance`.
 fn by_name(name: &str) -> Option<SignalKind> {
     let (prefix, rest) = name.split_at_checked(2)?;
     if rest.starts_with(|c: char| c.is_lowercase()) {

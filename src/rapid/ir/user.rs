@@ -1,4 +1,4 @@
-//! The data that every controller has in its module `user`, which is rarely handed over.
+//! The data of the module `user`, which every controller has but the given files rarely contain.
 
 use std::sync::Arc;
 
@@ -14,10 +14,10 @@ const DATA: [(&str, &str); 6] = [
     ("reg5", "num"),
     ("clock1", "clock"),
 ];
-/// It stands in no file.
+/// The place of declarations without a source file.
 const NOWHERE: Span = Span { file: FileId(0), start: 0, end: 0 };
 
-/// The module with the data that no module declares for all; none if there are none.
+/// A module with those data that no module declares globally; none if all are declared.
 pub(super) fn missing(modules: &[Module]) -> Option<Module> {
     let declares = |module: &Module, key: &str| {
         let data = module.data.iter().map(|data| (data.scope, &data.name));

@@ -1,4 +1,4 @@
-//! Values of RAPID data, and on what they depend.
+//! Values of RAPID data, and their dependences.
 
 use std::sync::Arc;
 
@@ -15,18 +15,18 @@ pub enum Datum {
     Text(Arc<str>),
     /// Record or array, components in order.
     List(Vec<Datum>),
-    /// A name that no module declares: an I/O signal of the system, presumably.
+    /// A name that no module declares, assumed to be an I/O signal of the system.
     Signal(Arc<str>),
-    /// Not known, and why.
+    /// Unknown, with the reason.
     Unknown(Arc<Unknown>),
 }
 
 /// Why a value is not known.
 #[derive(Debug, PartialEq)]
 pub struct Unknown {
-    /// In the user's words.
+    /// The reason in words.
     pub reason: String,
-    /// Where the doubt arises.
+    /// The place in the source that causes it.
     pub span: Span,
 }
 
@@ -59,7 +59,7 @@ impl Datum {
     }
 }
 
-/// What a value was computed from, besides constants.
+/// Something other than a constant that a value depends on.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
     /// A loop variable, a parameter or a variable of the routine; its name as written.
@@ -70,10 +70,9 @@ pub enum Dependence {
     Variable(Arc<str>),
     /// A `PERS` whose stored value may differ from the source.
     Persistent(Arc<str>),
-    /// A `PERS` tool, work object or load that nothing in the program writes:
-    /// used at its source value.
+    /// A `PERS` tool, work object or load that the program does not write: used as in the source.
     TrustedPersistent(Arc<str>),
-    /// Data, and the routine that is not in the program and that may change it.
+    /// Data, and the undeclared routine that may change it.
     Exposed(Arc<str>, Arc<str>),
     /// An input signal, taken at an assumed level.
     Input(Arc<str>),
@@ -113,7 +112,7 @@ pub struct Value {
     pub datum: Datum,
     /// Lower-case type name; empty for an aggregate that has no type yet.
     pub type_key: Arc<str>,
-    /// What it was computed from.
+    /// Its dependences.
     pub origin: Origin,
 }
 

@@ -1,10 +1,10 @@
-//! Typed views of nodes. Where the source is broken a part may be missing.
+//! Typed views of nodes. If the source has a syntax error, a part may be missing.
 
 use super::node::NodeKind;
 use super::token::TokenKind;
 use super::tree::{Node, Token};
 
-/// Declares views with the kinds of node that they accept.
+/// Declares views and the node kinds that each accepts.
 macro_rules! views {
     ($($(#[$doc:meta])* $name:ident($($kind:ident)|+);)*) => {$(
         $(#[$doc])*
@@ -15,7 +15,7 @@ macro_rules! views {
         );
 
         impl<'t> $name<'t> {
-            /// The view of a node of the right kind.
+            /// The view of a node, if its kind fits.
             #[must_use]
             pub fn cast(node: Node<'t>) -> Option<Self> {
                 matches!(node.kind(), $(NodeKind::$kind)|+).then_some(Self(node))
@@ -41,17 +41,17 @@ views! {
     For(ForStatement);
     /// `CASE …:`
     Case(CaseBranch);
-    /// `\name := value` and the other named forms of an argument
+    /// `\name := value` and the other named forms of an argument.
     Argument(NamedArgument | OptionalArgument | ConditionalArgument);
 }
 
-/// A node that stands for a value: an expression, a placeholder, an error.
+/// Whether a node is in the place of a value: an expression, a placeholder or an error.
 #[must_use]
 pub fn is_value(node: Node<'_>) -> bool {
     node.kind().is_expression() || matches!(node.kind(), NodeKind::Placeholder | NodeKind::Error)
 }
 
-/// A node that is an argument.
+/// Whether a node is an argument.
 #[must_use]
 pub fn is_argument(node: Node<'_>) -> bool {
     is_value(node) || Argument::cast(node).is_some()
@@ -128,7 +128,7 @@ impl<'t> Routine<'t> {
         self.0.child(NodeKind::Name)
     }
 
-    /// Its parameters, those that exclude each other together.
+    /// Its parameters; optional ones that exclude each other form one group.
     pub fn parameter_groups(self) -> impl Iterator<Item = ParameterGroup<'t>> {
         self.0.child(NodeKind::Parameters).into_iter().flat_map(Node::children).map(ParameterGroup)
     }
@@ -138,7 +138,7 @@ impl<'t> Routine<'t> {
         self.0.children().filter_map(Data::cast)
     }
 
-    /// The statements of its handlers of a kind.
+    /// Its handlers of a kind.
     pub fn handlers(self, kind: NodeKind) -> impl Iterator<Item = Node<'t>> {
         self.0.children().filter(move |child| child.kind() == kind)
     }

@@ -1,8 +1,7 @@
-//! Bytes → tokens. Every byte lands in exactly one token.
+//! Splits bytes into tokens. Every byte belongs to exactly one token.
 //!
-//! The lexer works on bytes, whatever their encoding: RAPID's own characters
-//! are ASCII, and bytes from 0x80 are letters, except for the wide spaces that
-//! editors leave in gaps. Only the width of a letter depends on the encoding.
+//! The lexer works on bytes of any encoding: the characters of RAPID are ASCII; bytes from 0x80
+//! are letters, except spaces and punctuation. Only the length of a letter depends on the encoding.
 
 use memchr::{memchr2, memchr3};
 use nom::branch::alt;
@@ -13,21 +12,21 @@ use nom::{IResult, Parser};
 
 use super::token::{KEYWORDS, TokenKind, Tokens};
 
-/// Bytes per token in ordinary programs, for the first allocation.
+/// Bytes per token in typical programs, for the first allocation.
 const BYTES_PER_TOKEN: usize = 3;
 
-/// What the bytes from 0x80 are.
+/// The encoding of the bytes from 0x80.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum High {
     /// Valid UTF-8.
     Utf8,
-    /// Some one- or two-byte encoding.
+    /// An encoding with one or two bytes per character.
     Legacy,
 }
 
 type Lexed<'a> = IResult<&'a [u8], &'a [u8], ()>;
 
-/// What a byte begins.
+/// The kind of token that a byte begins.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Class {
     /// ASCII space or control character.
@@ -35,11 +34,11 @@ enum Class {
     /// ASCII letter or `_`.
     Letter,
     Digit,
-    /// A token of this byte alone, see `SINGLES`.
+    /// A token of one byte, see `SINGLES`.
     Single,
     /// A byte from 0x80.
     High,
-    /// What follows decides.
+    /// The following bytes decide.
     Other,
 }
 
@@ -64,7 +63,7 @@ const fn class(byte: u8) -> Class {
     }
 }
 
-/// The token that each byte of the class `Single` is.
+/// The token kind of each byte of the class `Single`.
 const SINGLES: [TokenKind; 256] = {
     let mut kinds = [TokenKind::Unknown; 256];
     let singles = [
@@ -93,7 +92,7 @@ const SINGLES: [TokenKind; 256] = {
     kinds
 };
 
-/// Bytes that go on with white space, a word or the digits of a number.
+/// Bytes that continue white space, a word or the digits of a number.
 const SPACE: [bool; 256] = table(Class::Space, Class::Space);
 const WORD: [bool; 256] = table(Class::Letter, Class::Digit);
 const DIGIT: [bool; 256] = table(Class::Digit, Class::Digit);
@@ -109,7 +108,7 @@ const fn table(one: Class, other: Class) -> [bool; 256] {
     table
 }
 
-/// The lengths of the keywords that begin with a byte, one bit each.
+/// For each first byte, the lengths of the keywords that begin with it: one bit per length.
 const KEYWORD_LENGTHS: [u16; 256] = {
     let mut lengths = [0; 256];
     let mut index = 0;
@@ -122,7 +121,7 @@ const KEYWORD_LENGTHS: [u16; 256] = {
     lengths
 };
 
-/// Splits bytes into tokens; tokens beyond 4 GiB are left to the caller.
+/// Splits bytes into tokens; bytes beyond 4 GiB get no token.
 #[must_use]
 pub fn tokenize(bytes: &[u8]) -> Tokens {
     let bytes = &bytes[..bytes.len().min(u32::MAX as usize)];
@@ -167,8 +166,7 @@ fn skip(bytes: &[u8], mut at: usize, table: &[bool; 256]) -> usize {
     at
 }
 
-/// Keyword or identifier. Most words are neither as long as the keywords with
-/// their first letter nor made of letters only.
+/// Keyword or identifier. The test of the length excludes most identifiers quickly.
 fn word_kind(word: &[u8]) -> TokenKind {
     let lengths = word.first().map_or(0, |first| KEYWORD_LENGTHS[*first as usize]);
     if word.len() < 16 && lengths & (1 << word.len()) != 0 {
@@ -178,7 +176,7 @@ fn word_kind(word: &[u8]) -> TokenKind {
     }
 }
 
-/// Kind and length of a token whose first byte does not tell its kind.
+/// Kind and length of a token whose first byte does not determine its kind.
 fn other(input: &[u8]) -> (TokenKind, usize) {
     let next = input.get(1).copied().unwrap_or(0);
     match input[0] {
@@ -214,12 +212,12 @@ fn beyond_ascii(bytes: &[u8], at: usize, high: High) -> (TokenKind, usize) {
     }
 }
 
-/// Bytes that a recogniser takes from the front, at least one.
+/// Number of bytes that a recogniser accepts at the start, at least one.
 fn length<'a>(recogniser: impl Fn(&'a [u8]) -> Lexed<'a>, input: &'a [u8]) -> usize {
     recogniser(input).map_or(1, |(_, taken)| taken.len().max(1))
 }
 
-/// End of the number at `at`, which starts with a digit. Most have no base.
+/// End of the number at `at`, which starts with a digit. Most numbers have no base prefix.
 fn number_end(bytes: &[u8], at: usize) -> usize {
     let mut end = skip(bytes, at + 1, &DIGIT);
     if bytes.get(end) == Some(&b'.') {
@@ -246,7 +244,7 @@ fn number(input: &[u8]) -> Lexed<'_> {
     alt((based, recognize((mantissa, opt(exponent))))).parse(input)
 }
 
-/// `<SMT>` and its like.
+/// A placeholder such as `<SMT>`.
 fn placeholder(input: &[u8]) -> Lexed<'_> {
     let name = alt((
         alt((tag("DDN"), tag("RDN"), tag("TDN"), tag("PAR"), tag("ALT"), tag("DIM"))),
@@ -256,7 +254,7 @@ fn placeholder(input: &[u8]) -> Lexed<'_> {
     recognize((tag("<"), name, tag(">"))).parse(input)
 }
 
-/// Bytes before the first line end.
+/// Number of bytes before the first line end.
 fn line_end(input: &[u8]) -> usize {
     memchr2(b'\n', b'\r', input).unwrap_or(input.len())
 }
@@ -304,7 +302,7 @@ fn word_end(bytes: &[u8], mut at: usize, high: High) -> usize {
     }
 }
 
-/// Bytes of the letter at the front, which starts with a byte from 0x80.
+/// Number of bytes of the first letter, which starts with a byte from 0x80.
 fn letter(input: &[u8], high: High) -> usize {
     let width = match (high, input) {
         (High::Utf8, [0xC0..=0xDF, ..]) | (High::Legacy, [_, 0x80..=0xFF, ..]) => 2,
@@ -315,11 +313,10 @@ fn letter(input: &[u8], high: High) -> usize {
     width.min(input.len())
 }
 
-/// Whether something is at the front that looks like one of RAPID's own
-/// characters: a dash or a typographic quotation mark (U+2010 to U+2027), which
-/// text processors make of them, or full-width punctuation (U+FF01 to U+FF20,
-/// U+3001, U+3002), which Chinese and Japanese keyboards write. In GBK only those
-/// are told whose bytes are no letters in other encodings.
+/// Whether the bytes start with a character that resembles a character of RAPID: a dash or
+/// typographic quotation mark (U+2010 to U+2027), which text processors insert, or full-width
+/// punctuation (U+FF01 to U+FF20, U+3001, U+3002) from Chinese and Japanese keyboards. For GBK
+/// only those whose bytes are not letters in other encodings.
 fn is_punctuation(input: &[u8], high: High) -> bool {
     match high {
         High::Utf8 => matches!(
@@ -332,8 +329,8 @@ fn is_punctuation(input: &[u8], high: High) -> bool {
     }
 }
 
-/// Bytes of the space from 0x80 at the front, if one is there: byte order
-/// mark, U+3000 (UTF-8, GBK), no-break space and the spaces of U+2000.
+/// Number of bytes of a non-ASCII space at the start, if any: byte order mark, U+3000 (UTF-8,
+/// GBK), no-break space and the spaces from U+2000.
 fn wide_space(input: &[u8], high: High) -> Option<usize> {
     match (high, input) {
         (_, [0xEF, 0xBB, 0xBF, ..] | [0xE3, 0x80, 0x80, ..])
@@ -407,7 +404,7 @@ mod tests {
         assert_eq!(kinds(b"a\xA0:="), [Identifier, Whitespace, Assign]);
         assert_eq!(kinds("\u{feff}IF".as_bytes()), [Whitespace, If]);
         assert_eq!(kinds(b"a\0\0;"), [Identifier, Whitespace, Semicolon]);
-        // A letter whose bytes hold the pair of a wide space.
+        // A letter whose bytes contain the two bytes of a wide space.
         assert_eq!(kinds("a\u{3861}b".as_bytes()), [Identifier]);
     }
 

@@ -1,7 +1,7 @@
-//! RAPID's syntax: bytes → tokens → a lossless tree. Never fails, loses no byte.
+//! Syntax of RAPID: from bytes to tokens to a lossless tree, for any input.
 //!
-//! The productions of `grammar/` are the node kinds of the tree, one to one;
-//! `parser` has a file for each file of the grammar.
+//! The node kinds of the tree are the productions of `grammar/`, one to one; `parser` has one
+//! file for each file of the grammar.
 
 pub mod ast;
 mod error;

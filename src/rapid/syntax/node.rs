@@ -1,4 +1,4 @@
-//! Kinds of nodes: the productions of the grammar.
+//! Node kinds: the productions of the grammar.
 
 /// Declares the kinds and the names of their productions in `grammar/`.
 macro_rules! node_kinds {
@@ -25,7 +25,7 @@ macro_rules! node_kinds {
 }
 
 node_kinds! {
-    /// Tokens that fit no production, or (empty) something that is missing.
+    /// Tokens that fit no production, or (empty) a missing element.
     Error = "error",
 
     /// The whole file.
@@ -53,7 +53,7 @@ node_kinds! {
     AliasDeclaration = "alias_declaration",
     /// Name of a type.
     TypeName = "type_name",
-    /// A name that is declared, or that is no value.
+    /// A name in a declaration, or another name that is not a value.
     Name = "name",
 
     /// `PROC … ENDPROC`
@@ -125,7 +125,7 @@ node_kinds! {
     ConnectStatement = "connect_statement",
     /// `;`
     EmptyStatement = "empty_statement",
-    /// `<SMT>` and its like.
+    /// A placeholder such as `<SMT>`.
     Placeholder = "placeholder",
 
     /// `name := expr` as an argument.
@@ -162,13 +162,13 @@ node_kinds! {
 }
 
 impl NodeKind {
-    /// A production that has a value.
+    /// Whether the production is an expression.
     #[must_use]
     pub fn is_expression(self) -> bool {
         (NodeKind::AnyPosition..=NodeKind::BinaryExpression).contains(&self)
     }
 
-    /// A production that does something when it is reached.
+    /// Whether the production is a statement other than data, an empty one or a placeholder.
     #[must_use]
     pub fn is_statement(self) -> bool {
         matches!(

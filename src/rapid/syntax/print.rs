@@ -6,7 +6,7 @@ use super::token::TokenKind;
 use super::tree::{Element, Node, Token, Tree};
 use crate::rapid::text::{self, Charset};
 
-/// Shows a tree: a line for each node and each token that is no trivia.
+/// Displays a tree: one line for each node and each token that is not trivia.
 #[derive(Clone, Copy, Debug)]
 pub struct Dump<'a> {
     tree: &'a Tree,
@@ -14,7 +14,7 @@ pub struct Dump<'a> {
     charset: Charset,
 }
 
-/// The tree of `bytes`, to be shown.
+/// The display of the tree of `bytes`.
 #[must_use]
 pub fn dump<'a>(tree: &'a Tree, bytes: &'a [u8]) -> Dump<'a> {
     Dump { tree, bytes, charset: text::charset(bytes) }

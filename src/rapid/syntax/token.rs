@@ -1,8 +1,8 @@
-//! Kinds of tokens, and the tokens of a file.
+//! Token kinds, and the tokens of a file.
 
 use std::ops::Range;
 
-/// Declares the kinds with what each is called in messages.
+/// Declares the kinds and their names in messages.
 macro_rules! token_kinds {
     ($($(#[$doc:meta])* $kind:ident = $text:literal,)*) => {
         /// Kind of a token. The first two are trivia.
@@ -13,7 +13,7 @@ macro_rules! token_kinds {
         }
 
         impl TokenKind {
-            /// What messages call it.
+            /// Its name in messages.
             #[must_use]
             pub fn describe(self) -> &'static str {
                 match self { $(TokenKind::$kind => $text,)* }
@@ -27,7 +27,7 @@ token_kinds! {
     Whitespace = "white space",
     /// `! …` to the end of the line, without the line end.
     Comment = "a comment",
-    /// Identifier that is no keyword.
+    /// Identifier that is not a keyword.
     Identifier = "a name",
     /// `1`, `.5`, `1E-3`, `0xFF` …
     Number = "a number",
@@ -121,11 +121,11 @@ token_kinds! {
     While = "WHILE",
     With = "WITH",
     Xor = "XOR",
-    /// What the parser sees behind the last token; no token has it.
+    /// The kind after the last token; no token has it.
     EndOfFile = "the end of the file",
 }
 
-/// Declares the keywords: a table, and a look-up by the packed word.
+/// Declares the keywords as a table and as a look-up by the packed word.
 macro_rules! keywords {
     ($($kind:ident = $word:literal,)*) => {
         /// RAPID's keywords in upper case.
@@ -201,10 +201,10 @@ keywords! {
     Xor = "XOR",
 }
 
-/// Letters of the longest keywords (`ENDMODULE`, `ENDRECORD`).
+/// Number of letters of the longest keywords (`ENDMODULE`, `ENDRECORD`).
 const LONGEST_KEYWORD: usize = 9;
 
-/// A word of up to 12 ASCII letters as one number, case removed.
+/// A word of up to 12 ASCII letters as one number, without case: 5 bits per letter.
 const fn pack(word: &[u8]) -> u64 {
     let mut packed = 0;
     let mut i = 0;
@@ -216,11 +216,10 @@ const fn pack(word: &[u8]) -> u64 {
 }
 
 impl TokenKind {
-    /// The keyword that an identifier is, in whatever case it is written.
+    /// The keyword that equals a word without regard to case.
     #[must_use]
     pub fn keyword(word: &[u8]) -> Option<TokenKind> {
-        // The letters only: `_` and digits would collide with letters, of which
-        // five bits are left.
+        // Only letters: in five bits, `_` and digits would collide with letters.
         if !(2..=LONGEST_KEYWORD).contains(&word.len()) || !word.iter().all(u8::is_ascii_alphabetic)
         {
             return None;
@@ -241,7 +240,7 @@ impl TokenKind {
     }
 }
 
-/// The tokens of a file; they tile its bytes.
+/// The tokens of a file; together they cover its bytes without gaps.
 #[derive(Clone, Debug, Default)]
 pub struct Tokens {
     kinds: Vec<TokenKind>,
@@ -261,7 +260,7 @@ impl Tokens {
         self.starts.push(end);
     }
 
-    /// How many there are.
+    /// Their number.
     #[must_use]
     pub fn count(&self) -> usize {
         self.kinds.len()

@@ -1,10 +1,9 @@
-//! Deviations from the strict grammar that are accepted.
+//! Accepted deviations from the strict grammar.
 
-/// Declares the tolerances and the names of their productions.
+/// Declares the tolerances and their productions.
 macro_rules! tolerances {
     ($($(#[$doc:meta])* $tolerance:ident = $production:literal,)*) => {
-        /// What is accepted although the grammar does not have it, because
-        /// controllers or the people who write for them produce it.
+        /// An accepted deviation from the grammar, which controllers or programmers produce.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Tolerance {
             $($(#[$doc])* $tolerance,)*
@@ -26,17 +25,17 @@ macro_rules! tolerances {
 tolerances! {
     /// Prose or other text outside `MODULE … ENDMODULE`.
     TextOutsideModule = "text_outside_module",
-    /// Declarations of a file that has no `MODULE` around them.
+    /// Declarations without a `MODULE` around them.
     DeclarationOutsideModule = "declaration_outside_module",
-    /// Types, data and routines in another order than this.
+    /// Types, data and routines in an order other than this.
     DeclarationOrder = "declaration_order",
     /// A lone `;` where a declaration or a statement can stand.
     EmptyStatement = "empty_statement",
-    /// Other text than version and language between the `%%%`.
+    /// Text other than version and language between the `%%%`.
     HeaderContents = "header_contents",
     /// `LOCAL VAR` or `TASK VAR` inside a routine.
     ScopeInRoutine = "scope_in_routine",
-    /// A data declaration elsewhere than first in its routine.
+    /// A data declaration after a statement of its routine.
     DataBetweenStatements = "data_between_statements",
     /// `CONST` without a value.
     ConstWithoutValue = "const_without_value",
@@ -44,30 +43,29 @@ tolerances! {
     ParenthesizedArguments = "parenthesized_arguments",
     /// `, \Opt`: a comma before an optional argument or parameter.
     CommaBeforeOptional = "comma_before_optional",
-    /// `\Error`: an optional argument named as a keyword.
+    /// `\Error`: an optional argument with the name of a keyword.
     KeywordAsArgument = "keyword_as_argument",
     /// `a*-1`: a sign after an operator.
     SignAfterOperator = "sign_after_operator",
-    /// `a AND NOT b`: `NOT` elsewhere than first in its expression or behind
-    /// `OR` and `XOR`.
+    /// `a AND NOT b`: `NOT` neither first in its expression nor after `OR` or `XOR`.
     NotAfterOperator = "not_after_operator",
     /// `f(x).c`, `f(x){1}`: a component of the value of a function.
     ComponentOfCall = "component_of_call",
     /// `|\b`: the backslash repeated before an alternative parameter.
     BackslashInAlternative = "backslash_in_alternative",
-    /// `REF num a`: a parameter whose mode is one of built-in routines only.
+    /// `REF num a`: a parameter with a mode that only built-in routines have.
     ReferenceParameter = "reference_parameter",
-    /// `num a{3}`: a parameter with a size where `*` should stand.
+    /// `num a{3}`: a parameter with a size instead of `*`.
     ParameterWithSize = "parameter_with_size",
-    /// `DEFAULT` elsewhere than last in its `TEST`.
+    /// `DEFAULT` that is not last in its `TEST`.
     DefaultNotLast = "default_not_last",
-    /// Handlers in another order than `BACKWARD`, `ERROR`, `UNDO`.
+    /// Handlers in an order other than `BACKWARD`, `ERROR`, `UNDO`.
     HandlerOrder = "handler_order",
-    /// Module attributes in another order than the fixed one, or twice.
+    /// Module attributes out of order, or repeated.
     AttributeOrder = "attribute_order",
 }
 
-/// A tolerance and where it was used.
+/// A use of a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerated {
     /// Which.

@@ -1,10 +1,9 @@
 //! The lossless tree.
 //!
-//! Flat arrays: the tokens, which tile the file, and the nodes in preorder, each
-//! with its range of tokens and the end of its subtree. A node costs 13 bytes
-//! and no allocation, a walk over the tree is a walk over memory, and
-//! losslessness needs no care: no token is moved, a node only names a range.
-//! White space and comments belong to the smallest node around them.
+//! Flat arrays: the tokens, which cover the file without gaps, and the nodes in preorder, each
+//! with its range of tokens and the end of its subtree. A node takes 13 bytes and no allocation,
+//! and a walk over the tree reads memory in order. No token is moved, so no byte is lost. White
+//! space and comments belong to the smallest node around them.
 
 use std::ops::Range;
 
@@ -73,7 +72,7 @@ impl Tree {
 
 impl<'t> Node<'t> {
     fn entry(self) -> Entry {
-        // A tree has at least its root and a `Node` is made from its entries.
+        // In range: a tree has at least its root, and a `Node` comes only from its entries.
         self.tree.nodes[self.index]
     }
 
@@ -122,13 +121,13 @@ impl<'t> Node<'t> {
         self.children().find(|child| child.kind() == kind)
     }
 
-    /// It and the nodes below it, in preorder.
+    /// The node and its descendants, in preorder.
     pub fn subtree(self) -> impl Iterator<Item = Node<'t>> + use<'t> {
         let tree = self.tree;
         (self.index..self.entry().end as usize).map(move |index| Node { tree, index })
     }
 
-    /// Its children, nodes and its own tokens (trivia too), in order.
+    /// Its child nodes and own tokens, trivia included, in order.
     pub fn elements(self) -> impl Iterator<Item = Element<'t>> + use<'t> {
         let tree = self.tree;
         let last = self.entry().last as usize;
@@ -149,14 +148,14 @@ impl<'t> Node<'t> {
         })
     }
 
-    /// All tokens in its range, trivia too.
+    /// All tokens in its range, trivia included.
     pub fn all_tokens(self) -> impl Iterator<Item = Token<'t>> + use<'t> {
         let tree = self.tree;
         let Entry { first, last, .. } = self.entry();
         (first as usize..last as usize).map(move |index| Token { tree, index })
     }
 
-    /// Its own tokens that are no trivia.
+    /// Its own tokens without trivia.
     pub fn own_tokens(self) -> impl Iterator<Item = Token<'t>> + use<'t> {
         self.elements().filter_map(|element| match element {
             Element::Token(token) if !token.kind().is_trivia() => Some(token),
@@ -192,19 +191,19 @@ impl Token<'_> {
     }
 }
 
-/// Where a node begins.
+/// The start of a node.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     token: u32,
     node: u32,
 }
 
-/// Collects nodes in postorder: a node is added after its children, which lets
-/// an operator take the operand before it as its child.
+/// Collects nodes in postorder: a node follows its children, so that an operator can take the
+/// operand before it as its child.
 #[derive(Debug, Default)]
 pub(super) struct Builder {
     kinds: Vec<NodeKind>,
-    /// In `end` stands the number of nodes below.
+    /// Here `end` is the number of descendants.
     nodes: Vec<Entry>,
 }
 
@@ -218,15 +217,13 @@ impl Builder {
         Mark { token: token as u32, node: self.nodes.len() as u32 }
     }
 
-    /// Adds the node that began at `mark` and ends before token `end`; all
-    /// nodes added since are its children. Without tokens it is empty and
-    /// stands at `end`.
+    /// Adds the node from `mark` to before token `end`; the nodes added since `mark` are its
+    /// descendants. A node without tokens is empty at `end`.
     pub(super) fn finish(&mut self, mark: Mark, kind: NodeKind, end: usize) {
         let last = end as u32;
         let mut first = mark.token.min(last);
         if let Some(leaf) = self.nodes.get(mark.node as usize) {
-            // The leaf that is first may be an empty node, which stands before
-            // the token that `mark` names.
+            // The first leaf may be an empty node before the token of `mark`.
             first = first.min(leaf.first);
         }
         let below = self.nodes.len() as u32 - mark.node;
@@ -234,15 +231,14 @@ impl Builder {
         self.nodes.push(Entry { first, last, end: below });
     }
 
-    /// The tree, turned into preorder where it is: memory is most of the time
-    /// that a large file takes.
+    /// The tree, permuted to preorder in place, because allocation dominates the time for large
+    /// files.
     ///
-    /// A node's place in preorder is its place in postorder, less the nodes
-    /// below it, plus the nodes above it.
+    /// Index in preorder = index in postorder − number of descendants + number of ancestors.
     pub(super) fn finish_tree(self, tokens: Tokens) -> Tree {
         let Builder { mut kinds, mut nodes } = self;
         let mut places = vec![0_u32; nodes.len()];
-        // The first node below each of the nodes above, in postorder.
+        // For each ancestor, its first descendant in postorder.
         let mut above: Vec<u32> = Vec::new();
         for (index, node) in nodes.iter().enumerate().rev() {
             let index = index as u32;

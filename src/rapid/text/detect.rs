@@ -1,9 +1,9 @@
-//! Which encoding a file without a byte order mark seems to have.
+//! Detection of the encoding of a file without a byte order mark.
 //!
-//! Controllers write ISO 8859-1 or UTF-8, people whatever their editor was set to. UTF-8 shows
-//! in its own structure. The others are told apart by the statistics of `chardetng`, made for
-//! whole web pages: on a single comment it guesses odd things. So only windows-1252 is believed
-//! without evidence: it is the most frequent one, gives every byte a character and loses none.
+//! Controllers write ISO 8859-1 or UTF-8, editors any encoding. UTF-8 is recognised by its
+//! structure. The others are distinguished by the statistics of `chardetng`, which is made for web
+//! pages and unreliable for a single comment. Without enough evidence the result is windows-1252:
+//! it is the most frequent encoding and maps every byte to a character without loss.
 
 use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
 use encoding_rs::{
@@ -11,25 +11,25 @@ use encoding_rs::{
     WINDOWS_1252, WINDOWS_1253, WINDOWS_1254,
 };
 
-/// Encodings with characters of two bytes that are seen in RAPID.
+/// Two-byte encodings that occur in RAPID files.
 const DOUBLE_BYTE: [&Encoding; 4] = [GBK, BIG5, SHIFT_JIS, EUC_KR];
-/// Encodings of other Latin letters than those of windows-1252.
+/// Encodings with Latin letters that windows-1252 does not have.
 const LATIN: [&Encoding; 2] = [WINDOWS_1250, WINDOWS_1254];
 /// Encodings of other alphabets.
 const OTHER_ALPHABET: [&Encoding; 2] = [WINDOWS_1251, WINDOWS_1253];
-/// Words with letters beyond ASCII that are evidence for one of [`LATIN`].
+/// Number of words with non-ASCII letters that are evidence for one of [`LATIN`].
 const MIN_WORDS: usize = 3;
-/// Length of a word; shorter ones may be units and signs such as `µm`.
+/// Minimum length of a word, bytes; shorter ones may be units and signs such as `µm`.
 const MIN_WORD: usize = 3;
-/// Length of a word without an ASCII letter that is evidence for one of [`OTHER_ALPHABET`].
+/// Length of a word without ASCII letters that is evidence for one of [`OTHER_ALPHABET`], bytes.
 const MIN_OTHER_WORD: usize = 4;
-/// Characters that are evidence for Chinese, the most frequent of [`DOUBLE_BYTE`].
+/// Number of characters that are evidence for GBK, the most frequent of [`DOUBLE_BYTE`].
 const MIN_CHARACTERS: usize = 2;
-/// Characters that are evidence for the others.
+/// Number of characters that are evidence for the others.
 const FEW_CHARACTERS: usize = 4;
-/// Bytes of lines beyond ASCII that the statistics get to see: more make it slower, not better.
+/// Bytes of non-ASCII lines used for the statistics: more make it slower, not better.
 const MAX_SAMPLE: usize = 1 << 16;
-/// Valid sequences of UTF-8 that outweigh one byte that is in none.
+/// Number of valid UTF-8 sequences that outweigh one invalid byte.
 const VALID_TO_INVALID: usize = 4;
 
 /// The encoding of bytes that are not plain UTF-8.
@@ -38,7 +38,7 @@ pub(super) fn legacy(bytes: &[u8]) -> &'static Encoding {
         return UTF_8;
     }
     let sample = Sample::of(bytes);
-    // A comment that was cut in the middle of a character must not speak against the others.
+    // A few comments cut in the middle of a character do not count against the encoding.
     let whole = |encoding: &'static Encoding| {
         let valid = |line: &&[u8]| decodes(encoding, line);
         let lines: Vec<&[u8]> = sample.lines.iter().copied().filter(valid).collect();
@@ -49,7 +49,7 @@ pub(super) fn legacy(bytes: &[u8]) -> &'static Encoding {
     asked.extend(whole(GBK));
     for lines in asked {
         let guess = match guess(&lines) {
-            // They differ in letters that the file would have to use; Windows is likelier.
+            // Both encode the same languages; windows-1250 is more likely.
             guess if guess == ISO_8859_2 => WINDOWS_1250,
             guess => guess,
         };
@@ -71,12 +71,12 @@ pub(super) fn legacy(bytes: &[u8]) -> &'static Encoding {
     WINDOWS_1252
 }
 
-/// The lines with bytes beyond ASCII.
+/// The lines with non-ASCII bytes.
 struct Sample<'a> {
     lines: Vec<&'a [u8]>,
-    /// Words with letters beyond ASCII.
+    /// Number of words with non-ASCII letters.
     words: usize,
-    /// Bytes of the longest word without an ASCII letter.
+    /// Length of the longest word without ASCII letters, bytes.
     longest_other: usize,
 }
 
@@ -92,7 +92,7 @@ impl<'a> Sample<'a> {
             let at = start + at;
             let from = bytes[start..at].iter().rposition(is_end).map_or(start, |i| start + i + 1);
             let to = bytes[at..].iter().position(is_end).map_or(bytes.len(), |i| at + i);
-            // Of an endless line its first part is enough.
+            // A part of a very long line is enough.
             let line = &bytes[from.max(at.saturating_sub(MAX_SAMPLE))..to.min(at + MAX_SAMPLE)];
             for word in line.split(|byte| byte.is_ascii() && !byte.is_ascii_alphabetic()) {
                 sample.words += usize::from(word.len() >= MIN_WORD && !word.is_ascii());
@@ -122,7 +122,7 @@ fn decodes(encoding: &'static Encoding, bytes: &[u8]) -> bool {
     encoding.decode_without_bom_handling_and_without_replacement(bytes).is_some()
 }
 
-/// Characters beyond ASCII in the lines.
+/// Number of non-ASCII characters in the lines.
 fn characters(encoding: &'static Encoding, lines: &[&[u8]]) -> usize {
     let count = |line: &&[u8]| {
         let (text, _) = encoding.decode_without_bom_handling(line);
@@ -131,7 +131,7 @@ fn characters(encoding: &'static Encoding, lines: &[&[u8]]) -> usize {
     lines.iter().map(count).sum()
 }
 
-/// Whether most of what lies beyond ASCII is UTF-8.
+/// Whether most of the non-ASCII bytes are valid UTF-8.
 fn is_damaged_utf8(bytes: &[u8]) -> bool {
     let (mut valid, mut invalid) = (0, 0);
     for chunk in bytes.utf8_chunks() {

@@ -1,4 +1,4 @@
-//! Replacements of byte ranges; what no edit names stays byte for byte.
+//! Replacements of byte ranges; all other bytes stay unchanged.
 
 use thiserror::Error;
 
@@ -7,16 +7,16 @@ use super::span::Span;
 /// Replaces the bytes of `span` by `text`; an empty span inserts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edit {
-    /// Original bytes to replace.
+    /// The bytes to replace.
     pub span: Span,
-    /// What stands there afterwards, in the file's own encoding.
+    /// The replacement, in the encoding of the file.
     pub text: Vec<u8>,
 }
 
 /// Edits that cannot be applied together.
 #[derive(Debug, Error, PartialEq, Eq)]
 pub enum EditError {
-    /// Two edits want the same bytes.
+    /// Two edits replace the same bytes.
     #[error(
         "two edits overlap at bytes {first_start}..{first_end} and {second_start}..{second_end}; \
          apply one of them and read the file again before the other"
@@ -46,12 +46,11 @@ pub enum EditError {
     },
 }
 
-/// Applies `edits`, given in any order, to `bytes`. Insertions at one place
-/// keep the order in which they are given and come before a replacement that
-/// starts there.
+/// Applies `edits`, given in any order, to `bytes`. Insertions at one place keep their given order
+/// and precede a replacement that starts there.
 ///
 /// # Errors
-/// When edits overlap, or one of them lies outside the file.
+/// If edits overlap, or one of them is outside the file.
 pub fn apply(bytes: &[u8], edits: &[Edit]) -> Result<Vec<u8>, EditError> {
     let mut ordered: Vec<&Edit> = edits.iter().collect();
     ordered.sort_by_key(|edit| (edit.span.start, edit.span.end));

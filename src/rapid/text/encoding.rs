@@ -1,4 +1,4 @@
-//! What a file's bytes mean: its encoding, and decoding.
+//! The encoding of a file, decoding and encoding.
 
 use std::borrow::Cow;
 
@@ -22,13 +22,11 @@ pub struct Charset {
 pub struct Decoded {
     /// The text.
     pub text: String,
-    /// Name of the encoding as in the WHATWG list (`UTF-8`, `windows-1252`,
-    /// `GBK` …).
+    /// Name of the encoding as in the WHATWG list (`UTF-8`, `windows-1252`, `GBK` …).
     pub encoding: &'static str,
 }
 
-/// Whether the bytes are a module in ABB's binary encoding, of which nothing
-/// can be read.
+/// Whether the bytes are a module in ABB's binary encoding, which cannot be read.
 #[must_use]
 pub fn is_encoded_module(bytes: &[u8]) -> bool {
     matches!(bytes.first(), Some(0xFC..=0xFE))
@@ -48,7 +46,7 @@ pub fn charset(bytes: &[u8]) -> Charset {
     Charset { encoding, bom }
 }
 
-/// Decodes a whole file in the encoding that it seems to have.
+/// Decodes a whole file in its detected encoding.
 #[must_use]
 pub fn decode(bytes: &[u8]) -> Decoded {
     let charset = charset(bytes);
@@ -63,25 +61,22 @@ impl Charset {
         self.encoding.name()
     }
 
-    /// Decodes a part of a file; what is not valid becomes U+FFFD.
+    /// Decodes a part of a file; invalid bytes become U+FFFD.
     #[must_use]
     pub fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         self.encoding.decode_without_bom_handling(bytes).0
     }
 
-    /// Encodes text for this file; `None` if it has a character that the
-    /// encoding lacks.
+    /// Encodes text for this file; `None` if the encoding lacks one of its characters.
     #[must_use]
     pub fn encode(self, text: &str) -> Option<Vec<u8>> {
-        // WHATWG's encoder for GBK is that of GB18030 restricted; the others
-        // are their own output encoding.
+        // For GBK the WHATWG encoder is a restricted GB18030; the others encode to themselves.
         let (bytes, _, lossy) = self.encoding.encode(text);
         (!lossy).then(|| bytes.into_owned())
     }
 
-    /// Bytes of the character that starts `bytes`, 1 where nothing valid does
-    /// (not a character then; it counts as one). At least 1 for a non-empty
-    /// slice.
+    /// Number of bytes of the first character; an invalid byte counts as one character. At least 1
+    /// for a non-empty slice.
     pub(super) fn width(self, bytes: &[u8]) -> usize {
         let [first, rest @ ..] = bytes else { return 0 };
         if *first < 0x80 || self.encoding.is_single_byte() {
@@ -122,7 +117,7 @@ impl Charset {
 mod tests {
     use super::*;
 
-    /// What a file of RAPID with these comments is taken for.
+    /// The detected encoding of a RAPID file with these comments.
     fn detected(comments: &[&str], encoding: &'static Encoding) -> &'static str {
         let lines =
             comments.iter().map(|text| format!("  ! {text}\r\n  MoveL p10,v100,z10,tool0;"));
@@ -172,7 +167,7 @@ mod tests {
             ["机器人回到原点位置", "等待信号", "打开夹爪", "抓取工件", "安全位置", "回原点"];
         let text = comments.map(|comment| format!("! {comment}\n")).concat();
         let mut bytes = GBK.encode(&text).0.into_owned();
-        // A comment that was cut in the middle of a character.
+        // A comment cut in the middle of a character.
         bytes.extend_from_slice(&[b'!', b' ', 0xB5, b'\n']);
         assert_eq!(charset(&bytes).name(), "GBK");
         let mut bytes = text.into_bytes();

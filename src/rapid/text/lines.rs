@@ -2,17 +2,16 @@
 
 use super::encoding::Charset;
 
-/// A place as people count it.
+/// A place as line and column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
     /// Line, from 1.
     pub line: u32,
-    /// Column in characters of the decoded text, from 1; a byte that is no
-    /// valid character counts as one.
+    /// Column in characters of the decoded text, from 1; an invalid byte counts as one.
     pub column: u32,
 }
 
-/// Where the lines of a file start. CR, LF and CRLF each end a line.
+/// The starts of the lines of a file. CR, LF and CRLF each end a line.
 #[derive(Clone, Debug)]
 pub struct LineIndex {
     /// First byte of each line.
@@ -23,7 +22,7 @@ pub struct LineIndex {
 }
 
 impl LineIndex {
-    /// Indexes a file whose encoding is known.
+    /// Indexes a file of known encoding.
     #[must_use]
     pub fn with_charset(bytes: &[u8], charset: Charset) -> LineIndex {
         let mut starts = vec![0];
@@ -48,7 +47,7 @@ impl LineIndex {
         LineIndex { starts, inner, length: bytes.len() as u32 }
     }
 
-    /// Line and column of a byte; offsets past the end are taken as the end.
+    /// Line and column of a byte; an offset past the end counts as the end.
     #[must_use]
     pub fn position(&self, offset: u32) -> Position {
         let offset = offset.min(self.length);
@@ -59,16 +58,15 @@ impl LineIndex {
         Position { line: line as u32, column: offset - start - inner as u32 + 1 }
     }
 
-    /// Number of lines; a line end at the very end of the file starts no
-    /// further line, and an empty file has none.
+    /// Number of lines; a line end at the end of the file starts no further line, and an empty file
+    /// has none.
     #[must_use]
     pub fn count(&self) -> u32 {
         let last_is_empty = self.starts.last() == Some(&self.length);
         self.starts.len() as u32 - u32::from(last_is_empty)
     }
 
-    /// Byte range of a line (from 1) with its line end; empty for a line that
-    /// the file does not have.
+    /// Byte range of a line (from 1) with its line end; empty for a line past the end.
     #[must_use]
     pub fn range(&self, line: u32) -> std::ops::Range<u32> {
         let index = line.saturating_sub(1) as usize;

@@ -1,4 +1,4 @@
-//! A file as it was read.
+//! A source file.
 
 use std::borrow::Cow;
 
@@ -14,18 +14,18 @@ pub struct SourceFile {
     pub id: FileId,
     /// Its path as given by the user, with `/`.
     pub path: String,
-    /// Its bytes; of UTF-16 its text as UTF-8.
+    /// Its bytes; for a UTF-16 file, its text as UTF-8.
     pub bytes: Vec<u8>,
-    /// The encoding of `bytes`, detected.
+    /// The detected encoding of `bytes`.
     pub charset: Charset,
     /// Its lines.
     pub lines: LineIndex,
-    /// Whether the file is UTF-16.
+    /// The form of UTF-16, if the file is UTF-16.
     pub utf16: Option<Utf16>,
 }
 
 impl SourceFile {
-    /// Takes the bytes of a file; at most 4 GiB of them can be addressed.
+    /// A file with these bytes, of which at most 4 GiB can be addressed.
     #[must_use]
     pub fn new(id: FileId, path: String, bytes: Vec<u8>) -> SourceFile {
         let (utf16, bytes) = match Utf16::read(&bytes) {
@@ -43,7 +43,7 @@ impl SourceFile {
         self.utf16.map_or_else(|| self.charset.name(), Utf16::name)
     }
 
-    /// What to write into a file of this encoding for `bytes`, which are like its own.
+    /// Converts `bytes`, encoded like [`SourceFile::bytes`], to the encoding of the file.
     #[must_use]
     pub fn stored<'b>(&self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
         match self.utf16 {
@@ -58,7 +58,7 @@ impl SourceFile {
         self.lines.position(offset)
     }
 
-    /// The bytes of a span of this file; empty if it lies outside.
+    /// The bytes of a span of this file; empty if it is outside.
     #[must_use]
     pub fn slice(&self, span: Span) -> &[u8] {
         self.bytes.get(span.start as usize..span.end as usize).unwrap_or_default()
@@ -92,7 +92,7 @@ mod tests {
                 assert_eq!(file.bytes, text.as_bytes());
                 assert_eq!(file.stored(&file.bytes), bytes);
             }
-            // Damaged, it stays as it is.
+            // A damaged file stays unchanged.
             let cut = &bytes[..bytes.len() - 1];
             assert_eq!(self::file(cut).stored(cut), cut);
             assert_eq!(self::file(cut).bytes, cut);

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FileId(pub u32);
 
-/// A half-open byte range in the *original* bytes of one file.
+/// A half-open range of the bytes of one source file, before any edit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
     /// The file.
@@ -16,7 +16,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The smallest span that holds both; they must be in one file.
+    /// The smallest span that contains both, which must be in one file.
     #[must_use]
     pub fn to(self, other: Span) -> Span {
         Span { file: self.file, start: self.start.min(other.start), end: self.end.max(other.end) }

@@ -1,15 +1,15 @@
-//! UTF-16, the one encoding in which RAPID's own characters are more than a byte.
+//! UTF-16, the only supported encoding in which an ASCII character takes more than one byte.
 //!
-//! Such a file is read as UTF-8 and written back as it was, so that nothing else has to know.
-//! Without a byte order mark it shows in the zeros between its first characters, which are ASCII
-//! in every module. Damaged, it is taken byte for byte like any other.
+//! Such a file is converted to UTF-8 at reading and back to UTF-16 at writing. Without a byte
+//! order mark it is recognised by the zeros between its first characters, which are ASCII in
+//! every module. A damaged file is read byte by byte like any other.
 
 use std::borrow::Cow;
 
-/// Characters at the start of a file without a byte order mark that have to be ASCII.
+/// Number of characters at the start of a file without a byte order mark that must be ASCII.
 const ASCII_AT_START: usize = 8;
 
-/// UTF-16 in one of its forms.
+/// A form of UTF-16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Utf16 {
     order: Order,
@@ -19,18 +19,18 @@ pub struct Utf16 {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
-    /// The low byte first.
+    /// Low byte first.
     Le,
-    /// The high byte first.
+    /// High byte first.
     Be,
 }
 
 impl Utf16 {
-    /// The text of a file, if it is UTF-16 and can be written back without a loss.
+    /// The text of a file, if it is UTF-16 and can be written back without loss.
     pub(super) fn read(bytes: &[u8]) -> Option<(Utf16, String)> {
         let (form, body) = match bytes {
             [0xFF, 0xFE, body @ ..] => (Utf16 { order: Order::Le, bom: true }, body),
-            // `FE` alone begins a module in ABB's binary encoding.
+            // A module in ABB's binary encoding may start with `FE`, too.
             [0xFE, 0xFF, body @ ..] if body.first() == Some(&0) => {
                 (Utf16 { order: Order::Be, bom: true }, body)
             }
@@ -45,7 +45,7 @@ impl Utf16 {
         Some((form, text))
     }
 
-    /// The bytes of a file with this text; what is not UTF-8 becomes U+FFFD.
+    /// The bytes of a file with this text; invalid UTF-8 becomes U+FFFD.
     pub(super) fn write(self, text: &[u8]) -> Vec<u8> {
         let text: Cow<'_, str> = String::from_utf8_lossy(text);
         self.bom
@@ -69,7 +69,7 @@ impl Utf16 {
 }
 
 impl Order {
-    /// The order of a file without a mark, if its start is ASCII in UTF-16.
+    /// The byte order of a file without a mark, if its start is ASCII in UTF-16.
     fn without_mark(bytes: &[u8]) -> Option<Order> {
         let (pairs, _) = bytes.as_chunks::<2>();
         let start = pairs.get(..ASCII_AT_START)?;

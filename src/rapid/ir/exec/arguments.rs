@@ -8,14 +8,14 @@ pub(super) struct Arguments<'e> {
     /// All of them, in order.
     pub(super) all: &'e [Arg],
     pub(super) positional: Vec<&'e Expr>,
-    /// Lower-case name, as written, and value.
+    /// Name in lower case, name as written, and value.
     pub(super) optional: Vec<(&'e str, &'e str, Option<&'e Expr>)>,
-    /// Options that are there only if the routine was called with a parameter, as written: `Z?Zone`.
+    /// Options `\Z?Zone`, stated only if the routine has the parameter `Zone`, as text: `Z?Zone`.
     pub(super) conditional: Vec<String>,
 }
 
 impl<'e> Arguments<'e> {
-    /// Of a call in a routine that was given what `executor` says.
+    /// The arguments of a call in the routine that `executor` currently runs.
     pub(super) fn new(executor: &Executor<'_>, args: &'e [Arg]) -> Arguments<'e> {
         let mut positional = Vec::new();
         let mut optional = Vec::new();

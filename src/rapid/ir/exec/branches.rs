@@ -1,4 +1,4 @@
-//! `IF` and `TEST`: which way they go, and what is noted of the other ways.
+//! `IF` and `TEST`: which branch is taken, and the notes on the branches that are not.
 
 use std::sync::Arc;
 
@@ -8,12 +8,12 @@ use super::operators::equal;
 use crate::rapid::ir::hir::{Block, Expr, Stmt, StmtKind};
 use crate::rapid::ir::value::{Datum, Dependence};
 
-/// A condition, as far as it is known.
+/// The value of a condition.
 pub(super) enum Condition {
     Known(bool),
     /// It depends on inputs at assumed levels.
     Assumed(bool),
-    /// And why, in brackets.
+    /// Unknown, with the reason in parentheses.
     Unknown(String),
 }
 
@@ -23,7 +23,7 @@ impl Executor<'_> {
         branches: &[(Expr, Block)],
         otherwise: Option<&Block>,
     ) -> Flow {
-        // The last condition on inputs: it decides whether a GOTO is reached.
+        // The last condition on inputs: its value decides whether a GOTO is reached.
         let mut decided = None;
         let mut input = None;
         for (condition, block) in branches {
@@ -63,7 +63,7 @@ impl Executor<'_> {
         }
     }
 
-    /// A block that runs because of an input, if there is one: what it assigns depends on that.
+    /// Runs a block; the data that it assigns depend on `input`, which decided that it runs.
     fn block_by(&mut self, input: Option<Arc<str>>, block: &Block) -> Flow {
         let depth = self.deciding.len();
         self.deciding.extend(input);
@@ -72,7 +72,7 @@ impl Executor<'_> {
         flow
     }
 
-    /// Data that a block would have assigned depend on the input because of which it did not run.
+    /// Marks the data that a skipped block would have assigned: they depend on the deciding input.
     fn left_out(&mut self, block: &Block) {
         for stmt in block {
             if let StmtKind::Assign { target, .. } = &stmt.kind
@@ -86,8 +86,7 @@ impl Executor<'_> {
         }
     }
 
-    /// Tells which way an `IF` on inputs went and what the other way holds, if anything moves or
-    /// waits there.
+    /// Notes the assumed value of an `IF` on inputs, if the other branch contains instructions.
     fn note_branch(&mut self, condition: &Expr, taken: &str, left_out: Option<&Block>) {
         if let Some(block) = left_out {
             self.left_out(block);
@@ -184,7 +183,7 @@ impl Executor<'_> {
         }
     }
 
-    /// Tells which way a `TEST` on inputs went and what the others hold.
+    /// Notes the assumed value of a `TEST` on inputs, if the other branches contain instructions.
     fn note_case(
         &mut self,
         value: &Expr,
@@ -224,7 +223,7 @@ impl Executor<'_> {
     }
 }
 
-/// The flow out of a branch; a `GOTO` in it was decided by the condition.
+/// Attaches the deciding condition to a `GOTO` that leaves a branch.
 fn decided_by(decided: Option<Poll>, flow: Flow) -> Flow {
     match flow {
         Flow::Jump(label, None) => Flow::Jump(label, decided.map(Box::new)),

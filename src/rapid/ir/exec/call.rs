@@ -11,7 +11,7 @@ use crate::rapid::ir::value::{Datum, Dependence, Origin};
 use crate::rapid::text::Span;
 
 impl Executor<'_> {
-    /// A call statement: a routine of the program, or an instruction of RAPID's.
+    /// A call statement: a routine of the program or a RAPID instruction.
     pub(super) fn call_statement(&mut self, stmt: &Stmt, call: &Call) -> Flow {
         let (key, text, span) = match &call.callee {
             Callee::Name(name) => (name.key.clone(), name.text.clone(), name.span),
@@ -89,7 +89,7 @@ impl Executor<'_> {
         self.enter(id, names, present, Some(at))
     }
 
-    /// The cell of a parameter: the argument's own for a reference, else a new one.
+    /// The cell of a parameter: that of the argument if passed by reference, else a new one.
     fn bind(&mut self, param: &Param, expr: &Expr) -> CellId {
         if param.mode != ParamMode::In
             && let ExprKind::Ref(name) = &expr.kind
@@ -103,7 +103,7 @@ impl Executor<'_> {
             self.seen_input = None;
         }
         let input = self.seen_input.clone();
-        // A signal is passed on as such.
+        // A signal keeps its own type.
         if !matches!(value.datum, Datum::Signal(_)) {
             value.type_key = param.type_name.key.as_str().into();
         }
@@ -146,13 +146,13 @@ impl Executor<'_> {
         }
         let flow = self.block(&routine.body);
         self.frames.pop();
-        // Module data that were first used in the routine keep their cells.
+        // Cells of module data that the routine was the first to use stay.
         self.cells.truncate(cells.max(self.kept_cells));
         match flow {
             Flow::Next | Flow::Retry | Flow::TryNext => Flow::Return(None),
-            // The caller's handler is the next that may take it.
+            // The error passes to the handler of the caller.
             Flow::Raised(raised) => Flow::Raised(Raised { leaves: false, ..raised }),
-            // A function's value depends on its arguments, which only it knows by name.
+            // The caller does not know the parameters by name: the value takes over their origin.
             Flow::Return(Some(mut value)) => {
                 value.origin.join(&given);
                 Flow::Return(Some(value))
@@ -161,13 +161,13 @@ impl Executor<'_> {
         }
     }
 
-    /// Whether what runs is a function: its callers can't name its data.
+    /// Whether the running routine is a function: its callers can't name its data.
     pub(super) fn is_in_function(&self) -> bool {
         let routine = self.frame().id.map(|id| self.program.routine(id));
         routine.is_some_and(|routine| matches!(routine.kind, RoutineKind::Func))
     }
 
-    /// Something that may move the robot or take time in a way that is not known.
+    /// Reports a statement with an unknown effect on position and time.
     pub(super) fn opaque(&mut self, span: Span, reason: &str) {
         self.unresolved(span, reason);
         self.machine.moves(Err(crate::rapid::ir::movement::Unresolved {

@@ -1,4 +1,4 @@
-//! Values that the program has by itself, whatever has run before.
+//! Values that do not depend on the statements executed before.
 
 use super::executor::{Executor, Frame};
 use super::machine::{Machine, Waited};
@@ -7,8 +7,8 @@ use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 use crate::rapid::ir::program::{DataId, Program};
 use crate::rapid::ir::value::{Datum, Dependence, Value};
 
-/// The value of an expression that stands in a module. What depends on a variable that the
-/// program writes, on an input or on the robot is unknown, with the reason.
+/// The value of an expression in the scope of a module. It is unknown, with the reason, if it
+/// depends on a variable that the program writes, on an input or on the robot.
 pub fn evaluate(program: &Program, module: usize, expr: &Expr) -> Value {
     let mut nowhere = Nowhere;
     let mut executor = Executor::new(program, &mut nowhere);
@@ -31,10 +31,10 @@ pub fn value_of(program: &Program, id: DataId) -> Value {
     evaluate(program, id.module, &Expr { kind: ExprKind::Ref(name), span })
 }
 
-/// Why a value that depends on this may be another one each time.
+/// The reason why this dependence can change a value during execution, if it can.
 fn changes(dependence: &Dependence) -> Option<String> {
     match dependence {
-        // Local data are those of functions that were called with values of the expression.
+        // Local data here are parameters of functions that the expression itself calls.
         Dependence::Persistent(_) | Dependence::TrustedPersistent(_) | Dependence::Local(_) => None,
         Dependence::Inner(name) | Dependence::Variable(name) => {
             Some(format!("'{name}' is written by the program"))
@@ -47,7 +47,7 @@ fn changes(dependence: &Dependence) -> Option<String> {
     }
 }
 
-/// A machine that does nothing and knows nothing.
+/// A machine without effects and without a position.
 struct Nowhere;
 
 impl Machine for Nowhere {

@@ -11,8 +11,8 @@ use crate::rapid::ir::hir::Stmt;
 use crate::rapid::ir::movement::Settings;
 
 impl Executor<'_> {
-    /// `PDispOn [\Rot] \ExeP:=there, programmed, tool`: what is programmed at the one point runs
-    /// at the other, both in the work object's frame. Without `\ExeP` that is where the robot stands, which is not modelled.
+    /// `PDispOn [\Rot] \ExeP:=there, programmed, tool`: shifts all targets by the displacement
+    /// from `programmed` to `there`, in the frame of the work object.
     pub(super) fn displace(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let mut target = |expr| {
             let value = self.eval(expr);

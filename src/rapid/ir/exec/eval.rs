@@ -9,7 +9,7 @@ use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::{DataId, Symbol, Writer};
 use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 
-/// Elements of an array that is followed, at most: larger ones take too much memory and time.
+/// Largest number of elements of an array; a larger one needs too much memory and time.
 const MOST_ELEMENTS: f64 = 1_000_000.0;
 
 impl Executor<'_> {
@@ -83,7 +83,7 @@ impl Executor<'_> {
         }
     }
 
-    /// A signal as a number; everything else as it is.
+    /// The level of a signal as a number; any other value unchanged.
     pub(super) fn level(&mut self, value: Value) -> Value {
         let Datum::Signal(name) = &value.datum else { return value };
         let key = name.to_lowercase();
@@ -111,7 +111,7 @@ impl Executor<'_> {
                 if let Some(input) = &cell.input {
                     self.seen_input = Some(input.clone());
                 }
-                // What a cell holds is described by how it is reached, not by its history.
+                // The origin states the name that was read, not the origin of the stored value.
                 value.origin = cell.reading.clone();
                 value
             }
@@ -135,7 +135,7 @@ impl Executor<'_> {
         }
     }
 
-    /// The storage of a name: the routine's own names hide the module's, these the task's.
+    /// The cell of a name: names of the routine hide those of the module, these those of the task.
     pub(super) fn cell_of(&mut self, name: &Ident) -> Option<CellId> {
         let frame = self.frame();
         if let Some((_, cell)) = frame.names.iter().rev().find(|(key, _)| *key == name.key) {
@@ -147,12 +147,12 @@ impl Executor<'_> {
         }
     }
 
-    /// The cell of module data, made at its first use.
+    /// The cell of module data, created at its first use.
     fn global(&mut self, id: DataId) -> CellId {
         if let Some(cell) = self.globals.get(&id) {
             return *cell;
         }
-        // Reserved before its value is worked out, so that a circular value ends.
+        // Reserved before its value is evaluated, so that a circular definition ends.
         self.cells.push(Cell {
             value: Value::unknown("its value refers to itself", self.program.data(id).span),
             reading: Origin::default(),
@@ -175,7 +175,7 @@ impl Executor<'_> {
         let trusted = matches!(&*value.type_key, "tooldata" | "wobjdata" | "loaddata");
         let reading = match (data.kind, program.writer(id)) {
             (DataKind::Const, _) | (DataKind::Var, None) => value.origin.clone(),
-            // Instructions of options are handed tools and frames, which they only read.
+            // Instructions of controller options only read the tools and frames they get.
             (DataKind::Pers, None | Some(Writer::UnknownCall(_))) if trusted => {
                 Origin::of(Dependence::TrustedPersistent(name))
             }
@@ -226,7 +226,7 @@ impl Executor<'_> {
         value
     }
 
-    /// RAPID's default: 0, FALSE, "", and so on in each component.
+    /// RAPID's default: 0, FALSE, "", or these in each component.
     fn default_datum(&self, type_key: &str, depth: usize) -> Datum {
         const MAX_RECORD_DEPTH: usize = 16;
         match type_key {
@@ -280,7 +280,7 @@ impl Executor<'_> {
         Value { datum, type_key: base.type_key, origin }
     }
 
-    /// `target := value`; what can't be written is left with a note.
+    /// `target := value`; a target that can't be written stays unchanged and gets a note.
     pub(super) fn assign(&mut self, target: &Expr, value: Value) {
         let value = self.level(value);
         let history = self.history(&value.origin);
@@ -343,8 +343,8 @@ impl Executor<'_> {
         }
     }
 
-    /// The inputs, stored values and places of the robot from which a value was worked out, through
-    /// the data that it depends on.
+    /// The inputs, stored values and robot positions that a value depends on, directly or through
+    /// other data.
     pub(super) fn history(&self, origin: &Origin) -> Origin {
         let mut history = Origin::default();
         for dependence in origin.iter() {
@@ -373,7 +373,7 @@ impl Executor<'_> {
         history
     }
 
-    /// The component numbers of a path, from the outside in.
+    /// The component indices of a path, outermost first.
     fn place(&mut self, type_key: &str, path: &[Step<'_>]) -> Option<Vec<usize>> {
         let mut key = type_key.to_owned();
         let mut indices = Vec::with_capacity(path.len());
@@ -417,7 +417,7 @@ impl Executor<'_> {
     }
 }
 
-/// Why a name stands for nothing.
+/// Why a name has no meaning.
 pub(super) fn declared_twice(name: &str) -> String {
     format!("'{name}' is declared more than once")
 }
@@ -427,7 +427,7 @@ enum Step<'e> {
     Index(&'e Expr),
 }
 
-/// Writes a part of a value; true if it was another one before.
+/// Writes a part of a value; true if this changed it.
 fn store(slot: &mut Datum, indices: &[usize], value: Datum) -> bool {
     match indices {
         [] if *slot == value => false,

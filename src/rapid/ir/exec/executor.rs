@@ -10,7 +10,7 @@ use crate::rapid::ir::program::{DataId, Program, RoutineId};
 use crate::rapid::ir::value::{Origin, Value};
 use crate::rapid::text::Span;
 
-/// Something that was not followed exactly, with the place.
+/// A statement that was not executed exactly, with the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     /// Where.
@@ -19,19 +19,19 @@ pub struct Note {
     pub reason: String,
 }
 
-/// What one execution left behind besides what the machine was told.
+/// The notes of one execution.
 #[derive(Debug, Default)]
 pub struct Execution {
-    /// What could not be followed: `unresolved` of the reports.
+    /// Statements that were not executed exactly: `unresolved` of the reports.
     pub unresolved: Vec<Note>,
-    /// What was assumed: levels of inputs, values of `PERS` data.
+    /// Assumptions: levels of inputs, values of `PERS` data.
     pub assumed: Vec<String>,
 }
 
 /// Bounds that keep execution finite.
 pub(super) const MAX_STATEMENTS: u64 = 5_000_000;
 pub(super) const MAX_CALL_DEPTH: usize = 100;
-/// Passes of a loop whose condition is known and stays true.
+/// Largest number of passes of a loop whose condition is known and stays true.
 pub(super) const MAX_PASSES: u32 = 100_000;
 
 /// Index of a storage cell.
@@ -41,12 +41,12 @@ pub(super) type CellId = usize;
 #[derive(Debug)]
 pub(super) struct Cell {
     pub(super) value: Value,
-    /// What reading it adds to the origin.
+    /// The origin of a value read from here.
     pub(super) reading: Origin,
-    /// Inputs, stored values and places of the robot from which what it holds was worked out.
+    /// Inputs, stored values and robot positions that the value depends on.
     pub(super) history: Origin,
     pub(super) read_only: bool,
-    /// An input from which the value was worked out.
+    /// An input that the value depends on.
     pub(super) input: Option<Arc<str>>,
 }
 
@@ -54,19 +54,19 @@ pub(super) struct Cell {
 pub(super) struct Frame {
     pub(super) module: usize,
     pub(super) routine: Arc<str>,
-    /// The call that it runs for.
+    /// The call that started it.
     pub(super) called_at: Option<Span>,
     /// Parameters, local data and loop variables, innermost last.
     pub(super) names: Vec<(String, CellId)>,
     /// Optional parameters that were given.
     pub(super) present: Vec<String>,
-    /// Its declaration; none for an expression that stands by itself.
+    /// Its declaration; none for an expression evaluated outside a routine.
     pub(super) id: Option<RoutineId>,
     /// True while its error handler runs.
     pub(super) handling: bool,
-    /// Cells from here on are its own.
+    /// The cells from this index on belong to it.
     pub(super) base: CellId,
-    /// When its own data last changed, see [`Executor::stamp`].
+    /// Value of [`Executor::stamp`] at the last change of its own data.
     pub(super) changed: u64,
 }
 
@@ -86,7 +86,7 @@ impl Frame {
     }
 }
 
-/// A condition on inputs, and what it was.
+/// A condition on inputs, and its value.
 pub(super) struct Poll {
     pub(super) condition: Expr,
     pub(super) value: bool,
@@ -97,34 +97,34 @@ pub(super) struct Executor<'a> {
     pub(super) machine: &'a mut dyn Machine,
     pub(super) cells: Vec<Cell>,
     pub(super) globals: BTreeMap<DataId, CellId>,
-    /// Cells below this one hold module data and stay.
+    /// Cells below this index may hold module data and are kept when a routine returns.
     pub(super) kept_cells: usize,
     pub(super) frames: Vec<Frame>,
     /// Level of each signal that the program has set or waited for.
     pub(super) signals: BTreeMap<String, f64>,
     pub(super) settings: Arc<Settings>,
-    /// Where the external axes stand, in RAPID's units, once a movement of theirs has told.
+    /// Positions of the external axes after their last movement, in RAPID's units.
     pub(super) external_axes: Option<Vec<f64>>,
     pub(super) statements: u64,
     /// Counts changes of data and signals.
     pub(super) stamp: u64,
-    /// When data or signals other than the own ones of an active routine last changed.
+    /// Value of `stamp` at the last change of a signal or of data outside the running routine.
     pub(super) changed_outside: u64,
     /// Number of movements.
     pub(super) moves: u64,
-    /// Length of the waits whose length the program states, s.
+    /// Sum of the waiting times that the program states, s.
     pub(super) waited_s: f64,
-    /// The conditions on inputs of the loops that are watched.
+    /// The conditions on inputs evaluated in the watched loops.
     pub(super) polls: Vec<Poll>,
-    /// Number of loops that are watched for what they ask.
+    /// Number of active loops whose conditions on inputs are recorded.
     pub(super) watchers: usize,
-    /// A condition whose next value is taken the other way.
+    /// A condition whose next value is inverted.
     pub(super) forced: Option<Span>,
-    /// The input that was read last, itself or through data worked out from it.
+    /// The input that was read last, directly or through data that depend on it.
     pub(super) seen_input: Option<Arc<str>>,
-    /// The inputs because of which the present statements run, innermost last.
+    /// The inputs that decided the current branches, innermost last.
     pub(super) deciding: Vec<Arc<str>>,
-    /// The error that a handler deals with: RAPID's `ERRNO`.
+    /// The error that is being handled: RAPID's `ERRNO`.
     pub(super) errno: Option<Arc<str>>,
     pub(super) execution: Execution,
 }

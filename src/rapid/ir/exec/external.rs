@@ -1,4 +1,4 @@
-//! Movements of external axes: their time, during which the robot stands.
+//! Movements of external axes: the time during which the robot waits for them.
 
 use super::arguments::Arguments;
 use super::executor::Executor;
@@ -7,14 +7,14 @@ use crate::rapid::builtins::MoveSignature;
 use crate::rapid::ir::hir::Stmt;
 use crate::rapid::ir::value::Datum;
 
-/// Values from here on stand for an axis that is not there (RAPID: 9E9).
+/// Values from here on mean that the axis does not exist (RAPID: 9E9).
 const ABSENT: f64 = 8.9e9;
-/// Where the speeds of linear and of turning external axes stand in a `speeddata`.
+/// Indices of the speeds of linear and rotating external axes in a `speeddata`.
 const LINEAR: usize = 2;
 const TURNING: usize = 3;
 
 impl Executor<'_> {
-    /// `MoveExtJ target, speed …`: as long as the slowest axis takes at its speed.
+    /// `MoveExtJ target, speed …`: lasts as long as the slowest axis needs at its speed.
     pub(super) fn external(
         &mut self,
         stmt: &Stmt,
@@ -27,7 +27,7 @@ impl Executor<'_> {
         let speed = arguments.option_value("speed").or_else(|| positional.next());
         let target = target.and_then(|expr| axes(&self.eval(expr).datum));
         let speed = speed.and_then(|expr| match self.eval(expr).datum {
-            // Which kind the axes are is not in the program: `vlinN` has no turning speed.
+            // The program does not state the kind of the axes; `vlinN` has no rotation speed.
             Datum::List(items) => [TURNING, LINEAR]
                 .into_iter()
                 .filter_map(|i| items.get(i).and_then(Datum::num))

@@ -8,7 +8,7 @@ use crate::rapid::ir::hir::{Block, Data, Expr, ExprKind, Ident, Stmt, StmtKind};
 use crate::rapid::ir::value::{Dependence, Origin, Value};
 use crate::rapid::text::Span;
 
-/// The note on a loop without an end.
+/// The note on an endless loop.
 const ENDLESS: &str = "an endless loop: simulated for one pass";
 
 /// How a statement list ended.
@@ -17,30 +17,30 @@ pub(super) enum Flow {
     Next,
     /// `RETURN`, with the value of a function.
     Return(Option<Value>),
-    /// `EXIT`, or the machine is full.
+    /// `EXIT`, or a limit of the execution is reached.
     Exit,
-    /// An error that no handler has taken yet.
+    /// An error that no handler has accepted yet.
     Raised(Raised),
-    /// `GOTO` a label that is not in the list itself, and the condition on inputs that decided.
+    /// `GOTO` a label outside the list, and the condition on inputs that led to it.
     Jump(Ident, Option<Box<Poll>>),
-    /// The end of a handler: the statement with the error once more.
+    /// The end of a handler: repeat the statement with the error.
     Retry,
-    /// The end of a handler: the statement after the one with the error.
+    /// The end of a handler: continue after the statement with the error.
     TryNext,
 }
 
 /// An error.
 pub(super) struct Raised {
     pub(super) at: Span,
-    /// Its number by name, in upper case, where it is known.
+    /// Name of its error number in upper case, if known.
     pub(super) error: Option<Arc<str>>,
     /// True if a handler of the routine has passed it on.
     pub(super) leaves: bool,
 }
 
-/// Times that a statement is tried again: the controller's default.
+/// Number of retries of a statement: the controller's default.
 const RETRIES: u32 = 4;
-/// The error number with which a handler takes what any routine below raises.
+/// The error number of a handler that accepts every error raised in called routines.
 const ANY_ERROR: &str = "long_jmp_all_err";
 
 impl Executor<'_> {
@@ -53,7 +53,7 @@ impl Executor<'_> {
         flow
     }
 
-    /// Runs the statements; `marks` get the labels that were passed.
+    /// Runs the statements; `marks` collects the labels that were passed.
     fn statements_of(&mut self, block: &Block, marks: &mut Vec<(usize, Mark)>) -> Flow {
         let mut index = 0;
         while let Some(stmt) = block.get(index) {
@@ -82,7 +82,7 @@ impl Executor<'_> {
                         self.unresolved(stmt.span, ENDLESS);
                         continue;
                     }
-                    // The IF that led back goes the other way now; else the mark is set already.
+                    // The IF that led back takes its other branch; else repeat after the label.
                     let goes_on = branches && matches!(pass, Pass::Came);
                     index = if goes_on { index - 1 } else { at + 1 };
                 }
@@ -133,7 +133,7 @@ impl Executor<'_> {
         flow
     }
 
-    /// Runs the error handler of the routine, if it has one that takes the error.
+    /// Runs the error handler of the routine, if it has one that accepts the error.
     fn handle(&mut self, raised: Raised) -> Flow {
         let program = self.program;
         let frame = self.frame();
@@ -162,14 +162,14 @@ impl Executor<'_> {
         self.frame_mut().handling = false;
         self.errno = before;
         match flow {
-            // A handler that ends leaves the routine.
+            // The end of the handler ends the routine.
             Flow::Next => Flow::Return(None),
             Flow::Raised(inner) => Flow::Raised(Raised { leaves: true, ..inner }),
             other => other,
         }
     }
 
-    /// Counts a statement or a pass; true if no more may run.
+    /// Counts a statement or a pass; true once a limit is reached.
     pub(super) fn is_over(&mut self, at: Span) -> bool {
         self.statements += 1;
         if self.statements > MAX_STATEMENTS {
@@ -227,7 +227,7 @@ impl Executor<'_> {
         }
     }
 
-    /// Routine data get a new value at each call.
+    /// Declares data of the routine with their initial value, at each call.
     pub(super) fn declare_local(&mut self, data: &Data) {
         let value = self.initial_value(data);
         let history = self.history(&value.origin);
@@ -265,7 +265,7 @@ pub(super) fn never_leaves(block: &[Stmt]) -> bool {
     })
 }
 
-/// A number as RAPID text that reads back as the same number.
+/// A number as RAPID text that parses to the same number.
 pub(super) fn number_text(x: f64) -> String {
     format!("{x}")
 }

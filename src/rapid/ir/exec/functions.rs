@@ -1,4 +1,4 @@
-//! RAPID's own functions, and calls of the program's.
+//! Calls of functions: built into RAPID or declared in the program.
 
 use super::eval::declared_twice;
 use super::executor::Executor;
@@ -106,7 +106,7 @@ impl Executor<'_> {
         Value::constant(Datum::Bool(given), "bool")
     }
 
-    /// The name of a parameter, if the call of the routine gave it.
+    /// The name of an optional parameter, if the call of the routine states it.
     pub(super) fn given<'e>(&self, parameter: &'e Expr) -> Option<&'e Ident> {
         match &parameter.kind {
             ExprKind::Ref(name) if self.frame().present.contains(&name.key) => Some(name),
@@ -127,7 +127,7 @@ impl Executor<'_> {
     }
 }
 
-/// Why a function has no value here.
+/// Why the value of a function is unknown.
 fn not_known(name: &Ident, source: Option<Source>) -> String {
     match source {
         Some(Source::Position) => format!("{} depends on where the robot is", name.text),

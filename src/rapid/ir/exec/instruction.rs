@@ -1,4 +1,4 @@
-//! RAPID's own instructions: which part of the executor runs each, outputs and counters.
+//! RAPID instructions: the dispatch by effect, outputs and counters.
 
 use super::arguments::Arguments;
 use super::executor::{Cell, Executor};
@@ -31,7 +31,7 @@ impl Executor<'_> {
                 if instruction.is_writing() {
                     self.forget(args, text);
                 }
-                // The program does not tell for how long.
+                // The program does not state how long.
                 self.wait(stmt, text, Length::Until(None), None);
             }
             Effect::Output(level) => self.output(stmt, text, level, &arguments),
@@ -54,7 +54,7 @@ impl Executor<'_> {
         Flow::Next
     }
 
-    /// A routine of which nothing is known.
+    /// A routine that is neither declared nor built in.
     fn unknown(&mut self, stmt: &Stmt, text: &str, args: &[Arg]) {
         let reads = |cell: &Cell| {
             let mut origin = cell.reading.iter();
@@ -68,7 +68,7 @@ impl Executor<'_> {
         );
     }
 
-    /// The data to which an instruction writes are no longer known.
+    /// Marks the data that an instruction writes as unknown.
     fn written(&mut self, text: &str, instruction: &Instruction, args: &[Arg]) {
         let how = format!("is written by {text}");
         match instruction.written() {
@@ -78,12 +78,12 @@ impl Executor<'_> {
         }
     }
 
-    /// Data that a call may have written are no longer known.
+    /// Marks all data among the arguments as unknown.
     pub(super) fn forget(&mut self, args: &[Arg], how: &str) {
         self.forget_if(args, how, |_| true);
     }
 
-    /// The data of the one argument that is written to are no longer known.
+    /// Marks the data of the one written argument as unknown.
     pub(super) fn forget_written(&mut self, args: &[Arg], written: Written, how: &str) {
         let by_name = |arg: &&Arg| {
             matches!(&arg.kind, ArgKind::Named(name, _)

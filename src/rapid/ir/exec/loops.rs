@@ -77,7 +77,7 @@ impl Executor<'_> {
         flow
     }
 
-    /// A mark for a loop that its body may leave: only such a loop can end with an input.
+    /// A mark for a loop that its body can leave: only such a loop can end because of an input.
     fn watch(&mut self, body: &Block) -> Option<Mark> {
         if never_leaves(body) {
             return None;
@@ -86,7 +86,7 @@ impl Executor<'_> {
         Some(self.mark())
     }
 
-    /// The body of `WHILE TRUE`, which only the body itself can leave.
+    /// Runs the body of `WHILE TRUE`, which only a statement of the body can leave.
     fn endless(&mut self, stmt: &Stmt, body: &Block) -> Flow {
         let passes = self.machine.passes().max(1);
         self.machine.repeats();
@@ -104,7 +104,7 @@ impl Executor<'_> {
             if !matches!(flow, Flow::Next) {
                 break;
             }
-            // The pass after a wait for an input still is the one that waited.
+            // A pass that waited for an input and its repetition count as one.
             let again =
                 watched.as_mut().is_some_and(|mark| matches!(self.pass_at_rest(mark), Pass::Came));
             pass += u32::from(!again);
@@ -118,7 +118,7 @@ impl Executor<'_> {
                 let passes = if passes == 1 { "one".to_owned() } else { passes.to_string() };
                 let text = format!("an endless loop: simulated for {passes} {plural}");
                 self.unresolved(stmt.span, text);
-                // What stands behind the loop never runs.
+                // The statements after the loop never run.
                 Flow::Exit
             }
             Flow::Exit => Flow::Exit,
@@ -129,7 +129,7 @@ impl Executor<'_> {
         }
     }
 
-    /// As [`Executor::pass`], for a loop that is no wait as long as it moves.
+    /// [`Executor::pass`] for a loop that counts as a wait only while the robot stands still.
     fn pass_at_rest(&mut self, mark: &mut Mark) -> Pass {
         if mark.has_moved(self) {
             *mark = self.mark();
@@ -162,7 +162,7 @@ impl Executor<'_> {
                     decided = Some(Poll { condition: condition.clone(), value: true });
                 }
                 Condition::Assumed(true) => {
-                    // A loop that polls an input is a wait for it.
+                    // A loop that only polls an input is a wait for it.
                     self.wait_for("WHILE", (condition, false), None);
                     self.flip(&Poll { condition: condition.clone(), value: true });
                     self.forced = None;
@@ -182,8 +182,7 @@ impl Executor<'_> {
             if !matches!(flow, Flow::Next) {
                 return flow;
             }
-            // Where data lead back, an input may set them in the body: the pass after it has come
-            // is the last.
+            // The body may poll an input and set the data of the condition from it.
             let at_rest = decided.is_none().then(|| self.pass_at_rest(&mut mark));
             if decided.is_some()
                 && !matches!(self.pass(&mut mark, "WHILE", decided, None), Pass::Waiting)

@@ -1,41 +1,40 @@
-//! What is told of a program's execution, and who is asked for what the program does not tell.
+//! The interface between the execution of a program and the simulated robot.
 
 use nalgebra::Isometry3;
 
 use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 
-/// What execution asks of the robot and tells it.
+/// Receives the movements, waits and outputs of a program, and supplies inputs and positions.
 pub trait Machine {
-    /// A movement, or the reason why it can't be worked out.
+    /// A movement, or the reason why it is unknown.
     fn moves(&mut self, movement: Result<Movement, Unresolved>);
-    /// A wait; how it ended.
+    /// A wait; returns how it ended.
     fn waits(&mut self, wait: Wait) -> Waited;
     /// A change of an output.
     fn sets(&mut self, output: Output);
-    /// An endless loop begins: what comes from here on comes again and again.
+    /// An endless loop begins: the events from here on repeat.
     fn repeats(&mut self) {}
-    /// The loop that seemed endless was left.
+    /// The program left the loop that [`Machine::repeats`] announced.
     fn leaves_loop(&mut self) {}
-    /// Whether an input has come, if it is known when it does. Once it has, its time counts
-    /// again from here.
+    /// Whether an input has changed, if its time is known; if so, its next delay starts then.
     fn has_come(&mut self, _signal: &str) -> Option<bool> {
         None
     }
-    /// When an input comes that the program waits for, if that is known, s.
+    /// Time, from the start of the program, at which an input changes, if known, s.
     fn comes_at(&mut self, _signal: &str) -> Option<f64> {
         None
     }
-    /// How often the loop that never ends is to run.
+    /// Number of passes to simulate of an endless loop.
     fn passes(&self) -> u32 {
         1
     }
-    /// The level of an input that the user states, by lower-case name.
+    /// The level that the user states for an input (name in lower case).
     fn stated_level(&self, _signal: &str) -> Option<f64> {
         None
     }
-    /// Axis positions in rad, if the robot stands and its position is known.
+    /// Axis positions in rad, if the robot stands still at a known position.
     fn joints(&mut self) -> Option<[f64; 6]>;
-    /// The pose of the flange in the world at these joints (rad), if a robot is there.
+    /// The pose of the flange in the world frame at these joint angles (rad), if there is a robot.
     fn flange(&self, _q: &[f64; 6]) -> Option<Isometry3<f64>> {
         None
     }
@@ -43,19 +42,19 @@ pub trait Machine {
     fn override_percent(&self) -> f64 {
         100.0
     }
-    /// What the controller calls its robot.
+    /// The robot type that the controller reports.
     fn robot(&self) -> Option<String> {
         None
     }
-    /// True once the machine wants no more (limits of time or of length); it tells why itself.
+    /// True once a limit of time or length is reached; the machine itself reports the reason.
     fn is_full(&self) -> bool;
 }
 
 /// How a wait ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waited {
-    /// What it waited for came, or its time was over.
+    /// Its condition came true, or its stated time is over.
     Ended,
-    /// Its `\\MaxTime` was over before.
+    /// Its `\\MaxTime` expired first.
     TimedOut,
 }

@@ -1,10 +1,9 @@
-//! Execution of a program as far as it can be known without the cell.
+//! Execution of a program without its robot cell.
 //!
-//! The executor walks the statements, keeps every value together with what it
-//! was computed from, and tells a [`Machine`] about movements, waits and
-//! outputs. Inputs are 0 until the program has waited for them; a branch on a
-//! value that is not known takes the `ELSE`; an endless loop runs once. Each
-//! such decision is recorded.
+//! The executor runs the statements, stores every value with its origin, and reports movements,
+//! waits and outputs to a [`Machine`]. Inputs are 0 until the program has waited for them or the
+//! user states them; an unknown condition counts as FALSE; an endless loop runs a limited number
+//! of passes. Each such decision is recorded.
 
 mod arguments;
 mod branches;
@@ -39,7 +38,7 @@ use flow::Flow;
 
 use super::program::{Program, RoutineId};
 
-/// Runs the routine on the machine.
+/// Executes the routine `entry` on the machine.
 pub fn execute(program: &Program, entry: RoutineId, machine: &mut dyn Machine) -> Execution {
     let mut executor = Executor::new(program, machine);
     executor.run(entry);

@@ -1,4 +1,4 @@
-//! Modes of motion that are not modelled unless they are the usual ones.
+//! Motion modes of which only the default is modelled.
 
 use std::sync::Arc;
 
@@ -11,11 +11,11 @@ use crate::rapid::ir::movement::Settings;
 /// Source: RAPID reference, `motsetdata`.
 const CIRCLE_MODES: [&str; 6] =
     ["pathframe", "objectframe", "cirpointori", "wrist45", "wrist46", "wrist56"];
-/// The last of the modes that are simulated.
+/// The last of the modes that the simulation models.
 const OBJECT_FRAME: usize = 1;
 
 impl Executor<'_> {
-    /// `CirPathMode`: how the tool turns on arcs; about the path's frame where nothing is said.
+    /// `CirPathMode`: how the tool turns on arcs; default `\PathFrame`.
     pub(super) fn circle_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let mode = CIRCLE_MODES.iter().position(|mode| arguments.has_option(mode)).unwrap_or(0);
         if mode <= OBJECT_FRAME {
@@ -28,7 +28,7 @@ impl Executor<'_> {
         self.settings = Arc::new(settings);
     }
 
-    /// `PathResol`: how densely a path is interpolated, 100 % where nothing is said.
+    /// `PathResol`: how densely a path is interpolated; default 100 %.
     pub(super) fn path_resolution(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let percent = arguments.positional.first().and_then(|expr| self.eval(expr).datum.num());
         if percent == Some(100.0) {
@@ -41,7 +41,7 @@ impl Executor<'_> {
         self.settings = Arc::new(settings);
     }
 
-    /// `MotionProcessModeSet`: another tuning of the servo than the one that everything starts with.
+    /// `MotionProcessModeSet`: the tuning of the servo; default `OPTIMAL_CYCLE_TIME_MODE`.
     pub(super) fn process_mode(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let usual = |expr: &&Expr| match &expr.kind {
             ExprKind::Ref(name) => name.key == "optimal_cycle_time_mode",

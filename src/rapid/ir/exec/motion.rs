@@ -10,7 +10,7 @@ use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 
-/// Options that a movement may have without changing where or how fast it goes.
+/// Options whose effect on a movement is modelled, or that have none.
 const KNOWN_OPTIONS: &[&str] = &[
     "conc",
     "v",
@@ -27,14 +27,14 @@ const KNOWN_OPTIONS: &[&str] = &[
     "noeoffs",
 ];
 
-/// The arguments of a movement as far as they are evaluated.
+/// The evaluated arguments of a movement.
 #[derive(Default)]
 struct Given {
     origin: Origin,
     arguments: Vec<Argument>,
 }
 
-/// The arguments of a movement by what they mean.
+/// The arguments of a movement by meaning.
 struct Parts<'e> {
     via: Option<&'e Expr>,
     target: &'e Expr,
@@ -181,7 +181,7 @@ impl Executor<'_> {
         })
     }
 
-    /// What the arguments depend on, directly or not. Data that are trusted are noted.
+    /// The direct and indirect dependences of the arguments. Trusted data are noted as assumed.
     fn origin_of_movement(&mut self, mut origin: Origin) -> Origin {
         for dependence in origin.iter() {
             if let Dependence::TrustedPersistent(name) = dependence {
@@ -202,7 +202,7 @@ impl Executor<'_> {
         convert::tool(&value.datum, name).map_err(|why| self.blame(expr, &value.datum, &why))
     }
 
-    /// `\V` replaces the TCP speed; the time of `\T`, s.
+    /// Replaces the TCP speed by `\V`; returns the time `\T`, s.
     fn speed_options(
         &mut self,
         speed: &mut Speed,
@@ -223,8 +223,8 @@ impl Executor<'_> {
         Ok(Some(time))
     }
 
-    /// Why an argument can't be used, with the name of the data; where their value is known but
-    /// wrong, the declaration gets a note.
+    /// Adds the name of the data to the reason why an argument is unusable. A value that is known
+    /// but invalid is noted at its declaration.
     pub(super) fn blame(&mut self, argument: &Expr, datum: &Datum, why: &str) -> String {
         let ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
         if datum.first_unknown().is_some() {
@@ -251,7 +251,7 @@ impl Executor<'_> {
     ) -> Result<Zone, String> {
         if let Some(value) = self.option(arguments, "z", "num", given) {
             let size = convert::num(&value.datum, "\\Z")?.max(0.0) * 1e-3;
-            // The other sizes keep their proportion to the TCP zone.
+            // The other sizes keep their ratio to the TCP zone.
             let scale = if zone.tcp > 0.0 { size / zone.tcp } else { 1.5 };
             zone = Zone {
                 fine: false,
@@ -266,7 +266,7 @@ impl Executor<'_> {
         Ok(zone)
     }
 
-    /// The value of an option that is given.
+    /// The value of an option, if the call states it.
     fn option(
         &mut self,
         arguments: &Arguments<'_>,
@@ -285,7 +285,7 @@ impl Executor<'_> {
     }
 }
 
-/// What the simulation leaves out of a movement that does more than move.
+/// The part of a combined movement instruction that is not simulated.
 fn not_simulated(kind: MoveKind) -> Option<&'static str> {
     match kind {
         MoveKind::Search => {

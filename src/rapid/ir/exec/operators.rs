@@ -1,4 +1,4 @@
-//! What operators make of values.
+//! Evaluation of operators.
 
 use crate::rapid::ir::functions;
 use crate::rapid::ir::hir::{BinaryOp, Expr};
@@ -14,7 +14,7 @@ pub(super) fn negated(items: &[Datum], expr: &Expr) -> Datum {
 
 pub(super) fn binary(op: BinaryOp, left: &Datum, right: &Datum, expr: &Expr) -> Datum {
     if let Some(unknown) = left.first_unknown().or_else(|| right.first_unknown()) {
-        // FALSE AND x, TRUE OR x are known whatever x is.
+        // FALSE AND x, TRUE OR x are known for every x.
         return match (op, left, right) {
             (BinaryOp::And, Datum::Bool(false), _) | (BinaryOp::And, _, Datum::Bool(false)) => {
                 Datum::Bool(false)

@@ -1,8 +1,8 @@
-//! Loops that wait for an input by asking for it again and again.
+//! Loops that poll an input.
 //!
-//! A pass that neither moves the robot nor changes data will be the same again until an input
-//! changes: the loop is a wait for that input. A pass that moves is run again until the input
-//! has come, or once where nobody knows when it comes.
+//! A pass that neither moves the robot nor changes data repeats unchanged until an input
+//! changes: the loop is a wait for that input. A pass that moves runs until the input changes,
+//! or once if the time of the change is unknown.
 
 use std::sync::Arc;
 
@@ -14,12 +14,12 @@ use crate::rapid::ir::movement::Wait;
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::ir::value::Datum;
 
-/// Times that one loop may wait before it is taken as one that never ends.
+/// Number of waits after which a loop counts as endless.
 const MAX_WAITS: u32 = 20;
-/// Passes after which a loop that counts while it asks for an input is taken as a wait.
+/// Number of passes after which a loop that polls an input and changes data counts as a wait.
 const MAX_COUNTED: u32 = 1000;
 
-/// Inputs of one condition whose order is looked at.
+/// Largest number of inputs of a condition for which their order in time is considered.
 const MAX_TOGETHER: usize = 6;
 
 /// The state at the start of a pass.
@@ -33,28 +33,28 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Whether the robot was told to move since.
+    /// Whether the program has moved the robot since.
     pub(super) fn has_moved(&self, executor: &Executor<'_>) -> bool {
         executor.moves != self.moves
     }
 }
 
-/// What a pass was.
+/// The kind of a pass.
 pub(super) enum Pass {
-    /// One of a loop that goes on for reasons of its own.
+    /// The loop continues for a reason other than an input.
     Ordinary,
-    /// One of many: the input has not come.
+    /// The input has not changed: another pass follows.
     Waiting,
-    /// The last: the input has come now.
+    /// The last pass: the input has changed.
     Came,
-    /// The last: the loop ended before the input came.
+    /// The last pass: the loop ended before the input changed.
     TimedOut,
-    /// The same as all to come.
+    /// The loop does not end.
     Endless,
 }
 
 impl Executor<'_> {
-    /// The start of the first pass.
+    /// The mark at the start of the first pass.
     pub(super) fn mark(&self) -> Mark {
         Mark {
             polls: self.polls.len(),
@@ -66,8 +66,8 @@ impl Executor<'_> {
         }
     }
 
-    /// Judges the pass since the mark and sets the mark for the next. `decided` is the condition
-    /// that led back, if one on inputs did; after `passes_left` the loop ends by itself.
+    /// Classifies the pass since the mark and sets the mark for the next. `decided`: the condition
+    /// on inputs that led back, if any; after `passes_left` more passes the loop ends.
     pub(super) fn pass(
         &mut self,
         mark: &mut Mark,
@@ -89,7 +89,7 @@ impl Executor<'_> {
             let same = !changed && passes_left.is_none();
             return if same { Pass::Endless } else { Pass::Ordinary };
         }
-        // Of several inputs the one whose time is known decides.
+        // Among several inputs, one with a known time decides.
         let mut coming: Option<(usize, bool)> = None;
         for (i, poll) in asked.iter().enumerate() {
             if let Some(signal) = self.deciding_signal(&poll.condition, !poll.value)
@@ -165,7 +165,7 @@ impl Executor<'_> {
         Pass::Came
     }
 
-    /// Gives an input of the condition a level at which the condition is the other way.
+    /// Sets an input of the condition to a level that inverts the condition.
     pub(super) fn flip(&mut self, poll: &Poll) {
         let mut signals = Vec::new();
         let mut levels = vec![1.0, 0.0];
@@ -187,8 +187,8 @@ impl Executor<'_> {
         self.forced = Some(poll.condition.span);
     }
 
-    /// The input of a condition that brings it to `wanted` when all inputs whose times are known
-    /// have changed once, in their order; the first of its signals where that is not known.
+    /// The input whose change brings the condition to `wanted`, if its inputs change once in the
+    /// order of their times; else the first signal of the condition.
     pub(super) fn deciding_signal(&mut self, condition: &Expr, wanted: bool) -> Option<Arc<str>> {
         let first = self.first_signal(condition);
         let mut signals: Vec<Arc<str>> = Vec::new();
@@ -200,7 +200,7 @@ impl Executor<'_> {
         }
         let mut coming: Vec<(f64, Arc<str>)> = Vec::new();
         for signal in signals {
-            // What nobody states is taken to be there at once, as where it is alone.
+            // An input without a stated time counts as changing at once.
             let at = self.machine.comes_at(&signal).unwrap_or(f64::NEG_INFINITY);
             coming.push((at, signal));
         }
@@ -211,14 +211,14 @@ impl Executor<'_> {
         decides.map(|i| coming[i].1.clone()).or(first)
     }
 
-    /// Which of the inputs, changing one after the other, makes the condition `wanted`.
+    /// Index of the input whose change brings the condition to `wanted`, if they change in order.
     fn last_needed(
         &mut self,
         condition: &Expr,
         wanted: bool,
         coming: &[(f64, Arc<str>)],
     ) -> Option<usize> {
-        // The levels to which they change: all high first, as most conditions ask.
+        // The levels after the changes; all high first, the most common condition.
         for target in (0..1_u32 << coming.len()).rev() {
             let level = |i: usize, come: bool| f64::from(u8::from((target >> i & 1 == 1) == come));
             for (i, (_, signal)) in coming.iter().enumerate() {
@@ -237,7 +237,7 @@ impl Executor<'_> {
         None
     }
 
-    /// The truth of a condition at the levels that the signals have.
+    /// The value of a condition at the current signal levels.
     fn holds(&mut self, condition: &Expr) -> Option<bool> {
         let value = self.eval(condition);
         match self.level(value).datum {
@@ -247,7 +247,7 @@ impl Executor<'_> {
         }
     }
 
-    /// The signals of an expression, and levels that it may compare them with or that lie beyond.
+    /// Collects the signals of an expression, and its numbers and their neighbours as trial levels.
     fn parts(&mut self, expr: &Expr, signals: &mut Vec<Arc<str>>, levels: &mut Vec<f64>) {
         match &expr.kind {
             ExprKind::Num(x) => levels.extend([*x, x + 1.0, x - 1.0]),
@@ -295,7 +295,7 @@ impl Executor<'_> {
         }
     }
 
-    /// Notes that data or a signal have another value than before.
+    /// Records a change of the data in a cell, or of a signal.
     pub(super) fn changes(&mut self, cell: Option<CellId>) {
         self.stamp += 1;
         let stamp = self.stamp;

@@ -10,19 +10,19 @@ use crate::rapid::ir::hir::Stmt;
 use crate::rapid::ir::movement::Settings;
 use crate::rapid::ir::value::{Datum, Value};
 
-/// Least limit of `PathAccLim` and `WorldAccLim`, m/s²: lower ones are raised.
+/// Smallest limit of `PathAccLim` and `WorldAccLim`, m/s²; smaller values are raised to it.
 const LEAST_ACCELERATION: f64 = 0.1;
 
 /// Largest override of `VelSet`, %.
 const MOST_OVERRIDE: f64 = 200.0;
 
-/// Why a setting is not made.
+/// Why a setting is not applied.
 enum NotSet {
     /// Its value is not known.
     Unknown,
     /// The controller stops with an error at this value.
     Refused(String),
-    /// It stops all movements.
+    /// The value stops all movements.
     StopsMovements,
 }
 
@@ -56,7 +56,7 @@ impl Executor<'_> {
         }
     }
 
-    /// A setting of the values of its arguments.
+    /// Applies a setting that consists of the values of its arguments.
     fn set(&mut self, stmt: &Stmt, text: &str, setting: Setting, arguments: &Arguments<'_>) {
         let mut values = Vec::new();
         for expr in &arguments.positional {
@@ -135,7 +135,7 @@ impl Executor<'_> {
         Ok(())
     }
 
-    /// A value at which the controller stops with an error.
+    /// Reports a value at which the controller stops with an error.
     fn refused(&mut self, stmt: &Stmt, text: &str, what: &str) {
         self.unresolved(
             stmt.span,
@@ -194,7 +194,7 @@ impl Executor<'_> {
         self.settings = Arc::new(settings);
     }
 
-    /// A limit of the acceleration, raised to the least that there is.
+    /// An acceleration limit, raised to [`LEAST_ACCELERATION`] if it is smaller.
     fn least(&mut self, stmt: &Stmt, text: &str, limit: f64) -> f64 {
         if limit < LEAST_ACCELERATION {
             let reason = format!(
@@ -224,7 +224,7 @@ impl Executor<'_> {
         self.settings = Arc::new(settings);
     }
 
-    /// A setting that changes movements in a way that is not modelled.
+    /// Records a setting whose effect on movements is not modelled.
     pub(super) fn unmodelled(&mut self, stmt: &Stmt, text: &str) {
         self.unresolved(
             stmt.span,

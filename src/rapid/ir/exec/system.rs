@@ -1,4 +1,4 @@
-//! What the controller tells a program of itself: system data and functions.
+//! System data and functions of the controller.
 
 use nalgebra::Isometry3;
 
@@ -8,15 +8,15 @@ use crate::rapid::ir::hir::{Arg, ArgKind, Expr};
 use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 use crate::rapid::text::Span;
 
-/// Largest TCP speed that `VelSet` allows where the program has not set it, mm/s.
+/// TCP speed limit in `C_MOTSET` before the first `VelSet`, mm/s.
 const USUAL_SPEED: f64 = 5000.0;
-/// RAPID's value of an axis that is not there.
+/// RAPID's value of an axis that does not exist.
 const NO_AXIS: f64 = 9e9;
-/// In place of a limit that is off.
+/// Value of a limit that is off.
 const OFF: f64 = -1.0;
 
 impl Executor<'_> {
-    /// The system data of a name in lower case.
+    /// The system data with this name in lower case.
     pub(super) fn system_data(&self, key: &str, span: Span) -> Option<Value> {
         match key {
             "c_progdisp" => Some(Value::constant(self.displacement(), "progdisp")),
@@ -70,8 +70,7 @@ impl Executor<'_> {
         Datum::List(all)
     }
 
-    /// `CSpeedOverride()`: the operator's override; with `\\CTask` what `SpeedRefresh` makes of it in
-    /// this task.
+    /// `CSpeedOverride()`: the operator's override; with `\\CTask` the value of `SpeedRefresh`.
     pub(super) fn override_of_speed(&self, args: &[Arg], expr: &Expr) -> Value {
         let asks = |arg: &Arg| matches!(&arg.kind, ArgKind::Optional(n, _) if n.key == "ctask");
         let percent = if !args.iter().any(asks) {
@@ -84,7 +83,7 @@ impl Executor<'_> {
         Value::constant(Datum::Num(percent), "num")
     }
 
-    /// `GetSysInfo(\\RobotType)`: what the controller calls its robot.
+    /// `GetSysInfo(\\RobotType)`: the robot type that the controller reports.
     pub(super) fn system_info(&self, options: &[(&str, Option<Value>)], expr: &Expr) -> Value {
         let asked = options.first().map_or("", |(option, _)| *option);
         match self.machine.robot().filter(|_| asked == "robottype") {
@@ -93,8 +92,7 @@ impl Executor<'_> {
         }
     }
 
-    /// `CalcRobT(joints, tool [\\WObj])`: the target at which the tool is then. Its configuration is
-    /// not worked out.
+    /// `CalcRobT(joints, tool [\\WObj])`: the target of the tool, without its configuration.
     pub(super) fn robtarget_at(
         &mut self,
         values: &[Value],

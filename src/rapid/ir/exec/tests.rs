@@ -1,4 +1,4 @@
-//! What a machine is told.
+//! The events that a machine receives.
 
 use super::*;
 use crate::rapid::ir::lower;
@@ -6,7 +6,7 @@ use crate::rapid::ir::movement::{Movement, Output, Target, Unresolved, Wait};
 use crate::rapid::syntax;
 use crate::rapid::text::FileId;
 
-/// A line for each thing that it is told.
+/// One line per event.
 #[derive(Default)]
 struct Recorder(Vec<String>);
 
@@ -29,7 +29,7 @@ impl Machine for Recorder {
     }
     fn waits(&mut self, wait: Wait) -> Waited {
         self.0.push(format!("{} {:?}", wait.instruction, wait.duration));
-        // What may time out does.
+        // Every wait with a limit times out.
         if wait.max_time.is_some() { Waited::TimedOut } else { Waited::Ended }
     }
     fn sets(&mut self, output: Output) {
@@ -54,18 +54,17 @@ const DATA: &str = "
     VAR bool bFlag;
     VAR num nKey;";
 
-/// What a machine is told by these statements.
+/// The events of these statements.
 fn told(statements: &str) -> Vec<String> {
     told_with_errors(statements, 0)
 }
 
-/// The same for statements that have that many syntax errors.
+/// The events of statements with this number of syntax errors.
 fn told_with_errors(statements: &str, errors: usize) -> Vec<String> {
     executed(statements, errors).0
 }
 
-/// What a machine is told by statements with that many syntax errors, and the reasons of what was
-/// not followed.
+/// The events of statements with this number of syntax errors, and the unresolved reasons.
 fn executed(statements: &str, errors: usize) -> (Vec<String>, Vec<String>) {
     let text = format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\nENDMODULE");
     let parse = syntax::parse(text.as_bytes());
@@ -105,7 +104,7 @@ fn every_family_of_movements_is_resolved() {
     assert_eq!(told("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
 }
 
-/// Only a search writes a target, and only the point that it finds.
+/// Of all movements only a search writes a target, and only the point that it finds.
 #[test]
 fn what_does_more_than_move_leaves_its_target_alone() {
     let behind = |statement: &str| {
@@ -132,7 +131,7 @@ fn what_does_more_than_move_leaves_its_target_alone() {
     }
 }
 
-/// World zones move nothing, and write nothing but the zone or the shape.
+/// World zones cause no movement and write only the zone or the shape.
 #[test]
 fn world_zones_leave_targets_and_signals_as_they_should() {
     let statements = "pVar:=p20; jVar:=j10; SetDO doHome, 1;
@@ -142,7 +141,7 @@ fn world_zones_leave_targets_and_signals_as_they_should() {
         WZDisable wzTemp; WZEnable wzTemp; WZFree wzTemp;
         MoveL pVar, v100, fine, tool0; MoveAbsJ jVar, v100, fine, tool0;";
     assert_eq!(told(statements), ["SetDO doHome=1", "MoveL 150.0", "MoveAbsJ 30.0"]);
-    // The place of the robot sets the output from then on.
+    // From then on the output depends on the position of the robot.
     let inverted = |zone: &str| told(&format!("SetDO doHome, 1; {zone} InvertDO doHome;"));
     assert_eq!(inverted("")[1], "InvertDO doHome=0");
     assert_eq!(
@@ -159,7 +158,7 @@ fn a_statement_with_an_error_may_move_the_robot() {
 
 #[test]
 fn external_axes_leave_the_robot_where_it_stands() {
-    // A wait, of unknown length as long as nothing tells where the axes stand.
+    // A wait of unknown length until the position of the axes is known.
     assert_eq!(told("MoveExtJ j10, vrot10, fine;"), ["MoveExtJ None"]);
     assert_eq!(told("SearchExtJ diTouch, j10, j10, vrot10;"), ["SearchExtJ None"]);
     assert_eq!(told("MoveExtJ j10, vrot10 \\T:=2, fine;"), ["MoveExtJ Some(2.0)"]);
@@ -189,7 +188,7 @@ fn waits_for_others_are_waits() {
     );
 }
 
-/// Data that a branch on an input assigns, or would have assigned, depend on the input.
+/// Data assigned in a branch on an input, taken or not, depend on the input.
 #[test]
 fn branches_on_data_that_inputs_chose_are_told() {
     let later = "IF nKey=1 THEN\nMoveJ p10, v100, fine, tool0;\nENDIF";

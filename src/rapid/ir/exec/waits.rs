@@ -14,13 +14,13 @@ use crate::rapid::text::Span;
 
 /// How long a wait lasts.
 pub(super) enum Length {
-    /// s, by an argument of literals and constants: the same whenever it runs.
+    /// s, from literals and constants only, with the argument: the same at every execution.
     Constant(f64, Span),
     /// s.
     Stated(f64),
-    /// Until an input comes, or a condition holds that names none.
+    /// Until an input changes; none if the condition names no input.
     Until(Option<Arc<str>>),
-    /// For something else, in words.
+    /// Of unknown length, with the cause in words.
     Unknown(String),
 }
 
@@ -29,7 +29,7 @@ impl Executor<'_> {
         let value = arguments.positional.first().map(|expr| self.eval(expr));
         let constant = value.as_ref().is_some_and(|value| value.origin.iter().next().is_none());
         let datum = value.map(|value| value.datum);
-        // `WaitTime 0` and `WaitTime \InPos, 0` only wait for standstill.
+        // `WaitTime 0` and `WaitTime \InPos, 0` wait only for standstill.
         let length = match datum {
             Some(Datum::Num(time)) if time < 0.0 => {
                 self.unresolved(
@@ -70,8 +70,7 @@ impl Executor<'_> {
         flow.err().unwrap_or(Flow::Next)
     }
 
-    /// A wait with `\MaxTime` and `\TimeFlag`, if they are given. `Err` holds what follows where
-    /// it did not end with what it waited for.
+    /// A wait with optional `\MaxTime` and `\TimeFlag`. `Err` holds the flow after a timeout.
     fn wait_at_most(
         &mut self,
         stmt: &Stmt,
@@ -132,7 +131,7 @@ impl Executor<'_> {
         Flow::Next
     }
 
-    /// After the wait the equalities of its condition hold.
+    /// Sets the signals to the levels that the condition of the finished wait requires.
     fn learn(&mut self, condition: &Expr) {
         match &condition.kind {
             ExprKind::Binary(BinaryOp::And, left, right) => {

@@ -1,12 +1,12 @@
-//! World zones: what they do to data and signals. They move nothing.
+//! World zones: their effects on data and signals. They cause no movement.
 
 use super::arguments::Arguments;
 use super::executor::Executor;
 use crate::rapid::builtins::{self, Instruction};
 
 impl Executor<'_> {
-    /// `WZDOSet zone, shape, signal, value`: from here on the place of the robot sets the signal,
-    /// so that its level is not known any more.
+    /// `WZDOSet zone, shape, signal, value`: from here on the robot's position sets the signal, so
+    /// its level is unknown.
     pub(super) fn zone_output(&mut self, arguments: &Arguments<'_>) {
         const SIGNAL: usize = 2;
         if let Some(written) = builtins::instruction("wzdoset").and_then(Instruction::written) {

@@ -1,4 +1,4 @@
-//! Functions of bits: a `byte` has 8, a `dnum` 52.
+//! Bit functions: 8 bits for `byte`, 52 for `dnum`.
 
 use super::given::{Function, Given, Typed, boolean};
 use crate::rapid::ir::value::Datum;

@@ -39,7 +39,7 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
     Some(function)
 }
 
-/// `pos * pos`, the vector product, and `orient * orient`, the second turn in the first's frame.
+/// `pos * pos`: cross product. `orient * orient`: second rotation in the frame of the first.
 pub(in crate::rapid::ir) fn product(left: &Datum, right: &Datum) -> Option<Datum> {
     let vector = |datum| convert::nums::<3>(datum, "the vector").ok().map(Vector3::from);
     if let (Some(left), Some(right)) = (vector(left), vector(right)) {
@@ -61,7 +61,7 @@ fn orient(rotation: &UnitQuaternion<f64>) -> Typed {
     (Datum::nums([rotation.w, rotation.i, rotation.j, rotation.k]), "orient")
 }
 
-/// An orientation, normalised.
+/// The first argument as a normalised orientation.
 fn direction(given: &Given<'_>) -> Option<UnitQuaternion<f64>> {
     let [w, x, y, z] = convert::nums::<4>(given.args.first()?, "the orientation").ok()?;
     UnitQuaternion::try_new(Quaternion::new(w, x, y, z), f64::EPSILON)
@@ -79,8 +79,8 @@ fn euler_zyx(given: &Given<'_>) -> Option<Typed> {
     num(angle.to_degrees())
 }
 
-/// `DefFrame(p1, p2, p3 \Origin)`: x from p1 to p2, p3 on the side of y. The origin is p1, or
-/// with `\Origin:=2` p2, with `\Origin:=3` the foot of p3 on the x axis.
+/// `DefFrame(p1, p2, p3 \Origin)`: x from p1 to p2, p3 at positive y. The origin is p1, with
+/// `\Origin:=2` p2, with `\Origin:=3` the projection of p3 on the x axis.
 fn define_frame(given: &Given<'_>) -> Option<Typed> {
     let [p1, p2, p3] = [point(given, 0)?, point(given, 1)?, point(given, 2)?];
     let x = (p2 - p1).try_normalize(SHORTEST)?;

@@ -1,11 +1,11 @@
-//! What functions are given and give back.
+//! Arguments and values of functions.
 
 use nalgebra::Vector3;
 
 use crate::rapid::ir::convert;
 use crate::rapid::ir::value::Datum;
 
-/// The arguments of a call, all of them known.
+/// The arguments of a call, all with known values.
 pub(in crate::rapid::ir) struct Given<'v> {
     /// In order, without the optional ones.
     pub(in crate::rapid::ir) args: Vec<&'v Datum>,
@@ -15,7 +15,7 @@ pub(in crate::rapid::ir) struct Given<'v> {
 
 /// A value with its type.
 pub(in crate::rapid::ir) type Typed = (Datum, &'static str);
-/// Gives the value; `None` if the arguments do not fit.
+/// Returns the value; `None` if the arguments do not fit.
 pub(in crate::rapid::ir) type Function = fn(&Given<'_>) -> Option<Typed>;
 
 impl Given<'_> {
@@ -38,7 +38,7 @@ impl Given<'_> {
         self.options.iter().any(|(name, _)| *name == option)
     }
 
-    /// The number of an option, `otherwise` without it.
+    /// The number of an option; `otherwise` if the call does not state it.
     pub(super) fn option(&self, option: &str, otherwise: f64) -> Option<f64> {
         match self.options.iter().find(|(name, _)| *name == option) {
             Some((_, value)) => (*value)?.num(),

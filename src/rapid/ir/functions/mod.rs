@@ -1,4 +1,4 @@
-//! RAPID's own functions, as far as their value depends on their arguments alone.
+//! Built-in functions whose value depends only on their arguments.
 //!
 //! Names and values: function reference of `RobotWare` 6. Angles are in degrees, lengths in mm.
 

@@ -1,9 +1,9 @@
-//! Functions of numbers and vectors to a number.
+//! Functions of numbers and vectors that return a number.
 
 use super::given::{Function, Given, Typed, num};
 use crate::rapid::ir::value::Datum;
 
-/// The function of a name in lower case; those of `dnum` are those of `num`.
+/// The function of a name in lower case; a function of `dnum` equals that of `num`.
 pub(super) fn lookup(name: &str) -> Option<Function> {
     let function: Function = match name.strip_suffix("dnum").unwrap_or(name) {
         "abs" => |g| num(g.num(0)?.abs()),
@@ -19,7 +19,7 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
         "exp" => |g| num(g.num(0)?.exp()),
         "round" => |g| decimals(g, f64::round),
         "trunc" => |g| decimals(g, f64::trunc),
-        // `NumToDnum` without its end, `DnumToNum`
+        // `NumToDnum` without its suffix, and `DnumToNum`
         "numto" | "dnumtonum" => |g| num(g.num(0)?),
         "dim" => dimension,
         "distance" => |g| num((g.vector(0)? - g.vector(1)?).norm()),

@@ -14,7 +14,7 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
             let from = start(g)?;
             let length = g.num(2).filter(|length| *length >= 0.0)? as usize;
             let part: Vec<char> = g.text(0)?.chars().skip(from).take(length).collect();
-            // The controller refuses a part that the string does not have.
+            // A part beyond the end of the string is an error on the controller.
             (part.len() == length).then(|| string(part.into_iter().collect()))
         },
         "strfind" => |g| {
@@ -58,12 +58,12 @@ fn string(text: String) -> Typed {
     (Datum::Text(text.into()), "string")
 }
 
-/// The second argument, a place in the string, from 0.
+/// The second argument, a position in the string, converted to count from 0.
 fn start(given: &Given<'_>) -> Option<usize> {
     given.num(1).filter(|at| *at >= 1.0).map(|at| at as usize - 1)
 }
 
-/// The first place from the second argument on that fits, or the one behind the string.
+/// The first position that fits, from the second argument on; else the one after the string.
 fn position(given: &Given<'_>, fits: impl Fn(&[char]) -> bool) -> Option<Typed> {
     let text: Vec<char> = given.text(0)?.chars().collect();
     let from = start(given)?;
@@ -94,7 +94,7 @@ fn written(datum: &Datum) -> Option<String> {
     })
 }
 
-/// A number with the digits of a `num`, without zeros at its end.
+/// A number with the significant digits of a `num`, without trailing zeros.
 fn significant(x: f64) -> String {
     let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
     if (-5..NUM_DIGITS).contains(&exponent) {

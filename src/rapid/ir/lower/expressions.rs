@@ -16,7 +16,7 @@ impl Lowering<'_> {
         }
         let mut children = node.children();
         let kind = match node.kind() {
-            // Parentheses only group: the span is that of the parentheses.
+            // Parentheses form no node of their own, but the span includes them.
             NodeKind::Parenthesized => children.next().map(|inner| self.expr(inner).kind),
             NodeKind::NumberLiteral => number(node.text(self.bytes)).map(ExprKind::Num),
             NodeKind::StringLiteral => Some(ExprKind::Str(self.string(node))),

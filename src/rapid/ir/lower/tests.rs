@@ -1,4 +1,4 @@
-//! What lowering makes of declarations and statements.
+//! Lowering of declarations and statements.
 
 use super::*;
 use crate::rapid::ir::hir::{Arg, ArgKind, ExprKind};
@@ -13,7 +13,7 @@ fn statements(text: &str) -> Vec<Stmt> {
     modules(text.as_bytes()).remove(0).routines.remove(0).body
 }
 
-/// An expression with all its parentheses.
+/// An expression as text, fully parenthesised.
 fn shown(expr: &Expr) -> String {
     let list = |parts: &[Expr]| parts.iter().map(shown).collect::<Vec<_>>().join(" ");
     match &expr.kind {

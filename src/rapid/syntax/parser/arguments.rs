@@ -8,7 +8,7 @@ use crate::rapid::syntax::token::TokenKind;
 use crate::rapid::syntax::tolerance::Tolerance;
 
 impl Parser<'_> {
-    /// Arguments, at least one, separated by `,` or by the `\` of the next.
+    /// At least one argument, separated by `,` or by the `\` of the next.
     pub(super) fn arguments(&mut self) -> Height {
         let mut height = 0;
         let mut first = true;
@@ -63,7 +63,7 @@ impl Parser<'_> {
         let mut kind = NodeKind::OptionalArgument;
         let mut height = 1;
         if self.current().is_keyword() {
-            // The names of optional arguments are apart from all others.
+            // Optional arguments have a name space of their own.
             self.tolerate(Tolerance::KeywordAsArgument, self.position);
             self.leaf(NodeKind::Name);
         } else {
@@ -89,9 +89,8 @@ impl Parser<'_> {
         height + 1
     }
 
-    /// At the `(` behind the name of a called procedure: whether the
-    /// parentheses hold all its arguments, `Proc(a, b);`, or belong to the
-    /// first of them, `Proc (a + b) * c, d;`.
+    /// At the `(` after the name of a called procedure: whether the parentheses enclose all
+    /// arguments, `Proc(a, b);`, or belong to the first, `Proc (a + b) * c, d;`.
     pub(super) fn parentheses_hold_arguments(&mut self) -> bool {
         if self.position >= self.parentheses.end {
             self.scan_parentheses();
@@ -100,9 +99,8 @@ impl Parser<'_> {
         found.is_ok_and(|index| self.parentheses.found[index].1)
     }
 
-    /// Looks ahead from the `(` at hand to the one that closes it, or to the end
-    /// of the statement, and notes all brackets on the way: a broken program
-    /// would have the same tokens looked at for each of them.
+    /// Scans from the current `(` to its `)` or to the end of the statement and records all
+    /// brackets on the way, so that a broken program is not scanned again for each of them.
     fn scan_parentheses(&mut self) {
         let mut found = std::mem::take(&mut self.parentheses.found);
         found.clear();

@@ -1,4 +1,4 @@
-//! Getting on where the keywords of blocks are missing, misspelt or left over.
+//! Recovery from missing, misspelt or superfluous block keywords.
 
 use super::recovery::{closes_block, closes_routine, ends_block};
 use super::{Open, Parser, SplitIf, excerpt};
@@ -24,7 +24,7 @@ impl Parser<'_> {
         let wrong = self.current();
         let misspelt = self.misspelling(closer);
         if misspelt > 0 {
-            // Said already, where its `{` stood.
+            // The error was reported at its `{`.
             self.quiet = self.closes_brace();
             let message = format!("expected {}, found {}", closer.describe(), self.found());
             self.close_error(message, opener, false);
@@ -49,7 +49,7 @@ impl Parser<'_> {
         let related = self.related(opener, format!("this {keyword} is not closed"));
         let range = self.tokens.range(self.position);
         match (before, self.at(TokenKind::EndOfFile)) {
-            // Not on the empty line behind the last one.
+            // Reported at the last token, not on the empty line after it.
             (true, true) => {
                 let place = self.end_before(self.position);
                 self.push_error(place, place, message, Some(related));
@@ -59,8 +59,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a misspelling of the keyword that closes the innermost block
-    /// stands alone on this line: the number of its tokens, or 0.
+    /// Number of tokens of a misspelling, alone on this line, of the keyword that closes the
+    /// innermost block; 0 if there is none.
     pub(super) fn misspelt_closer(&mut self) -> usize {
         match self.open.last() {
             Some(open)
@@ -72,8 +72,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `ENIDF`, `END IF`, `END` or `END_IF` for `ENDIF`, alone on its line: the
-    /// number of its tokens, or 0.
+    /// Number of tokens of `ENIDF`, `END IF`, `END`, `END_IF` for `ENDIF`, alone on its line, or 0.
     fn misspelling(&mut self, closer: TokenKind) -> usize {
         let foreign = self.foreign_closer(closer);
         if foreign > 0 {
@@ -101,8 +100,8 @@ impl Parser<'_> {
         usize::from(alone && (near || other && !self.ends_nothing(second, closer)))
     }
 
-    /// Whether the closing keyword at hand is the wrong one for the innermost
-    /// block, rather than the right one for a block around it.
+    /// Whether the current closing keyword is a typing error for that of the innermost block, and
+    /// not the right one for an outer block.
     fn is_mistyped(&mut self, wanted: TokenKind, opener: usize) -> bool {
         let found = self.current();
         let owner = self.open.iter().rev().find(|open| open.closer == found).copied();
@@ -117,8 +116,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the closing keyword at hand, which no open block wants, is one too
-    /// many, rather than the innermost block's own one mistyped.
+    /// Whether the current closing keyword, which fits no open block, is superfluous, and not a
+    /// typing error for that of the innermost block.
     fn is_left_over(&mut self, inner: Open) -> bool {
         let doubled = self.end > 0 && self.tokens.kind(self.end - 1) == self.current();
         let columns = (self.indentation(self.position), self.indentation(inner.opener));
@@ -126,8 +125,7 @@ impl Parser<'_> {
         doubled || outside || self.next() == inner.closer
     }
 
-    /// At a keyword that ends a block: whether no open block wants it, so that
-    /// it can only be left over.
+    /// At a keyword that ends a block: whether it fits no open block and is therefore superfluous.
     pub(super) fn is_stray(&mut self) -> bool {
         let kind = self.current();
         let Some(inner) = self.open.last().copied() else { return true };
@@ -145,8 +143,8 @@ impl Parser<'_> {
         }
     }
 
-    /// A keyword that ends a block that nothing began. A left-over `ELSE` takes
-    /// its statements and its `ENDIF` with it: they are the same mistake.
+    /// Reads a keyword that ends a block without a beginning. The statements and the `ENDIF` of a
+    /// superfluous `ELSE` belong to the same error.
     pub(super) fn stray(&mut self) {
         let mark = self.mark();
         let kind = self.current();
@@ -183,8 +181,8 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Error);
     }
 
-    /// At a keyword that is left over: if it stands below a compact IF over two
-    /// lines, that IF lacks its `THEN`.
+    /// At a superfluous keyword: if it is aligned with a compact IF over two lines, reports the
+    /// missing `THEN` of that IF.
     fn report_missing_then(&mut self) -> bool {
         let kind = self.current();
         let Some(SplitIf { opener, statement }) = self.split_if.take() else { return false };
@@ -202,8 +200,7 @@ impl Parser<'_> {
         true
     }
 
-    /// The statements of a block whose header had an error behind its `THEN` or
-    /// `DO`, which was read, up to its closing keyword.
+    /// Reads a block whose header has an error, from after `THEN` or `DO` to its closing keyword.
     pub(super) fn headless_block(&mut self, after: TokenKind) {
         let opener = self.position;
         let read = self.deeper(|parser| {
@@ -227,20 +224,20 @@ impl Parser<'_> {
         self.quiet = true;
     }
 
-    /// At the `THEN` of a header without its keyword: whether it belongs to a
-    /// branch of the innermost `IF`, as its line is not indented more than that.
+    /// At the `THEN` of a header without its keyword: whether it is a branch of the innermost `IF`,
+    /// because its line is not indented more than the `IF`.
     pub(super) fn lacks_elseif(&mut self) -> bool {
         let Some(open) = self.open.last().copied() else { return false };
         let line = self.first_of_line(self.position);
         let columns = (self.indentation(line), self.indentation(open.opener));
-        // One column more is the space behind the keyword that is missing.
+        // One more column is the space after the missing keyword.
         open.closer == TokenKind::EndIf
             && self.at(TokenKind::Then)
             && matches!(columns, (Some(here), Some(there)) if here <= there + 1)
     }
 
-    /// Behind a statement that ends in an error: branches of a `TEST` or `IF`
-    /// whose keyword is missing are part of the same mistake.
+    /// After a statement that ends in an error: the branches of a `TEST` whose keyword is missing
+    /// belong to the same error.
     pub(super) fn headless_branches(&mut self) {
         let branch = matches!(self.current(), TokenKind::Case | TokenKind::Default);
         if branch && self.depth > 0 && self.is_stray() {
@@ -248,7 +245,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Closes what a left-over branch began, silently.
+    /// Closes the block of a superfluous branch without a message.
     fn close_stray(&mut self, closer: TokenKind) {
         self.open.pop();
         if !self.eat(closer) {
@@ -258,11 +255,11 @@ impl Parser<'_> {
         }
     }
 
-    /// Skips a statement that is nested too deeply, with the statements in it.
+    /// Skips a statement that is nested too deeply, with its inner statements.
     pub(super) fn skip_nested(&mut self) {
         let mark = self.mark();
         let mut open = 0_u32;
-        // Whether the last condition was that of an IF, whose THEN opens.
+        // Whether the next THEN belongs to an IF and opens a block.
         let mut after_if = false;
         loop {
             let kind = self.current();
@@ -304,8 +301,8 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Error);
     }
 
-    /// Whether the keyword that ends a condition still comes, before a statement
-    /// ends or another header starts.
+    /// Whether the keyword that ends a condition follows before the end of the statement or the
+    /// start of another header.
     fn condition_goes_on(&mut self, keyword: TokenKind) -> bool {
         let mut index = self.position;
         loop {
@@ -325,8 +322,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a `!` has made a comment of the rest of a condition and of the
-    /// keyword behind it, `IF a != 1 THEN`; reports it.
+    /// Reports a `!` that turns the rest of a condition and its keyword into a comment,
+    /// `IF a != 1 THEN`; true if there is one.
     pub(super) fn commented_condition(&mut self, keyword: TokenKind) -> bool {
         if !self.first_on_line(self.position) {
             return false;
@@ -357,8 +354,8 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a word differs from a keyword by one letter that is wrong, missing
-/// or too much, or by two neighbours exchanged.
+/// Whether a word differs from a keyword by one wrong, missing or extra letter, or by two
+/// exchanged neighbours.
 pub(super) fn is_near(word: &[u8], keyword: &[u8]) -> bool {
     let word = word.to_ascii_uppercase();
     let same = word.iter().zip(keyword).take_while(|(a, b)| a == b).count();

@@ -43,7 +43,7 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::DataDeclaration);
     }
 
-    /// Reports that another token should stand here, and reads past it.
+    /// Reports that another token is expected here, and reads past the current one.
     pub(super) fn wrong_token(&mut self, wanted: TokenKind) {
         self.error_expected(wanted.describe());
         self.leaf(NodeKind::Error);

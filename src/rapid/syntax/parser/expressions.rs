@@ -7,7 +7,7 @@ use crate::rapid::syntax::token::TokenKind;
 use crate::rapid::syntax::tolerance::Tolerance;
 use crate::rapid::syntax::tree::Mark;
 
-/// How tightly an operator binds, loosest first.
+/// Precedence of an operator, lowest first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Or,
@@ -35,7 +35,7 @@ impl Level {
         })
     }
 
-    /// What the right operand of an operator of this level is made of.
+    /// The lowest precedence inside the right operand of an operator of this level.
     fn tighter(self) -> Level {
         match self {
             Level::Or => Level::And,
@@ -47,7 +47,7 @@ impl Level {
     }
 }
 
-/// Levels of the tree of an expression.
+/// Number of levels of the tree of an expression.
 pub(super) type Height = u32;
 
 impl Parser<'_> {
@@ -64,13 +64,12 @@ impl Parser<'_> {
         self.expression_or("an expression")
     }
 
-    /// An expression; `expected` is what a message says is missing.
+    /// An expression; `expected` names it in the message if it is missing.
     pub(super) fn expression_or(&mut self, expected: &str) -> Height {
         if self.lone_operand() { 1 } else { self.binary(Level::Or, expected) }
     }
 
-    /// Reads an expression of one token, which most are, if the token behind it
-    /// shows that it is one.
+    /// Reads an expression of one token (the most frequent case), if the next token confirms it.
     fn lone_operand(&mut self) -> bool {
         let kind = match self.current() {
             TokenKind::Number => NodeKind::NumberLiteral,
@@ -122,7 +121,7 @@ impl Parser<'_> {
         height
     }
 
-    /// Finishes a node above subtrees of the given height.
+    /// Finishes a node above subtrees of height `below`.
     fn taller(&mut self, mark: Mark, kind: NodeKind, below: Height) -> Height {
         self.finish(mark, kind);
         let height = below + 1;
@@ -134,7 +133,7 @@ impl Parser<'_> {
         height
     }
 
-    /// A primary with the signs or `NOT` before it.
+    /// A primary with its signs or `NOT`.
     fn operand(&mut self, least: Level, expected: &str) -> Height {
         let mark = self.mark();
         let level = match self.current() {
@@ -252,7 +251,7 @@ impl Parser<'_> {
         self.components(mark, height)
     }
 
-    /// `.b`, `{1, 2}` behind what began at `mark`.
+    /// `.b`, `{1, 2}` after the expression that began at `mark`.
     fn components(&mut self, mark: Mark, mut height: Height) -> Height {
         while height < MAX_EXPRESSION_HEIGHT {
             match self.current() {

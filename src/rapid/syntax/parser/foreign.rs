@@ -1,5 +1,5 @@
-//! Habits from other languages, each told as one mistake: `SWITCH`, `ENDCASE`,
-//! `NEXT i`, blocks in braces, indices in square brackets.
+//! Constructs of other languages, each reported as one error: `SWITCH`, `ENDCASE`, `NEXT i`,
+//! blocks in braces, indices in square brackets.
 
 use super::Parser;
 use super::recovery::{closes_routine, starts_statement};
@@ -7,8 +7,8 @@ use crate::rapid::syntax::node::NodeKind;
 use crate::rapid::syntax::token::TokenKind;
 
 impl Parser<'_> {
-    /// `NEXT i` for `ENDFOR`, `WEND` for `ENDWHILE`, `}` for what closes a block:
-    /// the number of its tokens, or 0.
+    /// Number of tokens of `NEXT i` for `ENDFOR`, `WEND` for `ENDWHILE`, `}` for a closing keyword;
+    /// or 0.
     pub(super) fn foreign_closer(&mut self, closer: TokenKind) -> usize {
         if self.at(TokenKind::RightBrace) {
             let instead = self.first_on_line(self.position)
@@ -31,8 +31,8 @@ impl Parser<'_> {
         if counter && self.first_on_line(third) { 2 } else { 0 }
     }
 
-    /// Whether `END…` before the token `next` ends nothing that RAPID has an end
-    /// for, as the innermost block goes on there or is closed there.
+    /// Whether `END…` before the token `next` has no counterpart in RAPID, because the innermost
+    /// block continues or is closed at `next`.
     pub(super) fn ends_nothing(&mut self, next: usize, closer: TokenKind) -> bool {
         let kind = self.tokens.kind(next);
         let word = self.text(self.position);
@@ -45,7 +45,7 @@ impl Parser<'_> {
         !exact && (branch || kind == closer)
     }
 
-    /// Reads an `ENDCASE` or its like that ends nothing.
+    /// Reads a word such as `ENDCASE`, which RAPID does not have.
     pub(super) fn foreign_branch_end(&mut self) -> bool {
         let Some(closer) = self.open.last().map(|open| open.closer) else { return false };
         let word = self.text(self.position);
@@ -64,8 +64,8 @@ impl Parser<'_> {
         true
     }
 
-    /// At a `CASE` behind a line without `;`: reports the word that stands for
-    /// `TEST` there, and reads the branches.
+    /// At a `CASE` after a line without `;`: reports the word used there instead of `TEST` and
+    /// reads the branches.
     pub(super) fn report_foreign_test(&mut self) -> bool {
         if !matches!(self.current(), TokenKind::Case | TokenKind::Default) || !self.is_stray() {
             return false;
@@ -80,7 +80,7 @@ impl Parser<'_> {
         true
     }
 
-    /// Behind a header: whether `{` stands for its keyword; reads it.
+    /// After a header: reads a `{` that replaces its keyword; true if there is one.
     pub(super) fn opens_brace(&mut self) -> bool {
         let brace = self.at(TokenKind::LeftBrace);
         if brace {
@@ -90,7 +90,7 @@ impl Parser<'_> {
         brace
     }
 
-    /// Whether `}` here closes a block whose `{` was reported.
+    /// Whether the current `}` closes a block whose `{` was reported.
     pub(super) fn closes_brace(&mut self) -> bool {
         let brace = self.at(TokenKind::RightBrace) && self.braces > 0;
         self.braces -= u32::from(brace);
@@ -107,8 +107,8 @@ impl Parser<'_> {
         brace
     }
 
-    /// Whether a `{` behind a name opens a block rather than an index: a
-    /// statement starts on the line after it.
+    /// Whether a `{` after a name opens a block and not an index: a statement starts on the next
+    /// line.
     pub(super) fn brace_opens_block(&mut self) -> bool {
         let first = self.after(self.position);
         if !self.first_on_line(first) {
@@ -154,7 +154,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `==`: reads past its second half.
+    /// `==`: reports the second `=` and reads past it.
     pub(super) fn skip_doubled_equal(&mut self) {
         if self.at(TokenKind::Equal) && self.position == self.end {
             self.error_at(self.position, "expected '=' to compare, found '=='".to_owned());

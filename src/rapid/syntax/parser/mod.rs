@@ -1,9 +1,8 @@
-//! Tokens → tree: recursive descent that never fails.
+//! From tokens to the tree: a recursive descent parser that accepts any input.
 //!
-//! A mistake is reported once: after an error the parser is *quiet* until the
-//! next statement or declaration starts. Recovery skips to the end of the
-//! statement, to a keyword that starts or ends something, or to a line that
-//! looks like a new statement, whichever comes first.
+//! An error is reported once: after it the parser is *quiet* until the next statement or
+//! declaration. Recovery skips to the end of the statement, to a keyword that starts or ends a
+//! construct, or to a line that looks like a new statement, whichever comes first.
 
 mod arguments;
 mod blocks;
@@ -23,15 +22,14 @@ use super::token::{TokenKind, Tokens};
 use super::tolerance::{Tolerance, Tolerated};
 use super::tree::{Builder, Mark};
 
-/// Nodes for eight tokens in ordinary programs, for the first allocation.
+/// Nodes per eight tokens in typical programs, for the first allocation.
 const NODES_FOR_EIGHT: usize = 5;
 /// Longest excerpt of the source in a message, in characters.
 const EXCERPT: usize = 24;
 
-/// Parses a file. Any bytes give a tree whose tokens joined are those bytes.
+/// Parses a file. The joined tokens of the tree are the bytes of the file, for any bytes.
 ///
-/// Offsets are `u32`: of a file of 4 GiB or more the tail is one token that no
-/// production claims, and an error says so.
+/// Offsets are `u32`: bytes beyond 4 GiB are not parsed, which an error reports.
 #[must_use]
 pub fn parse(bytes: &[u8]) -> Parse {
     let tokens = lexer::tokenize(bytes);
@@ -73,30 +71,29 @@ pub fn parse(bytes: &[u8]) -> Parse {
 struct Parser<'a> {
     bytes: &'a [u8],
     tokens: &'a Tokens,
-    /// The token to be read next; never trivia.
+    /// The next token; never trivia.
     position: usize,
-    /// One past the last token read that is no trivia.
+    /// One past the last token that was read, trivia excluded.
     end: usize,
     builder: Builder,
     errors: Vec<SyntaxError>,
     tolerances: Vec<Tolerated>,
-    /// After an error in the current statement or declaration.
+    /// True after an error in the current statement or declaration: no further message.
     quiet: bool,
     depth: u32,
-    /// Whether this routine was already said to be nested too deeply.
+    /// Whether the excessive nesting of this routine was already reported.
     depth_reported: bool,
-    /// Whether the end of the file was already reported as too early.
+    /// Whether an unexpected end of the file was already reported.
     cut_off_reported: bool,
-    /// The last compact IF whose statement is on a line of its own: its `THEN`
-    /// may be missing.
+    /// The last compact IF over two lines: its `THEN` may be missing.
     split_if: Option<SplitIf>,
-    /// Brackets that were looked at ahead.
+    /// The brackets of the last scan ahead.
     parentheses: Parentheses,
-    /// The last answer to where a line starts.
+    /// The last result of `first_of_line`.
     line: Line,
-    /// Block statements and routines that are not closed yet, outermost first.
+    /// Open block statements and routines, outermost first.
     open: Vec<Open>,
-    /// Blocks that began with `{` in the place of a keyword and are not closed.
+    /// Number of open blocks that began with `{` instead of a keyword.
     braces: u32,
     steps: u64,
 }
@@ -110,12 +107,12 @@ struct SplitIf {
     statement: usize,
 }
 
-/// Brackets of a statement, looked at ahead.
+/// The brackets of a statement, found by a scan ahead.
 #[derive(Default)]
 struct Parentheses {
-    /// The token of each opening bracket, and whether it holds a list.
+    /// The token of each opening bracket, and whether the bracket contains a list.
     found: Vec<(usize, bool)>,
-    /// The token at which the look ahead ended.
+    /// The token at which the scan ended.
     end: usize,
 }
 
@@ -126,7 +123,7 @@ struct Line {
     first: usize,
 }
 
-/// Something that waits for its closing keyword.
+/// A block that is not closed yet.
 #[derive(Clone, Copy)]
 struct Open {
     closer: TokenKind,
@@ -145,7 +142,7 @@ impl<'a> Parser<'a> {
         self.tokens.kind(self.position)
     }
 
-    /// The token after the one at `index`, trivia left out.
+    /// The next token after `index`, trivia skipped.
     fn after(&mut self, index: usize) -> usize {
         let mut next = index + 1;
         while self.tokens.kind(next).is_trivia() {
@@ -191,7 +188,7 @@ impl<'a> Parser<'a> {
         there
     }
 
-    /// Reads a token that has to be there, or reports it missing.
+    /// Reads a required token, or reports that it is missing.
     fn expect(&mut self, kind: TokenKind) -> bool {
         let there = self.eat(kind);
         if !there {
@@ -200,8 +197,7 @@ impl<'a> Parser<'a> {
         there
     }
 
-    /// Reads the bracket that closes a list, or reports that `expected` should
-    /// stand here.
+    /// Reads the bracket that closes a list, or reports that `expected` is missing.
     fn close_bracket(&mut self, closer: TokenKind, expected: &str) {
         if !self.eat(closer) {
             self.error_expected(expected);
@@ -219,20 +215,20 @@ impl<'a> Parser<'a> {
         self.builder.finish(mark, kind, self.end);
     }
 
-    /// A node of the current token.
+    /// Adds a node for the current token.
     fn leaf(&mut self, kind: NodeKind) {
         let mark = self.mark();
         self.bump();
         self.finish(mark, kind);
     }
 
-    /// An empty node for something that is missing.
+    /// Adds an empty node for a missing element.
     fn missing(&mut self) {
         let mark = self.builder.mark(self.end);
         self.finish(mark, NodeKind::Error);
     }
 
-    /// A name that is declared or that is no value.
+    /// A name in a declaration, or another name that is not a value.
     fn name(&mut self) {
         match self.current() {
             TokenKind::Identifier => self.leaf(NodeKind::Name),
@@ -258,7 +254,7 @@ impl<'a> Parser<'a> {
     }
 
     fn push_error(&mut self, start: u32, end: u32, message: String, related: Option<Related>) {
-        // A file that is cut off is one mistake, whatever it leaves open.
+        // A file that ends too early is one error, even if several blocks are open.
         let cut_off = self.at(TokenKind::EndOfFile);
         let told = self.quiet || cut_off && self.cut_off_reported;
         if !told {
@@ -273,8 +269,8 @@ impl<'a> Parser<'a> {
         self.push_error(range.start, range.end, message, None);
     }
 
-    /// Reports that something else was expected at the current token. What is
-    /// missing at the end of a line is reported there, not on the next line.
+    /// Reports that something else is expected at the current token. If that is the first of its
+    /// line, the error is placed at the end of the token before.
     fn error_expected(&mut self, expected: &str) {
         if self.quiet {
             return;
@@ -287,7 +283,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reports that something else was expected than the current token.
+    /// The same, but always placed at the current token.
     fn error_unexpected(&mut self, expected: &str) {
         if !self.quiet {
             let message = format!("expected {expected}, found {}", self.found());
@@ -295,13 +291,13 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The end of the token before one, trivia left out.
+    /// The end of the token before `token`, trivia skipped.
     fn end_before(&self, token: usize) -> u32 {
         let before = (0..token).rev().find(|&before| !self.tokens.kind(before).is_trivia());
         before.map_or(0, |before| self.tokens.range(before).end)
     }
 
-    /// Reports something that is missing behind the last token.
+    /// Reports an element that is missing after the last token.
     fn error_before(&mut self, message: String) {
         let place = match self.end {
             0 => 0,
@@ -330,8 +326,7 @@ impl<'a> Parser<'a> {
 
     // --- depth ---
 
-    /// Runs `parse` one level deeper; at the limit it reports and returns
-    /// `None`, having read nothing.
+    /// Runs `parse` one level deeper; at the limit it reads nothing, reports and returns `None`.
     fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> T) -> Option<T> {
         if self.depth >= MAX_DEPTH {
             if self.depth_reported {
@@ -350,8 +345,8 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// The start of some bytes as text; bytes that are not UTF-8 are read as ISO
-/// 8859-1, which is right for most of RAPID's legacy files.
+/// The start of some bytes as text; bytes that are not UTF-8 are read as ISO 8859-1, the most
+/// frequent legacy encoding of RAPID files.
 fn excerpt(bytes: &[u8]) -> String {
     let latin = || bytes.iter().map(|&byte| char::from(byte)).collect();
     let text: String = std::str::from_utf8(bytes).map_or_else(|_| latin(), str::to_owned);

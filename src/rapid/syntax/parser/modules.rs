@@ -10,7 +10,7 @@ use crate::rapid::syntax::tolerance::Tolerance;
 /// Module attributes in their fixed order.
 const ATTRIBUTES: [&str; 5] = ["SYSMODULE", "NOVIEW", "NOSTEPIN", "VIEWONLY", "READONLY"];
 
-/// What a module has had so far; the grammar wants this order.
+/// The parts of a module in the order of the grammar.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Part {
     Types,
@@ -18,19 +18,18 @@ enum Part {
     Routines,
 }
 
-/// How far the declarations of a module have been read.
+/// The progress in the declarations of a module.
 struct Progress {
     part: Part,
-    /// Whether statements without a routine were reported whose `ENDPROC` may
-    /// still come.
+    /// Whether statements outside a routine were reported, whose `ENDPROC` may follow.
     orphaned: bool,
 }
 
-/// What was on a line that was skipped.
+/// The contents of a skipped line.
 struct Skipped {
     /// Whether it ended with `;`.
     ended: bool,
-    /// Whether it had a `:=`.
+    /// Whether it contained a `:=`.
     value: bool,
 }
 
@@ -97,7 +96,7 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Header);
     }
 
-    /// Whether what was read since the `%%%` at `start` is version and language.
+    /// Whether the tokens since the `%%%` at `start` are version and language.
     fn is_plain_header(&mut self, start: usize) -> bool {
         let words: [(TokenKind, &[u8]); 6] = [
             (TokenKind::Identifier, b"VERSION"),
@@ -115,15 +114,14 @@ impl Parser<'_> {
         }) && self.after(token) == self.position
     }
 
-    /// Whether a module starts here: the keyword and a name, first on a line.
+    /// Whether a module starts here: keyword and name at the start of a line.
     fn at_module(&mut self) -> bool {
         self.at(TokenKind::Module)
             && self.first_on_line(self.position)
             && (self.next() == TokenKind::Identifier)
     }
 
-    /// Whether the keyword of a module is misspelt here: alone with a name, and
-    /// attributes, on its line.
+    /// Whether a misspelt `MODULE` is here: alone on its line with a name and attributes.
     fn at_misspelt_module(&mut self) -> bool {
         if !self.at(TokenKind::Identifier)
             || !self.first_on_line(self.position)
@@ -137,7 +135,7 @@ impl Parser<'_> {
             && (self.tokens.kind(behind) == TokenKind::LeftParen || self.first_on_line(behind))
     }
 
-    /// Whether a declaration starts here, told from prose by what follows.
+    /// Whether a declaration starts here; the tokens after it distinguish it from prose.
     fn at_declaration(&mut self) -> bool {
         let next = match self.current() {
             TokenKind::Var | TokenKind::Pers | TokenKind::Const => {
@@ -167,7 +165,7 @@ impl Parser<'_> {
         self.first_on_line(self.position) && (next == TokenKind::Identifier)
     }
 
-    /// Declarations of a file that has no module around them.
+    /// Declarations without a module around them.
     fn bare_declarations(&mut self) {
         self.tolerate(Tolerance::DeclarationOutsideModule, self.position);
         let mut progress = Progress::new();
@@ -181,7 +179,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Text around modules. In a file that has some it is tolerated.
+    /// Text outside modules, tolerated in a file that contains RAPID.
     fn outside_text(&mut self, has_rapid: bool) {
         let mark = self.mark();
         let start = self.position;
@@ -270,7 +268,7 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::ModuleAttributes);
     }
 
-    /// A declaration of a module, or what stands in its place.
+    /// A declaration of a module, or other text in its place.
     fn item(&mut self, progress: &mut Progress) {
         let start = self.position;
         self.depth_reported = false;
@@ -309,7 +307,7 @@ impl Parser<'_> {
         }
     }
 
-    /// At `LOCAL name (` or `LOCAL type name (`: the header of a routine.
+    /// Whether `LOCAL name (` or `LOCAL type name (` is here: a routine header without keyword.
     fn lacks_routine_keyword(&mut self) -> bool {
         let mut token = self.after(self.position);
         for _ in 0..2 {
@@ -327,12 +325,12 @@ impl Parser<'_> {
         progress.part = progress.part.max(part);
     }
 
-    /// Statements and leftovers at module level: one error for all of them.
+    /// Statements and superfluous keywords at module level, with one error for all of them.
     fn orphans(&mut self, progress: &mut Progress) {
         let mark = self.mark();
         let kind = self.current();
         if progress.orphaned && (starts_statement(kind) || ends_block(kind)) {
-            // Said already: this is the rest of a routine without its header.
+            // Already reported: this is the rest of a routine without its header.
             self.quiet = true;
         }
         if ends_block(kind) {
@@ -350,8 +348,7 @@ impl Parser<'_> {
         if progress.orphaned {
             self.orphan_block();
         } else {
-            // A misspelt declaration has a value or ends with `;` on its line, a
-            // misspelt routine header does not.
+            // Unlike a misspelt routine header, a misspelt declaration has `:=` or `;` on its line.
             let line = self.recover_line();
             if !line.ended {
                 if line.value {
@@ -372,8 +369,7 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Error);
     }
 
-    /// Statements of a routine, or components of a record, whose header was not
-    /// recognised.
+    /// Statements of a routine or components of a record with an unrecognised header.
     fn orphan_block(&mut self) {
         if starts_statement(self.current()) {
             self.open(TokenKind::EndRecord, self.position);

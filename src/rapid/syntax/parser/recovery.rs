@@ -1,4 +1,4 @@
-//! Getting on after an error.
+//! Recovery after an error.
 
 use super::{Line, Parser};
 use crate::rapid::syntax::node::NodeKind;
@@ -10,8 +10,7 @@ impl Parser<'_> {
         self.line_gap(token).is_none_or(|gap| gap.iter().any(|b| matches!(b, b'\n' | b'\r')))
     }
 
-    /// The white space before a token since the token (or comment) before it;
-    /// `None` at the start of the file.
+    /// The white space directly before a token; `None` at the start of the file.
     fn line_gap(&self, token: usize) -> Option<&[u8]> {
         let before = token.checked_sub(1)?;
         match self.tokens.kind(before) {
@@ -20,7 +19,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Column of a token that is first on its line.
+    /// Column of a token that is the first on its line.
     pub(super) fn indentation(&self, token: usize) -> Option<usize> {
         if !self.first_on_line(token) {
             return None;
@@ -44,8 +43,8 @@ impl Parser<'_> {
         first
     }
 
-    /// Whether a statement seems to start at the current token, which is no
-    /// continuation of the line before.
+    /// Whether a statement seems to start at the current token, which does not continue the line
+    /// before.
     pub(super) fn looks_like_start(&mut self) -> bool {
         let kind = self.current();
         if starts_statement(kind) && kind.is_keyword() || ends_block(kind) {
@@ -72,9 +71,9 @@ impl Parser<'_> {
             )
     }
 
-    /// Skips the rest of a statement that has an error, with its `;`. Behind a
-    /// `THEN` or `DO` the statement was the header of a block, whose keyword is
-    /// missing or misspelt: the block is read with it.
+    /// Skips the rest of a statement with an error, including its `;`. A `THEN` or `DO` shows that
+    /// the statement is the header of a block with a missing or misspelt keyword: the block is read
+    /// too.
     pub(super) fn recover(&mut self) {
         let mark = self.mark();
         let start = self.position;
@@ -97,7 +96,7 @@ impl Parser<'_> {
                 }
                 _ if ends_block(kind) => break,
                 _ if self.first_on_line(self.position) && self.looks_like_start() => break,
-                // What follows on its line is inside the string.
+                // The rest of the line is inside the string.
                 _ if self.ended_by_unclosed_string() => break,
                 _ => self.bump(),
             }
@@ -107,7 +106,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Behind a keyword: reports and skips the same keyword again.
+    /// After a keyword: reports and skips a repetition of it.
     pub(super) fn skip_doubled(&mut self, keyword: TokenKind) {
         if self.at(keyword) && !self.first_on_line(self.position) {
             self.error_at(self.position, format!("{} is doubled", keyword.describe()));
@@ -115,8 +114,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Behind the `;` of a statement that has an error: what is left on the
-    /// line without a `;` of its own belongs to the same mistake.
+    /// After the `;` of a statement with an error: the rest of the line, if it has no `;`, belongs
+    /// to the same error.
     fn skip_leftovers(&mut self) {
         let mut end = self.position;
         while !self.first_on_line(end) {
@@ -160,10 +159,10 @@ impl Parser<'_> {
         self.recover();
     }
 
-    /// Reads the keyword that ends the header of a block statement. Without it
-    /// the rest of the header is skipped; gives whether its end was found.
+    /// Reads the keyword that ends the header of a block statement. If it is missing, skips the
+    /// rest of the header. Returns whether the end of the header was found.
     pub(super) fn end_header(&mut self, wanted: TokenKind) -> bool {
-        // The keyword is inside the string then.
+        // After an unclosed string, the keyword is inside the string.
         if self.eat(wanted) || self.quiet && self.ended_by_unclosed_string() {
             return true;
         }
@@ -261,7 +260,7 @@ pub(super) fn starts_data(kind: TokenKind) -> bool {
     )
 }
 
-/// Tokens after which a line goes on.
+/// Tokens after which the statement continues on the next line.
 fn continues(kind: TokenKind) -> bool {
     matches!(
         kind,

@@ -7,7 +7,7 @@ use crate::rapid::syntax::token::TokenKind;
 use crate::rapid::syntax::tolerance::Tolerance;
 
 impl Parser<'_> {
-    /// `PROC`, `FUNC` or `TRAP` with its handlers; `keyword` says which.
+    /// `PROC`, `FUNC` or `TRAP` (the `keyword`) with its handlers.
     pub(super) fn routine(&mut self, keyword: TokenKind) {
         let mark = self.mark();
         self.depth_reported = false;
@@ -68,9 +68,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Skips what is left of the parameters of a routine, which may stand on
-    /// several lines: up to a `)` at the end of a line, without one to the end
-    /// of the line.
+    /// Skips the rest of the parameters of a routine, possibly on several lines: to a `)` at the
+    /// end of a line, else to the end of the current line.
     pub(super) fn rest_of_parameters(&mut self) {
         if self.end > 0 && self.tokens.kind(self.end - 1) == TokenKind::RightParen {
             self.rest_of_header();
@@ -98,7 +97,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Skips what is left of the line of the header of a routine or module.
+    /// Skips the rest of the line of a routine or module header.
     pub(super) fn rest_of_header(&mut self) {
         let mark = self.mark();
         let start = self.position;
@@ -178,7 +177,7 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Parameter);
     }
 
-    /// Whether a parameter starts here whose mode is `REF`, which is no keyword.
+    /// Whether a parameter with the mode `REF`, which is not a keyword, starts here.
     fn at_reference_mode(&mut self) -> bool {
         if !self.at(TokenKind::Identifier) || !self.text(self.position).eq_ignore_ascii_case(b"REF")
         {
@@ -190,7 +189,7 @@ impl Parser<'_> {
             && self.tokens.kind(name) == TokenKind::Identifier
     }
 
-    /// `{*, *}`; tolerated, `{2, 3}`
+    /// `{*, *}`; `{2, 3}` is tolerated.
     fn open_dimensions(&mut self) {
         let mark = self.mark();
         self.bump();

@@ -8,7 +8,7 @@ use crate::rapid::syntax::tolerance::Tolerance;
 use crate::rapid::syntax::tree::Mark;
 
 impl Parser<'_> {
-    /// Statements up to a keyword that ends them.
+    /// Statements up to a keyword that ends the block.
     pub(super) fn block(&mut self) {
         let mark = self.mark();
         loop {
@@ -41,7 +41,7 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::Block);
     }
 
-    /// Whether a routine starts with `LOCAL` here.
+    /// Whether a routine that starts with `LOCAL` is here.
     pub(super) fn at_routine(&mut self) -> bool {
         self.at(TokenKind::Local)
             && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
@@ -150,9 +150,8 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::CallStatement);
     }
 
-    /// Whether the next statement starts on the line after the word of this one
-    /// at `word`, whose `;` is missing then. An argument or a value on a line
-    /// of its own stands further to the right.
+    /// Whether the `;` of the statement at `word` is missing, because the next statement starts on
+    /// the current line. An argument or value on a line of its own would be indented further.
     fn ends_early(&mut self, word: usize) -> bool {
         let kind = self.current();
         if !self.first_on_line(self.position) {
@@ -225,7 +224,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What follows the `THEN` of the IF that began at `mark`.
+    /// The part after the `THEN` of the IF that began at `mark`.
     fn if_block(&mut self, mark: Mark, opener: usize) {
         self.open(TokenKind::EndIf, opener);
         self.block();
@@ -234,8 +233,8 @@ impl Parser<'_> {
         self.finish(mark, NodeKind::IfStatement);
     }
 
-    /// Behind the condition of an IF, not at THEN: whether a THEN follows on
-    /// its line, so that the condition goes on in a way that is wrong.
+    /// After the condition of an IF, not at THEN: whether a THEN follows on the line, so that the
+    /// tokens before it are an error in the condition.
     fn then_follows(&mut self) -> bool {
         let mut index = self.position;
         if self.tokens.kind(index) == TokenKind::Then {
@@ -418,7 +417,7 @@ impl Parser<'_> {
         self.finish(mark, kind);
     }
 
-    /// `EXIT;` and its like.
+    /// A statement of one keyword, such as `EXIT;`.
     fn word_statement(&mut self, kind: NodeKind) {
         let mark = self.mark();
         self.bump();

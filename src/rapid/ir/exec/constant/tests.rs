@@ -191,7 +191,7 @@ fn expressions_have_their_values() {
         ("BitCheck(130,8)", "true"),
         // scopes
         ("nOther", "22"),
-        // what can't be known
+        // unknown values
         ("1/0", "? division by zero"),
         ("nCircle", "? its value refers to itself"),
         ("nEmpty+1", "? 'nEmpty' has no value in the source"),
