@@ -14,7 +14,6 @@ use crate::tool::emit::{Layout, Names, Parameter, Recorded, Robot};
 
 /// The constant input of all emissions.
 pub(super) struct EmissionContext<'a> {
-    /// The files of the program.
     pub(super) files: &'a [Source],
     /// The same as source files.
     pub(super) originals: Vec<SourceFile>,
@@ -28,14 +27,11 @@ pub(super) struct EmissionContext<'a> {
     pub(super) override_percent: f64,
     /// The states that the program records for guards.
     pub(super) recorded: Recorded,
-    /// Unused names.
     pub(super) names: Names,
-    /// Layout of the points.
     pub(super) layout: Layout,
 }
 
 impl<'a> EmissionContext<'a> {
-    /// The context of a job.
     pub(super) fn new(job: &'a Job<'a>, guards: &'a Guards<'a>) -> EmissionContext<'a> {
         let Job { original, model, settings, .. } = job;
         let originals: Vec<SourceFile> =

@@ -33,7 +33,6 @@ pub(super) struct Guards<'p> {
 }
 
 impl<'p> Guards<'p> {
-    /// The arguments of a program from these files.
     pub(super) fn new(
         program: &'p Program,
         files: &'p [Source],

@@ -62,7 +62,6 @@ pub(super) fn emitted(
     Ok(Outputs { files: outputs, guards })
 }
 
-/// The files of an emitted program.
 pub(super) struct Outputs {
     /// All files, unchanged ones included.
     pub(super) files: Vec<OutputFile>,

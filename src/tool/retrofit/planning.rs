@@ -20,7 +20,6 @@ pub(super) struct Planning<'a> {
 }
 
 impl<'a> Planning<'a> {
-    /// The planning of a job.
     pub(super) fn new(job: &'a Job<'a>) -> Planning<'a> {
         let (model, simulation) = (job.aim(), &job.original.cycle.simulation);
         let settings = job.settings.with_shown_loads(model, simulation);

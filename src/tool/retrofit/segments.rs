@@ -103,7 +103,6 @@ fn unresolved(simulation: &Simulation) -> Vec<Segment> {
     by_place.into_values().collect()
 }
 
-/// Dwells by place.
 fn idle(
     before: &Simulated,
     after: &Simulated,

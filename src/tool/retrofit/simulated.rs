@@ -20,7 +20,6 @@ pub(super) struct Simulated {
 }
 
 impl Simulated {
-    /// Simulates a program.
     pub(super) fn new(
         program: &Program,
         entry: RoutineId,

@@ -102,7 +102,7 @@ pub(super) struct TorqueBound<'a> {
 }
 
 impl<'a> TorqueBound<'a> {
-    /// `None` where something is known of the torques that the robot can do.
+    /// `None` if the torque limits are not estimates.
     pub(super) fn new(job: &'a Job<'a>) -> Option<TorqueBound<'a>> {
         let robots = job.robots.as_ref().filter(|_| is_estimated(job.model))?;
         let events = job.original.cycle.simulation.events.iter();

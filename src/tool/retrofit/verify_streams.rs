@@ -92,7 +92,6 @@ pub(super) fn reordering(
     }
 }
 
-/// The candidates with streams, by event.
 fn streams(original: &Original<'_>, candidates: &[Candidate]) -> BTreeMap<usize, usize> {
     let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
     streams.flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i))).collect()
