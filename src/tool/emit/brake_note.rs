@@ -20,7 +20,7 @@ pub struct BrakeDwell {
 
 /// The note with an optional configuration fragment.
 ///
-/// The template failed.
+/// # Errors
 /// The template failed.
 pub fn brake_note(
     robot: &str,

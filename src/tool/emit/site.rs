@@ -91,7 +91,7 @@ pub struct Pause {
 /// The robot for which streams are planned.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// What its controller calls it.
+    /// Type name on the controller.
     pub kind: String,
     /// A posture, rad.
     pub posture: [f64; 6],

@@ -26,7 +26,7 @@ pub enum GenerateError {
     /// The trajectory cannot be followed.
     #[error(transparent)]
     Follow(#[from] FollowError),
-    /// A point can't be reached.
+    /// A point cannot be reached.
     #[error(transparent)]
     Moves(#[from] MovesError),
     /// A template failed.
