@@ -252,7 +252,6 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     Ok((found, basis))
 }
 
-/// The logs of a diagnosis.
 struct Data {
     train: Vec<Ready>,
     held: Vec<Ready>,
@@ -328,7 +327,6 @@ fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
     notes
 }
 
-/// Writes the improved model and the HTML page.
 fn write(
     args: &DiagnoseArgs,
     model: &Model,

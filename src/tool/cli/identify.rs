@@ -177,7 +177,6 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     write(args, &found, &basis)
 }
 
-/// The data of an identification.
 struct Data {
     /// The concatenated logs of the fit.
     samples: Samples,

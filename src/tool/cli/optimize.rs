@@ -359,7 +359,6 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     })
 }
 
-/// An obstacle of the cell.
 fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
     match part {
         KeepOut::Box([one, other]) => {

@@ -18,7 +18,6 @@ use super::output;
 
 /// Suffix of the undo folder's name.
 const SUFFIX: &str = ".joulepath-undo";
-/// The manifest file.
 const MANIFEST: &str = "manifest.json";
 /// The folder of the originals.
 const ORIGINALS: &str = "files";

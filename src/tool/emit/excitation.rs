@@ -11,7 +11,6 @@ const PREFIX: &str = "jpExcite";
 pub(super) const TASK: &str = "T_ROB1";
 const UNIT: &str = "ROB_1";
 const SIGNAL: &str = "doJpSync";
-/// Decimals of gear ratios.
 const RATIO_DECIMALS: usize = 5;
 /// Interval of the logger \[s\]: the shortest of test signals.
 pub(super) const INTERVAL: f64 = 0.004;

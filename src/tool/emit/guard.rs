@@ -30,7 +30,6 @@ const ROUNDED: usize = 2;
 /// Instructions before the first point of a stream.
 const LEAD: usize = 4;
 
-/// The text of a guard.
 #[derive(Serialize)]
 pub(super) struct Guard {
     pub(super) origin: String,
@@ -87,7 +86,6 @@ struct ComponentText {
     said: String,
 }
 
-/// The guard of a site.
 pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usize) -> Guard {
     let prefix = &names.prefix;
     let parts: Vec<PartText> = site

@@ -34,7 +34,6 @@ const FULL_SPEED: f64 = 100.0;
 /// [`TIME_DECIMALS`].
 const STRETCHED_DECIMALS: usize = 7;
 
-/// The text of a stream.
 #[derive(Serialize)]
 struct StreamText {
     origin: String,
@@ -67,7 +66,6 @@ struct PointText {
     pause: String,
 }
 
-/// The text of a site.
 #[derive(Serialize)]
 struct SiteText {
     guard: Guard,

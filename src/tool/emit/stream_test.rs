@@ -8,7 +8,6 @@ use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 
 /// Prefix of all declared names.
 const PREFIX: &str = "jpTest";
-/// The log file.
 const LOG: &str = "streamtest_log.csv";
 /// Time around each test, and extra time of the logger \[s\].
 const AROUND: f64 = 1.0;

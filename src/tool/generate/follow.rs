@@ -32,7 +32,7 @@ pub enum FollowError {
     Range {
         /// Line of the file.
         row: usize,
-        /// Which joint.
+        /// The violated limit.
         violation: LimitViolation,
     },
     /// It does not start or end at rest.

@@ -21,7 +21,6 @@ const REACHED: f64 = 1e-4;
 /// Samples of a simulated motion per second.
 const SAMPLES: f64 = 500.0;
 
-/// A trajectory as a stream.
 pub(super) fn stream(
     names: &GeneratedNames,
     stream: &Stream,
@@ -46,7 +45,6 @@ pub(super) fn stream(
     complete(names, emit::generated_module(names, &about, &moves)?)
 }
 
-/// Points as movements.
 pub(super) fn moves(
     names: &GeneratedNames,
     moves: &Moves,

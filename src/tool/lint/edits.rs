@@ -20,7 +20,6 @@ const SPEEDS: [u32; 20] = [
     6000, 7000,
 ];
 
-/// A predefined zone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NamedZone {
     /// `z10` …
@@ -49,7 +48,6 @@ pub(super) fn slower(than: f64) -> impl Iterator<Item = (String, f64)> {
     below.filter(move |(_, speed)| *speed < than - 1e-9).map(|(v, speed)| (format!("v{v}"), speed))
 }
 
-/// An edit that replaces the text of a span.
 pub(super) fn replace(span: Span, text: &str) -> Edit {
     Edit { span, text: text.as_bytes().to_vec() }
 }

@@ -49,7 +49,6 @@ impl Report {
     }
 }
 
-/// A parsed file.
 struct Read {
     modules: Vec<Module>,
     suppressions: Vec<Suppression>,
@@ -106,7 +105,6 @@ fn examine_units(job: &Job<'_>, units: &[Group], read: &[Arc<Read>]) -> Examined
     Examined { report: merged(reports), cycles, programs }
 }
 
-/// Merges the reports of all programs.
 fn merged(reports: Vec<Report>) -> Report {
     let mut all = Report::default();
     for report in reports {
@@ -183,7 +181,6 @@ fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
     units
 }
 
-/// Lints one program.
 fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle>) {
     let modules = unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
     let program = Program::new(modules);

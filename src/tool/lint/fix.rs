@@ -10,7 +10,6 @@ use crate::rapid::text::{Edit, FileId, SourceFile, apply};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Maximum number of rounds.
 const MOST_ROUNDS: usize = 40;
 /// Maximum distance of equal joint positions, rad.
 const SAME: f64 = 1e-4;

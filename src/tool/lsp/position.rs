@@ -35,7 +35,6 @@ fn position_of(file: &SourceFile, offset: u32) -> Position {
     Position { line: line - 1, character: units as u32 }
 }
 
-/// The range of a span.
 pub(super) fn range_of(file: &SourceFile, span: Span) -> Range {
     Range { start: position_of(file, span.start), end: position_of(file, span.end) }
 }

@@ -131,7 +131,6 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
 }
 
 impl Analysis {
-    /// The document.
     pub(super) fn file(&self) -> &SourceFile {
         &self.file
     }
@@ -179,7 +178,6 @@ impl Analysis {
     }
 }
 
-/// The folder that a document lies in.
 fn folder_of(uri: &str) -> PathBuf {
     path_of(uri).parent().map(Path::to_path_buf).unwrap_or_default()
 }

@@ -18,7 +18,7 @@ pub(super) struct Lowered {
     pub(super) simulation: Simulation,
 }
 
-/// The original under lower limits; empty where no limit is assumed.
+/// The original under lower limits; empty if no limit is assumed.
 pub(super) fn lowered(
     program: &Program,
     entry: RoutineId,

@@ -63,7 +63,6 @@ pub(super) fn emitted(
 }
 
 pub(super) struct Outputs {
-    /// All files, unchanged ones included.
     pub(super) files: Vec<OutputFile>,
     /// Places with guards, and the number of RAPID instructions of these in a cycle.
     pub(super) guards: Vec<(Span, usize)>,

@@ -26,7 +26,6 @@ const SAME_PLACE: f64 = 1e-6;
 
 /// A wait at another pose.
 pub(super) struct RelocatedWait {
-    /// The statement.
     pub(super) span: Span,
     /// Its events in the original.
     pub(super) events: Vec<usize>,

@@ -19,6 +19,5 @@ pub(super) struct Rewritten {
     /// The emitted program, with the waits at their original places.
     pub(super) simulated: Simulated,
     pub(super) verification: Verification,
-    /// Both cycles under lower limits.
     pub(super) lower_limits: Vec<LowerLimits>,
 }

@@ -40,7 +40,7 @@ pub enum Form {
     Streams,
     /// The movements with other speeds.
     Speeds,
-    /// Positions for externally guided motion beside the program.
+    /// Positions for externally guided motion in separate files.
     Guided,
 }
 

@@ -32,7 +32,6 @@ pub(super) fn streams(
     outcomes.collect()
 }
 
-/// A stream, or the reason for none.
 type Outcome = Result<Retiming, Reason>;
 
 /// A stream for the goal, or else in the original time of the run.

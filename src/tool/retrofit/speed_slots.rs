@@ -29,7 +29,6 @@ pub(super) struct Slot {
     speeds: Vec<Programmed>,
 }
 
-/// A programmed speed.
 struct Programmed {
     argument: Argument,
     speed: Speed,

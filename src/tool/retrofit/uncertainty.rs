@@ -72,7 +72,6 @@ fn share(model: &Model, robots: &Robots, saved: f64, [mut less, after]: [Moments
     falls.count() as f64 / changes.len() as f64
 }
 
-/// Energies and savings of the whole cycle.
 pub(super) fn uncertainty(
     model: &Model,
     robots: &Robots,

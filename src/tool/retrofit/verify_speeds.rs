@@ -17,7 +17,6 @@ const STEP: f64 = 0.002;
 /// Maximum distance of the ends of the same target, rad.
 const SAME_END: f64 = 1e-6;
 
-/// Figures of the runs with other speeds.
 pub(super) struct SpeedFigures {
     /// Worst figures of all changed runs.
     pub(super) worst: Check,

@@ -26,7 +26,6 @@ const INTENDED_TOLERANCE: f64 = 1e-6;
 /// Time step of this comparison, s.
 const STEP: f64 = 0.002;
 
-/// Figures of the streams of an emitted program.
 pub(super) struct StreamFigures {
     /// Worst figures of all streams.
     pub(super) worst: Check,

@@ -12,7 +12,6 @@ use crate::tool::report::html::{Excerpt, Line, Pictures};
 /// Number of program lines before and after a place.
 const AROUND: usize = 4;
 
-/// The pictures of a diagnosis of `model` on `records`.
 pub(super) fn pictures(model: &Model, records: &[Record<'_>], found: &Diagnosis) -> Pictures {
     let models = [model, &found.refit.applied, &found.improved.applied];
     let missed = models.map(|model| missed(records, model));

@@ -85,7 +85,6 @@ pub struct ExciteArgs {
     pub(super) quiet: bool,
 }
 
-/// Time between points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Spacing {
     /// \[s\].

@@ -74,7 +74,6 @@ pub enum InputError {
     },
 }
 
-/// A file to read.
 pub(super) struct Found {
     pub(super) path: PathBuf,
     /// Its path relative to the input, with `/`.

@@ -27,7 +27,6 @@ pub(super) struct ImportArgs {
     out: Option<PathBuf>,
 }
 
-/// Writes the Robot TOML.
 pub(super) fn run(args: &ImportArgs) -> anyhow::Result<()> {
     let path = configuration(&args.source)?;
     let shown = path.display().to_string();

@@ -10,7 +10,6 @@ use crate::arm::robot::{Model, Provenance};
 use crate::retime::energy::plausible::{DRAWS, Interval};
 use crate::tool::cli::common::{Format, print};
 
-/// Shows one robot.
 pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
     let model = effects::load_estimated(robot)?;
     print(format, || document(&model), || text(&model))

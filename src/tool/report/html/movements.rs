@@ -22,7 +22,6 @@ const SIZE: Size = Size { width: 620.0, height: 250.0 };
 /// Label of the abscissa.
 const TIME: &str = "time (s)";
 
-/// A rewritten segment.
 #[derive(Serialize)]
 pub(super) struct Movement {
     number: usize,
@@ -51,7 +50,6 @@ struct Figure {
     svg: String,
 }
 
-/// The rewritten segments of a retrofit.
 pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Vec<Movement> {
     let rewritten: Vec<_> = numbered(retrofit)
         .filter(|(_, segment)| segment.rewritten)

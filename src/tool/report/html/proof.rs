@@ -7,7 +7,6 @@ use crate::arm::robot::Model;
 use crate::tool::report::place::Places;
 use crate::tool::retrofit::{OutputKind, Retrofit, SignalKind};
 
-/// The verification.
 #[derive(Serialize)]
 pub(super) struct Verification {
     passed: bool,
@@ -52,7 +51,6 @@ struct Output {
     kind: &'static str,
 }
 
-/// The verification of a retrofit.
 pub(super) fn verification(retrofit: &Retrofit) -> Verification {
     let seen = &retrofit.verification;
     let worst = &seen.worst;

@@ -7,7 +7,6 @@ use crate::retime::optimize::reason::Reason;
 use crate::tool::report::place::Places;
 use crate::tool::retrofit::{Retrofit, Segment, SegmentKind};
 
-/// A row of the table.
 #[derive(Serialize)]
 pub(super) struct Row {
     number: usize,
@@ -86,7 +85,6 @@ impl Sums {
     }
 }
 
-/// The table of a retrofit.
 pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
     let total = Sums {
         time: [retrofit.original.cycle_s, retrofit.optimized.cycle_s],

@@ -9,7 +9,6 @@ use crate::retime::energy::EnergyParts;
 use crate::tool::report::svg::Scale;
 use crate::tool::retrofit::{Retrofit, SegmentKind};
 
-/// A figure of the cycle.
 #[derive(Serialize)]
 pub(super) struct Card {
     name: &'static str,
@@ -53,7 +52,6 @@ const PARTS: [PartOf; 6] = [
     ("brake", "brake", "keeping brakes open, and opening them", |p| p.brake_j),
 ];
 
-/// The head of a retrofit's report.
 pub(super) fn summary(retrofit: &Retrofit) -> Summary {
     let (before, after) = (&retrofit.original, &retrofit.optimized);
     let energy = |name, before, after| Card {
