@@ -30,8 +30,8 @@ pub struct Fixed {
 }
 
 /// Applies the fixes up to an applicability until none is left that saves energy. The cycle is
-/// simulated before and after each one; a fix stays only if the cycle takes less energy with the
-/// same waits and outputs in the same order at the same places.
+/// simulated before and after each one; a fix stays only if the cycle takes less energy for the
+/// same process (see `same_process`).
 #[must_use]
 pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let mut files = job.files.to_vec();
@@ -146,7 +146,8 @@ fn attempt(
     (better && before.len() == after.len()).then_some((changed, after))
 }
 
-/// Whether two cycles have the same waits, outputs and end, in the same order at the same places.
+/// Whether both cycles have the same waits and outputs in the same order, equal poses at waits and
+/// end, and no additional problem.
 fn same_process(before: &Cycle, after: &Cycle) -> bool {
     let actions = |cycle: &Cycle| -> Vec<String> {
         let trace = trace::of_simulation(&cycle.simulation);

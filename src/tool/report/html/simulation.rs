@@ -72,7 +72,7 @@ struct Line {
     text: String,
     time: Option<String>,
     energy: Option<String>,
-    /// Energy relative to the most expensive line, %.
+    /// Energy relative to the most expensive line of all files, %.
     heat: Option<String>,
 }
 

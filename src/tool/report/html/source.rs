@@ -33,7 +33,7 @@ struct Line {
     gap: u32,
     text: String,
     before: Option<String>,
-    /// Energy relative to the most expensive line, %.
+    /// Energy relative to the most expensive line of the file, %.
     heat: Option<String>,
     /// The cell with the energy after the retrofit, unless a cell above spans this row.
     after: Option<Cell>,
