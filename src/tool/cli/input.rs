@@ -27,7 +27,7 @@ pub struct InputFile {
     pub relative: String,
     /// Its place in a controller backup, if it is a module of a task.
     pub place: Option<Place>,
-    /// Whether the command line or a listed program file names it.
+    /// Whether the command line names it, directly or by a program file.
     pub named: bool,
 }
 

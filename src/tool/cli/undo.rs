@@ -28,7 +28,7 @@ const VERSION: u32 = 1;
 pub struct Change<'a> {
     /// Its path.
     pub path: PathBuf,
-    /// Its current content; `None` for a new file.
+    /// The content that undo restores; `None` for a new file.
     pub before: Option<Vec<u8>>,
     /// Its new content.
     pub after: Cow<'a, [u8]>,

@@ -149,8 +149,8 @@ pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
     units(job, &read).par_iter().map(cycle).collect()
 }
 
-/// The programs of a job. If the files of a group have several entries, every file is a program of
-/// its own.
+/// The programs of a job. A group with several entries is split by folder, and a folder with several
+/// entries by file.
 fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
     let mut units = Vec::new();
     for group in &job.groups {

@@ -82,7 +82,7 @@ impl Goal {
 
     /// Whether two goals are equal.
     pub fn is_same(&self, other: &Goal) -> bool {
-        /// m, and norm of a quaternion difference.
+        /// m and rad.
         const SAME: f64 = 1e-5;
         match (self, other) {
             (Goal::Joints(a), Goal::Joints(b)) => {

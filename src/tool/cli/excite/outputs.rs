@@ -13,7 +13,7 @@ use crate::learn::excite::State;
 use crate::tool::cli::output;
 use crate::tool::emit::{Excitation, LoggedTorques, Points, excitation};
 
-/// Distance of joint 1's marks from the middle of its range, as share of the range.
+/// Distance of the marks from the middle of joint 1's motion, as share of its range of motion.
 const MARKS: f64 = 0.02;
 
 /// Writes the modules and the table; returns their paths.

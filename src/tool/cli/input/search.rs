@@ -78,7 +78,7 @@ pub(super) struct Found {
     pub(super) path: PathBuf,
     /// Its path relative to the input, with `/`.
     pub(super) relative: String,
-    /// Whether the command line or a listed program file names it.
+    /// Whether the command line names it, directly or by a program file.
     pub(super) named: bool,
     /// The paths of the modules of a program file.
     pub(super) modules: Option<Vec<String>>,
