@@ -24,7 +24,7 @@ pub(super) struct Annotated {
     lines: Vec<Line>,
 }
 
-/// A line, or a gap.
+/// A shown line.
 #[derive(Serialize)]
 struct Line {
     /// From 1.
