@@ -1,14 +1,14 @@
-//! `BACKINFO/backinfo.txt` of a controller's backup: a module that it does not list is not loaded.
+//! `BACKINFO/backinfo.txt` of a controller backup. The controller loads only the modules in it.
 
 use std::path::Path;
 
 use super::input::Input;
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
 
-/// What ends the name of a module in its line; what it was loaded from may follow.
+/// Ends the name of a module in its line; the origin of the module may follow.
 const MARK: u8 = b'@';
 
-/// Adds the backup's list to the outputs, with the new modules beside their neighbours.
+/// Adds the backup's list to the outputs, with the new modules next to those of their folder.
 pub fn add(result: &mut Retrofit, input: &Input) {
     let new: Vec<(String, String, String)> = result
         .outputs
@@ -31,7 +31,7 @@ pub fn add(result: &mut Retrofit, input: &Input) {
     }
 }
 
-/// Task, folder and file of a new module: those of the modules beside which it lies.
+/// Task, folder and file of a new module, taken from the modules of its folder.
 fn task_and_place(input: &Input, path: &str) -> Option<(String, String, String)> {
     let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
     Path::new(name).extension().filter(|extension| *extension == "mod")?;
@@ -44,8 +44,8 @@ fn task_and_place(input: &Input, path: &str) -> Option<(String, String, String)>
     Some((place.folder.clone(), modules, name.to_owned()))
 }
 
-/// The list with one more module in the block of a task (`TASK1` …), behind the last one of its
-/// folder (`PROGMOD`) and written as that is. Every other byte stays.
+/// The list with one more module in the block of a task (`TASK1` …), after the last one of its
+/// folder (`PROGMOD`) and in the same form. All other bytes stay.
 fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8>> {
     let mut inside = false;
     let mut at = 0;
@@ -64,7 +64,7 @@ fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8
     let start = line.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
     let file = start + listed(&line[start..], folder)?;
     let mark = line.iter().position(|byte| *byte == MARK);
-    // The origin after the mark belongs to the neighbour alone; the spaces are copied.
+    // The origin after the mark belongs to the other module; the spaces are copied.
     let tail = mark.map_or(&b""[..], |mark| {
         let named = line[..mark].trim_ascii_end().len();
         let spaces =
@@ -72,7 +72,7 @@ fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8
         &line[named..mark + 1 + spaces]
     });
     let end = if line.ends_with(b"\r\n") { &b"\r\n"[..] } else { b"\n" };
-    // The last line of a file may have no end.
+    // The last line may lack a line ending.
     let behind = if line.ends_with(b"\n") { &b""[..] } else { end };
     let at = at + line.len();
     let entry = [&line[..file], name.as_bytes(), tail].concat();
@@ -80,7 +80,7 @@ fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8
     Some([&bytes[..at], &entry, &bytes[at..]].concat())
 }
 
-/// The list without the lines of modules of these file names.
+/// The list without the modules of these file names.
 pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
     let is_one = |line: &&[u8]| {
         let text = String::from_utf8_lossy(line).to_lowercase();
@@ -96,7 +96,7 @@ pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
         .collect()
 }
 
-/// Where the name of the file begins in the line of a module of this folder.
+/// Start of the file name in a line of a module of this folder.
 fn listed(line: &[u8], folder: &str) -> Option<usize> {
     let separator = line.get(folder.len())?;
     let is_it = line[..folder.len()].eq_ignore_ascii_case(folder.as_bytes());

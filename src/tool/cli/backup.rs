@@ -1,8 +1,8 @@
-//! Controller backups: their tasks, robots and options.
+//! Controller backups: tasks, robots and options.
 //!
-//! A backup is a folder with `RAPID/TASKn/PROGMOD|SYSMOD`. `BACKINFO/backinfo.txt` names the
-//! tasks and options, `SYSPAR/SYS.cfg` says which tasks move a robot, `SYSPAR/MOC.cfg` which
-//! robots. Where one of them is missing, the names of the folders have to do.
+//! A backup is a folder with `RAPID/TASKn/PROGMOD|SYSMOD`. `BACKINFO/backinfo.txt` lists the tasks
+//! and options, `SYSPAR/SYS.cfg` the tasks that move a robot, `SYSPAR/MOC.cfg` the robots. If one
+//! is missing, the folder names are used.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,12 +12,12 @@ use serde::Serialize;
 use crate::arm::robot::system_parameters::{Entry, section};
 use crate::rapid::text;
 
-/// The folder of modules that all tasks share.
+/// The folder of the modules that all tasks share.
 const SHARED: &str = "TASK0";
-/// Folders of a task that hold its modules.
+/// Folders of a task that contain its modules.
 const MODULE_FOLDERS: [&str; 2] = ["PROGMOD", "SYSMOD"];
 
-/// What a backup says about its controller.
+/// The content of a backup that describes its controller.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Backup {
     /// Version of `RobotWare`.
@@ -33,24 +33,24 @@ pub struct Backup {
 pub struct Task {
     /// Its folder below `RAPID`.
     pub folder: String,
-    /// Its name, `T_ROB1` …; that of the folder where nothing else is known.
+    /// Its name, `T_ROB1` …; the folder name if unknown.
     pub name: String,
     /// Whether it moves a robot.
     pub motion: bool,
-    /// Type of its robot as the controller calls it.
+    /// Type name of its robot on the controller.
     pub robot: Option<String>,
-    /// The routine that starts it, where it is stated.
+    /// The routine that starts it, if stated.
     pub entry: Option<String>,
 }
 
 impl Backup {
-    /// Name of the task with this folder: that of the folder, if it is none's.
+    /// Name of the task with this folder; the folder name if there is none.
     pub fn task_name<'n>(&'n self, folder: &'n str) -> &'n str {
         let task = self.tasks.iter().find(|task| task.folder == folder);
         task.map_or(folder, |task| &task.name)
     }
 
-    /// It in one line.
+    /// A summary in one line.
     pub fn summary(&self) -> String {
         let version = self.robotware.as_deref().unwrap_or("of unknown version");
         let tasks = self.tasks.iter().map(|task| {
@@ -63,7 +63,7 @@ impl Backup {
     }
 }
 
-/// The backup and the task's folder that the path of a module lies in.
+/// The backup and the task's folder that contain a module.
 pub fn place(path: &Path) -> Option<(PathBuf, String)> {
     let modules = path.parent()?;
     let task = modules.parent()?;
@@ -84,7 +84,7 @@ pub fn information(root: &Path) -> Option<PathBuf> {
     child(&child(root, "BACKINFO")?, "backinfo.txt")
 }
 
-/// Reads the backup at `root`; what is missing or broken is left out.
+/// Reads the backup at `root`; missing and broken parts are skipped.
 pub fn read(root: &Path) -> Backup {
     let file = |folder: &str, name: &str| {
         let path = child(&child(root, folder)?, name)?;
@@ -120,7 +120,7 @@ pub fn read(root: &Path) -> Backup {
     Backup { robotware, options, tasks }
 }
 
-/// Whether the modules of this folder belong to every task.
+/// Whether all tasks share the modules of this folder.
 pub fn is_shared(folder: &str) -> bool {
     folder.eq_ignore_ascii_case(SHARED)
 }
@@ -135,7 +135,7 @@ impl Parameters {
     fn moves(&self, task: &str) -> bool {
         match named(&self.tasks, task) {
             Some(entry) => entry.contains_key("motiontask"),
-            // Motion tasks have this name unless somebody changed it.
+            // The default name of motion tasks.
             None => self.tasks.is_empty() && task.to_ascii_uppercase().starts_with("T_ROB"),
         }
     }
@@ -159,12 +159,12 @@ fn named<'e>(entries: &'e [Entry], name: &str) -> Option<&'e Entry> {
     entries.iter().find(is_it)
 }
 
-/// The robot among the options: `IRB 1600-10/1.45`, if it is the only one.
+/// The robot variant among the options, such as `IRB 1600-10/1.45`, if there is only one.
 fn variant(options: &[String]) -> Option<String> {
     let is_variant = |option: &&String| option.starts_with("IRB ") && option.contains('-');
     let mut variants = options.iter().filter(is_variant);
     let only = variants.next().filter(|_| variants.next().is_none())?;
-    // `Type C` is the generation of the cast parts.
+    // `Type C` is the generation of the castings.
     Some(only.split(" Type").next().unwrap_or(only).to_owned())
 }
 
@@ -202,7 +202,7 @@ fn task_folders(root: &Path) -> Vec<String> {
     folders
 }
 
-/// The file or folder of this name, whatever its case.
+/// The file or folder of this name, without regard to case.
 pub fn child(folder: &Path, name: &str) -> Option<PathBuf> {
     let exact = folder.join(name);
     if exact.exists() {

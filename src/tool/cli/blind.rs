@@ -93,13 +93,13 @@ struct GradeArgs {
     format: Format,
 }
 
-/// Periods that the generator's motions can have \[s\].
+/// Permitted periods of the generated motions \[s\].
 const PERIODS_S: [f64; 2] = [2.0, 60.0];
 
 /// Runs the command.
 ///
 /// # Errors
-/// Cases that can't be written or read, seals that don't fit.
+/// Cases cannot be written or read, or a seal does not match.
 pub fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         BlindCommand::Generate(args) => generate(args),
@@ -120,7 +120,7 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     }
     let settings = Settings {
         cycles: args.cycles as usize,
-        // Whole rows of a log.
+        // A whole number of log rows.
         period_s: (args.period * 10.0).round() / 10.0,
         ..Settings::new(args.seed)
     };
@@ -165,7 +165,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     }
     let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
     for label in &labels {
-        // A case's name must not lead out of the folder.
+        // A case name must not lead out of the folder.
         if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
             bail!("{KEY}: '{}' is no name of a case; take the file that was written", label.case);
         }
@@ -173,7 +173,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         if args.leave_out.is_some() && without.is_empty() {
             continue;
         }
-        // Given results were computed without the effects that are left out.
+        // Results of the user are expected to lack the effects that are left out.
         let (beside, name) = match (&args.results, &args.leave_out) {
             (Some(results), _) => (results, "diagnosis.json".to_owned()),
             (None, None) => (&args.cases, "diagnosis.json".to_owned()),
@@ -202,7 +202,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The effects that are left out for a case; none if the case is not graded.
+/// The effects that are left out for a case; empty if the case is not graded.
 fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
     match left_out {
         Some(id) if !blind::is_of(label, id) => Vec::new(),
@@ -212,13 +212,13 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
     }
 }
 
-/// The JSON of `diagnose` for a case without some effects; it is stored under `name` beside the case.
+/// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
 fn diagnosed(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
     let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
         .with_context(|| format!("'{}' has no case.json", case.display()))?;
     let value =
         diagnose::of_case(case, &options, without).with_context(|| case.display().to_string())?;
-    // The next grading reads it again.
+    // A cache for the next grading.
     let text = format!("{value:#}\n");
     output::write(&case.join(name), text.as_bytes())?;
     Ok(value)

@@ -1,4 +1,4 @@
-//! `joulepath calibrate`: a robot's estimate narrowed by measured power.
+//! `joulepath calibrate`: narrows a robot's estimate by measured power.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -43,7 +43,8 @@ pub struct CalibrateArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// Unusable input, a log that is not of the program or the robot, output that can't be written.
+/// Unusable input, a log that does not match the program or the robot, or output that can't be
+/// written.
 pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     if args.program.point_estimate {
         bail!("--point-estimate has no use here: the plausible robots are what a log narrows");
@@ -102,10 +103,10 @@ pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Rejected rows that are listed one by one.
+/// Maximum number of rejected rows that are listed individually.
 const SHOWN: usize = 3;
 
-/// Torques of all joints, logged or from currents, and what keeps currents from being used.
+/// Torques of all joints, logged or from currents, and why currents are not usable.
 fn torques(model: &Model, log: &Log) -> (Option<Vec<Vec<f64>>>, Option<String>) {
     let of = |channel: fn(usize) -> Channel| -> Option<Vec<&[f64]>> {
         (0..model.dof).map(|joint| log.column(channel(joint))).collect()

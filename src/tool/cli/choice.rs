@@ -1,4 +1,4 @@
-//! Which of the files that were read are the program, and for which robot.
+//! Selects the files of the program, and its robot.
 
 use std::path::Path;
 
@@ -10,21 +10,20 @@ use super::input::{Input, InputFile};
 /// The files of one program.
 #[derive(Debug)]
 pub struct Choice<'i> {
-    /// They, in the order of the input.
+    /// The files, in input order.
     pub files: Vec<&'i InputFile>,
-    /// The task of a backup that they are of.
+    /// Their task, if they belong to a backup.
     pub task: Option<&'i Task>,
     /// The folder of that backup.
     pub backup: Option<&'i Path>,
-    /// What was chosen, for people.
+    /// Notes on the selection for the user.
     pub notes: Vec<String>,
 }
 
-/// Chooses all files, or of a controller backup the modules of one motion task with what is
-/// named beside them.
+/// Selects all files, or of a controller backup one motion task and the files named separately.
 ///
 /// # Errors
-/// When the files are of several backups.
+/// The files belong to several backups.
 pub fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
     let Some(first) = input.files.iter().find_map(|file| file.place.as_ref()) else {
         let files = input.files.iter().collect();
@@ -60,7 +59,7 @@ pub fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
     Ok(Choice { files, task, backup: Some(root), notes })
 }
 
-/// The task to run: the one that moves a robot, the first of several.
+/// The task to run: the first one that moves a robot.
 fn task<'b>(backup: &'b Backup, folders: &[&str], notes: &mut Vec<String>) -> Option<&'b Task> {
     let there: Vec<&Task> =
         backup.tasks.iter().filter(|task| folders.contains(&task.folder.as_str())).collect();

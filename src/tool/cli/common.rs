@@ -22,7 +22,7 @@ use crate::retime::motion::{Options, Simulation};
 use crate::tool::config::{self, Config};
 use crate::tool::retrofit::Source;
 
-/// Why programs are run for robots with six joints alone.
+/// Message for robots with another number of joints.
 pub const RUN_SIX_JOINTS: &str =
     "RAPID programs are run for robots with 6: name another with --robot";
 
@@ -102,11 +102,11 @@ pub enum Format {
 
 /// A program ready to run.
 pub struct Job {
-    /// What was read.
+    /// All files that were read.
     pub input: Input,
     /// The files of the program; their ids count from 0.
     pub files: Vec<Source>,
-    /// The streams that it had, if they are made anew.
+    /// The existing streams of the program, if they are replaced.
     pub streams: Streams,
     /// The robot.
     pub model: Model,
@@ -114,31 +114,31 @@ pub struct Job {
     pub config: Config,
     /// The routine that starts the program.
     pub entry: String,
-    /// For simulations.
+    /// Options of the simulation.
     pub options: Options,
-    /// The inputs of the options as the user writes them.
+    /// The inputs of the options, as the user wrote them.
     pub inputs: Vec<String>,
 }
 
 impl Job {
-    /// Whether streams that the program had are made anew.
+    /// Whether existing streams of the program are replaced.
     pub fn is_refreshed(&self) -> bool {
         !self.streams.modules.is_empty()
     }
 
-    /// The files of other tasks that were read beside those of the program.
+    /// The files that belong to other tasks.
     pub fn others(&self) -> impl Iterator<Item = &SourceFile> {
         let is_own = |path: &str| self.files.iter().any(|own| own.file.path == path);
         let all = self.input.files.iter().map(|file| &file.source);
         all.filter(move |source| !is_own(&source.path))
     }
 
-    /// The files alone, for reports.
+    /// The source files for reports.
     pub fn sources(&self) -> Vec<SourceFile> {
         self.files.iter().map(|source| source.file.clone()).collect()
     }
 
-    /// Notes on inputs for which a simulated cycle does not wait.
+    /// Notes on given inputs for which the simulated cycle does not wait.
     pub fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
         let asked = &simulation.inputs_asked;
         let unused = self.inputs.iter().filter(|name| !asked.contains(&name.to_lowercase()));
@@ -156,15 +156,15 @@ impl Job {
 /// Reads program, configuration and robot.
 ///
 /// # Errors
-/// Whatever is missing or wrong, with the way out.
+/// Missing or wrong input; the message states a remedy.
 pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
     prepare_read(program, input::read(&program.cell.paths)?)
 }
 
-/// The same for a program that was read.
+/// Prepares a program that was read.
 ///
 /// # Errors
-/// As of [`prepare`].
+/// See [`prepare`].
 pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> {
     let args = &program.cell;
     note_unreadable(args.quiet, &input);
@@ -214,7 +214,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
     Ok(Job { input, files, streams, model, config, entry, options, inputs })
 }
 
-/// How a program is simulated, and the inputs whose time is stated, as the user writes them.
+/// The options of the simulation, and the inputs with stated times as the user wrote them.
 ///
 /// # Errors
 /// An option is wrong.
@@ -254,7 +254,7 @@ pub fn simulation_options(
     Ok((options, inputs))
 }
 
-/// The options with what is said of the run itself.
+/// Adds speed override, passes and maximum time to the options.
 fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
     if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
         bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
@@ -270,7 +270,7 @@ fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
     })
 }
 
-/// The robot with what its backup says of it: ranges, base frame, loads of the arm.
+/// The robot with the configuration of its backup: ranges, base frame, arm loads.
 pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
     let Some(path) = motion_configuration(backup) else { return model };
     let shown = path.display().to_string();
@@ -286,10 +286,10 @@ pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
     })
 }
 
-/// The robot of options and configuration, for commands that need no program.
+/// The robot from options and configuration, for commands without a program.
 ///
 /// # Errors
-/// None is named, or it can't be read.
+/// No robot is named, or it cannot be read.
 pub fn robot(args: &CellArgs) -> anyhow::Result<Model> {
     let (config, folder) = configuration(args)?;
     Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
@@ -313,10 +313,10 @@ fn which_robot() -> String {
     )
 }
 
-/// The configuration, and the folder that it lies in.
+/// The configuration, and its folder.
 ///
 /// # Errors
-/// It can't be read.
+/// It cannot be read.
 pub fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
     let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
         path: path.to_string_lossy().into_owned(),
@@ -339,7 +339,7 @@ pub fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
     Ok((Config::default(), PathBuf::new()))
 }
 
-/// Where the robot stands at first \[rad\].
+/// The initial joint positions \[rad\].
 fn start(model: Option<&Model>, text: &str) -> anyhow::Result<[f64; 6]> {
     let q = six_degrees("--start", text)?;
     if let Some(model) = model
@@ -368,10 +368,10 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
     Ok((name.trim().to_owned(), seconds))
 }
 
-/// Six axis positions that an option gives in degrees \[rad\].
+/// Six axis positions \[rad\] from an option in degrees.
 ///
 /// # Errors
-/// They are not six numbers.
+/// The text does not consist of six numbers.
 pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
     let wrong = || {
         anyhow::anyhow!(
@@ -386,10 +386,10 @@ pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
     Ok(values.map(f64::to_radians))
 }
 
-/// Refuses a robot that does not have the six joints of RAPID; `way_out` ends the message.
+/// Refuses a robot without exactly six joints; `way_out` ends the message.
 ///
 /// # Errors
-/// It has more or fewer.
+/// The robot has more or fewer joints.
 pub fn require_six_joints(model: &Model, way_out: &str) -> anyhow::Result<()> {
     if model.dof != 6 {
         bail!("{} has {} joints; {way_out}", model.name, model.dof);
@@ -397,7 +397,7 @@ pub fn require_six_joints(model: &Model, way_out: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A bar for progress on standard error; of unknown length without `length`.
+/// A progress bar on standard error; a spinner without `length`.
 pub fn progress(quiet: bool, length: Option<u64>) -> ProgressBar {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     ProgressBar::with_draw_target(length, target)
@@ -406,7 +406,7 @@ pub fn progress(quiet: bool, length: Option<u64>) -> ProgressBar {
 /// Prints a result on standard output.
 ///
 /// # Errors
-/// Standard output can't be written.
+/// Standard output cannot be written.
 pub fn print(
     format: Format,
     json: impl FnOnce() -> Value,

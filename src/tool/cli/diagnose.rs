@@ -88,9 +88,9 @@ pub struct DiagnoseArgs {
     quiet: bool,
 }
 
-/// Cut-off frequency of the filter of runs of a program \[Hz\].
+/// Cut-off frequency of the filter for logged program runs \[Hz\].
 const OF_RUNS: f64 = 10.0;
-/// How often the bar is drawn.
+/// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
 
 /// How much parameters are believed.
@@ -107,18 +107,18 @@ enum TrustArg {
 /// Runs the command.
 ///
 /// # Errors
-/// A log or a robot that can't be used, or output that can't be written.
+/// A log or a robot that cannot be used, or output that cannot be written.
 pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = diagnosed(args)?;
     common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-/// The JSON of a case that `blind generate` wrote, by a library without some effects; with all of
-/// them, the model is written as well.
+/// The JSON of a case of `blind generate`, diagnosed without some effects; without omissions, the
+/// model is written too.
 ///
 /// # Errors
-/// As of [`run`].
+/// See [`run`].
 pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
     let baseline = case.join("baseline-1.csv");
@@ -141,7 +141,7 @@ pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result
     Ok(report::json(&found, &basis))
 }
 
-/// No file that is read is written, and no log grades or is compared with itself.
+/// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
 fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let real = |path: &Path| path.canonicalize().ok();
     let within = |path: &Path, files: &[PathBuf]| {
@@ -194,7 +194,7 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         Some(TrustArg::Commissioned) | None => Trust::Commissioned,
     };
     let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, trust)?;
-    // The notes of the logs were shown while they were read.
+    // These notes were already shown during reading.
     let shown = notes.len();
     let mut basis = report::Basis {
         robot: args.robot.clone(),
@@ -213,11 +213,11 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     let of_power = diagnose_power(&model, &before, &now, &graded, &may);
     let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::runs(logs));
     let of_runs = diagnose_runs(&model, &before, &now, &graded, &may);
-    // The outputs have to be writable before the search, which takes long.
+    // Checks that the outputs are writable before the long search.
     for path in args.out.iter().chain(&args.report) {
         output::stage(path, &[])?;
     }
-    // Without a mean over repetitions there is no noise to weigh effects by.
+    // Without a mean over repetitions there is no noise estimate to weight effects.
     let (of_torque, compared) = if of_runs.is_some() {
         let text = "the logs are runs of a program: torques are not searched for effects";
         basis.notes.push(text.to_owned());
@@ -252,12 +252,11 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     Ok((found, basis))
 }
 
-/// The logs of a diagnosis.
 struct Data {
     train: Vec<Ready>,
     held: Vec<Ready>,
     baseline: Vec<Ready>,
-    /// What is held out: `file`, `trajectory` or `cycles`.
+    /// The kind of held-out data: `file`, `trajectory` or `cycles`.
     heldout: &'static str,
     notes: Vec<String>,
 }
@@ -271,7 +270,7 @@ fn read_data(
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
     let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
         let one = |read: Read| {
-            // Repetitions of a program are never alike to the millisecond.
+            // Repetitions of a program are never equal to the millisecond.
             let is_run = read.log.column(Channel::Command).is_some();
             let cutoff = is_run.then_some(OF_RUNS);
             reader.ready(read, Hints { period: args.period, cutoff })
@@ -314,7 +313,7 @@ fn records<'a>(model: &'a Model, logs: &[Ready]) -> Vec<Record<'a>> {
     logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
 }
 
-/// What the baseline has already, or why it is not compared.
+/// Effects that the baseline already shows, or why it is not compared.
 fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
     let known = found.before.iter().flatten();
     let mut notes: Vec<String> =
@@ -328,7 +327,6 @@ fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
     notes
 }
 
-/// Writes the improved model and the page.
 fn write(
     args: &DiagnoseArgs,
     model: &Model,
@@ -368,7 +366,7 @@ fn of_logs(
     found
 }
 
-/// A bar over the phases of a diagnosis; nothing where standard error is no terminal.
+/// A progress bar over the phases of a diagnosis; hidden unless standard error is a terminal.
 fn progress(quiet: bool) -> ProgressBar {
     let bar = common::progress(quiet, Some(Phase::ALL.len() as u64));
     let style = ProgressStyle::with_template("{elapsed:>4} {bar:20} {pos}/{len} {msg}");
@@ -379,7 +377,7 @@ fn progress(quiet: bool) -> ProgressBar {
     bar
 }
 
-/// The effects that may be found.
+/// The effects to search for.
 fn wanted(list: Option<&str>) -> anyhow::Result<Vec<&'static Effect>> {
     let Some(list) = list else { return Ok(ALL.iter().collect()) };
     let (but, list) = match list.trim().strip_prefix('-') {

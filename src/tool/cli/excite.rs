@@ -23,20 +23,20 @@ use crate::arm::kinematics::{Body, Obstacle, Plane};
 use crate::arm::robot::Model;
 use crate::learn::excite::{Design, Focus, Plateaus, friction_plateaus, wrist_plateaus};
 
-/// Lowest and highest base frequency of a motion that can be designed and recorded \[Hz\].
+/// Range of base frequencies that can be designed and recorded \[Hz\].
 const SLOWEST: f64 = 0.01;
 const FASTEST: f64 = 10.0;
-/// Least share of the speed limits: slower, joints stick.
+/// Minimum share of the speed limits: joints stick at lower speeds.
 const LEAST_SPEED: f64 = 0.001;
-/// Most repetitions.
+/// Maximum number of repetitions.
 const MOST_CYCLES: usize = 10_000;
-/// Least number of points in a period of the fastest harmonic.
+/// Minimum number of points per period of the highest harmonic.
 const LEAST_POINTS: f64 = 6.0;
 
 /// Runs the command.
 ///
 /// # Errors
-/// A robot without limits, options that make no sense, or output that can't be written.
+/// A robot without limits, invalid options, or output that cannot be written.
 pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load_estimated(&args.robot)?;
     common::require_six_joints(&model, "RAPID is written for robots with 6")?;
@@ -115,7 +115,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         None => Vector3::zeros(),
     };
     let (focus, base_frequency, harmonics, speed_share) = match args.variant {
-        // A tenth of the speed: hardly any inertia, and friction that keeps its sense.
+        // A tenth of the speed: little inertia, and friction of constant sign.
         Variant::Gravity => {
             (Focus::Gravity, 0.1 * args.base_frequency, harmonics, 0.1 * args.speed_share)
         }
@@ -135,7 +135,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     })
 }
 
-/// The floor that a robot stands on, which it does not reach below; none of one that hangs or leans.
+/// The floor as an obstacle; `None` for a hanging or inclined robot.
 pub(super) fn floor(model: &Model) -> Option<Obstacle> {
     let base = &model.kinematics.base;
     let distance = -base.translation.z;

@@ -1,4 +1,4 @@
-//! `joulepath generate`: points or a trajectory in CSV become RAPID.
+//! `joulepath generate`: RAPID from points or a trajectory in CSV.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ enum FormArg {
 /// Runs the command.
 ///
 /// # Errors
-/// Unusable input, a motion that the robot can't do, or output that can't be written.
+/// Unusable input, a motion that the robot cannot do, or output that cannot be written.
 pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let [path] = args.program.cell.paths.as_slice() else { bail!("give one CSV file") };
     let bytes = std::fs::read(path)

@@ -100,7 +100,7 @@ enum Method {
     Ordinary,
 }
 
-/// A day that the calendar has.
+/// A valid calendar date.
 fn date(text: &str) -> Result<String, String> {
     let wrong = || "give a day as 2026-11-30".to_owned();
     let parts: Vec<&str> = text.split('-').collect();
@@ -124,7 +124,7 @@ fn date(text: &str) -> Result<String, String> {
 /// Runs the command.
 ///
 /// # Errors
-/// A log or a robot that can't be used, or output that can't be written.
+/// A log or a robot that cannot be used, or output that cannot be written.
 pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
@@ -177,16 +177,15 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     write(args, &found, &basis)
 }
 
-/// The data of an identification.
 struct Data {
-    /// All logs of the fit as one.
+    /// The concatenated logs of the fit.
     samples: Samples,
     validation: Vec<Samples>,
-    /// Ratio of the logged torques to the weight of the robot file's masses, where it is implausible.
+    /// Ratio of the logged torques to the weight of the robot file's masses, if implausible.
     weight: Option<f64>,
 }
 
-/// Reads the logs; what a reader has to know of them goes into `basis`.
+/// Reads the logs and adds notes for the reader to `basis`.
 fn read_data(
     args: &IdentifyArgs,
     model: &Model,
@@ -199,7 +198,7 @@ fn read_data(
     for read in read_all(&args.log, map, model)? {
         training.push(reader.ready(read, hints)?);
     }
-    // One filter for all: what is compared has to have the same band.
+    // One filter for all logs: compared data need the same bandwidth.
     let cutoff = training.iter().find_map(|ready| match ready.samples.source {
         Source::Filtered { cutoff } => Some(cutoff),
         _ => None,
@@ -288,12 +287,12 @@ fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
     basis.notes.push(text);
 }
 
-/// Largest relative residual of a good model.
+/// Maximum relative residual of a good model.
 const MISSED: f64 = 0.35;
 /// Relative residual that counts as zero.
 const NOTHING: f64 = 1e-3;
 
-/// Largest plausible mass of a link \[kg\].
+/// Maximum plausible mass of a link \[kg\].
 const HEAVIEST: f64 = 1500.0;
 
 /// Warnings on the quality of the result.
@@ -348,7 +347,7 @@ fn doubts(found: &Identified) -> Vec<String> {
     texts
 }
 
-/// Logs that were given twice.
+/// Notes on logs that were given twice.
 fn repeated(training: &[LogRecord], validation: &[LogRecord]) -> Vec<String> {
     let first = |logs: &[LogRecord], log: &LogRecord| {
         logs.iter().find(|known| known.hash == log.hash).map(|known| known.path.clone())
@@ -371,10 +370,10 @@ fn repeated(training: &[LogRecord], validation: &[LogRecord]) -> Vec<String> {
     texts
 }
 
-/// Repetitions that a log can hold \[s\].
+/// Permitted durations of a repetition \[s\].
 const PERIODS: RangeInclusive<f64> = 1e-3..=1e5;
 
-/// The instants of several logs as one.
+/// Concatenates the samples of several logs.
 fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
     let mut all = logs.into_iter();
     let Some(first) = all.next() else { bail!("--log: give a log") };
@@ -410,7 +409,7 @@ fn write(
     let path = args.out.as_ref().map_or_else(String::new, |path| path.display().to_string());
     if let Some(path) = &args.out {
         let text = report::toml(found, basis);
-        // What is written has to be a robot file.
+        // The output must be a valid robot file.
         effects::from_toml(&path.display().to_string(), &text)
             .context("the identified numbers are no robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;

@@ -1,8 +1,8 @@
-//! Finding and reading the RAPID files that the command line names.
+//! Finds and reads the RAPID files that the command line names.
 //!
-//! A file that is named is read whatever it is called; a folder is walked for
-//! RAPID files; a `.pgf` stands for the modules it lists. Of a controller
-//! backup every file is read, and each knows its task.
+//! A named file is read whatever its extension; a folder is searched for RAPID files; a `.pgf`
+//! represents the modules that it lists. All modules of a controller backup are read, each with its
+//! task.
 
 mod search;
 
@@ -21,13 +21,13 @@ use crate::rapid::text::{FileId, SourceFile};
 /// A file that was read.
 #[derive(Clone, Debug)]
 pub struct InputFile {
-    /// Its bytes; its path is the one given, joined with `/`.
+    /// Its bytes; its path is the given one, joined with `/`.
     pub source: SourceFile,
-    /// Its path below the input, with `/`: where it goes below `--out`.
+    /// Its path relative to the input, with `/`; also its path below `--out`.
     pub relative: String,
-    /// Its place in a controller backup, if it is one of a task's modules.
+    /// Its place in a controller backup, if it is a module of a task.
     pub place: Option<Place>,
-    /// Whether the command line names it, or a program file that lists it.
+    /// Whether the command line names it, directly or by a program file.
     pub named: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct Place {
 pub struct Listing {
     /// Its path, joined with `/`.
     pub path: String,
-    /// Its path below the input, with `/`.
+    /// Its path relative to the input, with `/`.
     pub relative: String,
     /// Its bytes.
     pub bytes: Vec<u8>,
@@ -58,33 +58,32 @@ pub struct Listing {
 pub struct Information {
     /// Its path, joined with `/`.
     pub path: String,
-    /// Its path below the backup, with `/`.
+    /// Its path relative to the backup, with `/`.
     pub relative: String,
     /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
-/// What the command line names, sorted by path within each of its arguments.
+/// The input of the command line, sorted by path within each argument.
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     /// The files; their ids count from 0 in this order.
     pub files: Vec<InputFile>,
-    /// The program files that stand for some of them.
+    /// The program files that list some of them.
     pub listings: Vec<Listing>,
-    /// What could not be read beside them.
+    /// Files and folders that could not be read.
     pub unreadable: Vec<Unreadable>,
-    /// The controller backups that the files are of, with their folders.
+    /// The controller backups of the files, with their folders.
     pub backups: Vec<(PathBuf, Backup)>,
-    /// What lists the modules of these backups.
+    /// The module lists of these backups.
     pub information: Vec<Information>,
 }
 
-/// Reads what `paths` name. A file named twice is read once.
+/// Reads the files of `paths`. A file named twice is read once.
 ///
 /// # Errors
-/// When nothing can be read; the error is about the first path then. Otherwise
-/// what cannot be read is listed in [`Input::unreadable`]. A `.pgf` that lists files outside of
-/// its folder.
+/// Nothing can be read (the error concerns the first path), or a `.pgf` lists files outside its
+/// folder. If some files can be read, the others are listed in [`Input::unreadable`].
 pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     let mut first_error = None;
     let mut input = Input::default();
@@ -143,7 +142,7 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     }
 }
 
-/// The place of a file in one of the backups, which is read with its first file.
+/// The place of a file in a backup; the first file of a backup also reads the backup.
 fn place(path: &Path, input: &mut Input) -> Option<Place> {
     let (root, folder) = backup::place(&fs::canonicalize(path).ok()?)?;
     let known = input.backups.iter().position(|(known, _)| *known == root);
@@ -227,7 +226,7 @@ mod tests {
         ] {
             let list = format!("<Program>\n<Module>m.mod</Module>\n<Module>{name}</Module>\n");
             let folder = folder(&[("p/cell.pgf", &list), ("p/m.mod", ""), ("x.mod", "")]);
-            // Named or found, beside what can be read or not.
+            // Named directly or found in a folder, next to a readable file.
             for path in ["p/cell.pgf", "p"].map(|path| folder.path().join(path)) {
                 let error = read(&[folder.path().join("x.mod"), path]).unwrap_err().to_string();
                 assert!(error.contains(&format!("cell.pgf:3: '{name}'")), "{error}");
@@ -267,7 +266,7 @@ mod tests {
         let gone = folder.path().join("gone.mod");
         let error = read(std::slice::from_ref(&gone)).unwrap_err().to_string();
         assert!(error.contains("gone.mod"), "{error}");
-        // Beside something that can be read it is only listed.
+        // With readable input, it is only listed.
         let input = read(&[gone, folder.path().join("note.txt")]).unwrap();
         assert_eq!((input.files.len(), input.unreadable.len()), (1, 1));
     }

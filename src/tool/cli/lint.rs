@@ -127,7 +127,7 @@ pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     over_limit(&setup, &report)
 }
 
-/// Applies fixes; what is left to find.
+/// Applies fixes and reports the remaining findings.
 fn fix(args: &LintArgs, programs: &mut Programs) -> anyhow::Result<Report> {
     if programs.model.is_none() {
         note(args.cell.quiet, "without a robot no fix can be tried: only comments are fixed");
@@ -157,7 +157,7 @@ fn fix(args: &LintArgs, programs: &mut Programs) -> anyhow::Result<Report> {
     Ok(report)
 }
 
-/// What is read before anything is linted.
+/// The input of a lint run.
 pub(super) struct Setup {
     pub(super) programs: Programs,
     baseline: Option<PathBuf>,
@@ -219,7 +219,7 @@ fn settings(args: &LintArgs, config: &Config) -> anyhow::Result<Settings> {
     Ok(settings)
 }
 
-/// The robot, if one is named; a backup's own robot only if it is known.
+/// The robot, if named; the robot of a backup only if it is in the catalogue.
 fn robot(
     args: &CellArgs,
     config: &Config,
@@ -240,7 +240,7 @@ fn robot(
     Ok(Some(model))
 }
 
-/// Which files belong together: those of one task with what all tasks share, and the rest.
+/// Groups of files: those of one task with the shared ones, and the rest.
 fn groups(
     args: &LintArgs,
     config: &Config,
@@ -284,7 +284,7 @@ fn groups(
     groups
 }
 
-/// What a backup says of its controller; its `EIO.cfg` becomes one of the files.
+/// The controller description of a backup; its `EIO.cfg` is added to the files.
 fn system(root: &Path, files: &mut Vec<SourceFile>) -> System {
     let motion = backup::motion_configuration(root).and_then(|path| fs::read(path).ok());
     let motion = motion.map(|bytes| crate::rapid::text::decode(&bytes).text);
@@ -302,7 +302,7 @@ fn system(root: &Path, files: &mut Vec<SourceFile>) -> System {
     System { io, motion }
 }
 
-/// What may be wasted.
+/// The maximum waste.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Limit {
     /// J.
@@ -343,7 +343,7 @@ fn over_limit(setup: &Setup, report: &Report) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(over)))
 }
 
-/// Drops the findings of a baseline.
+/// Removes the findings of a baseline.
 fn drop_known(report: &mut Report, files: &[SourceFile], path: &Path) -> anyhow::Result<()> {
     let shown = path.display();
     let text = fs::read_to_string(path).with_context(|| {

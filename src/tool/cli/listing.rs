@@ -1,4 +1,4 @@
-//! The `.pgf` of a program: new modules have to be listed in it.
+//! The `.pgf` of a program: the controller loads only the modules that it lists.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 const BEGIN: &[u8] = b"<Module>";
 const END: &[u8] = b"</Module>";
 
-/// Adds the program files to the outputs, with the new modules in those that list their neighbours.
+/// Adds the program files to the outputs, with the new modules next to those of their folder.
 pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
     let new: Vec<String> = result
         .outputs
@@ -27,7 +27,7 @@ pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
             bytes: listing.bytes.clone(),
             input: None,
         };
-        // Each is listed behind the same neighbour, the last one first.
+        // Each is inserted after the same module, so in reverse order.
         for new in new.iter().rev() {
             let Some(neighbour) = neighbour(listing, input, new) else { continue };
             if let Some(bytes) = extended(&output.bytes, neighbour, new) {
@@ -50,7 +50,7 @@ fn folder(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-/// The number of the last listed module that lies in the folder of the new one.
+/// The number of the last listed module in the folder of the new one.
 fn neighbour(listing: &Listing, input: &Input, new: &str) -> Option<usize> {
     listing.modules.iter().rposition(|path| {
         let file = input.files.iter().find(|file| file.source.path == *path);
@@ -58,13 +58,12 @@ fn neighbour(listing: &Listing, input: &Input, new: &str) -> Option<usize> {
     })
 }
 
-/// A list of modules with one more behind its neighbour, written as that is. Every other byte
-/// stays.
+/// A module list with one more module after `neighbour`, in the same form. All other bytes stay.
 fn extended(bytes: &[u8], neighbour: usize, new: &str) -> Option<Vec<u8>> {
     let mut after = 0;
     let (mut begin, mut listed): (usize, &[u8]) = (0, &[]);
     for _ in 0..=neighbour {
-        // An entry without a name is none.
+        // Skips entries without a name.
         listed = &[];
         while listed.trim_ascii().is_empty() {
             begin = after + find(&bytes[after..], BEGIN)?;
@@ -74,7 +73,7 @@ fn extended(bytes: &[u8], neighbour: usize, new: &str) -> Option<Vec<u8>> {
         }
     }
     let name = new.rsplit('/').next().unwrap_or(new);
-    // Its folder as the program file writes it.
+    // The folder in the spelling of the program file.
     let folder = listed.iter().rposition(|b| matches!(b, b'/' | b'\\')).map_or(0, |i| i + 1);
     let line = bytes[..begin].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
     let indent = &bytes[line..begin];
@@ -90,7 +89,7 @@ fn extended(bytes: &[u8], neighbour: usize, new: &str) -> Option<Vec<u8>> {
     Some([&bytes[..after], &entry, &bytes[after..]].concat())
 }
 
-/// A list of modules without those of these file names, each with the line that it is alone in.
+/// A module list without the modules of these file names; emptied lines are removed.
 pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
     let mut out = bytes.to_vec();
     let mut from = 0;

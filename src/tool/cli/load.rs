@@ -1,27 +1,27 @@
-//! The load at the flange, as an option gives it.
+//! Parses the load at the flange from an option.
 
 use anyhow::{Context, bail};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::arm::dynamics::Load;
 
-/// What an option may say of a load.
+/// Valid forms of a load.
 const HELP: &str = "give the mass, such as 5; mass and centre of mass in tool0, kg and mm, \
                         such as 5,0,0,120; or a loaddata of RAPID, such as \
                         [5,[0,0,120],[1,0,0,0],0.01,0.01,0.02]";
 
-/// The load of the option `--load`; none where it is not given.
+/// The load of the option `--load`; no load by default.
 ///
 /// # Errors
-/// As of [`parse`].
+/// See [`parse`].
 pub fn from_option(text: Option<&str>) -> anyhow::Result<Load> {
     text.map_or_else(|| Ok(Load::none()), |text| parse("--load", text))
 }
 
-/// A load of numbers as RAPID writes them: kg, mm, kg m².
+/// Parses a load in RAPID units: kg, mm, kg m².
 ///
 /// # Errors
-/// Not 1, 4 or 11 numbers, or ones that no body has.
+/// There are not 1, 4 or 11 numbers, or they are physically impossible.
 pub fn parse(option: &str, text: &str) -> anyhow::Result<Load> {
     let wrong = || format!("{option} {text}: {HELP}");
     let plain: String = text.chars().filter(|c| !"[] ".contains(*c)).collect();
@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(parse("--load", "5").unwrap().mass, 5.0);
         let short = parse("--load", "5,0,0,120").unwrap();
         assert_eq!(short.com, Vector3::new(0.0, 0.0, 0.12));
-        // Turned by a quarter about z: x and y change places.
+        // Rotated by 90° about z: x and y swap.
         let full = "[5,[0,0,120],[0.70710678,0,0,0.70710678],0.01,0.02,0.03]";
         let full = parse("--load", full).unwrap();
         assert!((full.inertia.diagonal() - Vector3::new(0.02, 0.01, 0.03)).norm() < 1e-9);

@@ -1,4 +1,4 @@
-//! Measured logs as `identify` and `diagnose` take them.
+//! Reads and prepares measured logs for `identify` and `diagnose`.
 
 use std::fs::File;
 use std::io;
@@ -18,7 +18,7 @@ use crate::tool::report::identify::LogRecord;
 
 /// Share of a single log that is held out.
 const HELD_OUT: f64 = 0.3;
-/// Most repetitions of which none is held out as a whole.
+/// With at most this many repetitions, none is held out as a whole.
 const LEAST_CYCLES: usize = 3;
 
 /// A log that was read.
@@ -29,21 +29,21 @@ pub struct Read {
     pub hash: String,
     /// The log.
     pub log: Log,
-    /// How well its halves were brought together, where it has two.
+    /// Quality of the synchronisation of its two halves, if it has two.
     clocks: Option<String>,
 }
 
-/// A log ready to be used.
+/// A log prepared for use.
 pub struct Ready {
-    /// What was read.
+    /// The record of its origin.
     pub record: LogRecord,
-    /// The instants.
+    /// The samples.
     pub samples: Samples,
-    /// Where the torques come from.
+    /// Origin of the torques.
     pub origin: String,
-    /// The usable rows.
+    /// The valid rows.
     pub log: Log,
-    /// Ratio of the logged torques to the weight of the robot file's masses, where it is implausible.
+    /// Ratio of the logged torques to the weight of the robot file's masses, if implausible.
     pub weight: Option<f64>,
 }
 
@@ -51,7 +51,7 @@ pub struct Ready {
 pub struct Reader<'a> {
     /// The robot.
     pub model: &'a Model,
-    /// No notes on standard error.
+    /// Whether to suppress notes on standard error.
     pub quiet: bool,
     /// Notes on the logs, for the result.
     pub notes: Vec<String>,
@@ -66,10 +66,10 @@ impl Reader<'_> {
         self.notes.push(text);
     }
 
-    /// Checks a log and makes instants of it.
+    /// Checks a log and extracts its samples.
     ///
     /// # Errors
-    /// It is not of this robot, or of no use.
+    /// It does not match this robot, or is unusable.
     pub fn ready(&mut self, read: Read, hints: Hints) -> anyhow::Result<Ready> {
         let model = self.model;
         let Read { shown, hash, log, clocks } = read;
@@ -134,7 +134,8 @@ impl Reader<'_> {
     }
 }
 
-/// A log without its last part, which is held out: the last of its repetitions, or of the whole.
+/// Splits a log into training and held-out part: the last repetitions, or the last part of the
+/// whole.
 ///
 /// # Errors
 /// A part is too short.
@@ -164,10 +165,10 @@ pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
     Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
 }
 
-/// Reads logs; halves of one run become one.
+/// Reads logs and merges the halves of one run.
 ///
 /// # Errors
-/// A log can't be read.
+/// A log cannot be read.
 pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Result<Vec<Read>> {
     let mut logs: Vec<Read> = Vec::new();
     for path in paths {
@@ -207,7 +208,7 @@ fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
     Ok(Read { shown, hash, log, clocks: None })
 }
 
-/// A stream whose bytes are hashed as they are read.
+/// A stream that hashes its bytes while they are read.
 struct Hashed {
     stream: File,
     hash: Sha256,
@@ -221,7 +222,7 @@ impl io::Read for Hashed {
     }
 }
 
-/// What torques mean that do not fit the weight of the robot file's masses.
+/// Explains torques that do not match the weight of the robot file's masses.
 fn of_weight(factor: f64, joint: usize) -> String {
     let times = |times: f64| if times < 10.0 { times } else { times.round() };
     if factor < 1.0 {
@@ -241,7 +242,7 @@ fn of_weight(factor: f64, joint: usize) -> String {
     }
 }
 
-/// A note where the given period is not that of the motion.
+/// A note if the given period does not match the motion.
 fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
     let given = period?;
     match source {
@@ -258,15 +259,15 @@ fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
     }
 }
 
-/// Share by which a period may differ from the one that was given.
+/// Maximum relative difference between given and found period.
 const OTHER_PERIOD: f64 = 0.01;
 
-/// Rows left out for one reason that are listed one by one.
+/// Maximum number of rejected rows per reason that are listed individually.
 const TOLD: usize = 3;
 
-/// The rows left out; of many for one reason the first ones and the number of the others.
+/// The rejected rows; for frequent reasons the first ones and the number of others.
 fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
-    // Numbers differ from row to row, the words tell the kind.
+    // Reasons that differ only in numbers are of one kind.
     let kind = |reason: &str| -> String {
         let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
         reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
@@ -295,7 +296,7 @@ fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
     texts
 }
 
-/// Rates and accelerations that are logged, but not of all joints.
+/// A note on logged rates and accelerations that do not cover all joints.
 fn unused(log: &Log) -> Option<String> {
     let part = |name: &str, channel: fn(usize) -> Channel| {
         let has = |joint: &usize| log.column(channel(*joint)).is_some();

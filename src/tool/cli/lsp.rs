@@ -31,7 +31,7 @@ pub struct LspArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// The other side does not speak the protocol.
+/// The client does not speak the protocol.
 pub fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
     let LspArgs { robot, entry, inputs } = args;
     let defaults = Options { robot: robot.clone(), entry: entry.clone(), inputs: inputs.clone() };
@@ -39,8 +39,8 @@ pub fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The programs of a folder; none where it cannot be read or the robot is not known, so that the
-/// open documents stand alone.
+/// The programs of a folder; none if it cannot be read or the robot is unknown, so that only open
+/// documents are linted.
 fn programs(options: &Options, folder: &Path) -> Programs {
     let cell = CellArgs {
         paths: folder.is_dir().then(|| folder.to_path_buf()).into_iter().collect(),

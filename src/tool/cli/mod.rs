@@ -68,7 +68,7 @@ enum Command {
     Lsp(lsp::LspArgs),
 }
 
-/// Runs the command that the arguments ask for.
+/// Runs the command of the arguments.
 #[must_use]
 pub fn command_line() -> ExitCode {
     let result = match Cli::parse().command {
@@ -100,7 +100,7 @@ pub fn command_line() -> ExitCode {
     })
 }
 
-/// Whether a command ended because nobody reads on, as behind `| head`.
+/// Whether the reader of standard output has closed it, as `| head` does.
 fn is_closed(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         let kind = match cause.downcast_ref::<std::io::Error>() {

@@ -1,4 +1,4 @@
-//! `joulepath optimize`: the main job.
+//! `joulepath optimize`: retrofits a program.
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -184,23 +184,23 @@ enum EnergyArg {
     Torque,
 }
 
-/// Least spacing that a controller may be asked for, s.
+/// Minimum spacing, s.
 const LEAST_SPACING_S: f64 = 0.004;
-/// Largest sensible spacing, s.
+/// Maximum spacing, s.
 const LARGEST_SPACING_S: f64 = 1.0;
 
-/// How far a free movement may leave its path where nothing is said, mm.
+/// Default deviation of a free movement from its path, mm.
 const DEVIATION_MM: f64 = 50.0;
-/// Beyond this a path says nothing any more, mm.
+/// Maximum deviation, mm.
 const LARGEST_DEVIATION_MM: f64 = 1000.0;
 
-/// Beyond this a pose is not nearby, degrees.
+/// Maximum joint displacement to a waiting pose, degrees.
 const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
 
 /// Runs the command.
 ///
 /// # Errors
-/// Unusable input, or output that can't be written.
+/// Unusable input, or output that cannot be written.
 pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         return take_back(args);
@@ -208,10 +208,10 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     work(args, &common::prepare(&args.program)?)
 }
 
-/// The same for a program that has streams already, which are made anew.
+/// Optimises a program that already has streams and replaces these.
 ///
 /// # Errors
-/// The program has none, and all that [`run`] refuses.
+/// The program has no streams, or an error of [`run`].
 pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         bail!("refresh takes nothing back: joulepath optimize --undo does");
@@ -224,7 +224,7 @@ pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 
 fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
-    // A folder of one task has no list of the controller's modules to be written with it.
+    // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();
     let backup = whole_backup(paths, job);
     if let (Some(folder), None) = (&args.out, backup) {
@@ -359,7 +359,6 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     })
 }
 
-/// A part of the cell.
 fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
     match part {
         KeepOut::Box([one, other]) => {
@@ -382,12 +381,12 @@ fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
     }
 }
 
-/// What bounds a speed that a flag sets free.
+/// The bound of a speed that a flag may free.
 fn bound(is_free: bool) -> Bound {
     if is_free { Bound::Robot } else { Bound::Original }
 }
 
-/// How far free movements may leave their path, m.
+/// Maximum deviation of free movements from their path, m.
 fn deviation(asked: Option<f64>) -> anyhow::Result<f64> {
     let mm = asked.unwrap_or(DEVIATION_MM);
     if !(mm > 0.0 && mm <= LARGEST_DEVIATION_MM) {
@@ -396,7 +395,7 @@ fn deviation(asked: Option<f64>) -> anyhow::Result<f64> {
     Ok(mm * 1e-3)
 }
 
-/// How far a joint may go to where waiting takes less, rad.
+/// Maximum joint displacement to a waiting pose, rad.
 fn dwell_pose(degrees: f64) -> anyhow::Result<f64> {
     if !(degrees > 0.0 && degrees <= LARGEST_DWELL_POSE_DEG) {
         bail!(
@@ -406,10 +405,10 @@ fn dwell_pose(degrees: f64) -> anyhow::Result<f64> {
     Ok(degrees.to_radians())
 }
 
-/// Least time between two points of a stream, s.
+/// Minimum time between two points of a stream, s.
 ///
 /// # Errors
-/// A time that no controller or user can mean.
+/// The time is outside the permitted range.
 pub fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
     let spacing_s = asked.unwrap_or(SPACING_S);
     if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
@@ -429,7 +428,7 @@ fn progress(quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Takes back what an earlier run changed in place.
+/// Undoes the changes of an earlier run in place.
 fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let cell = &args.program.cell;
     let mut done = Vec::new();

@@ -1,30 +1,30 @@
-//! Writing files: into a temporary file first, then renamed.
+//! Writes files atomically: to a temporary file that is then renamed.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-/// A file that is written but not at its place yet.
+/// A written file that is not yet at its final path.
 pub struct Staged {
     file: tempfile::NamedTempFile,
     path: PathBuf,
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file completely or not at all.
 ///
 /// # Errors
-/// The folder can't be made or written.
+/// The folder cannot be created or written.
 pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     stage(path, bytes)?.put()
 }
 
-/// Writes a file beside its place.
+/// Writes a temporary file next to the final path.
 ///
 /// # Errors
-/// As [`write()`], and where a file that is read-only stands at its place.
+/// As [`write()`]; also if a read-only file exists at the path.
 pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
-    // A link stays a link: the file that it leads to is written.
+    // A link stays a link: its target is written.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     if std::fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly()) {
         anyhow::bail!("'{}' is read-only; make it writable to have it changed", path.display());
@@ -42,7 +42,7 @@ pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
     std::fs::create_dir_all(folder).with_context(closed)?;
     let mut file = tempfile::NamedTempFile::new_in(folder).with_context(closed)?;
     file.write_all(bytes).with_context(|| failed(path))?;
-    // A temporary file is private; a program's file is not.
+    // Temporary files are private, so the permissions are reset.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -54,10 +54,10 @@ pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
 }
 
 impl Staged {
-    /// Puts the file at its place, over one that is there.
+    /// Moves the file to its path and replaces an existing one.
     ///
     /// # Errors
-    /// The place can't be written.
+    /// The path cannot be written.
     pub fn put(self) -> anyhow::Result<()> {
         let path = self.path;
         self.file.persist(&path).map_err(|error| error.error).with_context(|| failed(&path))?;
@@ -65,8 +65,8 @@ impl Staged {
     }
 }
 
-/// Writes files into a folder: into a new one all at once, into an existing one each whole, in
-/// their order, and none before all could be written. Their paths start in the folder.
+/// Writes files into a folder, with paths relative to it. A new folder appears all at once; in an
+/// existing one, no file is replaced before all are written.
 ///
 /// # Errors
 /// As [`write()`].
@@ -92,7 +92,7 @@ pub fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result
         std::fs::set_permissions(whole.path(), permissions).with_context(|| failed(folder))?;
     }
     std::fs::rename(whole.path(), folder).with_context(|| failed(folder))?;
-    // The temporary folder was renamed: there is nothing to remove.
+    // The temporary folder was renamed, so nothing is to be removed.
     let _ = whole.keep();
     Ok(())
 }

@@ -44,10 +44,10 @@ pub enum ParseFormat {
     Json,
 }
 
-/// Runs the command: standard output gets the result, standard error notes.
+/// Runs the command: the result goes to standard output, notes to standard error.
 ///
 /// # Errors
-/// When nothing can be read, or the output cannot be written.
+/// Nothing can be read, or the output cannot be written.
 pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
     let input = input::read(&args.paths)?;
     let mut notes = std::io::stderr().lock();
@@ -56,7 +56,7 @@ pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
     }
     let ansi = args.format == ParseFormat::Text && std::io::stdout().is_terminal();
     let paint = if ansi { Paint::Ansi } else { Paint::Plain };
-    // A tree is dropped with its file, so that a large folder needs no more than its largest files.
+    // Each tree is dropped with its file, so that memory holds only the largest files.
     let (files, texts): (Vec<FileReport>, Vec<String>) = input
         .files
         .par_iter()
@@ -111,7 +111,7 @@ struct Report<'a> {
     trees: Option<Vec<String>>,
 }
 
-/// A controller backup that files are of.
+/// The controller backup of some files.
 #[derive(Serialize)]
 struct BackupReport<'a> {
     path: String,
@@ -122,7 +122,7 @@ struct BackupReport<'a> {
 #[derive(Serialize)]
 struct FileReport {
     path: String,
-    /// Name of the task, of a backup's module.
+    /// Name of the task of a backup's module.
     #[serde(skip_serializing_if = "Option::is_none")]
     task: Option<String>,
     bytes: usize,
@@ -205,7 +205,7 @@ fn is_of_move_family_call(node: syntax::Node<'_>, source: &SourceFile) -> bool {
         .is_some_and(|name| is_of_move_family(&String::from_utf8_lossy(name.text(&source.bytes))))
 }
 
-/// Whether the tokens of the tree, joined, are the file.
+/// Whether the joined tokens of the tree equal the file.
 fn is_lossless(parse: &Parse, bytes: &[u8]) -> bool {
     let mut at = 0;
     for token in parse.tree.root().all_tokens() {
@@ -232,7 +232,7 @@ fn tree(file: &InputFile, parse: &Parse) -> String {
     syntax::dump(&parse.tree, &file.source.bytes).to_string()
 }
 
-/// The errors of a file with their source, an empty line after each.
+/// The errors of a file with their source, separated by empty lines.
 fn errors(file: &InputFile, parse: &Parse, paint: Paint) -> String {
     let shown = parse.errors.iter().map(|error| {
         let diagnostic = diagnostic(error, file.source.id);

@@ -20,10 +20,10 @@ use crate::learn::log::{self, ColumnMap, MIN_ROWS, Motion};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::retime::energy::power::{power_at, supply_w};
 
-/// Marks of texts as spreadsheets export them.
+/// Byte order marks of spreadsheet exports.
 const UTF_16: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 
-/// Why a row has no prediction.
+/// The reason for a row without prediction.
 const BEYOND: &str = "its motion is so large that torque or power is not finite";
 
 /// Torques and powers that a model predicts for a logged motion, as CSV.
@@ -61,7 +61,7 @@ pub struct PredictArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// A model without dynamics, a log that can't be used, or output that can't be written.
+/// A model without dynamics, a log that cannot be used, or output that cannot be written.
 pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     let model = if model.has_dynamics() { model } else { effects::load_estimated(&args.robot)? };
@@ -130,14 +130,14 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The torques with the model's laws and effects of the whole motion; `None` where it has none.
+/// The torques with the model's laws and effects of the whole motion; `None` if it has none.
 fn torques_with_effects(model: &Model, load: &Load, motion: &Motion) -> Option<Vec<Vec<f64>>> {
     if model.laws.is_empty() && model.effects.is_empty() {
         return None;
     }
     let series = [motion.q.clone(), motion.qd.clone(), motion.qdd.clone()];
-    // Laws count the time from the beginning of the log, but a robot that warms up does so by the
-    // clock of all logs, as in `gap::predicted`.
+    // Laws use the time since the start of the log; a warm-up uses the absolute time of all logs,
+    // as in `gap::predicted`.
     let warms = model.effects.iter().any(|of| of.id == "warm_up");
     let start = if warms { 0.0 } else { motion.time.first().copied().unwrap_or(0.0) };
     let time = motion.time.iter().map(|t| t - start).collect();
@@ -149,8 +149,8 @@ fn torques_with_effects(model: &Model, load: &Load, motion: &Motion) -> Option<V
     Some(shown)
 }
 
-/// `t,tau1..taun,p_mech,p_elec`, numbers in shortest round-trip form. Torques are as a log
-/// would have them, powers those of the robot. Also the rows in which they are not finite.
+/// CSV rows `t,tau1..taun,p_mech,p_elec` in shortest round-trip form, and the rows with values that
+/// are not finite. Torques are as logged, powers those of the robot.
 fn prediction(model: &Model, load: &Load, motion: &Motion) -> (String, Vec<u64>) {
     let n = model.dof;
     let mut csv = String::from("t");

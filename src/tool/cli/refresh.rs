@@ -1,4 +1,4 @@
-//! `joulepath refresh`: the streams of a retrofitted program, made anew from the data of today.
+//! `joulepath refresh`: plans the streams of a retrofitted program again from its current data.
 
 use std::process::ExitCode;
 
@@ -22,7 +22,7 @@ pub struct RefreshArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// The program has no streams, and all that `optimize` refuses.
+/// The program has no streams, or an error of `optimize`.
 pub fn run(args: &RefreshArgs) -> anyhow::Result<ExitCode> {
     optimize::refresh(&args.optimize)
 }

@@ -20,7 +20,7 @@ pub struct RuleArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// There is no such rule, or the output can't be written.
+/// The rule does not exist, or the output cannot be written.
 pub fn run(args: &RuleArgs) -> anyhow::Result<ExitCode> {
     let mut out = std::io::stdout().lock();
     let Some(code) = &args.code else {

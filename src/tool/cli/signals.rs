@@ -1,4 +1,4 @@
-//! Checks what the command line says of signals against the program.
+//! Checks the signals of the command line against the program.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::rapid::ir::program::Program;
 use crate::rapid::ir::signals::{Signal, signals};
 use crate::retime::motion::Simulation;
 
-/// Checks the names of `--assume` and `--input`, and all levels.
+/// Checks the signal names of `--assume` and `--input`, and the levels.
 ///
 /// # Errors
-/// A signal that the program does not name, or a level that it can't have.
+/// The program does not use a signal, or a level is invalid.
 pub fn check(
     args: &CellArgs,
     levels: &BTreeMap<String, f64>,
@@ -53,7 +53,7 @@ pub fn check(
     Ok(())
 }
 
-/// Notes on levels that the simulated cycle did not ask for.
+/// Notes on levels that the simulated cycle did not use.
 pub fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     for text in &args.levels {

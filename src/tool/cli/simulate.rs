@@ -1,4 +1,4 @@
-//! `joulepath simulate`: a program on the virtual controller.
+//! `joulepath simulate`: runs a program on the virtual controller.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,13 +36,13 @@ pub struct SimulateArgs {
     report: Option<PathBuf>,
 }
 
-/// Rows of a trajectory that fit into memory.
+/// Maximum number of trajectory rows in memory.
 const MAX_ROWS: f64 = 5e6;
 
 /// Runs the command.
 ///
 /// # Errors
-/// Unusable input, or output that can't be written.
+/// Unusable input, or output that cannot be written.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let job = common::prepare(&args.program)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;

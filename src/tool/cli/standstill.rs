@@ -1,4 +1,4 @@
-//! `joulepath standstill`: what standing still costs.
+//! `joulepath standstill`: the cost of standing still.
 
 use std::process::ExitCode;
 
@@ -45,7 +45,7 @@ pub struct StandstillArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// Unusable input, or a robot whose holding power is not known.
+/// Unusable input, or a robot with unknown holding power.
 pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
     if !(args.within.is_finite() && args.within >= 0.0) {
         bail!("--within {}: give a distance of 0 degrees or more", args.within);

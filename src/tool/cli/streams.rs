@@ -1,4 +1,4 @@
-//! The streams that a program has from an earlier retrofit.
+//! The streams of an earlier retrofit in a program.
 
 use std::path::PathBuf;
 
@@ -11,19 +11,19 @@ use crate::tool::retrofit::{
     BRAKE_NOTE, OutputKind, Retrofit, is_streams, prefix, without_streams,
 };
 
-/// What a retrofit added to a program.
+/// The additions of a retrofit to a program.
 #[derive(Clone, Debug, Default)]
 pub struct Streams {
     /// The modules of streams.
     pub modules: Vec<PathBuf>,
-    /// What somebody stated in them: the name of a datum, without its prefix, and its text.
+    /// Data that the user stated in them: name without prefix, and text.
     stated: Vec<(&'static str, Vec<u8>)>,
 }
 
-/// Data of a module of streams that are stated on the controller.
+/// Data of a module of streams that the user states on the controller.
 const STATED: [&str; 2] = ["RobotType", "SerialNo"];
 
-/// Takes the streams out of a program.
+/// Removes the streams from a program.
 ///
 /// # Errors
 /// The program has no streams.
@@ -37,7 +37,7 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
         names.extend(file.relative.rsplit('/').next().map(str::to_owned));
         prefixes.extend(prefix(bytes).filter(|prefix| !prefixes.contains(prefix)));
         for name in STATED {
-            // What joulepath itself states is in the head of the module, too.
+            // Text that joulepath itself stated is also in the header of the module.
             let text = datum(bytes, name).map(|at| bytes[at].to_vec());
             let text = text.filter(|text| !text.is_empty() && !in_head(bytes, text));
             streams.stated.extend(text.map(|text| (name, text)));
@@ -72,7 +72,7 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
 }
 
 impl Streams {
-    /// Writes into the new modules what somebody stated in those before.
+    /// Copies the data that the user stated into the new modules.
     pub fn restate(&self, result: &mut Retrofit) {
         for file in result.outputs.iter_mut().filter(|file| file.kind == OutputKind::New) {
             for (name, text) in &self.stated {
@@ -84,7 +84,7 @@ impl Streams {
     }
 }
 
-/// Where the text of a string datum stands: its name, behind the prefix, and its value in quotes.
+/// The range of the value of a string datum in a module text.
 fn datum(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
     let begin = format!("{name}:=\"").into_bytes();
     let start = bytes.windows(begin.len()).position(|window| window == begin)? + begin.len();
@@ -92,7 +92,7 @@ fn datum(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
     Some(start..start + length)
 }
 
-/// Whether the comment at the head of a module says a text.
+/// Whether the header comment of a module contains a text.
 fn in_head(bytes: &[u8], text: &[u8]) -> bool {
     let lines = bytes.split(|b| *b == b'\n').skip(1);
     let mut head = lines.take_while(|line| line.trim_ascii_start().starts_with(b"!"));

@@ -1,4 +1,4 @@
-//! `joulepath streamtest`: does this controller run streams as joulepath assumes?
+//! `joulepath streamtest`: tests whether a controller runs streams as joulepath assumes.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -20,9 +20,9 @@ use crate::learn::log::{self, Channel, ColumnMap};
 use crate::retime::motion::stream::Joints;
 use crate::tool::emit::{TestStream, stream_test};
 
-/// Interval of the rows of the predicted log \[s\].
+/// Row interval of the predicted log \[s\].
 const STEP: f64 = 0.004;
-/// Rest around each test of the predicted log \[s\].
+/// Standstill around each test in the predicted log \[s\].
 const REST: f64 = 0.2;
 
 /// Test how a controller runs streams: RAPID to run and log, and what the log says.
@@ -59,7 +59,7 @@ pub struct StreamtestArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// A robot without limits, a pose without room, an unusable log, output that can't be written.
+/// A robot without limits, a pose without room, an unusable log, or output that cannot be written.
 pub fn run(args: &StreamtestArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     common::require_six_joints(&model, "RAPID is written for robots with 6")?;

@@ -1,9 +1,9 @@
-//! What `optimize --in-place` changed, and how it is taken back.
+//! Records the changes of `optimize --in-place` and undoes them.
 //!
-//! Beside the folder of the program (of a backup: beside the backup, so that a restore does not
-//! read it) lies a folder with the original files at their relative paths and a manifest. The
-//! manifest names every changed and every new file with a checksum of what was written: a file
-//! that somebody has changed since is neither restored nor deleted.
+//! The undo folder lies next to the program's folder (of a backup: next to the backup, so that a
+//! restore does not read it). It contains the original files at their relative paths and a
+//! manifest. The manifest lists every changed and new file with a checksum of its written content:
+//! a file that was edited since is neither restored nor deleted.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -16,22 +16,21 @@ use sha2::{Digest, Sha256};
 
 use super::output;
 
-/// What is appended to the name of the program's folder.
+/// Suffix of the undo folder's name.
 const SUFFIX: &str = ".joulepath-undo";
-/// The manifest in it.
 const MANIFEST: &str = "manifest.json";
-/// The folder of the originals in it.
+/// The folder of the originals.
 const ORIGINALS: &str = "files";
-/// The form of the manifest.
+/// Format version of the manifest.
 const VERSION: u32 = 1;
 
-/// A file that is written in place.
+/// A file to write in place.
 pub struct Change<'a> {
-    /// Where.
+    /// Its path.
     pub path: PathBuf,
-    /// What it holds now; `None` where it is new.
+    /// The content that undo restores; `None` for a new file.
     pub before: Option<Vec<u8>>,
-    /// What is written.
+    /// Its new content.
     pub after: Cow<'a, [u8]>,
 }
 
@@ -39,16 +38,16 @@ pub struct Change<'a> {
 struct Manifest {
     version: u32,
     files: Vec<Entry>,
-    /// Folders that were made for new files, the outer ones first.
+    /// Folders created for new files, outer ones first.
     folders: Vec<String>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct Entry {
-    /// Below the folder of the program, with `/`.
+    /// Path relative to the program's folder, with `/`.
     path: String,
     change: Kind,
-    /// Checksum of what was written.
+    /// Checksum of the written content.
     sha256: String,
 }
 
@@ -59,17 +58,17 @@ enum Kind {
     Added,
 }
 
-/// The folder that allows to take changes back, before it is written.
+/// An undo folder that is not written yet.
 pub struct Plan<'a> {
     folder: PathBuf,
     files: Vec<(PathBuf, Cow<'a, [u8]>)>,
 }
 
-/// Plans how changes of files below `root` are taken back. Modules of streams that are made anew may
-/// exist already; the folder of an earlier retrofit is then replaced, since its data are outdated.
+/// Plans the undo of changes to files below `root`. When streams are replaced, their modules may
+/// already exist; the undo folder of the earlier retrofit is outdated and is replaced.
 ///
 /// # Errors
-/// The folder or a new file is there already, or a file lies outside of `root`.
+/// The undo folder or a new file already exists, or a file lies outside `root`.
 pub fn plan<'a>(
     root: &Path,
     changes: &'a [Change<'_>],
@@ -111,10 +110,10 @@ pub fn plan<'a>(
 }
 
 impl Plan<'_> {
-    /// Writes it; returns its folder. Nothing of the program is touched.
+    /// Writes the undo folder and returns its path; the program is not changed.
     ///
     /// # Errors
-    /// Nothing can be written.
+    /// It cannot be written.
     pub fn write(&self) -> anyhow::Result<PathBuf> {
         if self.folder.exists() {
             fs::remove_dir_all(&self.folder)
@@ -127,10 +126,10 @@ impl Plan<'_> {
     }
 }
 
-/// Takes the changes of the program at `path` back; returns what became of its files, in words.
+/// Undoes the changes of the program at `path`; returns a description per file.
 ///
 /// # Errors
-/// There is nothing to take back, or a file was changed since.
+/// There is nothing to undo, or a file was edited since.
 pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
     let absolute = real(path)?;
     let found = absolute.ancestors().find_map(|root| {
@@ -150,7 +149,7 @@ pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
         let path = folder.join(ORIGINALS).join(&entry.path);
         fs::read(&path).with_context(|| format!("cannot read the original '{}'", path.display()))
     };
-    // Nothing is touched before all can be.
+    // Checks all files before the first change.
     let (mut restored, mut deleted, mut done) = (Vec::new(), Vec::new(), Vec::new());
     for entry in &manifest.files {
         let path = root.join(&entry.path);
@@ -181,7 +180,7 @@ pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
         fs::remove_file(&path).with_context(|| format!("cannot delete '{}'", path.display()))?;
     }
     for made in manifest.folders.iter().rev() {
-        // Somebody may have put a file of their own into it.
+        // Not removed if it contains other files.
         let _ = fs::remove_dir(root.join(made));
     }
     fs::remove_dir_all(&folder).with_context(|| format!("cannot delete '{}'", folder.display()))?;
@@ -220,7 +219,7 @@ fn read(folder: &Path) -> anyhow::Result<Manifest> {
     Ok(manifest)
 }
 
-/// The folder beside the program's.
+/// The undo folder of a program's folder.
 fn beside(root: &Path) -> anyhow::Result<PathBuf> {
     let name = root.file_name().with_context(|| {
         format!("'{}' has no folder beside it: move the program into a folder", root.display())
@@ -230,11 +229,11 @@ fn beside(root: &Path) -> anyhow::Result<PathBuf> {
     Ok(root.with_file_name(name))
 }
 
-/// The path of a file below the folder of the program. The file may be a link.
+/// The path of a file relative to the program's folder. The file may be a link.
 fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
-    // A folder that is not there yet is made by that name.
+    // A missing folder is created under this name.
     let known = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
     let rest = folder.strip_prefix(known).unwrap_or(Path::new(""));
     let absolute = real(known)?.join(rest).join(path.file_name().unwrap_or_default());
@@ -248,7 +247,7 @@ fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
     Ok(relative.to_owned())
 }
 
-/// Adds the folders that a new file needs and that are not there.
+/// Adds the missing folders that a new file needs.
 fn made(root: &Path, path: &Path, folders: &mut Vec<String>) {
     let needed: Vec<&Path> = path.ancestors().skip(1).collect();
     for folder in needed.into_iter().rev() {

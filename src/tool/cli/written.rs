@@ -1,4 +1,4 @@
-//! Where a changed program goes: into a folder, or in place of the original.
+//! Writes a changed program into a folder or in place.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -11,14 +11,14 @@ use super::{output, undo};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
 
-/// The backup, if the command line names the whole of it.
+/// The backup, if the command line names all of it.
 pub(super) fn whole_backup<'j>(paths: &[PathBuf], job: &'j Job) -> Option<&'j Path> {
     let [path] = paths else { return None };
     let [(root, _)] = job.input.backups.as_slice() else { return None };
     (path.canonicalize().ok()? == *root).then_some(root.as_path())
 }
 
-/// The folder of the program: that of its backup, or the deepest one that holds all that is named.
+/// The folder of the program: its backup, or the deepest common folder of all named paths.
 fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
     let mut shared: Option<PathBuf> = job.input.backups.first().map(|(root, _)| root.clone());
     for path in paths {
@@ -34,7 +34,7 @@ fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
     shared.context("no file or folder given")
 }
 
-/// The files of a backup that are not among the outputs, with their paths below it.
+/// The files of a backup that are not outputs, with their relative paths.
 fn rest_of_backup(
     root: &Path,
     out: &Path,
@@ -66,14 +66,14 @@ fn rest_of_backup(
     Ok(rest)
 }
 
-/// Refuses a folder for the new program within one of those from which the program is read.
+/// Refuses an output folder inside an input folder.
 pub(super) fn outside(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
     let wanted = std::path::absolute(folder)?;
     let mut ancestors = wanted.ancestors();
     let real = ancestors.find_map(|path| path.canonicalize().ok());
     let around = |path: &&PathBuf| {
         let root = path.canonicalize().ok().filter(|root| root.is_dir());
-        // The folder itself is told with the file that would be overwritten.
+        // The input folder itself is refused later, with the file that would be overwritten.
         root.is_some_and(|root| {
             real.as_ref().is_some_and(|real| real.starts_with(&root))
                 && wanted.canonicalize().ok() != Some(root)
@@ -90,7 +90,7 @@ pub(super) fn outside(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The complete program below a folder, of a backup all of it.
+/// Writes the complete program into a folder; of a backup all files.
 pub(super) fn write_folder(
     folder: &Path,
     job: &Job,
@@ -128,14 +128,14 @@ pub(super) fn write_folder(
     Ok(written.map(|path| path.display().to_string()).collect())
 }
 
-/// New files before those that call them: a write that breaks off leaves a program that works.
+/// New files before the files that call them: an interrupted write leaves a working program.
 fn new_first(result: &Retrofit) -> impl Iterator<Item = &OutputFile> {
     let of =
         |new: bool| result.outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
     of(true).chain(of(false))
 }
 
-/// The changed files in place of the original ones, which are kept; new files beside.
+/// Replaces the changed files, keeps the originals for undo, and adds the new files.
 pub(super) fn write_in_place(
     paths: &[PathBuf],
     job: &Job,
@@ -146,9 +146,9 @@ pub(super) fn write_in_place(
         let (path, after) = (place(job, file), stored(job, file));
         let before = match original(job, file) {
             Some((path, bytes)) => {
-                // A file that can't be read can't be restored.
+                // An unreadable file could not be restored.
                 let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
-                // What has streams already is taken back to what it is without them.
+                // For a program with streams, undo restores the text without them.
                 let before =
                     if job.is_refreshed() { encoded(job, file, bytes) } else { (&now).into() };
                 if before == after && now == *after {
@@ -178,7 +178,7 @@ pub(super) fn write_in_place(
     Ok(paths.map(|path| path.display().to_string()).collect())
 }
 
-/// The bytes of an output in the encoding of the file that it stands for.
+/// The bytes of an output in the encoding of its original file.
 fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
     encoded(job, file, &file.bytes)
 }
@@ -190,7 +190,7 @@ fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
     }
 }
 
-/// What the user's file holds in place of an output, decoded as that is.
+/// The current content of the user's file for an output, decoded in the same way.
 pub(super) fn now(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
     if !job.is_refreshed() {
         return original(job, file).map(|(_, bytes)| bytes.to_vec());
@@ -200,7 +200,7 @@ pub(super) fn now(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
     Some(SourceFile::new(FileId(0), path.display().to_string(), bytes).bytes)
 }
 
-/// Path and bytes of the file of the input that an output stands for.
+/// Path and bytes of the input file of an output.
 fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
     match (file.kind, file.input) {
         (OutputKind::New, _) => None,
@@ -214,13 +214,14 @@ fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> 
     }
 }
 
-/// Where an output lies in the user's own tree.
+/// The path of an output in the user's own tree.
 fn place(job: &Job, file: &OutputFile) -> PathBuf {
     if let Some((path, _)) = original(job, file) {
         return PathBuf::from(path);
     }
     let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
-    // A new file lies beside one of the same folder, others where the relative paths start.
+    // A new file goes next to a file of its output folder, or else to the start of the relative
+    // paths.
     let beside = job.files.iter().find(|s| folder(&s.relative) == folder(&file.path));
     if let (Some(source), Some(name)) = (beside, Path::new(&file.path).file_name()) {
         return folder(&source.file.path).join(name);

@@ -1,4 +1,4 @@
-//! `joulepath.toml`: what a cell needs to be told once.
+//! `joulepath.toml`: the permanent settings of a cell.
 
 mod lint;
 
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-/// Name of the file that is looked for.
+/// Name of the configuration file.
 pub const FILE_NAME: &str = "joulepath.toml";
 
 /// The configuration. Unknown keys are errors.
@@ -20,17 +20,17 @@ pub struct Config {
     pub robot: Option<String>,
     /// The routine that starts the program.
     pub entry: Option<String>,
-    /// Time for the cycle, s.
+    /// Cycle time, s.
     pub takt_s: Option<f64>,
-    /// Least time between two points of a stream, s.
+    /// Minimum time between two points of a stream, s.
     pub spacing_s: Option<f64>,
-    /// Seconds after which an input comes.
+    /// Times of inputs, s.
     #[serde(default)]
     pub inputs: BTreeMap<String, f64>,
     /// Levels of inputs that the program asks for.
     #[serde(default)]
     pub assume: BTreeMap<String, f64>,
-    /// What arm and tool keep out of where a movement may leave its path.
+    /// Zones that arm and tool must avoid if a movement leaves its path.
     #[serde(default)]
     pub keep_out: Vec<KeepOut>,
     /// The linter.
@@ -38,20 +38,20 @@ pub struct Config {
     pub lint: Lint,
 }
 
-/// A part of the cell, in the robot's base frame, m.
+/// An obstacle in the robot's base frame, m.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "lowercase")]
 pub enum KeepOut {
-    /// A box along the axes of the base frame between two corners.
+    /// A box with edges parallel to the axes, given by two corners.
     Box([[f64; 3]; 2]),
-    /// What lies beyond a plane: n · x < d, as n and d.
+    /// The half-space n · x < d, given by n and d.
     Plane([f64; 4]),
 }
 
-/// A configuration that can't be used.
+/// An unusable configuration.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
-    /// It can't be read.
+    /// It cannot be read.
     #[error(
         "cannot read the configuration '{path}': {reason}; check the path, or leave --config out"
     )]
@@ -61,7 +61,7 @@ pub enum ConfigError {
         /// Why.
         reason: String,
     },
-    /// It is wrong.
+    /// Its content is wrong.
     #[error(
         "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs], [assume], \
          [[keep_out]] with box or plane, and [lint]"
@@ -69,7 +69,7 @@ pub enum ConfigError {
     Wrong {
         /// Its path.
         path: String,
-        /// From the parser, with line and column.
+        /// Message of the parser, with line and column.
         reason: String,
     },
 }
@@ -85,7 +85,7 @@ pub fn parse(path: &str, text: &str) -> Result<Config, ConfigError> {
     })
 }
 
-/// The folders in which a configuration may lie for a program, nearest first.
+/// The possible configuration files of a program, nearest first.
 pub fn candidates(program: &Path) -> Vec<PathBuf> {
     program.ancestors().map(|folder| folder.join(FILE_NAME)).collect()
 }

@@ -1,4 +1,4 @@
-//! The note on dwells in which the brake would pay.
+//! The note on dwells at which closing the brakes saves energy.
 
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -18,7 +18,7 @@ pub struct BrakeDwell {
     pub potential: String,
 }
 
-/// The note with an opt-in configuration fragment.
+/// The note with an optional configuration fragment.
 ///
 /// # Errors
 /// The template failed.

@@ -1,27 +1,26 @@
-//! An excitation as RAPID: a motion module, and a logger for a second task.
+//! The RAPID of an excitation trajectory: a motion module, and a logger for a second task.
 
 use serde::Serialize;
 use tera::{Context, Tera};
 
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 
-/// Names of everything that is declared begin with this.
+/// Prefix of all declared names.
 const PREFIX: &str = "jpExcite";
-/// The motion task, the mechanical unit and the mark, as a controller names them.
+/// Names of the motion task, the mechanical unit and the synchronisation signal on the controller.
 pub(super) const TASK: &str = "T_ROB1";
 const UNIT: &str = "ROB_1";
 const SIGNAL: &str = "doJpSync";
-/// Decimals of gear ratios.
 const RATIO_DECIMALS: usize = 5;
-/// Interval of the logger \[s\]: the fastest that test signals have.
+/// Interval of the logger \[s\]: the shortest of test signals.
 pub(super) const INTERVAL: f64 = 0.004;
-/// Rows of the logger at most: what a RAPID array takes from a task's memory.
+/// Maximum number of logger rows: limited by the size of a RAPID array in a task's memory.
 const MOST_ROWS: usize = 30_000;
 
-/// Points that are run through one after another.
+/// Points of one part of the motion, in their order.
 #[derive(Clone, Debug)]
 pub struct Points {
-    /// What they are.
+    /// Description for comments.
     pub what: &'static str,
     /// Suffix of their name.
     pub name: &'static str,
@@ -31,7 +30,7 @@ pub struct Points {
     pub points: Vec<[f64; 6]>,
 }
 
-/// Where a controller tells the torques.
+/// The source of the logged torques.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoggedTorques {
     /// Test signal 4002: arm side.
@@ -40,7 +39,7 @@ pub enum LoggedTorques {
     Motors {
         /// Gear ratios.
         ratio: Vec<f64>,
-        /// Turns of motor 6 for a turn of axis 5, relative to its ratio.
+        /// Turns of motor 6 per turn of axis 5, relative to its ratio (wrist coupling).
         coupling: f64,
     },
 }
@@ -48,29 +47,29 @@ pub enum LoggedTorques {
 /// A motion to emit.
 #[derive(Clone, Debug)]
 pub struct Excitation {
-    /// What it is for.
+    /// Purpose of the motion.
     pub title: String,
     /// The robot.
     pub robot: String,
     /// Number of repetitions.
     pub cycles: usize,
-    /// Duration of one \[s\].
+    /// Duration of one repetition \[s\].
     pub period: f64,
     /// Time between points \[s\].
     pub spacing: f64,
-    /// Where it begins \[rad\].
+    /// Start position \[rad\].
     pub start: [f64; 6],
     /// The points.
     pub lists: Vec<Points>,
-    /// Where it ends \[rad\].
+    /// End position \[rad\].
     pub stop: [f64; 6],
-    /// Angles of joint 1 at which the mark falls and rises \[rad\].
+    /// Angles of joint 1 at which the synchronisation signal falls and rises \[rad\].
     pub marks: [f64; 2],
-    /// Where the logger has torques from.
+    /// The source of the torques.
     pub torques: LoggedTorques,
 }
 
-/// Two modules with their names.
+/// The two modules.
 #[derive(Clone, Debug)]
 pub struct ExcitationModules {
     /// File name and text of the motion.
@@ -90,7 +89,7 @@ struct List {
 /// Renders the modules of an excitation.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
@@ -114,7 +113,7 @@ pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
         .map(|list| list.points.len() * if list.repeated { of.cycles } else { 1 })
         .sum();
     let duration = of.spacing * count as f64 + 3.0;
-    // A long motion is logged less often rather than cut off.
+    // A long motion is logged at a longer interval instead of being cut off.
     let every = (duration / MOST_ROWS as f64 / INTERVAL).ceil().max(1.0);
     let interval = INTERVAL * every;
     let rows = (duration / interval).ceil() as usize;

@@ -1,4 +1,4 @@
-//! Modules for points that a user gives.
+//! Modules for points of the user.
 
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -6,24 +6,24 @@ use tera::{Context, Tera};
 use super::site::EmitError;
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 
-/// Longest name that RAPID reads.
+/// Maximum length of a RAPID name.
 const LONGEST_NAME: usize = 32;
-/// Room for what is appended to a name.
+/// Characters reserved for a suffix.
 const SUFFIX: usize = 4;
 
 /// The names of a generated program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct GeneratedNames {
-    /// The module, and its file.
+    /// Module name, also the file name.
     pub module: String,
-    /// The procedure that moves.
+    /// The procedure with the movements.
     pub procedure: String,
     /// The module with the entry routine.
     pub main: String,
 }
 
 impl GeneratedNames {
-    /// Names after that of a file.
+    /// Names derived from a file name.
     pub fn of(file: &str) -> GeneratedNames {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
         let mut name: String = file.chars().map(plain).collect();
@@ -52,12 +52,12 @@ pub struct GeneratedMove {
     pub zone: String,
 }
 
-/// A joint target as an aggregate, from rad.
+/// A joint target as RAPID aggregate, from rad.
 pub fn jointtarget(q: &[f64; 6]) -> String {
     format!("[[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]", joints(q))
 }
 
-/// The time of a point of a stream as RAPID writes it, s.
+/// The time argument of a stream point, s.
 pub fn stream_time(seconds: f64) -> String {
     format!("v1000\\T:={}", number(seconds, TIME_DECIMALS))
 }
@@ -65,7 +65,7 @@ pub fn stream_time(seconds: f64) -> String {
 /// The module with the movements.
 ///
 /// # Errors
-/// A template that does not render.
+/// The template failed.
 pub fn generated_module(
     names: &GeneratedNames,
     about: &str,
@@ -79,17 +79,17 @@ pub fn generated_module(
 /// The module with the entry routine, which calls the procedure.
 ///
 /// # Errors
-/// A template that does not render.
+/// The template failed.
 pub fn main_module(names: &GeneratedNames) -> Result<String, EmitError> {
     let context = context(names, "");
     Ok(Tera::one_off(include_str!("../../../templates/main.mod.tera"), &context, false)?)
 }
 
-/// The module that lets positions from outside guide the joints, with a tool and a work object as
-/// RAPID names them. The joints start at the first of the positions (rad, one a clock tick).
+/// The module that runs externally guided motion (EGM). Tool and work object are RAPID names; the
+/// joints start at the first of the positions (rad, one per EGM period).
 ///
 /// # Errors
-/// A template that does not render.
+/// The template failed.
 pub fn egm_module(
     names: &GeneratedNames,
     positions: &[[f64; 6]],
@@ -108,14 +108,13 @@ pub fn egm_module(
     Ok(Tera::one_off(include_str!("../../../templates/egm.mod.tera"), &context, false)?)
 }
 
-/// Clock of externally guided motion, s.
+/// Period of externally guided motion, s.
 pub const EGM_STEP_S: f64 = 0.004;
 
-/// What the controller may add to the speed of a joint to catch up with the positions that it is
-/// sent.
+/// Ratio by which a joint may exceed its sent speed to catch up with the sent positions.
 const EGM_SPEED_MARGIN: f64 = 1.25;
 
-/// The speed that EGM may give a joint, degrees/s: without it the controller takes 1.
+/// The maximum EGM speed of a joint, degrees/s; the controller's default is 1.
 fn speed_deviation(positions: &[[f64; 6]]) -> f64 {
     let steps =
         positions.windows(2).flat_map(|pair| (0..6).map(|j| (pair[1][j] - pair[0][j]).abs()));
@@ -123,7 +122,7 @@ fn speed_deviation(positions: &[[f64; 6]]) -> f64 {
     (EGM_SPEED_MARGIN * fastest.to_degrees()).ceil().max(1.0)
 }
 
-/// The positions to send, rad, one a clock tick, as a file.
+/// The CSV file of the positions to send (rad, one per EGM period).
 pub fn egm_rows(positions: &[[f64; 6]]) -> String {
     let header = "t,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n".to_owned();
     let row = |(i, q): (usize, &[f64; 6])| {

@@ -1,4 +1,4 @@
-//! Guards: what stands before the movements of a site, and what the module compares for it.
+//! Guards: the condition before a site, and its comparison in the module.
 
 use std::collections::BTreeSet;
 
@@ -10,50 +10,49 @@ use super::site::{EmitError, Parameter, Recorded, Site};
 use crate::rapid::ir::number::number;
 use crate::rapid::text::{Charset, Edit, SourceFile, Span};
 
-/// What stands behind the ELSE of a guard: literals in the lines below are not compared.
+/// Remark after the ELSE of a guard: the guard does not compare literals in the lines below.
 pub const EDIT_REMARK: &str = " ! after an edit of these lines: joulepath refresh";
 
-/// Longest line of an inserted condition, characters.
+/// Maximum length of a line in an inserted condition, characters.
 const LINE: usize = 90;
-/// Longest name of a datum in a message, characters: with the place and a component it fits into the
-/// 80 characters of a string.
+/// Maximum length of a datum's name in a message, characters: with place and component it fits into
+/// an 80-character string.
 const LABEL: usize = 20;
-/// Longest name of a place in a message, characters.
+/// Maximum length of a place in a message, characters.
 const PLACE: usize = 30;
-/// Instructions of a guard that always run: its call and the settings (21), the robot (7), where it
-/// stands, and the count of what runs then (7).
+/// Instructions that every guard runs: call and settings (21), robot (7), position, and counting
+/// (7).
 const COMMON: usize = 35;
-/// Instructions for a way that is looked at.
+/// Instructions per compared variant.
 const EACH: usize = 5;
-/// Instructions for an argument that is compared but for rounding.
+/// Additional instructions for a comparison with a rounding tolerance.
 const ROUNDED: usize = 2;
-/// Instructions that lead to the points of a stream.
+/// Instructions before the first point of a stream.
 const LEAD: usize = 4;
 
-/// A guard as text.
 #[derive(Serialize)]
 pub(super) struct Guard {
     pub(super) origin: String,
     /// The same, short enough for a line of the `FlexPendant`.
     pub(super) label: String,
     number: String,
-    /// The record of what is compared.
+    /// The record type of the compared values.
     record: String,
     fits: String,
     run: String,
     tell: String,
     tool: String,
     parts: Vec<PartText>,
-    /// Number of streams, alone and in the braces of a declaration.
+    /// Number of streams, plain and in the braces of a declaration.
     ways: String,
     count: String,
-    /// Arrays of where the streams start and what they are made for.
+    /// Arrays of the start positions and of the expected values.
     from: String,
     made: String,
-    /// Arguments of the function that looks at the settings.
+    /// Arguments of the function that checks the settings.
     settings: String,
     external: bool,
-    /// Instructions in a cycle.
+    /// Number of instructions in a cycle.
     #[serde(skip)]
     pub(super) instructions: usize,
 }
@@ -63,15 +62,15 @@ pub(super) struct Guard {
 struct PartText {
     name: String,
     r#type: &'static str,
-    /// The argument; empty for what the module records.
+    /// The argument; empty for a value that the module records.
     text: String,
-    /// What stands for it in a comparison, before and after the record that it is compared with.
+    /// Text of the comparison before and after the record's name.
     now: [String; 2],
-    /// What messages call it.
+    /// Name in messages.
     label: String,
 }
 
-/// A type that guards compare.
+/// A data type that guards compare.
 #[derive(Serialize)]
 pub(super) struct TypeText {
     name: &'static str,
@@ -81,13 +80,12 @@ pub(super) struct TypeText {
 /// A part of a datum that fits into a message.
 #[derive(Serialize)]
 struct ComponentText {
-    /// As it is written behind the datum.
+    /// Suffix of the datum's name.
     dotted: String,
-    /// As messages say it.
+    /// Text in messages.
     said: String,
 }
 
-/// The guard of a site.
 pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usize) -> Guard {
     let prefix = &names.prefix;
     let parts: Vec<PartText> = site
@@ -145,7 +143,7 @@ fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
     }
 }
 
-/// The types that guards compare, with what is told of each.
+/// The compared data types, with their parts in messages.
 pub(super) fn types(guards: &[&Guard]) -> Vec<TypeText> {
     let parts = guards.iter().flat_map(|guard| &guard.parts);
     let names: BTreeSet<&'static str> = parts.map(|part| part.r#type).collect();
@@ -162,7 +160,7 @@ pub(super) fn types(guards: &[&Guard]) -> Vec<TypeText> {
     names.into_iter().map(text).collect()
 }
 
-/// The parts of a type whose texts are short enough for a string.
+/// The parts of a type whose text is short enough for a string.
 fn components(type_name: &str) -> &'static [&'static str] {
     match type_name {
         "robtarget" => &["trans", "rot", "robconf", "extax"],
@@ -192,13 +190,13 @@ fn components(type_name: &str) -> &'static [&'static str] {
     }
 }
 
-/// The inside of a string of RAPID.
+/// Escapes the content of a RAPID string.
 fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\").replace('"', "\"\"")
 }
 
-/// Instructions that the guard of a site runs in a cycle. Ways are looked at from the one behind
-/// the last, in a circle.
+/// Number of instructions of a site's guard in a cycle. The search for the variant starts after the
+/// last one and is cyclic.
 fn instructions(site: &Site, recorded: &Recorded) -> usize {
     let ways = site.streams.len();
     let rounded = site.parameters.iter().filter(|parameter| parameter.is_computed).count();
@@ -214,13 +212,13 @@ fn instructions(site: &Site, recorded: &Recorded) -> usize {
     looks + site.order.len() * (COMMON + recorded.switches.len())
 }
 
-/// The end of a place's name: the line counts more than the folder.
+/// The end of a place's name: the line matters more than the folder.
 fn shortened(origin: &str) -> String {
     let count = origin.chars().count();
     origin.chars().skip(count.saturating_sub(PLACE)).collect()
 }
 
-/// Insertions before and after the statements of a site.
+/// The insertions before and after the statements of a site.
 pub(super) fn insertions(
     tera: &Tera,
     file: &SourceFile,
@@ -248,7 +246,7 @@ pub(super) fn insertions(
     let after = file.bytes.get(span.end as usize);
     let apart = after.is_none_or(|b| b.is_ascii_whitespace() || *b == b'!');
     let tail = format!("{end_of_line}{indent}ENDIF{}", if apart { "" } else { " " });
-    // Names of tools and data may be in it: it is written as the file is.
+    // It may contain names of the program, so it gets the encoding of the file.
     let insertion = |at: u32, text: String| Edit {
         span: Span { file: span.file, start: at, end: at },
         text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
@@ -256,7 +254,7 @@ pub(super) fn insertions(
     Ok([insertion(span.start, head), insertion(span.end, tail)])
 }
 
-/// Arguments with commas, on lines that are not too long.
+/// Comma-separated arguments, broken into lines.
 fn lines<'t>(arguments: impl Iterator<Item = &'t str>, indent: &str) -> String {
     let mut text = String::new();
     let mut width = indent.len();
@@ -276,7 +274,7 @@ fn lines<'t>(arguments: impl Iterator<Item = &'t str>, indent: &str) -> String {
     text
 }
 
-/// The end of line that a file uses first; LF where it has none.
+/// The first line ending of a file; LF if it has none.
 pub fn end_of_line(bytes: &[u8]) -> &'static str {
     match bytes.iter().position(|b| *b == b'\n' || *b == b'\r') {
         Some(i) if bytes[i] == b'\r' && bytes.get(i + 1) == Some(&b'\n') => "\r\n",
@@ -290,7 +288,7 @@ mod tests {
     use super::super::site::{EmittedStream, MotionSettings};
     use super::*;
 
-    /// A stream is looked at first that comes after the last one: in their order each costs one look.
+    /// The search starts with the stream after the last one, so each costs one comparison in order.
     #[test]
     fn ways_in_their_order_cost_one_look() {
         let stream = EmittedStream {

@@ -1,29 +1,30 @@
-//! How streams are laid out: as instructions or arrays, in one module or several.
+//! The layout of streams: instructions or arrays, in one module or several.
 
 use std::ops::Range;
 
-/// Points from which on a stream becomes arrays by itself: three seconds and more of motion.
-/// Below, plain instructions leave nothing between two movements that costs time.
+/// Minimum number of points for arrays with `Auto`: three seconds of motion. Shorter streams use
+/// plain instructions, with no extra time between movements.
 const ARRAY_FROM: usize = 64;
 
-/// Points of one module at most, unless a single stream has more. Modules with 1,400 inline
-/// movements (100 kB) are known to have run on robots; more was not seen.
+/// Maximum number of points of a module, except for a longer single stream. Modules with 1,400
+/// inline movements (100 kB) are known to have run on robots.
 const MODULE_POINTS: usize = 1_400;
 
 /// How the points of a stream are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
-    /// An instruction for each point.
+    /// One instruction per point.
     Plain,
     /// Constant arrays, and a loop over them.
     Array,
-    /// Arrays for long streams.
+    /// Arrays for long streams only.
     #[default]
     Auto,
 }
 
 impl Layout {
-    /// Whether a stream of so many points becomes arrays. A loop needs a point before the last.
+    /// Whether a stream with this number of points becomes arrays. A loop needs a point before the
+    /// last.
     pub fn is_array(self, points: usize) -> bool {
         match self {
             Layout::Plain => false,
@@ -33,7 +34,7 @@ impl Layout {
     }
 }
 
-/// Ranges of streams with these numbers of points that share a module.
+/// Groups of streams (given by their numbers of points) that share a module.
 pub(super) fn parts(points: &[usize]) -> Vec<Range<usize>> {
     let mut parts = Vec::new();
     let (mut begin, mut sum) = (0, 0);

@@ -2,10 +2,10 @@
 
 use crate::rapid::ir::value::Datum;
 
-/// A value from here on is RAPID's 9E9, no axis.
+/// Values from here on represent RAPID's 9E9: no axis.
 pub(super) const NO_AXIS: f64 = 9e8;
 
-/// A value as RAPID writes it, which reads as the same `num`s; `None` for what has no text.
+/// RAPID text that reads back as the same value; `None` if there is no text.
 pub(super) fn literal(datum: &Datum) -> Option<String> {
     match datum {
         Datum::Num(x) if x.is_finite() => Some(num(*x)),
@@ -21,7 +21,7 @@ pub(super) fn literal(datum: &Datum) -> Option<String> {
     }
 }
 
-/// A number in as few digits as tell a `num` from its neighbours.
+/// A number with the fewest digits that identify the `num`.
 fn num(x: f64) -> String {
     if x >= NO_AXIS { "9E9".to_owned() } else { (x as f32).to_string() }
 }

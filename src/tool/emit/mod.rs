@@ -1,7 +1,6 @@
-//! From streams to RAPID text, by templates.
+//! RAPID text of streams, from templates.
 //!
-//! New modules are rendered whole; the original gets insertions only, so that
-//! every byte of it stays.
+//! New modules are rendered completely. The original only gets insertions, so all its bytes stay.
 
 mod brake_note;
 mod excitation;

@@ -1,4 +1,4 @@
-//! Names that no module of the program has.
+//! Names for emitted modules that the program does not use.
 
 use std::collections::BTreeSet;
 
@@ -9,19 +9,18 @@ use crate::rapid::ir::program::Program;
 use crate::rapid::syntax::{TokenKind, tokenize};
 use crate::rapid::text::{SourceFile, Span};
 
-/// The names of a streams module.
+/// The names of a module of streams.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Names {
     /// Prefix of all names.
     pub prefix: String,
-    /// The module.
+    /// The module name.
     pub module: String,
 }
 
 impl Names {
-    /// Names whose prefix begins no word of the files, whatever the word stands for: data,
-    /// routines, labels, loop variables, and signals and modules that are declared elsewhere. No
-    /// module is named as one of the files.
+    /// A prefix that no word of the files begins with: data, routines, labels, loop variables, also
+    /// signals and modules declared elsewhere. The module name differs from all file names.
     pub fn free(files: &[SourceFile]) -> Names {
         let taken = taken(files);
         let is_free = |beginning: &str| {
@@ -38,24 +37,24 @@ impl Names {
         Names { module: module_name(round), prefix }
     }
 
-    /// The module with a part of the streams, from 0.
+    /// The name of the module with part `index` (from 0) of the streams.
     pub fn part(&self, index: usize) -> String {
         if index == 0 { self.module.clone() } else { format!("{}_{}", self.module, index + 1) }
     }
 }
 
-/// A guard of a program whose module of streams is not among the files.
+/// A guard that calls a function of a missing module of streams.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingStreams {
-    /// The function that it calls.
+    /// The called function.
     pub function: String,
-    /// Where.
+    /// Place of the call.
     pub span: Span,
-    /// The file that declares it.
+    /// The file that should declare it.
     pub module: String,
 }
 
-/// The first guard that calls a function of a module of streams that the program does not have.
+/// The first guard whose function the program does not declare.
 pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
     program.modules.iter().enumerate().find_map(|(m, module)| {
         let mut blocks = module.routines.iter().flat_map(Routine::blocks);
@@ -63,7 +62,7 @@ pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
     })
 }
 
-/// Whether a module of streams, or of positions for a guide, is among those of the program.
+/// Whether the program contains a module of streams or of EGM positions.
 pub fn has_streams(program: &Program) -> bool {
     program.modules.iter().any(|module| {
         let ours = module.name.key.starts_with(&module_name(1).to_lowercase());
@@ -72,12 +71,12 @@ pub fn has_streams(program: &Program) -> bool {
     })
 }
 
-/// A name that a module of streams uses as RAPID has it, and the program has otherwise.
+/// The first predefined name that streams use and the program redeclares.
 pub fn own_name(program: &Program) -> Option<&'static str> {
     USED.into_iter().find(|name| program.resolve_global(&name.to_lowercase()).is_some())
 }
 
-/// What RAPID declares and streams use.
+/// Predefined RAPID names that streams use.
 const USED: [&str; 24] = [
     "Abs",
     "C_MOTSET",
@@ -122,7 +121,7 @@ fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStrea
     })
 }
 
-/// The round in which a lower-case name is that of the function of a guard.
+/// The number in the prefix of a guard function's lower-case name; 1 without a number.
 fn round_of(key: &str) -> Option<usize> {
     let (round, site) = key.strip_prefix("jp")?.split_once("fits")?;
     site.parse::<usize>().ok()?;
@@ -136,7 +135,7 @@ fn module_name(round: usize) -> String {
     if round == 1 { "Joulepath".to_owned() } else { format!("Joulepath{round}") }
 }
 
-/// All words of the files and the names of the files, in lower case.
+/// All words and file names, in lower case.
 fn taken(files: &[SourceFile]) -> BTreeSet<String> {
     let mut taken = BTreeSet::new();
     for file in files {
@@ -181,7 +180,7 @@ mod tests {
             assert_eq!(taken.prefix, "jp2_", "{text}");
             assert_eq!(taken.part(1), "Joulepath2_2", "{text}");
         }
-        // A name in a text or a comment is none.
+        // A word in a string or a comment does not count.
         let said = names("m.mod", "MODULE m\nCONST string s:=\"jpAt\"; ! jpAt\nENDMODULE\n");
         assert_eq!(said.prefix, "jp");
         assert_eq!(names("x/JOULEPATH.MOD", "MODULE m\nENDMODULE\n").module, "Joulepath2");

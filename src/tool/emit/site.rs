@@ -1,26 +1,25 @@
-//! What is emitted: places of the original, the streams that may stand for them, and what their
-//! guards compare.
+//! The data to emit: sites of the original, their streams, and the compared values.
 
 use super::literal::NO_AXIS;
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{Edit, Span};
 
-/// A place of the original with the streams that may stand for it.
+/// A site of the original with its streams.
 #[derive(Clone, Debug)]
 pub struct Site {
     /// The statements.
     pub span: Span,
-    /// Where it is, for comments and messages.
+    /// Place, for comments and messages.
     pub origin: String,
-    /// What the guard compares with what the streams were made for.
+    /// The parameters that the guard compares with the values of the streams.
     pub parameters: Vec<Parameter>,
-    /// The motion settings that the movements need.
+    /// The motion settings that the movements require.
     pub settings: MotionSettings,
-    /// The tool as the program names it at that place.
+    /// The text of the tool argument.
     pub tool: String,
     /// The streams.
     pub streams: Vec<EmittedStream>,
-    /// Its executions in a cycle, in their order: the index of the stream that runs, if one does.
+    /// Its executions in a cycle in order: the index of the stream that runs, if any.
     pub order: Vec<Option<usize>>,
 }
 
@@ -31,57 +30,56 @@ impl Site {
     }
 }
 
-/// Something that a guard compares.
+/// A value that a guard compares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// The expression as the program writes it at that place, on one line; none for what the
-    /// module itself records.
+    /// The expression in the program, on one line; `None` for a value that the module records.
     pub text: Option<String>,
-    /// What messages call it.
+    /// Name in messages.
     pub label: String,
     /// The name of its type.
     pub type_name: &'static str,
-    /// Whether it is worked out, so that its last digits are those of the controller.
+    /// Whether the controller computes it, so that its last digits may differ.
     pub is_computed: bool,
 }
 
 /// Motion settings on which movements depend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSettings {
-    /// Largest speed that is programmed, mm/s: `VelSet` must not be below.
+    /// Maximum programmed speed, mm/s: `VelSet` must not be below it.
     pub fastest: f64,
     /// `ConfJ`.
     pub conf_joint: bool,
     /// `ConfL`.
     pub conf_linear: bool,
-    /// Whether there are lines or arcs, on which `SingArea` acts.
+    /// Whether there are lines or arcs, which `SingArea` affects.
     pub lines: bool,
 }
 
 /// A stream to emit.
 #[derive(Clone, Debug)]
 pub struct EmittedStream {
-    /// Where it starts, rad.
+    /// Start position, rad.
     pub start: [f64; 6],
-    /// Its points, rad.
+    /// Points, rad.
     pub points: Vec<[f64; 6]>,
-    /// `\T` of each, s.
+    /// `\T` of each point, s.
     pub intervals: Vec<f64>,
-    /// Where the robot stands still on the way.
+    /// A standstill on the way.
     pub pause: Option<Pause>,
-    /// Where the external axes stand meanwhile, as the program writes it.
+    /// Position of the external axes as in RAPID.
     pub external: [f64; 6],
-    /// What the parameters of its site have to be.
+    /// Required values of the site's parameters.
     pub values: Vec<Datum>,
-    /// Where it comes from, for comments.
+    /// Origin, for comments.
     pub origin: String,
     /// Time and energy before, for comments.
     pub before: String,
-    /// After, for comments.
+    /// Time and energy after, for comments.
     pub after: String,
 }
 
-/// Standing still at a point of a stream.
+/// A standstill at a point of a stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pause {
     /// The index of the point.
@@ -90,43 +88,43 @@ pub struct Pause {
     pub seconds: f64,
 }
 
-/// The robot that streams are made for.
+/// The robot for which streams are planned.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// What its controller calls it.
+    /// Type name on the controller.
     pub kind: String,
     /// A posture, rad.
     pub posture: [f64; 6],
-    /// Where the flange is then, in the world, m.
+    /// The flange position at this posture, in the world frame, m.
     pub place: [f64; 3],
 }
 
-/// What the program's own statements write down beside them, since nothing can read it back.
+/// States that the program records itself because RAPID cannot read them back.
 #[derive(Clone, Debug, Default)]
 pub struct Recorded {
-    /// Settings that are on or off, by the name of the instruction.
+    /// Settings that are on or off, by instruction name.
     pub switches: Vec<&'static str>,
-    /// Whether the load is written down.
+    /// Whether the load is recorded.
     pub load: bool,
-    /// Insertions behind the statements.
+    /// Insertions after the statements.
     pub edits: Vec<Edit>,
 }
 
-/// What was emitted.
+/// The result of an emission.
 #[derive(Clone, Debug)]
 pub struct Emitted {
-    /// Names and texts of the modules with streams; the first one has the functions of guards.
+    /// Names and texts of the modules; the first one contains the functions of guards.
     pub modules: Vec<(String, String)>,
     /// Insertions into the original files.
     pub edits: Vec<Edit>,
-    /// Instructions that the guard of each site runs in a cycle.
+    /// Number of guard instructions of each site in a cycle.
     pub instructions: Vec<usize>,
 }
 
-/// Why nothing was emitted.
+/// Errors of the emission.
 #[derive(Debug, thiserror::Error)]
 pub enum EmitError {
-    /// A value that can't be written down.
+    /// A value has no RAPID text.
     #[error("'{0}' has a value that can't be written as RAPID")]
     Value(String),
     /// A template failed.

@@ -1,4 +1,4 @@
-//! The modules of streams, and the guards in the original.
+//! Emits the modules of streams, and the guards in the original.
 
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -11,30 +11,29 @@ use super::site::{EmitError, Emitted, EmittedStream, Recorded, Robot, Site};
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 use crate::rapid::text::{Charset, SourceFile, charset};
 
-/// How near the robot must stand to the start of a stream, degrees: half a millimetre at the
-/// stretched arm of 1.45 m. At a stop point servos are nearer.
+/// Maximum joint distance from the start of a stream, degrees: 0.5 mm at an arm stretched to 1.45
+/// m. At a stop point servos are closer.
 const JOINT_TOLERANCE_DEG: f64 = 0.02;
 /// The same for an external axis, degrees or mm.
 const EXTERNAL_TOLERANCE: f64 = 0.1;
-/// Rounding of a position that the controller works out, mm: a `num` holds 1,000 mm to 0.00006.
+/// Rounding of a position that the controller computes, mm: a `num` stores 1,000 mm to 0.00006.
 const POSITION_ROUNDING_MM: f64 = 0.005;
-/// The same for the components of a quaternion: less than 0.005 mm at 1 m from the flange.
+/// The same for a quaternion component: less than 0.005 mm at 1 m from the flange.
 const ORIENTATION_ROUNDING: f64 = 0.000_002;
 /// The same for numbers and joint angles in degrees.
 const NUMBER_ROUNDING: f64 = 0.0001;
-/// How far the controller's own kinematics may be from those of the streams, mm.
+/// Maximum distance of the controller's forward kinematics from that of the streams, mm.
 const PLACE_TOLERANCE_MM: f64 = 0.1;
 
-/// Decimals of a pause, s: with the ways to it and back it takes as long as the wait did.
+/// Decimals of a pause, s: the relocated wait must take exactly as long as the original one.
 const PAUSE_DECIMALS: usize = 7;
 
 /// Speed override at which movements take their `\T`, %.
 const FULL_SPEED: f64 = 100.0;
-/// Decimals of a `\T` that is stretched by an override, s: it is a share of a time that has
+/// Decimals of a `\T` that is scaled for an override, s: a fraction of a time with
 /// [`TIME_DECIMALS`].
 const STRETCHED_DECIMALS: usize = 7;
 
-/// A stream as text.
 #[derive(Serialize)]
 struct StreamText {
     origin: String,
@@ -47,7 +46,7 @@ struct StreamText {
     array: Option<ArrayText>,
 }
 
-/// What a stream from arrays needs besides its points.
+/// Additional text of a stream from arrays.
 #[derive(Serialize)]
 struct ArrayText {
     points: String,
@@ -63,39 +62,38 @@ struct PointText {
     target: String,
     time: String,
     zone: &'static str,
-    /// How long the robot stands there, s; empty where it flies on.
+    /// Standstill at the point, s; empty for a fly-by point.
     pause: String,
 }
 
-/// A site as text.
 #[derive(Serialize)]
 struct SiteText {
     guard: Guard,
     streams: Vec<StreamText>,
 }
 
-/// What streams are made for and how they are written.
+/// The input of an emission.
 pub struct Emission<'a> {
     /// The original files.
     pub files: &'a [SourceFile],
-    /// Names that are free.
+    /// Unused names.
     pub names: &'a Names,
-    /// How points are written.
+    /// Layout of the points.
     pub layout: Layout,
     /// The robot.
     pub robot: &'a Robot,
-    /// The operator's speed override at which streams run, %.
+    /// The operator's speed override for the streams, %.
     pub override_percent: f64,
-    /// What the program writes down for the guards.
+    /// The states that the program records for guards.
     pub recorded: &'a Recorded,
-    /// What tells the original from others.
+    /// A hash that identifies the original.
     pub program: &'a str,
 }
 
 /// Renders the streams of the sites.
 ///
 /// # Errors
-/// A value that can't be written as RAPID.
+/// A value has no RAPID text.
 pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitError> {
     let Emission { files, names, robot, recorded, .. } = emission;
     let mut tera = Tera::default();
@@ -209,7 +207,7 @@ fn stream_text(
     })
 }
 
-/// `\T` of a movement that takes `t` seconds: a speed override stretches it.
+/// `\T` of a movement that takes `t` seconds at this override, which stretches it.
 fn time(t: f64, override_percent: f64) -> String {
     if override_percent == FULL_SPEED {
         number(t, TIME_DECIMALS)

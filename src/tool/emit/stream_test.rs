@@ -1,4 +1,4 @@
-//! The tests of the stream law as RAPID: a motion module, and a logger for a second task.
+//! The RAPID of the stream tests: a motion module, and a logger for a second task.
 
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -6,24 +6,23 @@ use tera::{Context, Tera};
 use super::excitation::{INTERVAL, TASK};
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 
-/// Names of everything that is declared begin with this.
+/// Prefix of all declared names.
 const PREFIX: &str = "jpTest";
-/// The file that the logger writes.
 const LOG: &str = "streamtest_log.csv";
-/// Time around each test, and what logging may take besides \[s\].
+/// Time around each test, and extra time of the logger \[s\].
 const AROUND: f64 = 1.0;
 const MORE: f64 = 5.0;
 
 /// A stream to emit.
 #[derive(Clone, Copy, Debug)]
 pub struct TestStream<'a> {
-    /// What it shows.
+    /// Purpose of the test.
     pub what: &'a str,
-    /// Where it starts \[rad\].
+    /// Start position \[rad\].
     pub start: &'a [f64; 6],
-    /// Its points \[rad\].
+    /// Points \[rad\].
     pub points: &'a [[f64; 6]],
-    /// The `\T` of each \[s\].
+    /// `\T` of each point \[s\].
     pub intervals: &'a [f64],
 }
 
@@ -35,10 +34,10 @@ struct Test<'a> {
     fly_by: usize,
 }
 
-/// File names and texts of the motion module and of its logger, for streams that start at one pose.
+/// File names and texts of the motion module and of its logger, for streams with a common start.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn stream_test(
     robot: &str,
     streams: &[TestStream<'_>],

@@ -1,4 +1,4 @@
-//! A timed trajectory as a stream, or as positions at the clock of externally guided motion.
+//! A timed trajectory as a stream, or as positions at the EGM period.
 
 use super::measure::Measure;
 use crate::arm::dynamics::Data;
@@ -15,25 +15,24 @@ use crate::retime::path::joint_path::{DOF, Joints};
 use crate::tool::emit::EGM_STEP_S;
 use nalgebra::Isometry3;
 
-/// Largest distance of the flange from the trajectory at each time, m.
+/// Maximum distance of the flange from the trajectory at any time, m.
 pub(super) const TOLERANCE: f64 = 1e-3;
-/// Shares of the tolerance for the placing of the points, tried one after the other.
+/// Shares of the tolerance for the placement of points, tried in order.
 const PLACING: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
-/// Longest step between two samples, s.
+/// Maximum step between two samples, s.
 const STEP: f64 = 0.002;
-/// A trajectory starts and ends at rest if its first and last step are no faster than this,
-/// rad/s.
+/// Maximum speed of the first and last step that counts as rest, rad/s.
 const REST: f64 = 0.02;
 
-/// Why a trajectory can't be followed.
+/// Why a trajectory cannot be followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FollowError {
-    /// A position out of range.
+    /// A position is out of range.
     #[error("row {row}: {violation}; if the columns are degrees, name them q1_deg … q6_deg")]
     Range {
         /// Line of the file.
         row: usize,
-        /// Which joint.
+        /// The violated limit.
         violation: LimitViolation,
     },
     /// It does not start or end at rest.
@@ -49,15 +48,15 @@ pub enum FollowError {
         /// rad/s.
         speed: f64,
     },
-    /// It asks for too much.
+    /// A limit is exceeded.
     #[error("the trajectory can't be followed: {what}; make it {factor:.2} times as long or more")]
     TooFast {
-        /// What is exceeded.
+        /// The exceeded limit.
         what: String,
-        /// On its times.
+        /// Minimum stretch of its times.
         factor: f64,
     },
-    /// Points this far apart can't follow it.
+    /// The point spacing is too coarse.
     #[error(
         "with points {spacing} s apart the robot would be {distance_mm:.2} mm from the trajectory; \
          give a smaller --spacing, or a smoother trajectory"
@@ -70,13 +69,13 @@ pub enum FollowError {
     },
 }
 
-/// A stream and what it was made for.
+/// A stream and its reference trajectory.
 pub(super) struct Followed {
     pub(super) stream: Stream,
     pub(super) reference: Reference,
 }
 
-/// Positions at a fixed clock.
+/// Positions at the EGM period.
 pub(super) struct Sampled {
     pub(super) positions: Vec<Joints>,
     pub(super) measure: Measure,
@@ -121,7 +120,7 @@ pub(super) fn follow(
         let Ok(stream) = stream else { continue };
         let measure = measure(model, &stream, &reference);
         if let Some(fault) = measure.fault() {
-            // Torque is nearly that of the acceleration: its time goes with the root.
+            // Torque is about proportional to acceleration, so time scales with its square root.
             let worst = measure.velocity.max(measure.acceleration.max(measure.torque).sqrt());
             why = too_fast(&fault, worst.max(measure.tcp_speed).max(1.0) + 0.005);
             continue;
@@ -134,7 +133,7 @@ pub(super) fn follow(
     Err(why)
 }
 
-/// The realised motion of a stream against limits and trajectory.
+/// Compares the realised motion of a stream with limits and trajectory.
 pub(super) fn measure(model: &Model, stream: &Stream, reference: &Reference) -> Measure {
     let mut measure = Measure::default();
     let mut data = Data::new();
@@ -152,7 +151,7 @@ pub(super) fn measure(model: &Model, stream: &Stream, reference: &Reference) -> 
     measure
 }
 
-/// The trajectory at the clock of externally guided motion.
+/// The trajectory at the EGM period.
 pub(super) fn sampled(model: &Model, t: &[f64], q: &[Joints]) -> Result<Sampled, FollowError> {
     let reference = reference(model, t, q)?;
     let steps = (reference.duration() / EGM_STEP_S).ceil() as usize;
@@ -178,7 +177,7 @@ pub(super) fn sampled(model: &Model, t: &[f64], q: &[Joints]) -> Result<Sampled,
     }
 }
 
-/// The trajectory between its samples.
+/// The interpolated trajectory.
 fn reference(model: &Model, t: &[f64], q: &[Joints]) -> Result<Reference, FollowError> {
     for (i, q) in q.iter().enumerate() {
         limits_ok(model, q).map_err(|violation| FollowError::Range { row: i + 2, violation })?;
@@ -187,7 +186,7 @@ fn reference(model: &Model, t: &[f64], q: &[Joints]) -> Result<Reference, Follow
     for (end, from, to) in [("starts", 0, 1), ("ends", last - 1, last)] {
         let speed = |j: usize| (q[to][j] - q[from][j]).abs() / (t[to] - t[from]);
         let fastest = (0..DOF).max_by(|a, b| speed(*a).total_cmp(&speed(*b))).unwrap_or(0);
-        // A first step from rest has half the speed that it reaches.
+        // The mean speed of a first step from rest is half of its final speed.
         if q.len() > 2 && speed(fastest) > REST && !eases(t, q, fastest, end == "starts") {
             let (joint, speed) = (fastest + 1, speed(fastest));
             return Err(FollowError::Moving { end, joint, speed });
@@ -208,8 +207,8 @@ fn reference(model: &Model, t: &[f64], q: &[Joints]) -> Result<Reference, Follow
         .map_err(|_| FollowError::Coarse { spacing: 0.0, distance_mm: f64::INFINITY })
 }
 
-/// Whether the speed of a joint grows from its end of the trajectory: its second step is
-/// clearly faster than the first one.
+/// Whether a joint ramps up from this end of the trajectory: the second step is clearly faster than
+/// the first.
 fn eases(t: &[f64], q: &[Joints], j: usize, at_start: bool) -> bool {
     let speed = |i: usize| (q[i + 1][j] - q[i][j]).abs() / (t[i + 1] - t[i]);
     let (first, second) = if at_start { (0, 1) } else { (q.len() - 2, q.len() - 3) };
@@ -227,7 +226,7 @@ fn limits(model: &Model) -> StreamLimits {
     }
 }
 
-/// How far the flange moves with each joint, m/rad.
+/// Maximum flange displacement per joint angle, m/rad.
 fn levers(model: &Model, q: &[Joints]) -> Joints {
     let mut levers = [0.0_f64; DOF];
     for q in q {
@@ -236,6 +235,6 @@ fn levers(model: &Model, q: &[Joints]) -> Joints {
             *lever = lever.max(rates.fixed_view::<3, 1>(0, j).norm());
         }
     }
-    // What only turns the flange counts as at a tool of 0.1 m.
+    // Pure rotations of the flange count as with a tool of 0.1 m.
     levers.map(|lever| lever.max(0.1))
 }

@@ -1,4 +1,4 @@
-//! How much of the limits a motion uses.
+//! The use of limits by a motion.
 
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::{fk, jacobian, limits_ok};
@@ -11,22 +11,22 @@ use nalgebra::{Isometry3, Vector6};
 /// Shares of the limits that a motion uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
-    /// Of the joint speeds.
+    /// Of the joint speed limits.
     pub velocity: f64,
-    /// Of the joint accelerations.
+    /// Of the joint acceleration limits.
     pub acceleration: f64,
-    /// Of the joint torques.
+    /// Of the joint torque limits.
     pub torque: f64,
-    /// Of the robot's largest speed of the tool.
+    /// Of the robot's maximum TCP speed.
     pub tcp_speed: f64,
-    /// Largest distance of the flange from where it should be at each time, m.
+    /// Maximum distance of the flange from the intended position at any time, m.
     pub deviation_m: f64,
     /// Whether some joint leaves its range.
     pub out_of_range: bool,
 }
 
 impl Measure {
-    /// Takes a state into account; nothing is at the flange.
+    /// Adds a state without load at the flange.
     pub(super) fn add(
         &mut self,
         model: &Model,
@@ -52,14 +52,14 @@ impl Measure {
         }
     }
 
-    /// Takes a position and where it should be into account.
+    /// Adds the distance between a position and the intended one.
     pub(super) fn stray(&mut self, model: &Model, q: &Joints, intended: &Joints) {
         let distance =
             (fk(model, q).translation.vector - fk(model, intended).translation.vector).norm();
         self.deviation_m = self.deviation_m.max(distance);
     }
 
-    /// What is exceeded, in words.
+    /// The exceeded limit in words.
     pub(super) fn fault(&self) -> Option<String> {
         let figures = [
             ("joint speed", self.velocity),

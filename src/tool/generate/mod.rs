@@ -1,4 +1,4 @@
-//! From points or a trajectory to RAPID that was read again and simulated.
+//! Generates RAPID from points or a trajectory, then reads and simulates it.
 
 mod error;
 mod follow;
@@ -21,28 +21,28 @@ use crate::tool::emit::GeneratedNames;
 use crate::tool::retrofit::OutputFile;
 use table::{Points, Table};
 
-/// The program with what its simulation showed.
+/// The generated program with figures of its simulation.
 #[derive(Clone, Debug)]
 pub struct Generated {
-    /// The files, with paths below the folder of the output.
+    /// The files, with paths relative to the output folder.
     pub outputs: Vec<OutputFile>,
-    /// Points of the emitted program.
+    /// Number of points in the emitted program.
     pub points: usize,
     /// Time from the first point to the last, s.
     pub duration_s: f64,
-    /// Shares of the limits and the distance from a trajectory; `None` for movements, which the
-    /// controller plans within its limits.
+    /// Use of limits and distance from the trajectory; `None` for movements, which the controller
+    /// plans.
     pub measure: Option<Measure>,
-    /// What was checked.
+    /// The checks in words.
     pub checks: Vec<String>,
-    /// What the user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
 /// Generates a program from the points of a file.
 ///
 /// # Errors
-/// A robot, a point or a limit that stands against it; the message says which.
+/// The robot, a point or a limit prevents the generation; the message states which.
 pub fn generate(
     model: &Model,
     table: &Table,

@@ -1,4 +1,4 @@
-//! Points without times as movement instructions.
+//! Movement instructions for points without times.
 
 use nalgebra::Isometry3;
 
@@ -12,9 +12,9 @@ use crate::rapid::ir::number::number;
 use crate::rapid::ir::predefined::lookup;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Speed where the file says none.
+/// Default speed.
 const SPEED: &str = "v200";
-/// Zone where the file says none, and of the last point.
+/// Default zone, also of the last point.
 const STOP: &str = "fine";
 
 /// A movement to each point.
@@ -24,30 +24,30 @@ pub(super) struct Moves {
     pub(super) notes: Vec<String>,
 }
 
-/// A point with what the robot does there.
+/// A point with its speed and zone.
 pub(super) struct Target {
     /// Joint positions, rad.
     pub(super) q: Joints,
     pub(super) pose: Isometry3<f64>,
     pub(super) conf: Conf,
-    /// As RAPID writes it.
+    /// RAPID text.
     pub(super) speed: String,
-    /// As RAPID writes it.
+    /// RAPID text.
     pub(super) zone: String,
 }
 
-/// Why a point can't be moved to.
+/// Why a point cannot be a target.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MovesError {
-    /// Out of range.
+    /// A joint is out of range.
     #[error("row {row}: {violation}; if the columns are degrees, name them q1_deg … q6_deg")]
     Range {
         /// Line of the file.
         row: usize,
-        /// Which joint.
+        /// The violated limit.
         violation: LimitViolation,
     },
-    /// Out of reach, or not in this configuration.
+    /// The pose is out of reach, or not reachable in this configuration.
     #[error("row {row}: {error}")]
     Pose {
         /// Line of the file.
@@ -55,7 +55,7 @@ pub enum MovesError {
         /// Why.
         error: IkError,
     },
-    /// A name that RAPID does not have.
+    /// The name is not predefined in RAPID.
     #[error("row {row}: '{name}' is no {what} of RAPID's own; give {example}, or a number")]
     Name {
         /// Line of the file.
@@ -64,12 +64,12 @@ pub enum MovesError {
         name: String,
         /// `speed` or `zone`.
         what: &'static str,
-        /// Some that are.
+        /// Valid names.
         example: &'static str,
     },
 }
 
-/// The movements to the points of a table that has no times.
+/// The movements to the points of a table without times.
 pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, MovesError> {
     let positions = match &table.points {
         Points::Trajectory(_, q) | Points::Joints(q) => q.clone(),
@@ -103,7 +103,7 @@ pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, M
     Ok(Moves { form, targets, notes })
 }
 
-/// Joint positions of poses: in their configuration, else near those of the point before.
+/// Joint positions of poses: in the given configuration, or else near the previous point.
 fn solved(
     model: &Model,
     poses: &[(Isometry3<f64>, Option<Conf>)],
@@ -121,7 +121,7 @@ fn solved(
     Ok(positions)
 }
 
-/// A speed or zone as RAPID writes it.
+/// The RAPID text of a speed or zone.
 fn named(
     row: usize,
     amount: Option<&Amount>,

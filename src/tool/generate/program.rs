@@ -1,4 +1,4 @@
-//! The files of a generated program, and what reading them again and simulating them shows.
+//! The files of a generated program, and their verification by reading and simulation.
 
 use super::error::GenerateError;
 use super::follow::{self, Followed, Sampled, TOLERANCE};
@@ -16,12 +16,11 @@ use crate::retime::path::joint_path::DOF;
 use crate::tool::emit::{self, EmitError, GeneratedMove, GeneratedNames, jointtarget, stream_time};
 use crate::tool::retrofit::{OutputFile, parses, read_again, run_again};
 
-/// Largest distance of a reached point from the one asked for, rad.
+/// Maximum distance of a reached point from the requested one, rad.
 const REACHED: f64 = 1e-4;
 /// Samples of a simulated motion per second.
 const SAMPLES: f64 = 500.0;
 
-/// A trajectory as a stream.
 pub(super) fn stream(
     names: &GeneratedNames,
     stream: &Stream,
@@ -46,7 +45,6 @@ pub(super) fn stream(
     complete(names, emit::generated_module(names, &about, &moves)?)
 }
 
-/// Points as movements.
 pub(super) fn moves(
     names: &GeneratedNames,
     moves: &Moves,
@@ -79,7 +77,7 @@ pub(super) fn moves(
         .map(|(i, target)| GeneratedMove {
             instruction: match moves.form {
                 Form::MoveJ => "MoveJ",
-                // A line needs a known beginning.
+                // A line needs a known start.
                 Form::MoveL if i == 0 => "MoveJ",
                 Form::MoveL => "MoveL",
                 Form::AbsJ | Form::Egm => "MoveAbsJ",
@@ -96,7 +94,7 @@ pub(super) fn moves(
     complete(names, emit::generated_module(names, &about, &list)?)
 }
 
-/// Positions for externally guided motion with the module that runs them.
+/// Positions for externally guided motion, with their module.
 pub(super) fn egm(
     names: &GeneratedNames,
     sampled: &Sampled,
@@ -109,7 +107,7 @@ pub(super) fn egm(
     Ok(outputs)
 }
 
-/// The module with its entry.
+/// The module, and the module with the entry routine.
 fn complete(names: &GeneratedNames, module: String) -> Result<Vec<OutputFile>, GenerateError> {
     let main: Result<String, EmitError> = emit::main_module(names);
     Ok(vec![
@@ -126,7 +124,7 @@ fn broken(what: impl Into<String>) -> GenerateError {
     GenerateError::Verification(what.into())
 }
 
-/// The cycle of the emitted text.
+/// Simulates the emitted text.
 fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, GenerateError> {
     check_text(outputs)?;
     let simulation = run_again(outputs, "main", model, &Options::default())
@@ -141,7 +139,7 @@ fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, Genera
     }
 }
 
-/// The emitted stream as it runs.
+/// Verifies the emitted stream by simulation.
 pub(super) fn verify_stream(
     model: &Model,
     outputs: &[OutputFile],
@@ -166,7 +164,7 @@ pub(super) fn verify_stream(
     Ok(measure)
 }
 
-/// The emitted movements as they run, and their time from the first point on.
+/// Verifies the emitted movements by simulation; returns their time from the first point on.
 pub(super) fn verify_moves(
     model: &Model,
     outputs: &[OutputFile],

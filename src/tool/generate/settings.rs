@@ -1,6 +1,6 @@
-//! How points become RAPID.
+//! Settings of the generation.
 
-/// What the points become.
+/// The kind of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `MoveAbsJ`; a stream of them for a trajectory.
@@ -13,13 +13,13 @@ pub enum Form {
     Egm,
 }
 
-/// How points become RAPID.
+/// Settings of the generation.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// What they become.
+    /// The kind of output.
     pub form: Form,
-    /// Name of the file, for names in the program.
+    /// Name of the input file, for names in the program.
     pub name: String,
-    /// Least time between two points of a stream, s.
+    /// Minimum time between two points of a stream, s.
     pub spacing_s: f64,
 }

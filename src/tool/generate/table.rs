@@ -1,5 +1,5 @@
-//! Points and trajectories in CSV. A row that can't be used is an error: a robot moves through
-//! what is read here, so nothing is left out or repaired.
+//! Reads points and trajectories from CSV. A robot moves through these points, so an invalid row is
+//! an error: nothing is skipped or repaired.
 
 use csv::{ByteRecord, ReaderBuilder};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
@@ -7,24 +7,24 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use crate::arm::kinematics::Conf;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// What may stand between two columns.
+/// Accepted column delimiters.
 const DELIMITERS: [u8; 3] = *b",;\t";
-/// No robot reaches this far, m: larger coordinates are millimetres.
+/// Larger coordinates are millimetres, m: no robot reaches this far.
 const FARTHEST: f64 = 20.0;
-/// Distance of a quaternion's length from 1 that rounding explains.
+/// Maximum deviation of a quaternion's norm from 1.
 const QUATERNION_ROUNDING: f64 = 1e-3;
 const MM: f64 = 1e-3;
 
 /// The points of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// What they are.
+    /// The points.
     pub points: Points,
-    /// Programmed speed of each, where the file says one.
+    /// Programmed speed of each point, if given.
     pub speeds: Vec<Option<Amount>>,
-    /// Zone of each, where the file says one.
+    /// Zone of each point, if given.
     pub zones: Vec<Option<Amount>>,
-    /// Units that were taken, columns that are not used.
+    /// Notes on assumed units and unused columns.
     pub notes: Vec<String>,
 }
 
@@ -35,23 +35,23 @@ pub enum Points {
     Trajectory(Vec<f64>, Vec<Joints>),
     /// Joint positions, rad.
     Joints(Vec<Joints>),
-    /// Poses of the tool in the work object, m, with their configurations where the file has them.
+    /// Poses of the tool in the work object, m, with their configurations if given.
     Poses(Vec<(Isometry3<f64>, Option<Conf>)>),
 }
 
 /// A speed or a zone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Amount {
-    /// A name of RAPID, such as v100 or fine.
+    /// A RAPID name, such as v100 or fine.
     Name(String),
     /// m/s or m.
     Value(f64),
 }
 
-/// Why a file has no points that can be used.
+/// Why a file has no usable points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
-    /// The columns say no kind of points.
+    /// The columns match no kind of points.
     #[error(
         "the header is '{header}': give the columns t,q1..q6 (a timed trajectory), q1..q6 (joint \
          positions, rad; q1_deg.. for degrees) or x,y,z,w,i,j,k[,cf1,cf4,cf6,cfx] (poses), each \
@@ -61,7 +61,7 @@ pub enum TableError {
         /// The first line.
         header: String,
     },
-    /// A column stands twice.
+    /// A column name occurs twice.
     #[error("the column '{name}' stands twice in the header")]
     Twice {
         /// Its name.
@@ -70,22 +70,22 @@ pub enum TableError {
     /// Some columns of a kind are missing.
     #[error("the column '{missing}' is missing beside '{present}'")]
     Missing {
-        /// What is missing.
+        /// The missing column.
         missing: String,
-        /// What is there.
+        /// The present column.
         present: String,
     },
-    /// A cell that can't be used.
+    /// A cell is invalid.
     #[error("row {row}, column {column}: {what}")]
     Cell {
         /// Line of the file; the header is 1.
         row: u64,
         /// Name of the column.
         column: String,
-        /// What is wrong.
+        /// The problem.
         what: String,
     },
-    /// No rows, or one row of a trajectory.
+    /// There are no rows, or only one row of a trajectory.
     #[error("{0} rows below the header: {1}")]
     Short(usize, &'static str),
 }
@@ -123,7 +123,7 @@ impl Columns {
         self.names.iter().position(|known| known == name)
     }
 
-    /// All of these columns; `None` if the first is not there.
+    /// The indices of these columns; `None` if none of them exists.
     fn all(&self, names: &[String]) -> Result<Option<Vec<usize>>, TableError> {
         let Some(present) = names.iter().find(|name| self.find(name).is_some()) else {
             return Ok(None);
@@ -137,7 +137,7 @@ impl Columns {
     }
 }
 
-/// Which columns hold the points.
+/// The columns of the points.
 enum Layout {
     Joints { time: Option<usize>, columns: Vec<usize>, unit: f64 },
     Poses { position: Vec<usize>, mm: bool, rotation: Vec<usize>, conf: Option<Vec<usize>> },
@@ -181,7 +181,7 @@ impl Layout {
     }
 }
 
-/// One row with the names of its columns, for messages.
+/// One row with its column names, for messages.
 struct Row<'a> {
     record: &'a ByteRecord,
     columns: &'a Columns,
@@ -236,7 +236,7 @@ impl Row<'_> {
 /// Reads the points of a file.
 ///
 /// # Errors
-/// Columns that say no kind of points; the first cell that can't be used, by row and column.
+/// The columns match no kind of points, or a cell is invalid (the first one, by row and column).
 pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let columns = Columns::read(bytes)?;

@@ -1,4 +1,4 @@
-//! What rules look at: one program with its flow, its trace and its simulated cycle.
+//! The input of rules: a program with its control flow, its trace and its simulated cycle.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,74 +23,74 @@ use crate::rapid::text::{SourceFile, Span};
 use crate::retime::motion::timeline::{MoveRecord, Run, What};
 use crate::retime::path::Leg;
 
-/// One program, as rules see it.
+/// The input of rules: one program.
 pub struct Context<'c> {
     /// All files, by their ids.
     pub files: &'c [SourceFile],
     /// The modules.
     pub program: &'c Program,
-    /// The routine that starts it, if it is among the files.
+    /// The routine that starts it, if found.
     pub entry: Option<RoutineId>,
-    /// The robot, if it is known.
+    /// The robot, if known.
     pub model: Option<&'c Model>,
     /// Its simulated cycle, if there is one.
     pub cycle: Option<&'c Cycle>,
-    /// What it does, in order; empty without an entry.
+    /// Its actions in order; empty without an entry.
     pub trace: Vec<TraceStep<'c>>,
-    /// What could not be resolved.
+    /// Unresolved places.
     pub unresolved: &'c [Note],
     /// Its control flow.
     pub flow: Flow<'c>,
-    /// What names stand for.
+    /// The data names of the program.
     pub quiet: Quiet<'c>,
     /// Its movement statements, in the order of the files.
     pub sites: Vec<Site<'c>>,
-    /// The controller's configuration, of a backup.
+    /// The configuration of the controller, from a backup.
     pub system: Option<&'c System>,
     by_place: BTreeMap<Place, usize>,
-    /// The movements that precede each movement, whatever stands between.
+    /// The movements that can precede each movement, regardless of statements between.
     before: Vec<Vec<usize>>,
-    /// Movements before which the robot may be anywhere.
+    /// Movements before which the robot position is unknown.
     starts: BTreeSet<usize>,
 }
 
-/// The corner at the goal of a movement, the worst of all its executions.
+/// The corner at the goal of a movement, the worst case of all its executions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Shortest way to it, m.
+    /// Shortest distance to it, m.
     pub before: f64,
-    /// Shortest way from it, m.
+    /// Shortest distance from it, m.
     pub after: f64,
     /// Largest change of direction, rad: 0 straight on, π back.
     pub turn: f64,
-    /// Largest turn of the tool on the way to it or from it, rad.
+    /// Largest rotation of the tool on the way to it or from it, rad.
     pub turned: f64,
-    /// Cosine between the tool's axis and the way to or from the goal, the larger of both: 0 across
-    /// the axis, 1 along it.
+    /// Larger cosine between the tool axis and the way to or from the goal: 0 across the axis, 1
+    /// along it.
     pub along: f64,
-    /// Whether the tool comes in along its axis and goes on across it, as where a bead begins.
+    /// Whether the tool arrives along its axis and leaves across it, as at the start of a bead.
     pub goes_in: bool,
-    /// Whether it comes across its axis and goes out along it, as where a bead ends.
+    /// Whether it arrives across its axis and leaves along it, as at the end of a bead.
     pub comes_out: bool,
 }
 
-/// Most movements for each wait or output of a program with a purpose besides moving.
+/// Maximum number of movements per wait or output in a program with a process.
 const MOST_MOVES: usize = 12;
-/// Largest cosine to the tool's axis of a way across it: tools may lean by 30°.
+/// Maximum cosine between tool axis and a way across it: tools may lean by 30°.
 const ACROSS: f64 = 0.5;
-/// Least cosine to the tool's axis of a way in or out.
+/// Minimum cosine between tool axis and a way in or out.
 const ALONG: f64 = 0.3;
 
 impl Corner {
-    /// The shorter way, m.
+    /// The shorter distance, m.
     pub fn room(&self) -> f64 {
         self.before.min(self.after)
     }
 }
 
 impl<'c> Context<'c> {
-    /// Examines the program of a group, with its simulated cycle, or else with the recording of a
-    /// run without a robot.
+    /// Analyses the program of a group, with its simulated cycle or else a recording without a
+    /// robot.
     pub fn new(
         files: &'c [SourceFile],
         model: Option<&'c Model>,
@@ -157,13 +157,13 @@ impl<'c> Context<'c> {
         }
     }
 
-    /// Whether the robot may be anywhere before a movement: at the start of the program or of a
-    /// routine that nothing calls, after a call of something unknown, in a handler.
+    /// Whether the robot position before a movement is unknown: at the start of the program or of
+    /// an uncalled routine, after an unknown call, in an error handler.
     pub fn may_start(&self, site: usize) -> bool {
         self.starts.contains(&site)
     }
 
-    /// Whether a movement stands in a handler and not in the body of its routine.
+    /// Whether a movement is in an error handler of its routine.
     pub fn in_handler(&self, site: &Site<'_>) -> bool {
         let routine = self.program.routine(site.place.0);
         let body = routine.body.first().zip(routine.body.last());
@@ -172,14 +172,14 @@ impl<'c> Context<'c> {
         })
     }
 
-    /// The constant that an expression of a routine has.
+    /// The constant value of an expression in a routine.
     pub fn constant(&self, routine: RoutineId, expr: &Expr) -> Option<Datum> {
         constant(self.program, &self.quiet, routine, expr)
     }
 
-    /// Whether the routines of some movements, or what they call, have a purpose besides moving:
-    /// a wait, an output, or something else that a robot may do where it stands. A cycle with very
-    /// many movements for each wait or output is a demonstration of movements and has none.
+    /// Whether the routines of some movements, or the routines they call, contain a process: a
+    /// wait, an output, or another action at standstill. A cycle with very many movements per wait
+    /// or output counts as a demonstration without a process.
     pub fn works(&self, sites: &[usize]) -> bool {
         let is_move =
             |done: &&TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
@@ -226,12 +226,12 @@ impl<'c> Context<'c> {
         found
     }
 
-    /// What follows a movement on every path of the control flow.
+    /// Everything that can follow a movement on any path of the control flow.
     pub fn next(&self, site: usize, through: Through) -> BTreeSet<Next> {
         self.flow.following(self.sites[site].place, through)
     }
 
-    /// The movements that follow a movement, if nothing else can come first.
+    /// The movements that can follow a movement, if nothing else can come first.
     pub fn next_moves(&self, site: usize, through: Through) -> Option<Vec<usize>> {
         let next = self.next(site, through);
         let moves = next.iter().map(|next| match next {
@@ -246,7 +246,7 @@ impl<'c> Context<'c> {
         self.sites.binary_search_by_key(&span, |site| site.stmt.span).ok()
     }
 
-    /// The movements before a movement, whatever stands between.
+    /// The movements that can precede a movement, regardless of statements between.
     pub fn before(&self, site: usize) -> &[usize] {
         &self.before[site]
     }
@@ -256,7 +256,7 @@ impl<'c> Context<'c> {
         self.files[span.file.0 as usize].text(span)
     }
 
-    /// The line that a span begins in, from 1.
+    /// The first line of a span, from 1.
     pub fn line(&self, span: Span) -> u32 {
         self.files[span.file.0 as usize].position(span.start).line
     }
@@ -270,7 +270,7 @@ impl<'c> Context<'c> {
         }
     }
 
-    /// Where a step of the trace moves the tool, in one frame for all steps, if that is known.
+    /// The TCP pose at a step of the trace, in one frame for all steps, if known.
     pub fn pose(&self, step: usize) -> Option<Isometry3<f64>> {
         if let Some((_, _, leg)) = self.record(step) {
             return Some(leg.target);
@@ -287,7 +287,7 @@ impl<'c> Context<'c> {
         }
     }
 
-    /// The movement steps next to a step of the trace.
+    /// The movement steps before and after a step of the trace.
     pub fn neighbours(&self, step: usize) -> Option<(usize, usize)> {
         let is_move = |done: &TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
         let before = self.trace[..step].iter().rposition(is_move)?;
@@ -296,8 +296,8 @@ impl<'c> Context<'c> {
         (moves(before) && moves(after)).then_some((before, after))
     }
 
-    /// The corner at a movement's goal, the worst over all executions, or over all paths of the
-    /// control flow if it was not executed.
+    /// The corner at a movement's goal: worst case over all executions, or over all paths of the
+    /// control flow if never executed.
     pub fn corner(&self, site: usize) -> Option<Corner> {
         let executed = &self.sites[site].executions;
         if executed.is_empty() {
@@ -309,7 +309,7 @@ impl<'c> Context<'c> {
             Some(corner(&a?, &b?, &c?))
         });
         let corners: Vec<Corner> = corners.collect();
-        // The last movement of the trace has none after it.
+        // The last movement of the trace has no successor.
         if corners.is_empty() || corners.len() + 1 < executed.len() {
             return None;
         }
@@ -332,12 +332,12 @@ impl<'c> Context<'c> {
         worst(corners)
     }
 
-    /// What a change of movements or waits does to the cycle, if it can be simulated.
+    /// The effect of a change of movements or waits on the cycle, if it can be simulated.
     pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference> {
         difference(self.model?, self.cycle?, spans, change)
     }
 
-    /// What a change of movements or waits would save in a cycle.
+    /// The saving of a change of movements or waits in a cycle.
     pub fn weigh(&self, spans: &[Span], change: &Change<'_>) -> Weighed {
         match (self.model, self.cycle) {
             (Some(model), Some(cycle)) => weigh(model, cycle, spans, change),
@@ -376,7 +376,7 @@ fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize>
     starts
 }
 
-/// Completes what the text leaves open of a movement by its executions, where they agree.
+/// Fills unknown facts of a movement from its executions, if they agree.
 fn complete(site: &mut Site<'_>, trace: &[TraceStep<'_>]) {
     let mut executions = site.executions.iter().filter_map(|step| match &trace[*step].what {
         Action::Move(movement) => Some(facts_of(movement)),

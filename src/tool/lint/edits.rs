@@ -1,11 +1,11 @@
-//! Changes of the text that rules propose.
+//! Text edits that rules propose.
 
 use super::context::Context;
 use super::rule::{Applicability, Fix};
 use super::site::Site;
 use crate::rapid::text::{Edit, Span};
 
-/// Zones that every controller knows, m.
+/// Predefined zones: name, path and orientation size, mm.
 const ZONES: [(&str, f64, f64); 6] = [
     ("z1", 1.0, 1.0),
     ("z5", 5.0, 8.0),
@@ -14,13 +14,12 @@ const ZONES: [(&str, f64, f64); 6] = [
     ("z50", 50.0, 75.0),
     ("z100", 100.0, 150.0),
 ];
-/// Speeds that every controller knows, mm/s.
+/// Predefined speeds, mm/s.
 const SPEEDS: [u32; 20] = [
     50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500, 3000, 4000, 5000,
     6000, 7000,
 ];
 
-/// A zone by its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NamedZone {
     /// `z10` …
@@ -37,30 +36,29 @@ pub(super) fn zone_within(most: f64) -> Option<NamedZone> {
         fine: false,
         tcp: tcp * 1e-3,
         orientation: orientation * 1e-3,
-        // The predefined zones have a tenth of their size in degrees.
+        // The angle of predefined zones in degrees is a tenth of their size in mm.
         angle: (orientation * 0.1_f64).to_radians(),
     };
     Some(NamedZone { name, zone })
 }
 
-/// Predefined speeds below one, the fastest first, m/s.
+/// Predefined speeds below `than`, the fastest first, m/s.
 pub(super) fn slower(than: f64) -> impl Iterator<Item = (String, f64)> {
     let below = SPEEDS.iter().rev().map(|speed| (*speed, f64::from(*speed) * 1e-3));
     below.filter(move |(_, speed)| *speed < than - 1e-9).map(|(v, speed)| (format!("v{v}"), speed))
 }
 
-/// Other text in place of a span.
 pub(super) fn replace(span: Span, text: &str) -> Edit {
     Edit { span, text: text.as_bytes().to_vec() }
 }
 
-/// A fix of one edit.
+/// A fix with one edit.
 pub(super) fn fix(applicability: Applicability, edit: Edit) -> Fix {
     Fix { applicability, edits: vec![edit] }
 }
 
-/// Removes a statement, with its line if nothing else stands on it. `None` for the only statement of
-/// a compact `IF`.
+/// Removes a statement, with its line if nothing else is on it. `None` for the only statement of a
+/// compact `IF`.
 pub(super) fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
     if site.compact {
         return None;
@@ -68,7 +66,7 @@ pub(super) fn remove(context: &Context<'_>, site: &Site<'_>) -> Option<Edit> {
     Some(Edit { span: with_line(context, site.stmt.span), text: Vec::new() })
 }
 
-/// A span with its line if only white space stands around it.
+/// A span, extended to its whole line if only white space surrounds it.
 pub(super) fn with_line(context: &Context<'_>, span: Span) -> Span {
     let bytes = &context.files[span.file.0 as usize].bytes;
     let blank = |byte: &u8| matches!(byte, b' ' | b'\t');

@@ -1,4 +1,4 @@
-//! All rules on all programs.
+//! Runs all rules on all programs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -23,14 +23,14 @@ use crate::rapid::text::Span;
 use crate::retime::energy::account;
 use crate::retime::motion::simulate;
 
-/// What was found.
+/// The result of a lint run.
 #[derive(Debug, Default)]
 pub struct Report {
-    /// In the order of the files.
+    /// In file order.
     pub findings: Vec<Finding>,
-    /// Energy of the cycles that were simulated, J; `None` where nothing was, or without dynamics.
+    /// Energy of the simulated cycles, J; `None` without any, or without dynamics.
     pub cycle_energy_j: Option<f64>,
-    /// Number of places that could not be resolved.
+    /// Number of unresolved places.
     pub unresolved: usize,
 }
 
@@ -49,22 +49,21 @@ impl Report {
     }
 }
 
-/// A file that was read.
 struct Read {
     modules: Vec<Module>,
     suppressions: Vec<Suppression>,
 }
 
-/// The parsed files of the last examination: a file that did not change is not parsed again.
+/// The parsed files of the last run; unchanged files are not parsed again.
 #[derive(Default)]
 pub struct ReadCache {
     files: Vec<(Vec<u8>, Arc<Read>)>,
 }
 
-/// What was found, and the simulated cycle of each program, in the order of the programs; none
-/// without a robot or an entry.
+/// A report with the simulated cycle of each program, in program order; `None` without a robot or
+/// an entry.
 pub struct Examined {
-    /// What was found.
+    /// The report.
     pub report: Report,
     /// The cycles.
     pub cycles: Vec<Option<Cycle>>,
@@ -76,12 +75,12 @@ pub struct Examined {
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
     let read = read(job, &ReadCache::default());
-    // No cycle is kept: those of a plant's programs would fill the memory.
+    // Cycles are not kept: those of all programs of a plant would fill the memory.
     let report = |unit: &Group| one(job, unit, &read).0;
     merged(units(job, &read).par_iter().map(report).collect())
 }
 
-/// Lints all programs, and gives their cycles too.
+/// Lints all programs; also returns their cycles.
 #[must_use]
 pub fn examine(job: &Job<'_>) -> Examined {
     let read = read(job, &ReadCache::default());
@@ -89,7 +88,7 @@ pub fn examine(job: &Job<'_>) -> Examined {
     examine_units(job, &units, &read)
 }
 
-/// Lints the programs that hold a file; only changed files are parsed again.
+/// Lints the programs that contain a file; only changed files are parsed again.
 #[must_use]
 pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut ReadCache) -> Examined {
     let read = read(job, kept);
@@ -106,7 +105,6 @@ fn examine_units(job: &Job<'_>, units: &[Group], read: &[Arc<Read>]) -> Examined
     Examined { report: merged(reports), cycles, programs }
 }
 
-/// The reports of all programs as one.
 fn merged(reports: Vec<Report>) -> Report {
     let mut all = Report::default();
     for report in reports {
@@ -138,8 +136,7 @@ fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<Read>> {
         .collect()
 }
 
-/// The simulated cycle of each program, in the order of the programs; none without a robot or
-/// an entry.
+/// The simulated cycle of each program, in program order; `None` without a robot or an entry.
 #[must_use]
 pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
     let read = read(job, &ReadCache::default());
@@ -152,8 +149,8 @@ pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
     units(job, &read).par_iter().map(cycle).collect()
 }
 
-/// The programs of a job. Where the files of a group have several entries, each file with one
-/// is a program of its own, and so is each other file.
+/// The programs of a job. A group with several entries is split by folder, and a folder with several
+/// entries by file.
 fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
     let mut units = Vec::new();
     for group in &job.groups {
@@ -184,7 +181,6 @@ fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
     units
 }
 
-/// One program.
 fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle>) {
     let modules = unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
     let program = Program::new(modules);
@@ -210,7 +206,7 @@ fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle
         worth && !settings.ignores_in(finding.rule, path)
     });
     let dynamics = job.model.is_some_and(Model::has_dynamics);
-    // A wait without an end has an infinite energy, which cannot be added up.
+    // An endless wait has infinite energy, which cannot be added up.
     let energy = cycle
         .as_ref()
         .filter(|_| dynamics)
@@ -228,9 +224,9 @@ fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
     Some(Cycle::new(model, simulation, account, job.options.clone()))
 }
 
-/// Drops the findings that comments suppress, and adds findings for comments that suppress none.
+/// Removes the suppressed findings, and adds findings for unused suppressions.
 fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
-    // By file, comment and code of the comment.
+    // Keys: file, comment, code of the comment.
     let mut used: BTreeSet<(usize, usize, usize)> = BTreeSet::new();
     findings.retain(|finding| {
         let file = finding.span.file.0 as usize;

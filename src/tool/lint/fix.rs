@@ -1,4 +1,4 @@
-//! Applies fixes, and takes back those that do not save energy.
+//! Applies fixes, and withdraws those that do not save energy.
 
 use super::engine::{Examined, Report, cycles, examine, lint};
 use super::job::Job;
@@ -10,29 +10,28 @@ use crate::rapid::text::{Edit, FileId, SourceFile, apply};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Most rounds of linting and fixing.
 const MOST_ROUNDS: usize = 40;
-/// Largest distance between two joint positions that count as one, rad.
+/// Maximum distance of equal joint positions, rad.
 const SAME: f64 = 1e-4;
 /// Rounding of an energy, J.
 const ROUNDING: f64 = 1e-6;
 
-/// What became of the files.
+/// The result of fixing.
 #[derive(Debug)]
 pub struct Fixed {
-    /// All files, as they are now.
+    /// All files with their new content.
     pub files: Vec<SourceFile>,
-    /// Fixes that stayed.
+    /// Number of kept fixes.
     pub applied: usize,
-    /// Fixes that were taken back.
+    /// Number of withdrawn fixes.
     pub withdrawn: usize,
-    /// What is left to find.
+    /// The remaining findings.
     pub report: Report,
 }
 
 /// Applies the fixes up to an applicability until none is left that saves energy. The cycle is
-/// simulated before and after each; a fix stays only if the cycle takes less energy with the same
-/// waits and outputs in the same order at the same places.
+/// simulated before and after each one; a fix stays only if the cycle takes less energy for the
+/// same process (see `same_process`).
 #[must_use]
 pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let mut files = job.files.to_vec();
@@ -41,7 +40,7 @@ pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
         let now = with_files(job, &files);
         let Examined { report, cycles: mut before, .. } = examine(&now);
         let chosen = candidates(&report, most);
-        // All at once if they are compatible, else one after the other.
+        // All at once if they are compatible, otherwise one by one.
         let mut kept: Vec<&Finding> = Vec::new();
         let mut result = attempt(job, &files, &before, &chosen).map(|(after, _)| after);
         if result.is_some() {
@@ -73,8 +72,8 @@ fn with_files<'j>(job: &Job<'j>, files: &'j [SourceFile]) -> Job<'j> {
     Job { files, groups: job.groups.clone(), options: job.options.clone(), ..*job }
 }
 
-/// Fixes that can be tried together: the largest savings first, none of them about a statement
-/// or a text that another one changes.
+/// Fixes that can be tried together, the largest savings first: no fix changes a statement or text
+/// of another one.
 fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
     let simulated = |finding: &&Finding| {
         let comment = finding.rule.family == Family::Comments;
@@ -100,8 +99,7 @@ fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
     list
 }
 
-/// The files with the fixes and their cycles, if these take less energy than those before with the
-/// same process.
+/// The fixed files and their cycles, if these take less energy for the same process.
 fn attempt(
     job: &Job<'_>,
     files: &[SourceFile],
@@ -148,8 +146,8 @@ fn attempt(
     (better && before.len() == after.len()).then_some((changed, after))
 }
 
-/// Whether two cycles wait for the same and set the same outputs, in the same order and at the
-/// same places, and end at the same place.
+/// Whether both cycles have the same waits and outputs in the same order, equal poses at waits and
+/// end, and no additional problem.
 fn same_process(before: &Cycle, after: &Cycle) -> bool {
     let actions = |cycle: &Cycle| -> Vec<String> {
         let trace = trace::of_simulation(&cycle.simulation);

@@ -1,4 +1,4 @@
-//! What comes next on every way through a program, across calls and returns.
+//! The next actions on every path through a program, across calls and returns.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,13 +8,13 @@ use crate::rapid::ir::graph::{Graph, NodeId, Step, When};
 use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
 
-/// Statements that are looked at before a question is given up.
+/// Maximum number of visited statements per search.
 const MOST_STEPS: usize = 2_000;
 
-/// A statement: its routine and its node in the graph.
+/// A statement, given by routine and node of the graph.
 pub type Place = (RoutineId, NodeId);
 
-/// What comes next.
+/// A next action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Next {
     /// A movement.
@@ -23,16 +23,16 @@ pub enum Next {
     Output(Place),
     /// The program waits.
     Wait(Place),
-    /// Something that may ask for a robot that stands still.
+    /// A statement that may require standstill.
     Other,
     /// The program ends.
     End,
 }
 
-/// What a statement means for the movement before it.
+/// The meaning of a statement for the movement before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Nothing.
+    /// No effect.
     Quiet,
     /// It moves.
     Move,
@@ -42,18 +42,18 @@ pub enum Class {
     Output,
     /// It waits.
     Wait,
-    /// It may ask for a robot that stands still.
+    /// It may require standstill.
     Other,
 }
 
-/// What a search looks through.
+/// Statements that a search passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Through {
-    /// Statements that mean nothing for the robot.
+    /// Statements without effect.
     Quiet,
-    /// These, and outputs.
+    /// Statements without effect, and outputs.
     Outputs,
-    /// Everything but movements.
+    /// Everything except movements.
     All,
 }
 
@@ -63,13 +63,13 @@ pub struct Flow<'p> {
     entry: Option<RoutineId>,
     graphs: BTreeMap<RoutineId, (Graph<'p>, Vec<bool>)>,
     callers: BTreeMap<RoutineId, Vec<Place>>,
-    /// Whether some call names its routine by a text.
+    /// Whether some call has a computed name.
     late: bool,
     quiet: Quiet<'p>,
 }
 
 impl<'p> Flow<'p> {
-    /// The flow of a program that starts with `entry`, if it is known where.
+    /// The control flow of a program that starts with `entry`, if known.
     pub fn new(program: &'p Program, entry: Option<RoutineId>) -> Flow<'p> {
         let mut graphs = BTreeMap::new();
         for (module, body) in program.modules.iter().enumerate() {
@@ -114,7 +114,7 @@ impl<'p> Flow<'p> {
         self.graphs.iter().map(|(id, (graph, reachable))| (*id, graph, reachable.as_slice()))
     }
 
-    /// Whether some call names its routine by a text.
+    /// Whether some call has a computed name.
     pub fn has_late_calls(&self) -> bool {
         self.late
     }
@@ -132,7 +132,7 @@ impl<'p> Flow<'p> {
         }
     }
 
-    /// What a statement of a routine means for the movement before it.
+    /// The meaning of a statement for the movement before it.
     pub fn class(&self, routine: RoutineId, stmt: &Stmt) -> Class {
         let quiet = |is: bool| if is { Class::Quiet } else { Class::Other };
         match &stmt.kind {
@@ -171,7 +171,7 @@ impl<'p> Flow<'p> {
         }
     }
 
-    /// What comes next behind a place, on every way.
+    /// The next actions after a place, on every path.
     pub fn following(&self, from: Place, through: Through) -> BTreeSet<Next> {
         let mut found = BTreeSet::new();
         let mut seen = BTreeSet::new();
@@ -225,17 +225,17 @@ impl<'p> Flow<'p> {
         found
     }
 
-    /// Whether the program starts with a routine.
+    /// Whether a routine is the entry.
     pub fn is_entry(&self, routine: RoutineId) -> bool {
         self.entry == Some(routine)
     }
 
-    /// Whether the robot may be anywhere behind a statement of a routine.
+    /// Whether the robot position after a statement is unknown.
     pub fn is_loose(&self, routine: RoutineId, stmt: &Stmt) -> bool {
         self.class(routine, stmt) == Class::Other && self.is_unknown(stmt)
     }
 
-    /// Whether a statement may lead anywhere: a call of something that is not among the files.
+    /// Whether a statement may lead anywhere: it calls something outside the files.
     pub fn is_unknown(&self, stmt: &Stmt) -> bool {
         match &stmt.kind {
             StmtKind::Call(call) => match &call.callee {
@@ -255,7 +255,7 @@ impl<'p> Flow<'p> {
         open.extend(ways.map(|(_, to)| (routine, *to)));
     }
 
-    /// Behind the end of a routine comes what stands behind its calls.
+    /// Continues a search after the calls of a routine.
     fn leave(&self, routine: RoutineId, open: &mut Vec<Place>, found: &mut BTreeSet<Next>) {
         let callers = self.callers(routine);
         if self.entry == Some(routine) || callers.is_empty() {

@@ -1,8 +1,8 @@
-//! Which files make one program.
+//! Groups of files that form a program.
 
 use super::system::System;
 
-/// Files that may belong together, and how they run.
+/// Files that may belong together, with their entry.
 #[derive(Clone, Debug)]
 pub struct Group {
     /// Ids of the files.

@@ -1,4 +1,4 @@
-//! What is linted, and how.
+//! The input of a lint run.
 
 use super::group::Group;
 use super::settings::Settings;
@@ -6,37 +6,37 @@ use crate::arm::robot::Model;
 use crate::rapid::text::{FileId, SourceFile};
 use crate::retime::motion::Options;
 
-/// What is linted.
+/// The input of a lint run.
 pub struct Job<'j> {
     /// The files; their ids count from 0.
     pub files: &'j [SourceFile],
-    /// Which belong together.
+    /// Groups of files that belong together.
     pub groups: Vec<Group>,
     /// The robot.
     pub model: Option<&'j Model>,
-    /// How programs are simulated.
+    /// Options of the simulations.
     pub options: Options,
-    /// What the user asks.
+    /// Settings of the user.
     pub settings: &'j Settings,
 }
 
-/// Programs as they were read, with all that a [`Job`] needs.
+/// Programs with all data that a [`Job`] needs.
 #[derive(Default)]
 pub struct Programs {
     /// The files; their ids count from 0.
     pub files: Vec<SourceFile>,
-    /// Which belong together.
+    /// Groups of files that belong together.
     pub groups: Vec<Group>,
     /// The robot.
     pub model: Option<Model>,
-    /// How programs are simulated.
+    /// Options of the simulations.
     pub options: Options,
-    /// What the user asks.
+    /// Settings of the user.
     pub settings: Settings,
 }
 
 impl Programs {
-    /// Adds a file to the first group; its index.
+    /// Adds a file to the first group; returns its index.
     pub fn add(&mut self, file: SourceFile) -> usize {
         let index = self.files.len();
         self.files.push(SourceFile { id: FileId(index as u32), ..file });
@@ -48,7 +48,7 @@ impl Programs {
         index
     }
 
-    /// All of it, to be linted.
+    /// The job that lints all of it.
     #[must_use]
     pub fn job(&self) -> Job<'_> {
         Job {

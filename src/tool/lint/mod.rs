@@ -1,9 +1,9 @@
-//! Finds wasted energy in programs. One rule is one file of `rules`, whose doc comment is its
-//! manual; `register` lists them.
+//! Finds wasted energy in programs. Each file of `rules` contains one rule; its doc comment is the
+//! manual. `register` lists all rules.
 //!
-//! Rules look at a [`context::Context`]: the control flow of a program, what it does in order,
-//! and, where the robot is known, a simulated cycle with its joules. What a rule proposes is
-//! weighed by laying the part of the cycle around it on a time line again.
+//! Rules receive a [`context::Context`]: the control flow of a program, its actions in order, and
+//! with a known robot a simulated cycle with energies. A proposed change is evaluated by simulating
+//! the part of the cycle around it again.
 
 pub mod context;
 mod edits;

@@ -1,4 +1,4 @@
-//! Expressions that read nothing but data: the robot need not have arrived for them.
+//! Expressions that read only data, so that they do not require the robot's arrival.
 
 use std::collections::BTreeSet;
 
@@ -6,15 +6,15 @@ use crate::rapid::builtins;
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, DataKind, Expr, ExprKind, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
 
-/// What names of a program are data.
+/// The names of a program that denote data.
 pub struct Quiet<'p> {
     program: &'p Program,
-    /// Loop variables, which nothing declares.
+    /// Loop variables, which have no declaration.
     counted: BTreeSet<(RoutineId, &'p str)>,
 }
 
 impl<'p> Quiet<'p> {
-    /// Of the routines of a program.
+    /// The data names of a program.
     pub fn new(program: &'p Program) -> Quiet<'p> {
         let mut counted = BTreeSet::new();
         for (module, body) in program.modules.iter().enumerate() {
@@ -27,7 +27,7 @@ impl<'p> Quiet<'p> {
         Quiet { program, counted }
     }
 
-    /// Whether an expression of a routine reads nothing but data.
+    /// Whether an expression of a routine reads only data.
     pub fn expression(&self, routine: RoutineId, expr: &Expr) -> bool {
         match &expr.kind {
             ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) | ExprKind::AnyPosition => true,
@@ -50,7 +50,7 @@ impl<'p> Quiet<'p> {
         }
     }
 
-    /// Whether all arguments read nothing but data.
+    /// Whether all arguments read only data.
     pub fn arguments(&self, routine: RoutineId, args: &[Arg]) -> bool {
         args.iter().all(|arg| match &arg.kind {
             ArgKind::Positional(expr)
@@ -61,15 +61,15 @@ impl<'p> Quiet<'p> {
         })
     }
 
-    /// Whether a name of a routine stands for data of the program or of RAPID.
+    /// Whether a name in a routine denotes data of the program or predefined data.
     pub fn is_data(&self, routine: RoutineId, key: &str) -> bool {
         self.is_local(routine, key)
             || self.program.resolve(routine.module, key).is_some()
             || builtins::predefined(key).is_some()
     }
 
-    /// Whether writing to a target may tell another task something: `PERS` data that are no
-    /// numbers, since those mostly count.
+    /// Whether a write to a target may signal another task: `PERS` data other than numbers, which
+    /// are mostly counters.
     pub fn is_flag(&self, routine: RoutineId, target: &Expr) -> bool {
         match &target.kind {
             ExprKind::Ref(name) => {
@@ -85,7 +85,7 @@ impl<'p> Quiet<'p> {
         }
     }
 
-    /// Whether a name belongs to the routine itself.
+    /// Whether a routine itself declares a name.
     pub fn is_local(&self, routine: RoutineId, key: &str) -> bool {
         let declared = self.program.routine(routine);
         declared.params.iter().any(|param| param.name.key == key)
@@ -94,7 +94,7 @@ impl<'p> Quiet<'p> {
     }
 }
 
-/// Loop variables and data declared between statements. The depth is limited by the parser.
+/// Collects loop variables and data declared between statements. The parser limits the depth.
 fn count<'p>(id: RoutineId, block: &'p Block, counted: &mut BTreeSet<(RoutineId, &'p str)>) {
     for stmt in block {
         match &stmt.kind {

@@ -3,7 +3,7 @@
 use super::rule::Rule;
 use super::rules as r;
 
-/// Each rule once, by code.
+/// All rules, ordered by code.
 pub static ALL: [&Rule; 35] = [
     &r::unused_suppression::RULE,
     &r::unneeded_stop_point::RULE,

@@ -1,11 +1,11 @@
-//! What a rule is, and what it finds.
+//! The types of rules and findings.
 
 use super::context::Context;
 use super::saving::Saving;
 use crate::rapid::diagnostics::Severity;
 use crate::rapid::text::{Edit, Span};
 
-/// What rules are about.
+/// The subject of a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Family {
     /// Comments of the linter itself.
@@ -16,7 +16,7 @@ pub enum Family {
     Speed,
     /// Waits.
     Dwell,
-    /// Where movements lead.
+    /// Targets of movements.
     Path,
     /// Tool and payload data.
     Load,
@@ -29,7 +29,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// Its name: a selector of all its rules.
+    /// Its name, which selects all its rules.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -46,14 +46,14 @@ impl Family {
     }
 }
 
-/// What a rule has to know to find anything.
+/// The input that a rule requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
-    /// The text.
+    /// Only the text.
     Text,
-    /// The robot too.
+    /// The robot, too.
     Robot,
-    /// A controller's backup.
+    /// A backup of the controller.
     Backup,
 }
 
@@ -61,22 +61,22 @@ pub enum Needs {
 pub struct Rule {
     /// `EW101` …: the family's digit and a number.
     pub code: &'static str,
-    /// The bad pattern.
+    /// Name of the wasteful pattern.
     pub name: &'static str,
-    /// What it is about.
+    /// The subject.
     pub family: Family,
-    /// What it has to know.
+    /// The required input.
     pub needs: Needs,
-    /// How much a finding matters.
+    /// Severity of a finding.
     pub severity: Severity,
-    /// The rule's own file: its doc comment is the manual.
+    /// The rule's source file: its doc comment is the manual.
     pub(super) source: &'static str,
-    /// Finds it.
+    /// Finds the pattern.
     pub(super) check: fn(&Context<'_>, &mut Vec<Finding>),
 }
 
 impl Rule {
-    /// The manual, as Markdown: a sentence, then chapters (`## What it does` …).
+    /// The manual as Markdown: a sentence, then chapters (`## What it does` …).
     #[must_use]
     pub fn manual(&self) -> String {
         let lines = self.source.lines().map_while(|line| line.strip_prefix("//!"));
@@ -93,7 +93,7 @@ impl Rule {
         manual.split("\n\n").next().unwrap_or_default().replace('\n', " ")
     }
 
-    /// Whether a selector means it: its code, the start of its code, its name, or its family.
+    /// Whether a selector matches it: its code, a prefix of its code, its name, or its family.
     #[must_use]
     pub fn is_meant(&self, selector: &str) -> bool {
         let selector = selector.trim();
@@ -111,29 +111,29 @@ impl std::fmt::Debug for Rule {
     }
 }
 
-/// Something that wastes energy.
+/// A place that wastes energy.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// The rule.
     pub rule: &'static Rule,
     /// The place.
     pub span: Span,
-    /// What is wrong there, without the saving: lower case, no full stop.
+    /// The problem without the saving: lower case, no full stop.
     pub message: String,
-    /// The change that saves, in words: "`z50` in place of `fine`".
+    /// The saving change in words, such as "`z50` in place of `fine`".
     pub change: String,
-    /// What the change saves in a cycle; `None` where it cannot be simulated.
+    /// Saving of the change in a cycle; `None` if it cannot be simulated.
     pub saving: Option<Saving>,
-    /// What it rests on.
+    /// Assumptions of the saving.
     pub assumptions: Vec<String>,
     /// The change as edits.
     pub fix: Option<Fix>,
-    /// Other places that explain it.
+    /// Related places.
     pub related: Vec<(Span, String)>,
 }
 
 impl Finding {
-    /// A finding with a message alone.
+    /// A finding with only a message.
     pub fn new(rule: &'static Rule, span: Span, message: impl Into<String>) -> Finding {
         Finding {
             rule,
@@ -147,7 +147,7 @@ impl Finding {
         }
     }
 
-    /// The message, with what the change saves and how to reproduce it.
+    /// The message with the saving, and how to reproduce it.
     #[must_use]
     pub fn full_message(&self) -> String {
         let Some(saving) = &self.saving else { return self.message.clone() };
@@ -164,17 +164,17 @@ impl Finding {
     }
 }
 
-/// Whether the process stays the same.
+/// Whether a fix keeps the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Applicability {
     /// Provably: same path, same order, same end points.
     Safe,
-    /// Somebody has to look at it first.
+    /// The user must review it first.
     Unsafe,
 }
 
 impl Applicability {
-    /// Its name in results.
+    /// Its name in outputs.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -187,8 +187,8 @@ impl Applicability {
 /// A change of the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fix {
-    /// Whether the process stays the same.
+    /// Whether it keeps the process.
     pub applicability: Applicability,
-    /// What to replace; all or nothing.
+    /// The edits, to be applied together.
     pub edits: Vec<Edit>,
 }

@@ -1,36 +1,36 @@
-//! What a change saves.
+//! The saving of a change.
 
-/// What a change saves.
+/// The saving of a change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saving {
     /// J.
     pub energy_j: f64,
-    /// Lower end of the interval that holds 90 % of the plausible robots (5 % on each side left out), J.
+    /// Lower end of the 90 % interval over the plausible robots, J.
     pub low_j: f64,
-    /// Its upper end, J.
+    /// Upper end, J.
     pub high_j: f64,
-    /// s; negative where the change takes longer.
+    /// s; negative if the change takes longer.
     pub time_s: f64,
 }
 
-/// A change saves nothing.
+/// The change saves nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it saves nothing; leave it as it is")]
 pub struct SavesNothing;
 
-/// The outcome of weighing a change.
+/// The result of evaluating a change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weighed {
     /// It cannot be simulated.
     Unknown,
-    /// It saves nothing, or its interval reaches below zero.
+    /// It saves nothing, or its interval includes zero.
     Nothing,
-    /// It saves this.
+    /// It saves energy.
     Saves(Saving),
 }
 
 impl Weighed {
-    /// The saving, if there is one.
+    /// The saving, if known.
     ///
     /// # Errors
     /// The change saves nothing.

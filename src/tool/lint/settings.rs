@@ -1,24 +1,24 @@
-//! What a user asks of the linter.
+//! Settings of the linter.
 
 use std::collections::BTreeMap;
 
 use super::rule::Rule;
 
-/// Savings below this are not worth a remark where nothing else is said, J.
+/// Default threshold of a reported saving, J.
 pub const THRESHOLD_J: f64 = 1.0;
 
-/// What a user asks of the linter.
+/// Settings of the linter.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Codes, starts of codes, names or families of rules that run.
+    /// Enabled rules: codes, prefixes of codes, names or families.
     pub select: Vec<String>,
-    /// The same of rules that don't.
+    /// Disabled rules, in the same form.
     pub ignore: Vec<String>,
-    /// What is ignored in files whose path fits a pattern with `*`, `**` and `?`.
+    /// Disabled rules by path pattern with `*`, `**` and `?`.
     pub per_file_ignores: BTreeMap<String, Vec<String>>,
-    /// Least saving that is told, J.
+    /// Minimum reported saving, J.
     pub threshold_j: f64,
-    /// The same by code or family, J.
+    /// The same by code, name or family, J.
     pub thresholds_j: BTreeMap<String, f64>,
 }
 
@@ -35,21 +35,21 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Whether a rule runs at all.
+    /// Whether a rule is enabled.
     pub fn selects(&self, rule: &Rule) -> bool {
         let any = |list: &[String]| list.iter().any(|selector| rule.is_meant(selector));
         any(&self.select) && !any(&self.ignore)
     }
 
-    /// Whether a rule's findings in a file are dropped.
+    /// Whether a rule is disabled in a file.
     pub fn ignores_in(&self, rule: &Rule, path: &str) -> bool {
         self.per_file_ignores.iter().any(|(pattern, selectors)| {
             fits_path(pattern, path) && selectors.iter().any(|selector| rule.is_meant(selector))
         })
     }
 
-    /// Least saving of a rule that is told, J: the closest of code, name, start of a code and
-    /// family counts.
+    /// Minimum reported saving of a rule, J. The most specific key counts: code, name, prefix of
+    /// the code, family.
     pub fn threshold_j(&self, rule: &Rule) -> f64 {
         let closeness = |key: &str| {
             if key.eq_ignore_ascii_case(rule.name) || key.eq_ignore_ascii_case(rule.code) {
@@ -65,16 +65,16 @@ impl Settings {
     }
 }
 
-/// Whether a pattern fits a path, its name, or the end of it behind a `/`.
+/// Whether a pattern matches a path, its file name, or its end after a `/`.
 fn fits_path(pattern: &str, path: &str) -> bool {
     let starts = std::iter::once(0).chain(path.match_indices('/').map(|(at, _)| at + 1));
     let (pattern, path) = (pattern.to_lowercase(), path.to_lowercase());
     starts.into_iter().any(|at| fits(pattern.as_bytes(), path.as_bytes().get(at..).unwrap_or(&[])))
 }
 
-/// `*` stands for anything but `/`, `**` for anything, `?` for one character.
+/// `*` matches anything except `/`, `**` anything, `?` one character.
 fn fits(pattern: &[u8], text: &[u8]) -> bool {
-    // Places of the pattern that a start of the text can lead to.
+    // Pattern positions reachable by the consumed text.
     let mut here = vec![false; pattern.len() + 1];
     here[0] = true;
     let spread = |here: &mut Vec<bool>| {

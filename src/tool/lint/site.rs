@@ -1,4 +1,4 @@
-//! Movement statements, with what is known of them from the text alone.
+//! Movement statements, with the facts that the text alone determines.
 
 use std::collections::BTreeSet;
 
@@ -19,13 +19,13 @@ use crate::rapid::text::Span;
 /// A movement statement.
 #[derive(Debug)]
 pub struct Site<'p> {
-    /// Where it stands.
+    /// Its place in the control flow.
     pub place: Place,
     /// The statement.
     pub stmt: &'p Stmt,
     /// The instruction as written.
     pub name: &'p str,
-    /// Where the instruction's name stands.
+    /// Span of the instruction's name.
     pub name_span: Span,
     /// Its form.
     pub signature: MoveSignature,
@@ -43,26 +43,26 @@ pub struct Site<'p> {
     pub options: Vec<&'p str>,
     /// Whether it is reachable.
     pub reachable: bool,
-    /// True if it is the one statement of a compact `IF`.
+    /// Whether it is the only statement of a compact `IF`.
     pub compact: bool,
-    /// What is known of it.
+    /// The known facts.
     pub facts: Facts,
     /// Its executions: indices into the trace.
     pub executions: Vec<usize>,
 }
 
-/// What is known of a movement without a robot, for every execution.
+/// Facts of a movement that hold for every execution and need no robot.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     /// Its zone.
     pub zone: Option<Zone>,
     /// Its speed.
     pub speed: Option<Speed>,
-    /// Where it goes.
+    /// Its goal.
     pub goal: Option<Goal>,
 }
 
-/// Where a movement goes.
+/// The goal of a movement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Goal {
     /// Joints, rad.
@@ -72,7 +72,7 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// The pose, if it is one.
+    /// The pose; `None` for joints.
     pub fn pose(&self) -> Option<&Isometry3<f64>> {
         match self {
             Goal::Pose(pose, _) => Some(pose),
@@ -80,9 +80,9 @@ impl Goal {
         }
     }
 
-    /// Whether two goals are the same place.
+    /// Whether two goals are equal.
     pub fn is_same(&self, other: &Goal) -> bool {
-        /// m, and as a length of quaternion differences.
+        /// m and rad.
         const SAME: f64 = 1e-5;
         match (self, other) {
             (Goal::Joints(a), Goal::Joints(b)) => {
@@ -99,7 +99,7 @@ impl Goal {
 }
 
 impl Site<'_> {
-    /// A movement that does nothing but move, without options that tie it to anything.
+    /// Whether it only moves, without options that couple it to other actions.
     pub fn is_plain(&self) -> bool {
         self.signature.plain
             && self.signature.form != MoveForm::ExternalJoint
@@ -109,22 +109,22 @@ impl Site<'_> {
             })
     }
 
-    /// A line or an arc.
+    /// Whether it is a line or an arc.
     pub fn is_linear(&self) -> bool {
         matches!(self.signature.form, MoveForm::Linear | MoveForm::Circular)
     }
 
-    /// True if it stops.
+    /// Whether it is a stop point.
     pub fn is_stop(&self) -> bool {
         self.facts.zone.is_some_and(|zone| zone.fine)
     }
 
-    /// The name of the tool, in lower case, if it is a name.
+    /// The lower-case name of the tool, if it is a name.
     pub fn tool_key(&self) -> Option<&str> {
         named(self.tool?)
     }
 
-    /// The name of the work object, in lower case; `wobj0` where none is given.
+    /// The lower-case name of the work object; `wobj0` by default.
     pub fn wobj_key(&self) -> Option<&str> {
         self.wobj.map_or(Some("wobj0"), named)
     }
@@ -137,7 +137,7 @@ fn named(expr: &Expr) -> Option<&str> {
     }
 }
 
-/// The movement statement of a call; `None` if it calls no movement instruction.
+/// The movement statement of a call; `None` for other instructions.
 pub fn site<'p>(
     program: &Program,
     quiet: &Quiet<'_>,
@@ -203,7 +203,7 @@ pub fn site<'p>(
     })
 }
 
-/// The value of an expression that is the same whenever its routine runs.
+/// The value of an expression if it is the same in every execution of its routine.
 pub fn constant(
     program: &Program,
     quiet: &Quiet<'_>,
@@ -246,7 +246,7 @@ pub fn facts_of(movement: &Movement) -> Facts {
     Facts { zone: Some(movement.zone), speed: Some(movement.speed), goal: Some(goal) }
 }
 
-/// Spans of the statements that are the only one of a compact `IF`.
+/// Spans of the only statements of compact `IF`s.
 pub fn compact(routine: &Routine) -> BTreeSet<Span> {
     let mut found = BTreeSet::new();
     for block in routine.blocks() {

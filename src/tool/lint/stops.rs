@@ -1,4 +1,4 @@
-//! Stop points that could be passed: conditions that several rules share.
+//! Conditions for unnecessary stop points, shared by several rules.
 
 use super::context::{Context, Corner};
 use super::edits::NamedZone;
@@ -8,12 +8,12 @@ use crate::rapid::ir::hir::RoutineKind;
 use crate::rapid::ir::movement::Movement;
 use crate::retime::motion::Step;
 
-/// Directions that differ by less are one, rad.
+/// Smaller differences of direction count as zero, rad.
 const STRAIGHT: f64 = 0.005;
-/// Orientations that differ by less are one, rad.
+/// Smaller differences of orientation count as zero, rad.
 const UNTURNED: f64 = 0.002;
 
-/// Whether a movement and all that follow it lie on one line.
+/// Whether a movement and all its successors lie on one line.
 pub(super) fn is_in_line(
     context: &Context<'_>,
     index: usize,
@@ -28,7 +28,7 @@ pub(super) fn is_in_line(
         && corner.room() > 0.0
 }
 
-/// The movements that follow a stop point, if nothing at it needs a stop.
+/// The movements that follow a stop point, if nothing there requires a stop.
 pub(super) fn stops_for_movements(context: &Context<'_>, index: usize) -> Option<Vec<usize>> {
     let site = &context.sites[index];
     let routine = context.program.routine(site.place.0);

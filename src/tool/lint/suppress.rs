@@ -4,29 +4,29 @@ use super::rule::Rule;
 use crate::rapid::syntax::{Parse, TokenKind};
 use crate::rapid::text::{SourceFile, Span};
 
-/// What such a comment begins with, behind the `!`.
+/// The first words of such a comment after `!`.
 const WORDS: [&str; 2] = ["joulepath:", "ignore"];
 
-/// One comment that suppresses findings.
+/// A comment that suppresses findings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suppression {
     /// The comment.
     pub span: Span,
     /// The codes that it names, as written.
     pub codes: Vec<String>,
-    /// A line of the statement that it is about, from 1.
+    /// A line of the statement that it concerns, from 1.
     pub line: u32,
 }
 
 impl Suppression {
-    /// The indices of its codes that mean a rule.
+    /// The indices of its codes that match a rule.
     pub fn naming(&self, rule: &Rule) -> impl Iterator<Item = usize> {
         (0..self.codes.len()).filter(|index| rule.is_meant(&self.codes[*index]))
     }
 }
 
-/// The comments of a file that suppress findings. At the end of a line they concern that line, on
-/// a line of their own the next line with a statement.
+/// The suppression comments of a file. At the end of a line, a comment concerns that line; on its
+/// own line, the next line with a statement.
 pub fn suppressions(file: &SourceFile, parse: &Parse) -> Vec<Suppression> {
     let tokens = parse.tree.tokens();
     let mut found = Vec::new();
@@ -52,7 +52,7 @@ pub fn suppressions(file: &SourceFile, parse: &Parse) -> Vec<Suppression> {
     found
 }
 
-/// The codes of a comment, if it suppresses findings.
+/// The codes of a suppression comment; `None` for other comments.
 fn codes(comment: &str) -> Option<Vec<String>> {
     let mut rest = comment.trim_start().strip_prefix('!')?.trim_start();
     for word in WORDS {
@@ -62,7 +62,7 @@ fn codes(comment: &str) -> Option<Vec<String>> {
         }
         rest = rest[word.len()..].trim_start();
     }
-    // Codes are joined by commas, with or without spaces; what follows is the reason.
+    // Codes are separated by commas, with or without spaces; the rest is the reason.
     let mut codes = Vec::new();
     loop {
         let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '-').unwrap_or(rest.len());

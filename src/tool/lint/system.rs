@@ -1,4 +1,4 @@
-//! What a backup says of its controller, as far as rules ask for it.
+//! The controller configuration in a backup, as far as rules need it.
 
 use crate::arm::robot::system_parameters::section;
 use crate::rapid::text::{FileId, SourceFile, Span};
@@ -6,7 +6,7 @@ use crate::rapid::text::{FileId, SourceFile, Span};
 /// The configuration of a controller.
 #[derive(Clone, Debug)]
 pub struct System {
-    /// `EIO.cfg`, with its place among the files.
+    /// `EIO.cfg`, as one of the files.
     pub io: Option<FileId>,
     /// Text of `MOC.cfg`, if the backup has one.
     pub motion: Option<String>,
@@ -19,7 +19,7 @@ pub struct ConfiguredSignal {
     pub name: String,
     /// Its label.
     pub label: String,
-    /// Where its name stands.
+    /// Span of its name.
     pub span: Span,
 }
 
@@ -40,7 +40,7 @@ impl System {
         entries.iter().filter_map(signal).collect()
     }
 
-    /// Whether the configuration names a signal anywhere but where it declares signals.
+    /// Whether the configuration uses a signal outside its declaration.
     pub fn is_tied(&self, files: &[SourceFile], name: &str) -> bool {
         let Some(file) = self.io.map(|id| &files[id.0 as usize]) else { return false };
         let quoted = format!("\"{}\"", name.to_lowercase());

@@ -1,4 +1,4 @@
-//! What a program does, in order: from its simulation, or from a run without a robot.
+//! The actions of a program in order, from its simulation or from a run without a robot.
 
 use std::collections::BTreeMap;
 
@@ -9,21 +9,21 @@ use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{WaitBasis, What};
 
-/// Most steps of a recording.
+/// Maximum number of steps of a recording.
 const MOST_STEPS: usize = 50_000;
 
-/// One thing that a program does.
+/// One action of a program.
 #[derive(Debug)]
 pub struct TraceStep<'c> {
     /// Index of the event of the simulation, and of the movement in it.
     pub event: Option<(usize, usize)>,
-    /// s; 0 where it is not known.
+    /// s; 0 if unknown.
     pub duration: f64,
     /// The action.
     pub what: Action<'c>,
 }
 
-/// What a program does.
+/// An action.
 #[derive(Debug)]
 pub enum Action<'c> {
     /// It moves.
@@ -32,7 +32,7 @@ pub enum Action<'c> {
     Wait(&'c Wait, WaitBasis),
     /// It sets an output.
     Output(&'c Output),
-    /// It moves somewhere that is not known.
+    /// It moves to an unknown place.
     Left(Span),
 }
 
@@ -51,7 +51,7 @@ impl Action<'_> {
 /// The trace of a simulation.
 pub fn of_simulation(simulation: &Simulation) -> Vec<TraceStep<'_>> {
     let mut trace = Vec::new();
-    // Outputs between fly-by movements stand before the run that they belong into.
+    // Outputs between fly-by movements precede the run to which they belong.
     let mut held: Vec<(usize, usize, &Output)> = Vec::new();
     for (event, it) in simulation.events.iter().enumerate() {
         let output = |(event, _, output)| TraceStep {
@@ -96,11 +96,11 @@ pub fn of_simulation(simulation: &Simulation) -> Vec<TraceStep<'_>> {
     trace
 }
 
-/// The actions of a program that ran without a robot.
+/// The recorded actions of a program without a robot.
 #[derive(Debug, Default)]
 pub struct Recording {
     steps: Vec<Recorded>,
-    /// What could not be executed.
+    /// Statements that could not be executed.
     pub notes: Vec<Note>,
 }
 

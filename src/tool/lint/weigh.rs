@@ -1,5 +1,5 @@
-//! What a change of some movements or waits would save: the part of the cycle around them is
-//! simulated again, and the difference is taken.
+//! The saving of a change of movements or waits: the part of the cycle around it is simulated again
+//! and compared.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -17,26 +17,26 @@ use crate::retime::motion::timeline::{Event, Run, Simulation, WaitBasis, What};
 use crate::retime::motion::{Options, Step, replay};
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Largest distance between two joint positions that count as one, rad.
+/// Maximum distance of equal joint positions, rad.
 const SAME: f64 = 1e-4;
-/// Most runs after a change that may begin elsewhere because of it.
+/// Maximum number of later runs whose start a change may affect.
 const MOST_BEHIND: usize = 3;
-/// Most executions of a statement for which a saving is computed.
+/// Maximum number of executions of a statement for which a saving is computed.
 const MOST_EXECUTIONS: usize = 2_000;
 
 /// One simulated cycle of a program.
 pub struct Cycle {
-    /// What happened.
+    /// Its events.
     pub simulation: Simulation,
     /// Its energy.
     pub account: Account,
-    /// Robots as plausible as the one it was simulated with.
+    /// The plausible robots.
     robots: Option<Robots>,
-    /// How it was simulated.
+    /// Options of the simulation.
     pub options: Options,
-    /// The events that hold each statement, in order.
+    /// The events of each statement, in order.
     events: BTreeMap<Span, Vec<usize>>,
-    /// Whether the program goes on during a movement (`\Conc`).
+    /// Whether the program continues during a movement (`\Conc`).
     concurrent: bool,
 }
 
@@ -67,7 +67,7 @@ impl Cycle {
         Cycle { simulation, account, robots, options, events, concurrent }
     }
 
-    /// Events that hold one of some statements, in order.
+    /// The events of some statements, in order.
     fn touched(&self, spans: &[Span]) -> Vec<usize> {
         let places = spans.iter().filter_map(|span| self.events.get(span));
         let mut touched: Vec<usize> = places.flatten().copied().collect();
@@ -80,22 +80,21 @@ impl Cycle {
 /// The steps that replace a step of a changed statement.
 pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 
-/// What a change does to the cycle.
+/// The effect of a change on the cycle.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// Energy that it saves.
+    /// Saved energy.
     pub saved: EnergyParts,
-    /// Energy that it saves with each plausible robot \[J\]; empty where nothing of the robot is
-    /// uncertain.
+    /// Saved energy for each plausible robot \[J\]; empty without uncertainty.
     pub plausible_j: Vec<f64>,
-    /// Time that it saves, s.
+    /// Saved time, s.
     pub time_s: f64,
-    /// Time that the cycle would be longer if no wait absorbed it, s.
+    /// Increase of the cycle time if no wait absorbed it, s.
     pub longer_s: f64,
 }
 
 impl Difference {
-    /// What it is worth.
+    /// The evaluation of its saving.
     pub fn weighed(&self) -> Weighed {
         let energy_j = self.saved.energy_j();
         let (low_j, high_j) = if self.plausible_j.is_empty() {
@@ -111,12 +110,12 @@ impl Difference {
     }
 }
 
-/// Weighs a change of every execution of the statements at `spans`.
+/// Evaluates a change of every execution of the statements at `spans`.
 pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Weighed {
     difference(model, cycle, spans, change).map_or(Weighed::Unknown, |it| it.weighed())
 }
 
-/// What a change of every execution of the statements at `spans` does; `None` where it cannot be
+/// The effect of a change of every execution of the statements at `spans`; `None` if it cannot be
 /// simulated.
 pub fn difference(
     model: &Model,
@@ -143,7 +142,7 @@ pub fn difference(
         saved += at_rest(model, &rest.load, &rest.q, lasts) * -rest.longer_s.signum();
     }
     let plausible_j = match &cycle.robots {
-        // A change that costs energy with the robot itself is not reported anyway.
+        // A change that costs energy with the nominal robot is not reported anyway.
         Some(robots) if saved.energy_j() > 0.0 => {
             let sums = sums(model, cycle, &parts, &rests);
             let changes = robots.changes(model, &sums);
@@ -154,7 +153,7 @@ pub fn difference(
     Some(Difference { saved, plausible_j, time_s, longer_s: -alone_s })
 }
 
-/// Sums of what is saved, over the parts that are replayed.
+/// Energy moments of the saving, summed over the replayed parts.
 fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
     let mut sums = Moments::none(model);
     for Replayed { range, after, .. } in parts {
@@ -173,22 +172,22 @@ fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Mom
     sums
 }
 
-/// A part of the cycle, as events, and its simulation after a change.
+/// A range of events, and its simulation after a change.
 struct Replayed {
     range: RangeInclusive<usize>,
     after: Simulation,
-    /// By how much the rest after it gets longer, s.
+    /// Increase of the rest after it, s.
     longer_s: f64,
 }
 
-/// Standing still for longer, or shorter.
+/// A longer or shorter standstill.
 struct Rest {
     load: Load,
     q: Joints,
     longer_s: f64,
 }
 
-/// The parts of the cycle that a change touches, and the rests after them.
+/// The parts of the cycle that a change affects, and the rests after them.
 fn replayed(
     model: &Model,
     cycle: &Cycle,
@@ -222,8 +221,8 @@ fn replayed(
     Some((replayed, rests))
 }
 
-/// From the run at or before an event to the next run. The event alone if it is a run that stops at
-/// its end after the change too: then the next run begins as it did.
+/// From the run at or before an event to the next run. Only the event itself if it is a run that
+/// also stops after the change: then the next run starts as before.
 fn window(
     simulation: &Simulation,
     event: usize,
@@ -240,7 +239,7 @@ fn window(
     first..=next_run(simulation, event)
 }
 
-/// Whether the last movement of a run is a stop point after a change.
+/// Whether a run ends at a stop point after a change.
 fn stops(run: &Run, spans: &[Span], change: &Change<'_>) -> bool {
     let Some(last) = run.moves.last() else { return false };
     if !spans.contains(&last.movement.span) {
@@ -265,8 +264,8 @@ fn next_run(simulation: &Simulation, event: usize) -> usize {
     behind.find(|i| matches!(simulation.events[*i].what, What::Run(_))).unwrap_or(last)
 }
 
-/// The window, made longer until the robot ends where it ended before the change, with its replay
-/// and the rest that a movement right after it would add, s.
+/// Extends the window until the robot ends at the same place as before the change. Returns it with
+/// its replay and the rest (s) that a directly following movement would add.
 fn settle_window(
     model: &Model,
     cycle: &Cycle,
@@ -308,7 +307,7 @@ fn apart(a: &Joints, b: &Joints) -> f64 {
     (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
-/// The steps of a window with the change, and where the robot stood at its start.
+/// The steps of a window with the change, and the robot position at its start.
 fn steps(
     cycle: &Cycle,
     window: RangeInclusive<usize>,
@@ -317,7 +316,7 @@ fn steps(
 ) -> Option<(Joints, Vec<Step>)> {
     let mut start = None;
     let mut steps = Vec::new();
-    // Outputs between fly-by movements stand before the run that they belong into.
+    // Outputs between fly-by movements precede the run to which they belong.
     let mut held: Vec<(usize, &Output)> = Vec::new();
     let output = |(_, output): (usize, &Output)| Step::Output(Box::new(output.clone()));
     for event in &cycle.simulation.events[window] {
@@ -345,7 +344,7 @@ fn steps(
                 let wait = Wait {
                     duration: Some(event.duration),
                     max_time: None,
-                    // Only a wait for an input whose time is stated gets shorter or longer.
+                    // Only a wait for an input of stated time changes its length.
                     signal: wait.wait.signal.clone().filter(|_| comes),
                     ..wait.wait.clone()
                 };
@@ -365,8 +364,8 @@ fn steps(
     Some((start?, steps))
 }
 
-/// The rest between the last run of a window and a run right after it, which a replay does not
-/// include.
+/// The rest between the last run of a window and a directly following run; a replay does not
+/// include it.
 fn rest_behind(
     simulation: &Simulation,
     window: &RangeInclusive<usize>,
@@ -382,8 +381,8 @@ fn rest_behind(
     }
 }
 
-/// The rests by which waits for inputs of stated time get longer, and the time that the whole cycle
-/// saves: such a wait absorbs a delay before it.
+/// The additional rests in waits for inputs of stated time, and the saved time of the cycle: such a
+/// wait absorbs an earlier delay.
 fn laid_out(
     cycle: &Cycle,
     inputs: &BTreeMap<String, f64>,
@@ -422,7 +421,7 @@ struct Clock<'c> {
 }
 
 impl Clock<'_> {
-    /// Advances by an event; the rest by which a wait gets longer.
+    /// Advances by an event; returns the additional rest of a wait.
     fn passes(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
         let mut duration = event.duration;
         let mut more = None;

@@ -1,14 +1,14 @@
-//! How often a text names something, where the syntax tree is of no use.
+//! Counts names in text without a syntax tree.
 
 use crate::rapid::text::SourceFile;
 
-/// How often a file names something (lower case) outside of its comments.
+/// Number of occurrences of a lower-case name in a file outside comments.
 pub(super) fn in_file(file: &SourceFile, key: &str) -> usize {
     let text = file.charset.decode(&file.bytes);
     text.lines().map(|line| count(line.split('!').next().unwrap_or(line), key)).sum()
 }
 
-/// How often a text holds a word (lower case), whatever its case.
+/// Number of occurrences of a lower-case word in a text, ignoring case.
 pub(super) fn count(text: &str, key: &str) -> usize {
     let apart = |c: char| !c.is_alphanumeric() && c != '_';
     text.split(apart).filter(|word| word.to_lowercase() == key).count()

@@ -1,8 +1,8 @@
-//! The language server: shows findings with joules while the user types.
+//! The language server: shows findings with energies while the user types.
 //!
-//! It speaks the Language Server Protocol over standard input and output. A document is linted
-//! with the files of its folder; the text in the editor replaces the text on disk. After a change
-//! only the programs that hold the document are examined again.
+//! It uses the Language Server Protocol over standard input and output. A document is linted with
+//! the files of its folder; the editor's text replaces the text on disk. After a change only the
+//! programs that contain the document are linted again.
 
 mod position;
 mod workspace;
@@ -28,7 +28,7 @@ use crate::rapid::diagnostics::Severity;
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Applicability, Finding, Programs};
 
-/// Options that an editor may send when it starts the server.
+/// Options that an editor may send at the start of the server.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(default)]
 pub struct Options {
@@ -36,19 +36,19 @@ pub struct Options {
     pub robot: Option<String>,
     /// The routine that starts the program.
     pub entry: Option<String>,
-    /// When inputs come, such as `diPart=2.5`.
+    /// Times of inputs, such as `diPart=2.5`.
     pub inputs: Vec<String>,
 }
 
 /// Why a session ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum LspError {
-    /// The other side sends something else.
+    /// The client does not speak the protocol.
     #[error(
         "the editor does not speak the language server protocol: {0}; start the server from one"
     )]
     Protocol(#[from] lsp_server::ProtocolError),
-    /// The other side is gone.
+    /// The client has closed the connection.
     #[error("the editor has closed the connection")]
     Closed,
     /// Standard input or output failed.
@@ -56,10 +56,10 @@ pub enum LspError {
     Io(#[from] std::io::Error),
 }
 
-/// Serves until the editor ends the session. `read` reads the programs of a folder.
+/// Runs until the editor ends the session. `read` reads the programs of a folder.
 ///
 /// # Errors
-/// The other side does not speak the protocol, or is gone.
+/// The client does not speak the protocol, or has closed the connection.
 pub fn serve(
     defaults: Options,
     read: impl Fn(&Options, &Path) -> Programs,
@@ -84,7 +84,7 @@ pub fn serve(
                 }
                 vec![Message::Response(server.answer(request))]
             }
-            // There is no answer to a notification, so a malformed one is ignored.
+            // A notification has no response, so a malformed one is ignored.
             Message::Notification(notification) => server.notice(notification).unwrap_or_default(),
             Message::Response(_) => Vec::new(),
         };
@@ -135,7 +135,7 @@ struct Server<R> {
 }
 
 impl<R: Fn(&Path) -> Programs> Server<R> {
-    /// Takes in a notification; the diagnostics that change because of it.
+    /// Handles a notification; returns the changed diagnostics.
     fn notice(&mut self, notification: Notification) -> serde_json::Result<Vec<Message>> {
         let Notification { method, params } = notification;
         let uri = match LspNotificationMethod::from(method.as_str()) {
@@ -166,7 +166,7 @@ impl<R: Fn(&Path) -> Programs> Server<R> {
         Ok(self.examine(&uri, &mut BTreeSet::new()))
     }
 
-    /// Closes a document, and examines its neighbours with what is on disk.
+    /// Closes a document, and lints its folder again with the file on disk.
     fn close(&mut self, uri: String) -> Vec<Message> {
         self.workspace.close(&uri);
         self.analyses.remove(&uri);
@@ -178,8 +178,8 @@ impl<R: Fn(&Path) -> Programs> Server<R> {
         messages
     }
 
-    /// The diagnostics of a document and of the open documents of its programs, which are taken
-    /// out of `stale`.
+    /// The diagnostics of a document and of the open documents of its programs, which are removed
+    /// from `stale`.
     fn examine(&mut self, uri: &str, stale: &mut BTreeSet<String>) -> Vec<Message> {
         let mut messages = Vec::new();
         for (uri, analysis) in self.workspace.analyse(uri) {
@@ -246,7 +246,7 @@ fn diagnostic(finding: &Finding, file: &SourceFile) -> Diagnostic {
     }
 }
 
-/// Time and energy of the movement or wait at a position, over all its executions in a cycle.
+/// Time and energy of the movement or wait at a position, summed over its executions in a cycle.
 fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
     let costs = analysis.costs_at(offset_of(analysis.file(), position))?;
     let times = match costs.times {
@@ -261,8 +261,8 @@ fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
     })
 }
 
-/// The fixes of the findings that touch a range. A fix that changes another file is left to the
-/// command line.
+/// The fixes of the findings that touch a range. Fixes that change other files are only available
+/// on the command line.
 fn code_actions(analysis: &Analysis, uri: &Uri, range: Range) -> Vec<CodeAction> {
     let file = analysis.file();
     let (start, end) = (offset_of(file, range.start), offset_of(file, range.end));

@@ -1,11 +1,11 @@
-//! Positions as editors count them: lines from 0, UTF-16 units within a line.
+//! Positions of the protocol: lines from 0, UTF-16 units within a line.
 
 use gen_lsp_types::{Position, Range};
 
 use crate::rapid::text::{SourceFile, Span};
 
-/// The byte at a position; the end of its line where the line is shorter, the end of the file
-/// where there is no such line.
+/// The byte at a position; the line end if the line is shorter, the file end if there is no such
+/// line.
 pub(super) fn offset_of(file: &SourceFile, position: Position) -> u32 {
     let end = file.bytes.len() as u32;
     if position.line >= file.lines.count() {
@@ -35,7 +35,6 @@ fn position_of(file: &SourceFile, offset: u32) -> Position {
     Position { line: line - 1, character: units as u32 }
 }
 
-/// The range of a span.
 pub(super) fn range_of(file: &SourceFile, span: Span) -> Range {
     Range { start: position_of(file, span.start), end: position_of(file, span.end) }
 }

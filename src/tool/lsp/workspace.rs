@@ -1,4 +1,4 @@
-//! Open documents over the files of their folders, and what is found in them.
+//! Open documents over the files of their folders, with their findings.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::retime::motion::timeline::What;
 use crate::tool::lint::engine::{Examined, ReadCache, examine_file};
 use crate::tool::lint::{Finding, Programs};
 
-/// Open documents, by URI, and the folders that they lie in.
+/// Open documents by URI, and their folders.
 pub(super) struct Workspace<R> {
     /// Reads the programs of a folder.
     read: R,
@@ -25,20 +25,20 @@ pub(super) struct Workspace<R> {
     folders: BTreeMap<PathBuf, Folder>,
 }
 
-/// A folder as it was read from disk when a document of it was last opened, saved or closed.
+/// A folder as last read from disk, after a document was opened, saved or closed.
 struct Folder {
     programs: Programs,
     kept: ReadCache,
 }
 
-/// What was found in a document.
+/// The findings in a document.
 pub(super) struct Analysis {
     file: SourceFile,
     examined: Rc<Examined>,
     dynamics: bool,
 }
 
-/// What a statement costs in a cycle.
+/// Costs of a statement in a cycle.
 pub(super) struct Costs {
     pub(super) span: Span,
     pub(super) what: String,
@@ -59,12 +59,12 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
         self.forget(uri);
     }
 
-    /// The folder of a document is read from disk at the next analysis.
+    /// Discards the folder of a document; the next analysis reads it from disk.
     pub(super) fn forget(&mut self, uri: &str) {
         self.folders.remove(&folder_of(uri));
     }
 
-    /// Changes a range of a document, or the whole text where the range ends before it starts.
+    /// Changes a range of a document, or the whole text if the range ends before its start.
     pub(super) fn change(&mut self, uri: &str, change: TextDocumentContentChangeEvent) {
         let Some(file) = self.open.get(uri) else { return };
         let bytes = match change {
@@ -94,14 +94,13 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
         self.forget(uri);
     }
 
-    /// The open documents of the folder of a document.
+    /// The open documents in the folder of a document.
     pub(super) fn beside(&self, uri: &str) -> BTreeSet<String> {
         let folder = folder_of(uri);
         self.open.keys().filter(|other| folder_of(other) == folder).cloned().collect()
     }
 
-    /// Examines the programs that a document belongs to: the analyses of this document and of the
-    /// other open documents of the same programs.
+    /// Lints the programs of a document; returns the analyses of its open documents.
     pub(super) fn analyse(&mut self, uri: &str) -> Vec<(String, Analysis)> {
         let folder = folder_of(uri);
         let read = || Folder { programs: (self.read)(&folder), kept: ReadCache::default() };
@@ -132,17 +131,16 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
 }
 
 impl Analysis {
-    /// The document.
     pub(super) fn file(&self) -> &SourceFile {
         &self.file
     }
 
-    /// What was found in the document itself.
+    /// The findings in the document itself.
     pub(super) fn own(&self) -> impl Iterator<Item = &Finding> {
         self.examined.report.findings.iter().filter(|finding| finding.span.file == self.file.id)
     }
 
-    /// What the movement or wait at a byte costs.
+    /// The costs of the movement or wait at a byte.
     pub(super) fn costs_at(&self, at: u32) -> Option<Costs> {
         let mut found: Option<Costs> = None;
         for cycle in self.examined.cycles.iter().flatten() {
@@ -180,7 +178,6 @@ impl Analysis {
     }
 }
 
-/// The folder that a document lies in.
 fn folder_of(uri: &str) -> PathBuf {
     path_of(uri).parent().map(Path::to_path_buf).unwrap_or_default()
 }
@@ -204,7 +201,7 @@ fn path_of(uri: &str) -> PathBuf {
         }
     }
     let path = String::from_utf8_lossy(&bytes).into_owned();
-    // A drive's letter has a slash before it.
+    // A drive letter has a slash before it.
     let drive = path.get(2..3) == Some(":");
     PathBuf::from(if drive { path[1..].to_owned() } else { path })
 }

@@ -1,4 +1,4 @@
-//! The result of `calibrate`: field names of the JSON are a contract.
+//! The result of `calibrate`. The JSON field names are a stable interface.
 
 use std::fmt::Write;
 
@@ -7,13 +7,14 @@ use serde_json::{Value, json};
 use crate::learn::calibrate::{Calibrated, Found};
 use crate::retime::energy::plausible::{Interval, Plausibility};
 
-/// Groups that the text names, and those of which less than this share of the deviation is left.
+/// Maximum number of groups in the text, and maximum ratio of new to old deviation that is
+/// reported.
 const NAMED: usize = 5;
 const NARROWER: f64 = 0.9;
-/// Misfit over the noise from which on the log is probably of something else.
+/// Misfit relative to the noise from which on the log probably belongs to another robot or program.
 const FAR_OFF: f64 = 10.0;
 
-/// As JSON; `path` is the robot's file.
+/// The result as JSON; `path` is the robot's file.
 pub fn json(calibrated: &Calibrated, path: &str) -> Value {
     let interval = |interval: &Interval| json!([interval.low, interval.high]);
     let intervals = |of: &Plausibility| {
@@ -42,7 +43,7 @@ pub fn json(calibrated: &Calibrated, path: &str) -> Value {
     })
 }
 
-/// As text.
+/// The result as text.
 pub fn text(calibrated: &Calibrated, path: &str) -> String {
     let Found { kilowatts, cycles, pace, explained, misfit, torques } = calibrated.found;
     let mut out = String::new();

@@ -9,19 +9,19 @@ use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
 /// The basis of a result: robot, logs, notes.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
-    /// The robot as it was given.
+    /// The robot as given by the user.
     pub robot: String,
-    /// What was held out: `file`, `trajectory` or `cycles`.
+    /// The kind of held-out data: `file`, `trajectory` or `cycles`.
     pub heldout: String,
     /// The held-out logs.
     pub graded: Vec<String>,
-    /// Where the model was written.
+    /// Path of the written model.
     pub model: String,
     /// Notes for the reader.
     pub notes: Vec<String>,
 }
 
-/// The contract's JSON.
+/// The JSON of the stable interface.
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
     let all = |of: &[Said]| -> Vec<Value> { of.iter().map(said).collect() };
@@ -103,7 +103,7 @@ fn gap(found: &Diagnosis, basis: &Basis) -> Vec<Value> {
     gap
 }
 
-/// Shares of effects; none where they are not told.
+/// Shares of effects; `None` if they are not determined.
 fn by_effect(of: &Place) -> Option<Map<String, Value>> {
     let share = |(id, share): &(&'static str, f64)| ((*id).to_owned(), json!(100.0 * share));
     (!of.by_effect.is_empty()).then(|| of.by_effect.iter().map(share).collect())
@@ -133,7 +133,7 @@ fn said(of: &Said) -> Value {
     })
 }
 
-/// The next experiment: the reason, and the command.
+/// The next experiment: reason and command.
 pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)> {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
         of.class.len() > 1
@@ -147,7 +147,7 @@ pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)>
     })
 }
 
-/// A word of a command line.
+/// Quotes a word of a command line.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+:".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -156,7 +156,7 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// A verdict in words.
+/// The text of a verdict.
 pub(super) fn sentence(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NoGap => "no gap: model and robot are the same as far as the logs show",
@@ -169,7 +169,7 @@ pub(super) fn sentence(verdict: Verdict) -> &'static str {
     }
 }
 
-/// An effect and its joints.
+/// The name of an effect and its joints.
 #[must_use]
 pub fn called(of: &Said) -> String {
     let joints: Vec<String> = of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
@@ -180,12 +180,12 @@ pub fn called(of: &Said) -> String {
     format!("{} of {place}", of.effect.title)
 }
 
-/// The same with how probable it is.
+/// The same with its probability.
 fn weighed(of: &Said) -> String {
     format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
 }
 
-/// For people.
+/// The result as text.
 #[must_use]
 pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     let mut out = String::new();

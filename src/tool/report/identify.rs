@@ -1,4 +1,4 @@
-//! The result of an identification as JSON, text and the record in its Robot TOML.
+//! The result of an identification as JSON, text and as record in its Robot TOML.
 
 use std::fmt::Write;
 
@@ -17,9 +17,9 @@ pub struct Basis {
     pub logs: Vec<LogRecord>,
     /// The logs that were only predicted.
     pub validation: Vec<LogRecord>,
-    /// When the logs were recorded, where that is known.
+    /// The date of recording, if known.
     pub date: Option<String>,
-    /// Where the torques come from, in words.
+    /// Origin of the torques in words.
     pub torque: String,
     /// Notes for the reader.
     pub notes: Vec<String>,
@@ -30,21 +30,21 @@ pub struct Basis {
 /// A log that was read.
 #[derive(Clone, Debug)]
 pub struct LogRecord {
-    /// As given.
+    /// Path as given.
     pub path: String,
     /// SHA-256 of the file.
     pub hash: String,
-    /// Usable rows.
+    /// Number of valid rows.
     pub rows: usize,
-    /// Rows left out.
+    /// Number of rejected rows.
     pub left_out: usize,
 }
 
-/// Names of the parameters of a joint with their units, as the model keeps them.
+/// Names and units of the parameters of a joint, as in the model.
 const JOINT_KEYS: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"];
 const JOINT_UNITS: [&str; JOINT] = ["kg m2", "Nm s/rad", "Nm", "Nm"];
 
-/// The contract's JSON.
+/// The JSON of the stable interface.
 pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
     let fit = &found.fit;
     let held_out = found.validation.as_ref();
@@ -165,7 +165,7 @@ fn whiteness(found: &Identified) -> Vec<Value> {
     found.fit.whiteness.iter().enumerate().map(joint).collect()
 }
 
-/// What the data do not determine, in words.
+/// The undetermined parameters in words.
 pub fn undetermined(found: &Identified) -> Vec<Value> {
     let resting = |joint: usize| found.resting.contains(&joint);
     let fit = &found.fit;
@@ -238,7 +238,7 @@ fn source(source: &Source) -> Value {
     }
 }
 
-/// The model as Robot TOML, with the record of how it was found.
+/// The model as Robot TOML, with a record of its identification.
 pub fn toml(found: &Identified, basis: &Basis) -> String {
     let mut text = to_toml(&found.model);
     let quoted = |text: &str| Value::from(text).to_string();
@@ -284,12 +284,12 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
     text
 }
 
-/// A number, or a dash where there is none.
+/// A number, or a dash if not finite.
 fn shown(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
 }
 
-/// How many of the lags of a joint's residuals look like white noise.
+/// The number of lags of a joint's residuals that are white.
 pub(super) fn white(whiteness: Option<&Whiteness>) -> String {
     whiteness.map_or_else(
         || "-".into(),
@@ -297,7 +297,7 @@ pub(super) fn white(whiteness: Option<&Whiteness>) -> String {
     )
 }
 
-/// For people.
+/// The result as text.
 pub fn text(found: &Identified, basis: &Basis) -> String {
     let fit = &found.fit;
     let mut text = String::new();

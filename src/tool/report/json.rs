@@ -1,4 +1,4 @@
-//! The JSON of `simulate` and `optimize`: field names are a contract.
+//! The JSON of `simulate` and `optimize`. The field names are a stable interface.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -18,7 +18,7 @@ use crate::tool::retrofit::{
     SignalShift,
 };
 
-/// The six parts, or nulls where the robot has no dynamics.
+/// The six energy parts, or nulls for a robot without dynamics.
 #[derive(Serialize)]
 #[expect(clippy::struct_field_names, reason = "the names are the contract's")]
 struct Parts {
@@ -105,7 +105,7 @@ pub fn simulation(of: Simulated<'_>, places: Places<'_>, notes: &[String]) -> Va
     })
 }
 
-/// `[low, high]`, in which 90 % of the plausible robots lie.
+/// `[low, high]`: the interval of 90 % of the plausible robots.
 fn interval(interval: Interval) -> [f64; 2] {
     [interval.low, interval.high]
 }
@@ -129,7 +129,7 @@ fn basis(basis: WaitBasis) -> &'static str {
     }
 }
 
-/// `unresolved` of the contract.
+/// The JSON field `unresolved`.
 fn unresolved(places: Places<'_>, simulation: &Simulation) -> Vec<Value> {
     simulation
         .unresolved
@@ -141,7 +141,7 @@ fn unresolved(places: Places<'_>, simulation: &Simulation) -> Vec<Value> {
         .collect()
 }
 
-/// What the robot's file and the program leave to assumption.
+/// The assumptions that the robot's file and the program leave open.
 pub fn assumed(model: &Model, simulation: &Simulation) -> Vec<String> {
     let mut list = model.assumed();
     list.extend(simulation.assumed.iter().cloned());
@@ -156,7 +156,7 @@ fn figures(figures: &Figures) -> Value {
     })
 }
 
-/// The figures before, and how much of them is a wait that the original program does not have.
+/// The original figures, and the part of them that is padding.
 fn original(retrofit: &Retrofit) -> Value {
     let mut value = figures(&retrofit.original);
     let padding = retrofit.padding.as_ref();
@@ -165,7 +165,7 @@ fn original(retrofit: &Retrofit) -> Value {
     value
 }
 
-/// The result of `optimize`. `outputs` are the paths that were written.
+/// The result of `optimize`. `outputs`: the written paths.
 pub fn retrofit(
     model: &Model,
     entry: &str,

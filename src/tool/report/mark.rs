@@ -1,8 +1,8 @@
-//! What a movement instruction does besides moving.
+//! Additional actions of a movement instruction.
 
 use crate::rapid::ir::movement::Movement;
 
-/// `trigger`, `search`, `process`, `output` or `call`; none for an instruction that only moves.
+/// `trigger`, `search`, `process`, `output` or `call`; `None` for a plain movement.
 pub(super) fn mark(movement: &Movement) -> Option<&'static str> {
     if movement.plain {
         return None;

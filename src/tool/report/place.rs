@@ -2,7 +2,7 @@
 
 use crate::rapid::text::{SourceFile, Span};
 
-/// Finds the places of spans.
+/// Converts spans to places.
 #[derive(Clone, Copy)]
 pub struct Places<'a> {
     files: &'a [SourceFile],
@@ -25,7 +25,7 @@ impl<'a> Places<'a> {
         Places { files }
     }
 
-    /// Where a span lies.
+    /// The place of a span.
     pub fn of(&self, span: Span) -> Place {
         match self.files.get(span.file.0 as usize) {
             Some(file) => Place {

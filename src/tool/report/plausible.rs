@@ -1,9 +1,9 @@
-//! Intervals of a result over plausible robots, in sentences.
+//! Sentences on the intervals of a result over plausible robots.
 
 use crate::retime::energy::plausible::{Contribution, Interval, LEAST, Plausibility};
 use crate::tool::retrofit::Retrofit;
 
-/// Energies of a cycle, and what their intervals come from.
+/// Energies of a cycle, and the contributions to their intervals.
 pub(super) fn energies(plausible: &Plausibility) -> Vec<String> {
     let range =
         |of: &Interval| format!("{:.0} to {:.0} J (median {:.0} J)", of.low, of.high, of.median);
@@ -15,8 +15,8 @@ pub(super) fn energies(plausible: &Plausibility) -> Vec<String> {
     std::iter::once(energies).chain(contributions(&plausible.contributions)).collect()
 }
 
-/// What a retrofit saves, and what that interval comes from; nothing of a known robot, or where
-/// nothing was rewritten.
+/// The saving of a retrofit, and the contributions to its interval; empty without uncertainty or
+/// rewritten segments.
 pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
     let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
     let Some(uncertainty) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten) else {
@@ -33,7 +33,7 @@ pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
     std::iter::once(saving).chain(contributions(&uncertainty.contributions)).collect()
 }
 
-/// What an interval comes from, and what would narrow it.
+/// The contributions to an interval, and data that would narrow it.
 pub(super) fn contributions(parts: &[Contribution]) -> Option<String> {
     let first = parts.first()?;
     let rest = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();

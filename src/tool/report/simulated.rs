@@ -1,4 +1,4 @@
-//! What the reports of a simulation show.
+//! The input of the reports of a simulation.
 
 use crate::arm::robot::Model;
 use crate::retime::energy::Account;

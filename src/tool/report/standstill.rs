@@ -1,4 +1,4 @@
-//! The result of `standstill`: field names of the JSON are a contract.
+//! The result of `standstill`. The JSON field names are a stable interface.
 
 use serde_json::{Value, json};
 
@@ -14,13 +14,13 @@ use crate::retime::path::joint_path::Joints;
 /// A pose, with the place and length of its dwell if it comes from a program.
 #[derive(Clone, Debug)]
 pub struct Pose {
-    /// What it costs.
+    /// Its costs.
     pub standing: Standing,
-    /// Where the program waits, and how long, s.
+    /// Place and length (s) of the dwell.
     pub dwell: Option<(Place, f64)>,
 }
 
-/// As JSON; `assumed` lists what the figures rest on.
+/// The result as JSON; `assumed` lists the assumptions of the figures.
 pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
     let poses: Vec<Value> = poses
         .iter()
@@ -61,7 +61,7 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
     json!({ "robot": model.name, "poses": poses, "brake": brake, "assumed": assumed })
 }
 
-/// As text.
+/// The result as text.
 pub fn text(poses: &[Pose]) -> String {
     let names = ["pose (deg)", "joints 1-6 (W)", "holding", "brake pays from", "best nearby (deg)"];
     let mut header = vec![("dwell", Align::Left)];
@@ -100,7 +100,7 @@ pub fn text(poses: &[Pose]) -> String {
     table(&header, &rows) + &said.map_or_else(String::new, |said| format!("at the first, {said}\n"))
 }
 
-/// An interval behind its number.
+/// An interval in brackets.
 fn within(interval: Option<&Interval>, digits: usize) -> String {
     let text = |x: &Interval| format!(" ({:.digits$} to {:.digits$})", x.low, x.high);
     interval.map_or_else(String::new, text)

@@ -1,15 +1,15 @@
 //! Plain text tables.
 
-/// How a column is set.
+/// Alignment of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// Text.
+    /// For text.
     Left,
-    /// Figures.
+    /// For figures.
     Right,
 }
 
-/// A table: the header, then rows of as many cells.
+/// A table: the header, then rows with the same number of cells.
 pub fn table(header: &[(&str, Align)], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         rows.iter()

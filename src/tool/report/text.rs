@@ -90,7 +90,7 @@ pub fn simulation(of: Simulated<'_>, places: Places<'_>) -> String {
     out
 }
 
-/// The instruction, with what it does besides moving.
+/// The instruction with its additional action.
 fn marked(movement: &Movement) -> String {
     match mark(movement) {
         Some(mark) => format!("{} ({mark})", movement.instruction),
@@ -98,7 +98,7 @@ fn marked(movement: &Movement) -> String {
     }
 }
 
-/// Notes on a simulation: what could not be simulated and what was assumed, one a line.
+/// Notes on a simulation, one per line: unresolved movements and assumptions.
 pub fn notes(model: &Model, places: Places<'_>, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     for note in &simulation.unresolved {
@@ -219,7 +219,7 @@ fn segment_row(places: Places<'_>, segment: &Segment) -> Vec<String> {
     ]
 }
 
-/// What a retrofit saves, and what the verification says of it.
+/// The saving of a retrofit and the outcome of its verification.
 fn headline(model: &Model, retrofit: &Retrofit) -> String {
     let (before, after) = (&retrofit.original, &retrofit.optimized);
     let worst = &retrofit.verification.worst;
@@ -252,7 +252,7 @@ fn is_rewritten(retrofit: &Retrofit) -> bool {
     retrofit.segments.iter().any(|segment| segment.rewritten)
 }
 
-/// Costs of the guards, lower limits, and what the controller's settings could save.
+/// Cost of the guards, lower limits, and possible savings by settings of the controller.
 fn remarks(retrofit: &Retrofit) -> Vec<String> {
     let mut lines = Vec::new();
     if retrofit.guard_instructions > 0 {

@@ -1,11 +1,11 @@
-//! The trajectory of a cycle as CSV; the columns are a contract.
+//! The trajectory of a cycle as CSV. The columns are a stable interface.
 
 use std::fmt::Write;
 
 use super::place::Places;
 use crate::retime::energy::trajectory::Sample;
 
-/// One row for each sample, numbers in shortest round-trip form.
+/// One row per sample, numbers in shortest round-trip form.
 pub fn csv(places: Places<'_>, samples: &[Sample]) -> String {
     let mut out = String::from("t");
     for name in ["q", "qd", "qdd", "tau"] {
@@ -42,7 +42,7 @@ pub fn csv(places: Places<'_>, samples: &[Sample]) -> String {
     out
 }
 
-/// A field that may hold commas or quotes.
+/// A CSV field, quoted if it contains commas or quotes.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

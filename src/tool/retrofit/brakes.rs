@@ -12,7 +12,7 @@ use crate::tool::emit;
 /// The file with the note on brakes.
 pub const BRAKE_NOTE: &str = "joulepath_brakes.txt";
 
-/// A note for dwells of the emitted program that pay, with the setting that they need.
+/// Adds a note on dwells of the emitted program at which brakes save energy.
 pub(super) fn add_brake_note(outputs: &mut Vec<OutputFile>, model: &Model, dwells: &[Dwell]) {
     let paying = dwells.iter().filter(|dwell| dwell.potential_j > 0.0);
     let mut by_place: BTreeMap<Span, Vec<&Dwell>> = BTreeMap::new();
@@ -34,7 +34,7 @@ pub(super) fn add_brake_note(outputs: &mut Vec<OutputFile>, model: &Model, dwell
     outputs.push(OutputFile::added(BRAKE_NOTE.to_owned(), text));
 }
 
-/// The dwells of one place: figures of the longest, joules of all.
+/// The dwells of one place: figures of the longest, potential of all.
 fn brake_dwell(files: &[Source], span: Span, dwells: &[&Dwell]) -> emit::BrakeDwell {
     let file = &files[span.file.0 as usize];
     let longest = dwells

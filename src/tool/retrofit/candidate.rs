@@ -1,29 +1,29 @@
-//! The variants of the sites as candidates for a stream.
+//! Candidates: the variants of the sites that may become streams.
 
 use crate::retime::optimize::energy_curve::TimeEnergy;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::Retiming;
 use crate::retime::optimize::site::Site;
 
-/// A variant of a site, and what has been decided about it.
+/// A variant of a site, with its decision.
 pub(super) struct Candidate {
     /// Index of the site.
     pub(super) site: usize,
     /// Index of the variant.
     pub(super) variant: usize,
     pub(super) state: State,
-    /// Its curve of energy over time; empty where it is not asked for.
+    /// Its energy-time curve; may be empty.
     pub(super) pareto: Vec<TimeEnergy>,
 }
 
-/// What has been decided about a candidate.
+/// The decision on a candidate.
 #[derive(Debug)]
 pub(super) enum State {
-    /// Nothing yet: no stream was sought.
+    /// No stream has been planned yet.
     Pending,
     /// The movements stay.
     Refused(Reason),
-    /// A stream stands for the movements.
+    /// A stream replaces the movements.
     Done(Box<Retiming>),
 }
 
@@ -46,7 +46,7 @@ impl Candidate {
     }
 }
 
-/// A candidate for each variant: pending where no reason stands against it.
+/// One candidate per variant: pending if nothing refuses it.
 pub(super) fn candidates(sites: &[Site]) -> Vec<Candidate> {
     let variants = |(site, s): (usize, &Site)| {
         let candidate = |(variant, reason): (usize, Option<Reason>)| {
@@ -59,7 +59,7 @@ pub(super) fn candidates(sites: &[Site]) -> Vec<Candidate> {
     sites.iter().enumerate().flat_map(variants).collect()
 }
 
-/// The candidates with new states for some of them, by their indices.
+/// Replaces the states at these indices.
 pub(super) fn with_states(
     mut candidates: Vec<Candidate>,
     states: impl IntoIterator<Item = (usize, State)>,

@@ -1,4 +1,4 @@
-//! The time of a cycle as the sharing of it sees it.
+//! The cycle as a model for the distribution of time among runs.
 
 use super::job::Original;
 use super::lowered::lateness;
@@ -10,8 +10,8 @@ use crate::retime::motion::timeline::{Event, WaitBasis, What};
 use crate::retime::optimize::cycle::{Cycle, Part};
 use crate::retime::path::joint_path::Joints;
 
-/// The cycle as a sequence of parts. What is left of the takt (s) is spent at its end. Known waits
-/// keep what the original would be late there if its limits were lower than assumed. `runs`: the
+/// The cycle as a sequence of parts; the rest of the takt (s) is spent at its end. Waits of known
+/// arrival keep a margin: the lateness of the original under lower limits than assumed. `runs`: the
 /// events of each run whose time is to be chosen.
 pub(super) fn cycle(
     original: &Original<'_>,

@@ -1,4 +1,4 @@
-//! What other tasks of a controller may write: `PERS` data of one name are shared among tasks.
+//! `PERS` data that other tasks may write: tasks share `PERS` data of the same name.
 
 use std::collections::BTreeSet;
 
@@ -8,8 +8,7 @@ use crate::rapid::ir::lower;
 use crate::rapid::syntax;
 use crate::rapid::text::SourceFile;
 
-/// Lower-case names of the data to which statements of these files assign, or that they hand to
-/// routines, which may do so.
+/// Lower-case names of the data that these files assign or pass to routines that may write them.
 pub fn written_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<String> {
     let mut written = Written::default();
     for file in files {
@@ -33,7 +32,7 @@ struct Written {
     names: BTreeSet<String>,
     /// `PERS` data of the files.
     shared: BTreeSet<String>,
-    /// Whether data are written to by a name that is a value: each of `shared` may be meant.
+    /// Whether data are written by computed name: any of `shared` may change.
     by_name: bool,
 }
 
@@ -83,7 +82,7 @@ impl Written {
         }
     }
 
-    /// The data that an expression is a place in.
+    /// Adds the data object that contains the place.
     fn place(&mut self, expr: &Expr) {
         self.names.extend(expr.base().map(|name| name.key.clone()));
     }

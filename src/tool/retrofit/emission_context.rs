@@ -1,4 +1,4 @@
-//! What stays the same from one emission to the next, and how emitted text names parts of a program.
+//! The constant input of all emissions, and the text for parts of a program.
 
 use super::files::Source;
 use super::guards::Guards;
@@ -12,30 +12,26 @@ use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{SourceFile, Span};
 use crate::tool::emit::{Layout, Names, Parameter, Recorded, Robot};
 
-/// What stays the same from one emission to the next.
+/// The constant input of all emissions.
 pub(super) struct EmissionContext<'a> {
-    /// The files of the program.
     pub(super) files: &'a [Source],
-    /// The same as they are read.
+    /// The same as source files.
     pub(super) originals: Vec<SourceFile>,
-    /// The file beside which new modules lie.
+    /// Index of the file whose folder receives the new modules.
     pub(super) beside: usize,
-    /// What guards compare.
+    /// The expressions that guards compare.
     pub(super) guards: &'a Guards<'a>,
-    /// The robot that streams are made for.
+    /// The robot for which streams are planned.
     pub(super) robot: Robot,
-    /// The operator's speed override that they are made for, %.
+    /// The operator's speed override for which they are planned, %.
     pub(super) override_percent: f64,
-    /// What the program writes down for them.
+    /// The states that the program records for guards.
     pub(super) recorded: Recorded,
-    /// Names that are free.
     pub(super) names: Names,
-    /// How points are written.
     pub(super) layout: Layout,
 }
 
 impl<'a> EmissionContext<'a> {
-    /// For the streams of a job.
     pub(super) fn new(job: &'a Job<'a>, guards: &'a Guards<'a>) -> EmissionContext<'a> {
         let Job { original, model, settings, .. } = job;
         let originals: Vec<SourceFile> =
@@ -55,17 +51,16 @@ impl<'a> EmissionContext<'a> {
     }
 }
 
-/// The robot as guards know it: what its controller calls it, and where a posture that no other
-/// robot shares brings its flange.
+/// The robot as a guard identifies it: type name, and flange position at a fixed posture.
 fn robot(model: &Model) -> Robot {
     let place = (model.kinematics.base * fk(model, &POSTURE)).translation.vector;
     Robot { kind: model.type_name().to_owned(), posture: POSTURE, place: place.into() }
 }
 
-/// A posture in which every length of an arm counts, rad.
+/// A posture at which every length of the arm affects the flange position, rad.
 const POSTURE: [f64; 6] = [0.3, 0.2, -0.4, 0.5, 0.7, 0.0];
 
-/// File and lines of some statements.
+/// File and lines of a span.
 pub(super) fn place(files: &[Source], span: Span) -> String {
     let file = &files[span.file.0 as usize];
     let first = file.file.position(span.start).line;
@@ -74,7 +69,8 @@ pub(super) fn place(files: &[Source], span: Span) -> String {
     format!("{} {lines}", ascii(&file.relative))
 }
 
-/// What a guard compares, and with what: arguments, and the load where the program changes it.
+/// The parameters and values that a guard compares: arguments, and the load if the program changes
+/// it.
 pub(super) fn compared(
     context: &EmissionContext<'_>,
     arguments: &[Argument],
@@ -95,13 +91,13 @@ pub(super) fn compared(
     compared.into_iter().unzip()
 }
 
-/// An argument as the program writes it, to be written again at the same place.
+/// The source text of an argument, for reuse at the same place.
 pub(super) fn argument(files: &[Source], span: Span) -> String {
     let file = &files[span.file.0 as usize].file;
     file.text(span).into_owned()
 }
 
-/// Comments are plain ASCII, whatever the file's encoding.
+/// Comments contain only ASCII, whatever the encoding of the file.
 fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }

@@ -1,4 +1,4 @@
-//! What is emitted for a site and for a wait: streams, and what their guard compares.
+//! The emitted streams of a site or a wait, and the values that their guard compares.
 
 use super::candidate::Candidate;
 use super::emission_context::{EmissionContext, argument, compared, place};
@@ -11,7 +11,7 @@ use crate::retime::motion::timeline::What;
 use crate::retime::optimize::rest::Rest;
 use crate::tool::emit::{self, EmittedStream, MotionSettings, Parameter, Pause};
 
-/// A site with its streams; `None` where there is none.
+/// A site with its streams; `None` without streams.
 pub(super) fn emitted_site(
     context: &EmissionContext<'_>,
     original: &Original<'_>,
@@ -49,7 +49,7 @@ pub(super) fn emitted_site(
     })
 }
 
-/// The speed that `VelSet` allows by itself, mm/s: faster programmed speeds are cut there.
+/// The speed limit of `VelSet` by default, mm/s: it cuts faster programmed speeds.
 const MOST_SPEED: f64 = 5000.0;
 
 fn stream(
@@ -88,7 +88,7 @@ fn stream(
     Some((parameters, stream))
 }
 
-/// What is emitted for a wait.
+/// The emitted stream of a relocated wait.
 pub(super) fn emitted_wait(
     context: &EmissionContext<'_>,
     original: &Original<'_>,
@@ -101,7 +101,7 @@ pub(super) fn emitted_wait(
     let movement = &run.moves.last()?.movement;
     let length = Datum::Num(record.wait.duration?);
     let length = Argument { span: record.wait.constant?, type_name: "num", datum: length };
-    // Where it stands is guarded; what it holds there is the last movement's.
+    // The guard compares the position; the tool is that of the last movement.
     let tool = movement.arguments.iter().find(|argument| argument.span == movement.tool_span);
     let arguments: Vec<Argument> = std::iter::once(length).chain(tool.cloned()).collect();
     let (parameters, values) = compared(context, &arguments, movement);

@@ -1,12 +1,12 @@
-//! Why a program can't be retrofitted at all.
+//! Errors that prevent a retrofit.
 
 use crate::arm::robot::NotReady;
 use crate::tool::emit::EmitError;
 
-/// Why a program can't be retrofitted at all.
+/// Errors that prevent a retrofit.
 #[derive(Debug, thiserror::Error)]
 pub enum RetrofitError {
-    /// No routine of that name.
+    /// No global procedure has this name.
     #[error(
         "no global procedure '{entry}' in the files given; name the routine that starts the \
          program with --entry"
@@ -15,7 +15,7 @@ pub enum RetrofitError {
         /// The name.
         entry: String,
     },
-    /// More than one routine of that name.
+    /// Several global procedures have this name.
     #[error(
         "the entry routine '{entry}' is declared more than once, in {first} and in {second}: name \
          the files of one program only, or another routine with --entry"
@@ -28,7 +28,7 @@ pub enum RetrofitError {
         /// File and line of the second.
         second: String,
     },
-    /// The program calls streams that are not there.
+    /// The program calls streams whose module is missing.
     #[error(
         "{path}:{line} calls {function} of a module of streams that was not given: the program is \
          optimised already; give '{module}' too (name the folder), or start from the original"
@@ -38,12 +38,12 @@ pub enum RetrofitError {
         path: String,
         /// From 1.
         line: u32,
-        /// What is called.
+        /// The called function.
         function: String,
         /// The file of the streams.
         module: String,
     },
-    /// Nothing to read.
+    /// The file is empty.
     #[error("'{path}' is empty: it has no procedure '{entry}' to start the program with")]
     Empty {
         /// The file.
@@ -68,32 +68,32 @@ pub enum RetrofitError {
         /// The entry routine.
         entry: String,
     },
-    /// The robot lacks something.
+    /// The robot model is incomplete.
     #[error(transparent)]
     Robot(#[from] NotReady),
-    /// A takt below the possible.
+    /// The takt is below the minimum cycle time.
     #[error(
         "a takt of {takt:.3} s is below the possible: the cycle takes at least {least:.3} s with \
          this robot, of which {fixed:.3} s are waits and movements that stay; give --takt {least:.3} \
          or more"
     )]
     Takt {
-        /// Asked for, s.
+        /// Requested, s.
         takt: f64,
-        /// Possible, s.
+        /// Minimum, s.
         least: f64,
-        /// Not to be changed, s.
+        /// Part that cannot change, s.
         fixed: f64,
     },
-    /// A factor below the possible for every run.
+    /// The time factor is below the minimum of every run.
     #[error(
         "a time factor of {factor} is below the possible: no run takes less than {least:.3} times \
          as long as before with this robot; give --time-factor {least:.3} or more"
     )]
     Factor {
-        /// Asked for.
+        /// Requested.
         factor: f64,
-        /// Possible for some run.
+        /// Smallest feasible factor of any run.
         least: f64,
     },
     /// The emission failed.

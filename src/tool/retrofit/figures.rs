@@ -16,20 +16,20 @@ use crate::retime::optimize::reason::Reason;
 pub struct Figures {
     /// s.
     pub cycle_s: f64,
-    /// All six parts, J.
+    /// All six energy parts, J.
     pub energy_j: f64,
-    /// The four parts of the motion, J.
+    /// The four energy parts of the motion, J.
     pub motion_energy_j: f64,
 }
 
-/// Time of a RAPID instruction, ms. Assumed: ABB publishes none, and a cycle of a PLC program is of
-/// this order; it is to be replaced by a measurement on a controller.
+/// Time of a RAPID instruction, ms. Assumed: ABB publishes none; a PLC cycle is of this order. To
+/// be replaced by a measurement on a controller.
 pub(super) const INSTRUCTION_MS: f64 = 0.05;
 
-/// The cycles where the assumed limits of acceleration and torque are too high.
+/// Cycle times if the assumed limits of acceleration and torque are too high.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowerLimits {
-    /// The true limits over the assumed ones.
+    /// Ratio of the true limits to the assumed ones.
     pub share: f64,
     /// s.
     pub original_s: f64,
@@ -38,7 +38,7 @@ pub struct LowerLimits {
 }
 
 impl Figures {
-    /// The figures with a wait at the end.
+    /// The figures with an added wait at the end.
     pub(super) fn padded(self, padding: Option<&Padding>) -> Figures {
         padding.map_or(self, |padding| Figures {
             cycle_s: self.cycle_s + padding.duration_s,
@@ -48,10 +48,10 @@ impl Figures {
     }
 }
 
-/// What a segment is.
+/// The kind of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SegmentKind {
-    /// Movements, to be timed anew on their path.
+    /// Movements with new timing on the same path.
     Timing,
     /// Movements that leave their path.
     Path,
@@ -59,20 +59,20 @@ pub enum SegmentKind {
     Idle,
 }
 
-/// A piece of the program with its costs in one cycle.
+/// A piece of the program with its time and energy in one cycle.
 #[derive(Clone, Debug)]
 pub struct Segment {
     /// The statements.
     pub span: Span,
-    /// What it is.
+    /// The kind.
     pub kind: SegmentKind,
-    /// True if the RAPID that runs has changed.
+    /// Whether its executed RAPID code has changed.
     pub rewritten: bool,
-    /// Why not, or why not in all of its executions.
+    /// Why it is unchanged, or unchanged in some executions.
     pub reason: Option<Reason>,
-    /// Executions in the cycle.
+    /// Number of executions in the cycle.
     pub executions: usize,
-    /// Executions that are rewritten.
+    /// Number of rewritten executions.
     pub rewritten_executions: usize,
     /// s, all executions.
     pub time_before_s: f64,
@@ -82,21 +82,20 @@ pub struct Segment {
     pub energy_before_j: f64,
     /// J, all executions.
     pub energy_after_j: f64,
-    /// No timing on the same path and in the same time takes less, J; `None` where it is not
-    /// rewritten.
+    /// Lower bound of the energy on the same path in the same time, J; `None` if not rewritten.
     pub lower_bound_j: Option<f64>,
-    /// Emitted points.
+    /// Number of emitted points.
     pub points: usize,
-    /// What the brake would save there by a setting of the controller, J.
+    /// Saving by closed brakes after a change of a controller setting, J.
     pub potential_j: f64,
-    /// Events of the simulations in which it runs, for plots.
+    /// Its events in the simulations, for plots.
     pub events: Vec<usize>,
-    /// Least energy over time of one execution, in its first way; empty where not asked for.
+    /// Minimum energy over time of one execution of the first variant; may be empty.
     pub pareto: Vec<TimeEnergy>,
 }
 
 impl Segment {
-    /// A piece without costs yet.
+    /// A segment with zero time and energy.
     pub(super) fn new(span: Span, kind: SegmentKind, reason: Option<Reason>) -> Segment {
         Segment {
             span,
@@ -118,21 +117,21 @@ impl Segment {
     }
 }
 
-/// What the verifier saw.
+/// The result of the verification.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// True if nothing is exceeded and the program runs as before.
+    /// Whether all checks passed.
     pub passed: bool,
     /// Worst figures of all streams.
     pub worst: Check,
     /// Largest distance of a joint of a simulated stream from the intended one at any time, rad.
     pub intended_error_rad: f64,
-    /// What was compared, in words, and whether it held.
+    /// The checks in words, and whether each passed.
     pub checks: Vec<(String, bool)>,
 }
 
 impl Verification {
-    /// Of a program in which nothing was changed.
+    /// The verification of an unchanged program.
     pub(super) fn none() -> Verification {
         let checks = Vec::new();
         Verification { passed: true, worst: Check::none(), intended_error_rad: 0.0, checks }
@@ -144,7 +143,7 @@ impl Verification {
         self.passed &= held;
     }
 
-    /// The first check that did not hold.
+    /// The first check that failed.
     pub(super) fn broken(&self) -> Option<&str> {
         self.checks.iter().find(|(_, held)| !held).map(|(what, _)| what.as_str())
     }
@@ -153,29 +152,29 @@ impl Verification {
 /// A retrofit.
 #[derive(Debug)]
 pub struct Retrofit {
-    /// Before, with the padding.
+    /// Original, with the padding.
     pub original: Figures,
-    /// The wait that the figures before have besides the original program's own.
+    /// The wait that the padding adds to the original.
     pub padding: Option<Padding>,
-    /// After.
+    /// Retrofit.
     pub optimized: Figures,
-    /// What settings of the controller could save besides, J.
+    /// Further saving by settings of the controller, J.
     pub potential_j: f64,
     /// In the order of the source.
     pub segments: Vec<Segment>,
-    /// What the verifier saw.
+    /// The result of the verification.
     pub verification: Verification,
-    /// The signals of the program before and after.
+    /// The signals before and after.
     pub signals: Vec<SignalShift>,
     /// The complete program.
     pub outputs: Vec<OutputFile>,
-    /// What else is to be known.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// Both cycles if the robot can do less than its file assumes; empty where nothing is assumed.
+    /// Both cycles under lower limits; empty if no limit is assumed.
     pub lower_limits: Vec<LowerLimits>,
     /// Energies and savings over plausible robots; `None` for a point estimate.
     pub uncertainty: Option<Uncertainty>,
-    /// RAPID instructions that guards run in a cycle, at most.
+    /// Maximum number of RAPID instructions of guards in a cycle.
     pub guard_instructions: usize,
     /// The original cycle.
     pub before: (Simulation, Account),
@@ -184,7 +183,7 @@ pub struct Retrofit {
 }
 
 impl Retrofit {
-    /// Time that the guards take in a cycle, ms.
+    /// Time of the guards in a cycle, ms.
     #[must_use]
     pub fn guards_ms(&self) -> f64 {
         INSTRUCTION_MS * self.guard_instructions as f64
@@ -200,7 +199,7 @@ impl Retrofit {
         percent(self.original.motion_energy_j, self.optimized.motion_energy_j)
     }
 
-    /// True if some piece that could have been rewritten was refused.
+    /// Whether some piece that could have been rewritten was refused.
     pub fn refused(&self) -> bool {
         self.segments.iter().any(|s| s.reason.as_ref().is_some_and(Reason::is_refusal))
     }

@@ -1,22 +1,22 @@
-//! Files of a program, as they are read and as they are written.
+//! Input and output files of a program.
 
 use crate::rapid::text::{FileId, SourceFile};
 
 /// A file of the program.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Its bytes and path as given.
+    /// Bytes and path.
     pub file: SourceFile,
-    /// Its path below the input.
+    /// Path relative to the input folder.
     pub relative: String,
 }
 
-/// What an output file is.
+/// The kind of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutputKind {
-    /// A file of the input, as it was.
+    /// An unchanged file of the input.
     Unchanged,
-    /// A file of the input with other text.
+    /// A changed file of the input.
     Changed,
     /// A new file.
     New,
@@ -25,30 +25,30 @@ pub enum OutputKind {
 /// A file of the complete program.
 #[derive(Clone, Debug)]
 pub struct OutputFile {
-    /// Path below the output folder, with `/`.
+    /// Path relative to the output folder, with `/`.
     pub path: String,
-    /// What it is.
+    /// The kind.
     pub kind: OutputKind,
     /// Its content.
     pub bytes: Vec<u8>,
-    /// For a changed file, which of the input's it is.
+    /// Index of the input file; `None` for a new one.
     pub input: Option<usize>,
 }
 
 impl OutputFile {
-    /// A file that the input does not have.
+    /// A new file.
     pub(in crate::tool) fn added(path: String, text: String) -> OutputFile {
         OutputFile { path, kind: OutputKind::New, bytes: text.into_bytes(), input: None }
     }
 
-    /// A file of the input with other bytes.
+    /// A file of the input with new bytes.
     pub(super) fn changed(index: usize, source: &Source, bytes: Vec<u8>) -> OutputFile {
         let path = source.relative.clone();
         OutputFile { path, kind: OutputKind::Changed, bytes, input: Some(index) }
     }
 }
 
-/// The files of a program as they were.
+/// All files of the program, unchanged.
 pub(super) fn unchanged(files: &[Source]) -> Vec<OutputFile> {
     let file = |(index, source): (usize, &Source)| OutputFile {
         path: source.relative.clone(),
@@ -59,7 +59,7 @@ pub(super) fn unchanged(files: &[Source]) -> Vec<OutputFile> {
     files.iter().enumerate().map(file).collect()
 }
 
-/// The files as a reader of the emitted program finds them.
+/// The output files as input of a new read.
 pub fn read_again(outputs: &[OutputFile]) -> Vec<Source> {
     let file = |(i, output): (usize, &OutputFile)| Source {
         file: SourceFile::new(FileId(i as u32), output.path.clone(), output.bytes.clone()),

@@ -1,13 +1,13 @@
-//! Lines, arcs and waits that the user made free by a comment.
+//! Movements and waits that a comment of the user makes free.
 
 use crate::rapid::builtins::is_movement;
 use crate::rapid::syntax::{self, NodeKind, TokenKind, ast};
 use crate::rapid::text::{SourceFile, Span};
 
-/// What the comment says, besides its `!` and white space.
+/// Text of the comment without `!` and white space.
 const MARK: &[u8] = b"joulepath: free";
 
-/// The statements of movements and waits with the comment on the line on which they end.
+/// The movement and wait statements that have the comment on their last line.
 pub fn freed(file: &SourceFile) -> Vec<Span> {
     if memchr::memmem::find(&file.bytes, MARK).is_none() {
         return Vec::new();

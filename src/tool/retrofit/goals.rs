@@ -1,4 +1,4 @@
-//! How much time each run gets.
+//! The time goal of each run.
 
 use rayon::prelude::*;
 
@@ -15,26 +15,26 @@ use crate::retime::optimize::energy_curve::Curve;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest};
 
-/// Times at which the curves are looked at besides the first ones.
+/// Maximum number of refinements of the energy-time curves.
 const LOOKS: usize = 4;
-/// Goals that differ by less are the same, s.
+/// Smaller differences between goals are ignored, s.
 const QUANTUM: f64 = 1e-4;
 
-/// The times of a cycle's runs.
+/// The time goals of the runs of a cycle.
 pub(super) struct Plan {
     /// One for each task.
     pub(super) goals: Vec<Goal>,
-    /// The cycle, if its time is shared.
+    /// The cycle, if its time is distributed among the runs.
     shared: Option<Shared>,
 }
 
-/// A cycle whose time is shared among its runs.
+/// A cycle whose time is distributed among its runs.
 struct Shared {
     curves: Vec<TradeOff>,
     cycle: Cycle,
 }
 
-/// The goal of each task: its share of the time.
+/// The time goal of each task.
 pub(super) fn goals(
     planning: &Planning<'_>,
     candidates: &[Candidate],
@@ -62,8 +62,8 @@ pub(super) fn goals(
             if !simulation.events.iter().any(is_awaited) {
                 return Ok(each(&|task| Goal::Within(before(task))));
             }
-            // No run gets quicker so that another one may be slower: where the cell has changed,
-            // the quick stream may not run, and the slow one still does. Only waits give time.
+            // No run becomes faster to give time to others: if the guard of a fast stream fails,
+            // its original movements run and the cycle gets longer. Only waits give time.
             let bounds = |(_, task): &(usize, Task<'_>)| (before(task), SLOWEST * before(task));
             (simulation.cycle_s, tasks.iter().map(bounds).collect())
         }
@@ -74,8 +74,8 @@ pub(super) fn goals(
         .unwrap_or_else(|| each(&|task| Goal::Within(before(task)))))
 }
 
-/// The plan that shares the time of a cycle, with curves that are looked at where it matters; `None`
-/// where the time can't be shared. `bounds`: the shortest and longest time of each task, s.
+/// Distributes the time of a cycle, with curves refined at the chosen times; `None` if no
+/// distribution exists. `bounds`: the shortest and longest time of each task, s.
 fn shared_time(
     mut cycle: Cycle,
     tasks: &[(usize, Task<'_>)],
@@ -91,7 +91,7 @@ fn shared_time(
         let known = tasks.iter().zip(bounds).zip(&curves);
         let known: Option<Vec<TradeOff>> = known
             .map(|(((_, task), (shortest, longest)), curve)| {
-                // Where nothing is known of its energy, a run keeps its time.
+                // A run without an energy curve keeps its time.
                 let kept = || vec![(task.run.duration().max(*shortest).min(*longest), 0.0)];
                 curve.as_ref().and_then(Curve::trade_off).or_else(|| TradeOff::new(kept()))
             })
@@ -118,14 +118,14 @@ impl Shared {
 }
 
 impl Plan {
-    /// Whether the cycle takes no longer than it may where the tasks take `times` (s).
+    /// Whether the cycle keeps its time limit if the tasks take `times` (s).
     pub(super) fn holds(&self, times: &[f64]) -> bool {
         let shared = self.shared.as_ref();
         shared.is_none_or(|s| s.cycle.time(times) <= s.cycle.takt + TIME_TOLERANCE)
     }
 
-    /// Energy of motions and known waits of the cycle where the tasks take these times (s) and
-    /// energies (J); infinite where the cycle takes longer than it may.
+    /// Energy of motions and known waits in the cycle if the tasks take these times (s) and
+    /// energies (J); infinite if the cycle exceeds its time limit.
     pub(super) fn cost(&self, taken: &[(f64, f64)]) -> f64 {
         let (times, energies): (Vec<f64>, Vec<f64>) = taken.iter().copied().unzip();
         match &self.shared {
@@ -135,8 +135,8 @@ impl Plan {
         }
     }
 
-    /// Shares the time anew where the tasks take `times` (s), and those that take longer than they
-    /// should cannot be quicker. The tasks with new goals; none where that helps no more.
+    /// Distributes the time again after the tasks took `times` (s); tasks slower than their goal
+    /// are fixed at that time. Returns the other tasks whose goals changed.
     pub(super) fn share_anew(&mut self, times: &[f64]) -> Vec<usize> {
         let Some(shared) = self.shared.as_mut() else { return Vec::new() };
         let mut is_late = vec![false; times.len()];
@@ -160,7 +160,7 @@ impl Plan {
     }
 }
 
-/// The shortest and longest useful time of each task, s. `events`: in which each task runs.
+/// The shortest and longest useful time of each task, s. `events`: the events of each task.
 fn possible(
     original: &Original<'_>,
     tasks: &[(usize, Task<'_>)],
@@ -181,7 +181,7 @@ fn possible(
         let least = rounded_up(fixed + shortest);
         return Err(RetrofitError::Takt { takt, least, fixed: fixed.max(0.0) });
     }
-    // As above, where the takt leaves the choice.
+    // A takt of at least the original cycle makes no run faster, as in `goals`.
     let bounds = |((_, task), least): (&(usize, Task<'_>), &f64)| {
         let shortest = if takt < cycle_s { *least } else { before(task) };
         (shortest, (SLOWEST * before(task)).max(*least))
@@ -189,8 +189,7 @@ fn possible(
     Ok(tasks.iter().zip(&least).map(bounds).collect())
 }
 
-/// Refuses a factor that no run can do; where some run can do it, the others stay with that as their
-/// reason.
+/// Refuses a factor that no run can reach; if some run can, the others keep their reasons.
 pub(super) fn check_factor(
     factor: f64,
     tasks: &[(usize, Task<'_>)],
@@ -208,7 +207,7 @@ pub(super) fn check_factor(
     }
 }
 
-/// Up to the next figure with three decimals: what a message tells to give has to do.
+/// Rounded up to three decimals, so that the value in the message is feasible.
 fn rounded_up(x: f64) -> f64 {
     (x * 1e3).ceil() / 1e3
 }

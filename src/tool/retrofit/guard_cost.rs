@@ -1,4 +1,4 @@
-//! What guards take: at the stop point before a stream they run a few dozen instructions of RAPID.
+//! The cost of guards: dozens of RAPID instructions at the stop point before a stream.
 
 use super::candidate::{Candidate, State};
 use super::figures::INSTRUCTION_MS;
@@ -8,11 +8,11 @@ use crate::rapid::text::Span;
 use crate::retime::energy::power::holding_w;
 use crate::retime::optimize::reason::Reason;
 
-/// Share of the cycle that all guards may take.
+/// Maximum share of the cycle for all guards.
 const MOST: f64 = 0.005;
 
-/// Refuses the candidates of sites whose guards take more than their streams save, and of those that
-/// save least for their time where all guards take too much of the cycle. `guards`: places and
+/// Refuses the candidates of sites whose guards cost more than their streams save; if all guards
+/// together take too long, also those that save least per guard time. `guards`: places and
 /// instructions in a cycle.
 pub(super) fn costly(
     job: &Job<'_>,
@@ -20,7 +20,7 @@ pub(super) fn costly(
     guards: &[(Span, usize)],
 ) -> Vec<(usize, State)> {
     let Job { original, model, settings, .. } = job;
-    // Place, time of its guards in a cycle, s, and what a second of them saves: J, or s.
+    // Site, time of its guards in a cycle (s), saving per guard time (J/s, or s/s).
     let mut worth: Vec<(usize, f64, f64)> = Vec::new();
     let mut costly = Vec::new();
     for (index, site) in original.sites.iter().enumerate() {
@@ -33,7 +33,7 @@ pub(super) fn costly(
             let holding: f64 = holding_w(model, &run.load, &run.start).iter().sum();
             let standing = model.drive.base_w + coils + holding;
             let saved_s = run.duration() - retiming.duration_s;
-            // A slower stream spends a wait: standing would have taken that.
+            // A slower stream uses time of a wait, which would have cost standing power.
             let saved_j =
                 retiming.energy_before_j - retiming.energy.energy_j() - standing * saved_s;
             let executions = original.events(candidate).len() as f64;
@@ -45,7 +45,7 @@ pub(super) fn costly(
             Objective::Energy => (saved_j, standing * time),
             Objective::Time => (saved_s, time),
         };
-        // Where more or less time is asked for, runs may take more energy so that others save it.
+        // With a takt or factor, runs may take more energy so that others save it.
         let must_pay = settings.budget == Budget::AsBefore || settings.objective == Objective::Time;
         if must_pay && saved < cost {
             let unit = if settings.objective == Objective::Energy { "J" } else { "s" };

@@ -1,5 +1,5 @@
-//! What a guard compares: the arguments of the movements that a stream stands for, evaluated as
-//! the movements would evaluate them, when the robot stands where the stream starts.
+//! The values that a guard compares: the arguments of the replaced movements, evaluated at the
+//! start of the stream as the movements would evaluate them.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,15 +25,14 @@ pub(super) struct Guards<'p> {
     program: &'p Program,
     files: &'p [Source],
     arguments: BTreeMap<Span, (RoutineId, &'p Expr)>,
-    /// Data that interrupt routines or other tasks may write at any moment.
+    /// Data that interrupt routines or other tasks may write at any time.
     meanwhile: BTreeSet<DataId>,
-    /// Whether targets may be rewritten that stand in the movement itself.
+    /// Whether movements with inline targets may be replaced.
     inline_targets: bool,
     known: RefCell<BTreeMap<Span, Reads>>,
 }
 
 impl<'p> Guards<'p> {
-    /// The arguments of a program that was read from these files.
     pub(super) fn new(
         program: &'p Program,
         files: &'p [Source],
@@ -68,7 +67,7 @@ impl<'p> Guards<'p> {
         Guards { program, files, arguments, meanwhile, inline_targets, known }
     }
 
-    /// Why no guard can make sure that a run moves as it did.
+    /// Why no guard can ensure that a run moves as in the original.
     pub(super) fn refusal(&self, run: &Run) -> Option<Reason> {
         run.moves.iter().enumerate().find_map(|(index, record)| {
             let mut arguments = record.movement.arguments.iter();
@@ -76,8 +75,8 @@ impl<'p> Guards<'p> {
         })
     }
 
-    /// Whether an argument of several movements may end in an error, which then would leave out all of
-    /// them.
+    /// Whether a run of several movements has an argument that may raise an error, which would skip
+    /// all of them.
     pub(super) fn may_raise(&self, run: &Run) -> bool {
         let arguments = run.moves.iter().flat_map(|record| &record.movement.arguments);
         let may_raise =
@@ -85,8 +84,8 @@ impl<'p> Guards<'p> {
         run.moves.len() > 1 && arguments.into_iter().any(may_raise)
     }
 
-    /// What speaks against an argument that is evaluated when the run begins, or, `later`, while it
-    /// is under way: then it may be another one than the guard saw.
+    /// Why an argument prevents a stream. `later`: it is evaluated during the run, when its value
+    /// may differ from the one that the guard compared.
     fn objection(&self, argument: &Argument, later: bool) -> Option<Reason> {
         let Some(reads) = self.reads(argument.span) else {
             return Some(Reason::NotConstant("an argument of it stands in no routine".into()));
@@ -117,8 +116,8 @@ impl<'p> Guards<'p> {
         None
     }
 
-    /// What the guard of a variant compares, with the values that it had; the same parameters for
-    /// all variants of a site.
+    /// The parameters that the guard of a variant compares, with their values; the same parameters
+    /// for all variants of a site.
     pub(super) fn parameters(&self, arguments: &[Argument]) -> Vec<(Parameter, Datum)> {
         let mut parameters: Vec<(Parameter, Datum)> = Vec::new();
         for argument in arguments {
@@ -151,13 +150,13 @@ impl<'p> Guards<'p> {
     }
 }
 
-/// Whether a name has another value on another controller.
+/// Whether the value of a name depends on the controller.
 fn differs_by_controller(expr: &Expr) -> bool {
     let ExprKind::Ref(name) = &expr.kind else { return false };
     is_controller_specific(&name.key)
 }
 
-/// Whether the controller works a value out instead of reading it.
+/// Whether the controller computes the value instead of reading it.
 fn is_computed(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Ref(_) | ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) => false,
@@ -168,7 +167,7 @@ fn is_computed(expr: &Expr) -> bool {
     }
 }
 
-/// An expression without comments and line ends.
+/// The text of an expression without comments and line breaks.
 pub(super) fn one_line(files: &[Source], span: Span) -> String {
     let text = files[span.file.0 as usize].file.text(span);
     let tokens = tokenize(text.as_bytes());

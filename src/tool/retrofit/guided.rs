@@ -1,7 +1,7 @@
-//! Streams as positions for externally guided motion, in a folder beside the program.
+//! Streams as positions for externally guided motion (EGM), in a folder next to the program.
 //!
-//! The program itself stays as it was: nothing plans or limits a guided motion but its sender, and
-//! the virtual controller does not run it.
+//! The program itself stays unchanged: only the sender plans and limits a guided motion, and the
+//! virtual controller does not run it.
 
 use super::candidate::{Candidate, State, with_states};
 use super::error::RetrofitError;
@@ -18,11 +18,11 @@ use crate::tool::emit::{self, EGM_STEP_S, GeneratedNames, Names};
 
 /// The folder, relative to the program.
 const FOLDER: &str = "egm";
-/// Largest distance of a position in the file from the motion, rad: the rounding of its text.
+/// Maximum distance of a position in the file from the motion, rad: rounding of the text.
 const ROUNDING: f64 = 1e-7;
 
-/// The files of the program as they were, and a module with its positions for each candidate that has
-/// a stream. The candidates then have their reason to stay.
+/// The unchanged files, and a module with positions for each candidate that has a stream. These
+/// candidates become refused with a reason.
 pub(super) fn guided(
     original: &Original<'_>,
     candidates: Vec<Candidate>,
@@ -63,7 +63,7 @@ pub(super) fn guided(
     Ok((outputs, with_states(candidates, refused)))
 }
 
-/// Tool and work object of a run as a module beside the program can name them.
+/// Tool and work object of a run, as a module outside the program can name them.
 fn arguments(original: &Original<'_>, run: &Run) -> Result<(String, String), Reason> {
     let Original { files, program, .. } = original;
     let Some(record) = run.moves.first() else { return Err(Reason::NoMotion) };
@@ -102,7 +102,7 @@ fn is_known_everywhere(program: &Program, place: Span, name: &str) -> bool {
     !own && (is_data || predefined::lookup(&key).is_some()) && here == program.resolve_global(&key)
 }
 
-/// A stream at the clock of the guide: its own motion, held for the rest of the last tick.
+/// A stream sampled at the EGM period; the last position is held to the end of its period.
 fn positions(stream: &Stream) -> Vec<Joints> {
     let duration = stream.duration();
     let count = (duration / EGM_STEP_S - ROUNDING).ceil().max(1.0) as usize;

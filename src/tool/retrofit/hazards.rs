@@ -1,5 +1,5 @@
-//! What stands around a movement in the program and would treat a stream otherwise than the
-//! movement itself: handlers, interrupt routines, external axes, stop points with a time.
+//! Surroundings of a movement that affect a stream differently from the movement: error handlers,
+//! interrupt routines, external axes, stop points with a time.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,7 +18,7 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::site::{Site, not_constant, sites};
 use crate::tool::emit;
 
-/// The sites of a program; those and their variants that can't be streams have their reasons.
+/// The sites of a program; sites and variants that cannot be streams have a reason.
 pub(super) fn marked_sites(
     program: &Program,
     simulation: &Simulation,
@@ -49,7 +49,7 @@ pub(super) fn marked_sites(
             let What::Run(run) = &simulation.events[*event].what else { return None };
             Some((run, *event))
         });
-        // Other forms than streams have no guard: what may be another one at the next run stays.
+        // Only streams have a guard: with other forms, variable movements stay.
         let varies = |run: &Run| run.moves.iter().find_map(|record| not_constant(&record.movement));
         let unguarded = runs.clone().next().filter(|_| form != Form::Streams);
         variant.reason = std::mem::take(&mut variant.reason)
@@ -66,13 +66,13 @@ fn program_hazard(program: &Program) -> Option<Reason> {
     emit::has_streams(program).then_some(Reason::Already).or_else(own_name)
 }
 
-/// A stop point that waits for more than standing would lose that at the end of a stream.
+/// A stop point with an additional wait; a stream would lose that wait.
 fn stop_with_time(run: &Run) -> Option<Reason> {
     let waits = run.moves.iter().any(|record| record.movement.stop != Stop::Fine);
     waits.then(|| Reason::Argument("Inpos".into()))
 }
 
-/// Whether the external axes stand at different places in different executions of one way.
+/// Whether the external axes differ between executions of one variant.
 fn stands_elsewhere(simulation: &Simulation, events: &[usize]) -> bool {
     let mut places = events.iter().filter_map(|event| match &simulation.events[*event].what {
         What::Run(run) => run.moves.first().map(|record| record.movement.external),
@@ -107,8 +107,8 @@ fn external_axes(simulation: &Simulation) -> BTreeSet<usize> {
     moved
 }
 
-/// A routine that goes on after an error in an argument: the guard evaluates all arguments before the
-/// first movement, so that the error would come earlier.
+/// The routine that handles an error of an argument: the guard evaluates all arguments before the
+/// first movement, so the error would come earlier.
 fn catcher(program: &Program) -> Option<Reason> {
     let takes = |(numbers, block): &(Vec<Expr>, Block)| {
         let named = |number: &Expr| is_number(number, Cause::Argument);
@@ -122,7 +122,7 @@ fn catcher(program: &Program) -> Option<Reason> {
     )))
 }
 
-/// Whether a handler does something after an error in an argument.
+/// Whether a handler does more than re-raise an error of an argument.
 fn may_take(block: &Block) -> bool {
     block.iter().any(|stmt| match &stmt.kind {
         StmtKind::If { branches, otherwise } => {
@@ -140,7 +140,7 @@ fn may_take(block: &Block) -> bool {
     })
 }
 
-/// The movements that a handler keeps from being streams.
+/// The movements that an error handler prevents from being streams.
 fn handlers(program: &Program) -> BTreeMap<Span, Reason> {
     let mut found = BTreeMap::new();
     for (routine, block) in routines(program).flat_map(|r| r.blocks().map(move |b| (r, b))) {
@@ -154,7 +154,7 @@ fn handlers(program: &Program) -> BTreeMap<Span, Reason> {
     found
 }
 
-/// What the handlers of a routine do to a movement in it that a stream would not bear.
+/// Why the handlers of a routine prevent streams.
 fn handler_of(routine: &Routine) -> Option<String> {
     if routine.backward.is_some() {
         return Some("its routine has a BACKWARD handler, which goes back step by step".into());
@@ -168,8 +168,7 @@ fn handler_of(routine: &Routine) -> Option<String> {
     ))
 }
 
-/// The first statement of a handler that goes on where a movement broke off, if an error of a
-/// movement leads there.
+/// The first statement of a handler that resumes an interrupted movement.
 fn resumes(block: &Block) -> Option<&'static str> {
     block.iter().find_map(|stmt| match &stmt.kind {
         StmtKind::Retry => Some("RETRY"),
@@ -194,7 +193,7 @@ fn resumes(block: &Block) -> Option<&'static str> {
     })
 }
 
-/// Whether a condition can hold after an error of a cause.
+/// Whether a condition can hold after an error of this cause.
 fn may_hold(condition: &Expr, cause: Cause) -> bool {
     match &condition.kind {
         ExprKind::Binary(BinaryOp::Eq, a, b) if is_errno(a) => is_number(b, cause),
@@ -209,7 +208,7 @@ fn is_errno(expr: &Expr) -> bool {
     matches!(&expr.kind, ExprKind::Ref(name) if name.key == "errno")
 }
 
-/// Whether a number may be that of an error of a cause.
+/// Whether this may be the number of an error of this cause.
 fn is_number(number: &Expr, cause: Cause) -> bool {
     match &number.kind {
         ExprKind::Ref(name) => builtins::error(&name.key) == Some(cause),

@@ -1,4 +1,4 @@
-//! Interrupt routines: what they may do to a movement while it runs, and the data that they write.
+//! Interrupt routines: their effect on running movements, and the data that they write.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use crate::rapid::ir::hir::{Arg, Block, Callee, Expr, ExprKind, Routine, StmtKin
 use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
 use crate::retime::optimize::reason::Reason;
 
-/// What connected interrupt routines may do to a movement.
+/// The first effect of a connected interrupt routine on movements.
 pub(super) fn interrupt_hazard(program: &Program) -> Option<Reason> {
     traps(program).into_iter().find_map(|(trap, reach)| {
         let what = reach.hazard()?;
@@ -24,7 +24,7 @@ pub(super) fn written_by_interrupts(program: &Program) -> BTreeSet<DataId> {
     traps(program).into_iter().flat_map(|(_, reach)| reach.written).collect()
 }
 
-/// The connected interrupt routines by name, with what they run.
+/// The connected interrupt routines by name, with everything that they run.
 fn traps(program: &Program) -> Vec<(String, Reach)> {
     let mut found = Vec::new();
     for (m, module) in program.modules.iter().enumerate() {
@@ -33,7 +33,7 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
                 let StmtKind::Connect { trap, .. } = &stmt.kind else { continue };
                 let mut reach = Reach::default();
                 reach.call(program, m, &trap.text);
-                // A list of routines to look at, not a recursion: calls may be deep.
+                // A work list instead of recursion: calls may be deep.
                 while let Some(id) = reach.open.pop() {
                     let routine = program.routine(id);
                     for expr in routine.data.iter().filter_map(|data| data.init.as_ref()) {
@@ -50,20 +50,20 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
     found
 }
 
-/// What an interrupt routine runs, directly or not.
+/// Everything that an interrupt routine runs, directly or indirectly.
 #[derive(Default)]
 struct Reach {
-    /// Routines that were looked at, by module and index.
+    /// Visited routines, by module and index.
     seen: BTreeSet<(usize, usize)>,
-    /// Routines still to be looked at.
+    /// Routines still to visit.
     open: Vec<RoutineId>,
     /// The first instruction that changes movements.
     changes: Option<String>,
     /// The first movement.
     moves: Option<String>,
-    /// Whether the path that it interrupts is kept for later.
+    /// Whether it stores the interrupted path.
     stores_path: bool,
-    /// Module data that it may write: what it assigns to, and what it hands to other routines.
+    /// Module data that it may write: by assignment, or as an argument.
     written: BTreeSet<DataId>,
 }
 
@@ -109,7 +109,7 @@ impl Reach {
         }
     }
 
-    /// Functions, too, may write to data, their own arguments among them.
+    /// Functions may also write data, for example their arguments.
     fn expr(&mut self, program: &Program, module: usize, expr: &Expr) {
         if let ExprKind::Call(name, args) = &expr.kind {
             self.call(program, module, &name.text);

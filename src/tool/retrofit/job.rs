@@ -1,4 +1,4 @@
-//! A program with the robot and the settings for which it is retrofitted.
+//! The input of a retrofit: program, robot, settings.
 
 use super::candidate::Candidate;
 use super::files::Source;
@@ -11,7 +11,7 @@ use crate::retime::energy::plausible::Robots;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::optimize::site::Site;
 
-/// The original program: its text, its cycle, and the places where it may change.
+/// The original program: text, simulated cycle, sites of possible changes.
 pub(super) struct Original<'a> {
     pub(super) files: &'a [Source],
     pub(super) program: &'a Program,
@@ -23,12 +23,12 @@ pub(super) struct Original<'a> {
 }
 
 impl Original<'_> {
-    /// The events in which a candidate runs, as indices of the simulation's.
+    /// The events in which a candidate runs, as indices into `Simulation::events`.
     pub(super) fn events(&self, candidate: &Candidate) -> &[usize] {
         &self.sites[candidate.site].variants[candidate.variant].events
     }
 
-    /// The first run of a candidate; all of them are alike.
+    /// The first run of a candidate; all its runs are equal.
     pub(super) fn run(&self, candidate: &Candidate) -> Option<&Run> {
         match &self.cycle.simulation.events[*self.events(candidate).first()?].what {
             What::Run(run) => Some(run),
@@ -37,14 +37,14 @@ impl Original<'_> {
     }
 }
 
-/// What all stages work on.
+/// The input of all stages.
 pub(super) struct Job<'a> {
     pub(super) original: Original<'a>,
     pub(super) model: &'a Model,
     pub(super) settings: Settings,
-    /// Robots that are as plausible as the model; `None` for a point estimate.
+    /// The plausible robots; `None` for a point estimate.
     pub(super) robots: Option<Robots>,
-    /// Their mean, where the limits of torque are estimated.
+    /// Their mean, if the torque limits are estimated.
     pub(super) mean: Option<Model>,
 }
 

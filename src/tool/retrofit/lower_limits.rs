@@ -1,7 +1,7 @@
-//! What happens if a robot can do less than its file assumes.
+//! The retrofit on a robot with lower limits than its file assumes.
 //!
-//! Limits that nobody publishes are assumed. A stream must not lose more than the movements that it
-//! stands for where they are too high: it would be a retrofit that makes the cycle longer.
+//! Unpublished limits are assumed. If they are too high, a stream must not lose more time than its
+//! original movements: the retrofit would make the cycle longer.
 
 use rayon::prelude::*;
 
@@ -15,12 +15,12 @@ use super::settings::Settings;
 use crate::retime::motion::{Simulation, simulate};
 use crate::retime::optimize::reason::Reason;
 
-/// Share by which a stream may take longer than its movements under lower limits.
+/// Ratio by which a stream may exceed the time of its movements under lower limits.
 const LONGER: f64 = 1.005;
 /// Rounding of a time, s.
 const ROUNDING: f64 = 1e-4;
 
-/// The emitted program under each of the lower limits; empty where it can't be read.
+/// The emitted program under each of the lower limits; empty if it cannot be read.
 pub(super) fn emitted_under(
     lowered: &[Lowered],
     outputs: &[OutputFile],
@@ -32,7 +32,7 @@ pub(super) fn emitted_under(
     lowered.par_iter().map(simulated).collect()
 }
 
-/// How long original and retrofit take under lower limits.
+/// Cycle times of original and retrofit under lower limits.
 pub(super) fn cycles(lowered: &[Lowered], emitted: &[Simulation]) -> Vec<LowerLimits> {
     let cycles = |(lower, after): (&Lowered, &Simulation)| LowerLimits {
         share: lower.share,
@@ -42,9 +42,9 @@ pub(super) fn cycles(lowered: &[Lowered], emitted: &[Simulation]) -> Vec<LowerLi
     lowered.iter().zip(emitted).map(cycles).collect()
 }
 
-/// Refuses the candidates whose streams lose more time under lower limits than their movements. A
-/// stream that is slower on purpose may take the time that it was given; what it loses beyond that
-/// counts. `after`: the retrofit under the assumed limits, with the events of the original.
+/// Refuses the candidates whose streams lose more time under lower limits than their movements.
+/// Extra time that a stream received on purpose does not count. `after`: the retrofit under the
+/// assumed limits, with the events of the original.
 pub(super) fn losing(
     original: &Original<'_>,
     after: &Simulation,

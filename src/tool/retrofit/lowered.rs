@@ -1,4 +1,4 @@
-//! The original program on a robot that can do less than its file assumes.
+//! The original program on a robot with lower limits than its file assumes.
 
 use rayon::prelude::*;
 
@@ -7,18 +7,18 @@ use crate::arm::robot::Model;
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::retime::motion::{Simulation, simulate};
 
-/// Shares of the assumed limits that are looked at.
+/// Simulated limits as shares of the assumed ones.
 const SHARES: [f64; 3] = [0.9, 0.8, 0.7];
 
 /// The original under lower limits.
 pub(super) struct Lowered {
-    /// The lower limits over the assumed ones.
+    /// Ratio of the lower limits to the assumed ones.
     pub(super) share: f64,
     pub(super) model: Model,
     pub(super) simulation: Simulation,
 }
 
-/// The original under lower limits; empty where no limit is assumed.
+/// The original under lower limits; empty if no limit is assumed.
 pub(super) fn lowered(
     program: &Program,
     entry: RoutineId,
@@ -44,8 +44,8 @@ pub(super) fn lowered(
     SHARES.par_iter().map(lower).collect()
 }
 
-/// How much later the original may come to an event than it is planned to, s, counted from the end
-/// of another event or from the start of the cycle.
+/// Maximum delay of the original at an event under lower limits, s, relative to the end of another
+/// event or to the start of the cycle.
 pub(super) fn lateness(
     planned: &Simulation,
     lowered: &[Lowered],

@@ -1,7 +1,7 @@
-//! The main job: a program in, a verified program that takes less energy out.
+//! The retrofit: from a program to a verified program that takes less energy.
 //!
-//! Parse, simulate, optimise, emit; then read the emitted text again, simulate
-//! that, and compare. What does not hold keeps its original moves.
+//! It parses, simulates, optimises and emits, then reads the emitted text, simulates it and
+//! compares. Pieces that fail the verification keep their original movements.
 
 mod brakes;
 mod candidate;

@@ -1,4 +1,4 @@
-//! What a user should know of a retrofit besides its figures.
+//! Notes for the user beyond the figures.
 
 use std::fmt::Write;
 
@@ -11,12 +11,12 @@ use crate::arm::robot::Model;
 use crate::retime::energy::account::at_rest;
 use crate::retime::optimize::reason::Reason;
 
-/// Differences of energy below this are rounding, J.
+/// Smaller energy differences are rounding, J.
 const ROUNDING_J: f64 = 1e-3;
-/// Rest of a takt that is worth a note, share of it.
+/// Unused share of a takt that causes a note.
 const UNUSED: f64 = 0.01;
 
-/// The notes on the time that was asked for.
+/// All notes on a retrofit except those on estimated torques and the path.
 pub(super) fn notes(
     program: &Original<'_>,
     model: &Model,
@@ -81,7 +81,7 @@ pub(super) fn notes(
     notes
 }
 
-/// Says what is minimised, and what joints are asked, where torque limits are not known.
+/// The note on the objective if torque limits are estimates.
 pub(super) fn mean_energy(model: &Model) -> String {
     format!(
         "the torque limits of {} are estimated: streams minimise the mean energy over plausible robots \
@@ -91,7 +91,7 @@ pub(super) fn mean_energy(model: &Model) -> String {
     )
 }
 
-/// Says how far streams leave the programmed path where nothing is known of the cell.
+/// The warning on streams that leave the programmed path without keep-out zones.
 pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
     settings.freedom.keep_out.is_empty().then(|| {
         format!(
@@ -103,7 +103,7 @@ pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
     })
 }
 
-/// Says that the original is counted with a wait that it does not have.
+/// The note on the wait that is added to the original.
 fn padded(original: &Figures, padding: &Padding) -> String {
     format!(
         "the original is padded: by itself it takes {:.3} s, and it is counted with {:.3} s more in \
@@ -116,10 +116,10 @@ fn padded(original: &Figures, padding: &Padding) -> String {
     )
 }
 
-/// A run that is quicker than before by more than this is worth a note.
+/// Time ratio below which a faster run causes a note.
 const QUICK: f64 = 0.5;
 
-/// What the sharing of the cycle's time does to single runs.
+/// The notes on single runs that lose by the distribution of the cycle time.
 fn shared(segments: &[Segment]) -> Vec<String> {
     let rewritten = || segments.iter().filter(|s| s.kind != SegmentKind::Idle && s.rewritten);
     let dearer = rewritten().filter(|s| s.energy_after_j > s.energy_before_j + ROUNDING_J).count();
@@ -140,7 +140,7 @@ fn shared(segments: &[Segment]) -> Vec<String> {
     notes
 }
 
-/// Says so where no file changes.
+/// The note that no file changes.
 fn unchanged(segments: &[Segment]) -> Option<String> {
     if segments.iter().any(|segment| segment.rewritten) {
         return None;
@@ -154,7 +154,7 @@ fn unchanged(segments: &[Segment]) -> Option<String> {
     Some(format!("no movement was rewritten, every file stays as it was{already}"))
 }
 
-/// Energy of standing at the end of the cycle for some time, J.
+/// Energy of standing at the end of the cycle, J.
 fn resting_j(model: &Model, cycle: &Simulated, duration: f64) -> f64 {
     cycle.end().map_or(0.0, |(load, q)| at_rest(model, load, q, duration.max(0.0)).energy_j())
 }

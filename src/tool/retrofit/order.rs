@@ -1,4 +1,4 @@
-//! The order of what a program does, before and after.
+//! Compares the order of events before and after.
 
 use super::simulated::ENDPOINT_TOLERANCE;
 use crate::retime::motion::Simulation;
@@ -6,14 +6,14 @@ use crate::retime::motion::timed::TimedMotion;
 use crate::retime::motion::timeline::{Event, Run, What};
 use crate::retime::path::joint_path::DOF;
 
-/// The same kinds of events with the same outputs, waits and ends.
+/// Whether both have the same sequence of events.
 pub(super) fn same_order(a: &Simulation, b: &Simulation) -> bool {
     a.events.len() == b.events.len()
         && a.events.iter().zip(&b.events).all(|(a, b)| same_event(a, b))
 }
 
-/// The same kind of event with the same output, wait or ends. A stream may stand for any movements,
-/// other movements keep their instructions.
+/// Whether the kind of event and its output, wait or ends are equal. A stream may replace any
+/// movements; other movements keep their instructions.
 pub(super) fn same_event(a: &Event, b: &Event) -> bool {
     match (&a.what, &b.what) {
         (What::Run(a), What::Run(b)) => same_ends(a, b) && (is_stream(b) || same_moves(a, b)),

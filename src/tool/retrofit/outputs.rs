@@ -1,4 +1,4 @@
-//! The complete program as files.
+//! The files of the emitted program.
 
 use sha2::{Digest, Sha256};
 
@@ -12,7 +12,7 @@ use super::relocated_waits::RelocatedWait;
 use crate::rapid::text::{self, SourceFile, Span};
 use crate::tool::emit;
 
-/// Emits the candidates that have streams, and the relocated waits; every other file stays as it was.
+/// Emits the streams of the candidates and the relocated waits; other files stay unchanged.
 pub(super) fn emitted(
     context: &EmissionContext<'_>,
     original: &Original<'_>,
@@ -45,7 +45,7 @@ pub(super) fn emitted(
         if edits.is_empty() {
             continue;
         }
-        // Insertions at distinct places of the file can't overlap.
+        // Insertions at distinct places cannot overlap.
         let bytes =
             text::apply(&source.file.bytes, &edits).unwrap_or_else(|_| source.file.bytes.clone());
         outputs[i] = OutputFile::changed(i, source, bytes);
@@ -62,15 +62,13 @@ pub(super) fn emitted(
     Ok(Outputs { files: outputs, guards })
 }
 
-/// The files of an emitted program.
 pub(super) struct Outputs {
-    /// All of them.
     pub(super) files: Vec<OutputFile>,
-    /// Places with guards, and the RAPID instructions that these run in a cycle.
+    /// Places with guards, and the number of RAPID instructions of these in a cycle.
     pub(super) guards: Vec<(Span, usize)>,
 }
 
-/// What tells one version of a program from another.
+/// A hash that identifies a version of the program.
 fn hash(files: &[SourceFile]) -> String {
     let mut hasher = Sha256::new();
     for file in files {
@@ -81,5 +79,5 @@ fn hash(files: &[SourceFile]) -> String {
     digest.iter().take(HASH_BYTES).fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
-/// Bytes of a hash that are written.
+/// Number of emitted bytes of the hash.
 const HASH_BYTES: usize = 8;

@@ -1,27 +1,24 @@
-//! The wait that a comparison adds to the original program.
+//! The wait that the comparison adds to the original program.
 //!
-//! Where a retrofit may take longer than the original program, the robot of the original waits
-//! for the rest of that time: it stands where its cycle ends, with base load, holding power and
-//! open brakes. Without this wait the base load of the longer cycle would count for one side
-//! only.
+//! If a retrofit takes longer than the original, the original robot waits for the difference at the
+//! end of its cycle, with base load, holding power and open brakes. Otherwise the base load of the
+//! longer cycle would count for one side only.
 
 use super::simulated::{Simulated, TIME_TOLERANCE};
 use crate::arm::robot::Model;
 use crate::retime::energy::EnergyParts;
 use crate::retime::energy::account::at_rest;
 
-/// A wait at the end of the original cycle that the comparison adds, so that both sides take the
-/// same time.
+/// An added wait at the end of the original cycle that makes both cycles equally long.
 #[derive(Clone, Debug)]
 pub struct Padding {
     /// s.
     pub duration_s: f64,
-    /// What it costs: base load, holding and open brakes.
+    /// Its energy: base load, holding and open brakes.
     pub energy: EnergyParts,
 }
 
-/// What the original waits more, so that it takes as long as the retrofit, `cycle_s`; `None` where
-/// the retrofit takes no longer.
+/// The padding up to `cycle_s`, the cycle time of the retrofit; `None` if that is not longer.
 pub(super) fn padding(model: &Model, original: &Simulated, cycle_s: f64) -> Option<Padding> {
     let duration_s = cycle_s - original.simulation.cycle_s;
     if duration_s <= TIME_TOLERANCE {

@@ -1,4 +1,4 @@
-//! The pipeline: its stages in their order.
+//! The stages of a retrofit in their order.
 
 use rayon::prelude::*;
 
@@ -31,10 +31,10 @@ use crate::retime::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::retime::optimize::idle::dwells;
 use crate::retime::optimize::retime::PathUse;
 
-/// Retrofits a program. `progress` is told how many of how many pieces are done.
+/// Retrofits a program. `progress` receives the number of finished pieces and the total.
 ///
 /// # Errors
-/// What makes the whole job impossible; a piece that can't be improved stays as it is.
+/// An error that prevents the whole retrofit; a piece that cannot be improved stays unchanged.
 pub fn retrofit(
     files: &[Source],
     model: &Model,
@@ -62,8 +62,8 @@ pub fn retrofit(
     Ok(results(job, rewritten, leaves_path))
 }
 
-/// The program with streams, or with positions for externally guided motion beside it; and whether
-/// streams leave the programmed path.
+/// The program with streams, or with positions for externally guided motion in separate files; and
+/// whether streams leave the programmed path.
 fn with_streams(
     job: &Job<'_>,
     guards: &Guards<'_>,
@@ -111,7 +111,7 @@ fn with_streams(
         rewritten.candidates = candidates;
         rewritten.outputs.files = files;
         rewritten.outputs.guards.clear();
-        // The program that runs is the one before.
+        // The program itself does not change.
         rewritten.simulated =
             Simulated::new(original.program, original.entry, model, &settings.options);
     }

@@ -1,4 +1,4 @@
-//! What streams are planned for.
+//! The planning tasks of the optimiser.
 
 use super::candidate::{Candidate, State};
 use super::job::Job;
@@ -8,26 +8,25 @@ use crate::retime::energy::{Account, EnergyParts, account};
 use crate::retime::optimize::freedom::Freedom;
 use crate::retime::optimize::retime::Task;
 
-/// A job as the optimiser sees it: for the robot whose energy is minimised.
+/// A job for the robot whose energy is minimised.
 pub(super) struct Planning<'a> {
     pub(super) job: &'a Job<'a>,
     /// The robot whose energy is minimised.
     pub(super) model: &'a Model,
-    /// The settings with the loads of that robot.
+    /// The settings with that robot's loads.
     pub(super) settings: Settings,
-    /// What that robot takes for the original.
+    /// Energy of the original with that robot.
     account: Account,
 }
 
 impl<'a> Planning<'a> {
-    /// The planning of a job.
     pub(super) fn new(job: &'a Job<'a>) -> Planning<'a> {
         let (model, simulation) = (job.aim(), &job.original.cycle.simulation);
         let settings = job.settings.with_shown_loads(model, simulation);
         Planning { job, model, settings, account: account(model, simulation) }
     }
 
-    /// The task of timing a candidate anew; `None` if it does not run.
+    /// The planning task of a candidate; `None` if it never runs.
     pub(super) fn task<'f>(
         &'f self,
         candidate: &Candidate,
@@ -47,7 +46,7 @@ impl<'a> Planning<'a> {
         })
     }
 
-    /// The tasks of the pending candidates, with the indices of these.
+    /// The tasks of the pending candidates, with their indices.
     pub(super) fn tasks(&self, candidates: &[Candidate]) -> Vec<(usize, Task<'_>)> {
         let pending = candidates.iter().enumerate();
         let pending = pending.filter(|(_, candidate)| matches!(candidate.state, State::Pending));

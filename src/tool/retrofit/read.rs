@@ -1,4 +1,4 @@
-//! Reads a program: its files, its modules, its entry.
+//! Reads a program: files, modules, entry.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ use crate::tool::emit;
 /// Parses the files and finds the entry.
 ///
 /// # Errors
-/// No entry, or one in a broken module.
+/// No entry, several entries, or syntax errors in its module.
 pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId), RetrofitError> {
     let parsed: Vec<_> = files
         .par_iter()
@@ -50,7 +50,7 @@ pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId
             module: missing.module,
         });
     }
-    // A broken module may hide its entry: then its error is the way out.
+    // A syntax error may hide the entry, so it is reported first.
     let Some(id) = program.entry(entry) else {
         let broken = errors.iter().position(|list| !list.is_empty());
         let blank = |source: &Source| source.file.bytes.iter().all(u8::is_ascii_whitespace);
@@ -71,7 +71,7 @@ pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId
     }
 }
 
-/// An error inside another routine of the module leaves the entry usable.
+/// Whether the error is inside another routine of the module, so that the entry is usable.
 fn is_elsewhere(program: &Program, entry: RoutineId, error: &SyntaxError) -> bool {
     program.modules[entry.module].routines.iter().enumerate().any(|(index, routine)| {
         index != entry.index && routine.span.start <= error.start && error.end <= routine.span.end

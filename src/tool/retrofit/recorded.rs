@@ -1,5 +1,5 @@
-//! What nothing in RAPID can read back (the load, some settings) is written down by the program
-//! itself, behind each statement that changes it.
+//! RAPID cannot read back the load and some settings. The program records them itself, after each
+//! statement that changes them.
 
 use super::files::Source;
 use super::guards::one_line;
@@ -10,15 +10,15 @@ use crate::rapid::ir::program::Program;
 use crate::rapid::text::{Charset, Edit, Span, charset};
 use crate::tool::emit::{Names, Recorded};
 
-/// What a statement changes.
+/// The effect of a statement.
 enum Change {
-    /// A setting is on or off from here on.
+    /// Turns a setting on or off.
     Switch(&'static str, bool),
-    /// The load is this one from here on.
+    /// Sets the load.
     Load(Span),
 }
 
-/// The insertions that write down what the statements of a program change.
+/// The insertions that record these effects.
 pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Recorded {
     let mut found = Found { program, module: 0, changes: Vec::new() };
     for (m, module) in program.modules.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Re
             Change::Switch(name, on) if recorded.switches.contains(name) => {
                 format!(" {}{name}:={};", names.prefix, if *on { "TRUE" } else { "FALSE" })
             }
-            // A setting that is never on needs no note that it is off.
+            // A setting that is never on needs no record.
             Change::Switch(..) => continue,
         };
         let charset = charsets[place.end.file.0 as usize];
@@ -65,11 +65,11 @@ pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Re
     recorded
 }
 
-/// Where something is written down.
+/// The place of a record.
 struct Place {
     /// The statement.
     end: Span,
-    /// The condition of the compact IF that it stands in: such an IF holds one statement only.
+    /// The condition of the enclosing compact IF, which holds only one statement.
     compact: Option<Span>,
 }
 
@@ -84,7 +84,7 @@ impl Found<'_> {
         for stmt in block {
             self.statement(stmt, None);
             match &stmt.kind {
-                // A compact IF ends with its statement, the long form with ENDIF after it.
+                // A compact IF ends with its statement, the long form with ENDIF.
                 StmtKind::If { branches, otherwise: None }
                     if branches.len() == 1
                         && branches[0].1.last().is_some_and(|l| l.span.end == stmt.span.end) =>
@@ -113,7 +113,7 @@ impl Found<'_> {
     }
 }
 
-/// What an instruction changes.
+/// The effect of an instruction.
 fn change(key: &str, call: &Call) -> Option<Change> {
     let first = call.args.first();
     let names = |word: &str| {

@@ -1,5 +1,5 @@
-//! Waits of known length that are spent at a pose nearby, where holding takes less: which they are,
-//! and how a simulation of the emitted program compares with one that has the waits.
+//! Waits of known length that are spent at a nearby pose of lower holding power, and the comparison
+//! of the emitted program with the original waits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,27 +21,25 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::rest::{Rest, Standstill, rest};
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Joints closer than this are the same place, rad.
+/// Smaller joint distances count as the same place, rad.
 const SAME_PLACE: f64 = 1e-6;
 
-/// A wait that is spent elsewhere.
+/// A wait at another pose.
 pub(super) struct RelocatedWait {
-    /// The statement.
     pub(super) span: Span,
-    /// The events in which it ran.
+    /// Its events in the original.
     pub(super) events: Vec<usize>,
     /// The run before the first of them.
     pub(super) run: usize,
-    /// How long the wait is, s.
+    /// Length of the wait, s.
     duration: f64,
-    /// What is emitted.
+    /// The emitted motion.
     pub(super) rest: Rest,
 }
 
-/// The waits of a program that may be spent elsewhere, as far as it pays: their length is constant,
-/// they are always the same, and the run before each of them can be a stream itself. An output
-/// that is set where the robot stands may start a process there: such a wait has to be made free
-/// by a comment.
+/// The waits that may be relocated and for which it pays: constant length, equal executions, and a
+/// preceding run that can be a stream. An output set before the wait may start a process at that
+/// place; such a wait is relocated only if a comment makes it free.
 pub(super) fn relocated_waits(job: &Job<'_>, candidates: &[Candidate]) -> Vec<RelocatedWait> {
     let Job { original, model, settings, .. } = job;
     let simulation = &original.cycle.simulation;
@@ -93,11 +91,11 @@ pub(super) fn relocated_waits(job: &Job<'_>, candidates: &[Candidate]) -> Vec<Re
     places.into_iter().filter_map(relocated).collect()
 }
 
-/// A wait with what came before it.
+/// A wait with the run before it.
 struct Standing<'a> {
     record: &'a WaitRecord,
     duration: f64,
-    /// The event of the run that led here.
+    /// The event of the preceding run.
     run: usize,
     leading: &'a Run,
 }
@@ -111,7 +109,7 @@ impl Standing<'_> {
     }
 }
 
-/// A wait of constant length where a run of the same routine has led to.
+/// A wait of constant length after a run of the same routine.
 fn standing(simulation: &Simulation, event: usize) -> Option<Standing<'_>> {
     let What::Wait(record) = &simulation.events[event].what else { return None };
     let stated = record.basis == WaitBasis::Stated
@@ -131,7 +129,7 @@ fn standing(simulation: &Simulation, event: usize) -> Option<Standing<'_>> {
     (stated && at_home).then_some(Standing { record, duration, run, leading })
 }
 
-/// Whether a statement begins its line: what stands before it could be a condition.
+/// Whether a statement begins its line; text before it could be a condition.
 fn stands_alone(files: &[Source], span: Span) -> bool {
     let bytes = &files[span.file.0 as usize].file.bytes[..span.start as usize];
     let line = bytes.iter().rev().take_while(|b| !matches!(b, b'\n' | b'\r'));
@@ -142,18 +140,18 @@ fn apart(a: &Joints, b: &Joints) -> f64 {
     (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
-/// What became of a wait in the emitted program.
+/// A fault of a relocated wait in the emitted program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fault {
-    /// It takes so much longer than it should, s: the robot settles more often.
+    /// It takes this much too long, s: the robot settles more often.
     Late(f64),
     /// It does not run as intended.
     Other,
 }
 
-/// A simulation of the emitted program with the waits where they were: settling before it, the way
-/// there, standing and the way back are one event again, with the energy of all. Those that do not
-/// run as intended are named by their index; the simulation is not whole then.
+/// The simulation with each relocated wait folded into one event at its original place: settling,
+/// way out, standing, way back, with the sum of their energies. Also the faults by index of the
+/// wait; with faults the simulation is incomplete.
 pub(super) fn folded(
     model: &Model,
     settings: &Settings,
@@ -216,7 +214,7 @@ pub(super) fn folded(
     (Simulated { simulation, account }, faults)
 }
 
-/// The waits without the faulty ones; the first time, pauses of those that are late get shorter.
+/// Removes the faulty waits; in the first round, late ones get shorter pauses instead.
 pub(super) fn mended(
     waits: Vec<RelocatedWait>,
     faults: &BTreeMap<usize, Fault>,
@@ -233,10 +231,10 @@ pub(super) fn mended(
     waits.into_iter().enumerate().filter_map(mend).collect()
 }
 
-/// Events after the first one of a rest.
+/// Number of events of a relocated wait after the first.
 const WAY_AND_BACK: usize = 2;
 
-/// Takes the settling off a run, as before a wait: what it took, s.
+/// Removes the settling time of a run and returns it, s.
 fn unsettle(event: &mut Event) -> f64 {
     let What::Run(run) = &mut event.what else { return 0.0 };
     let settling = std::mem::take(&mut run.settling);
@@ -247,8 +245,8 @@ fn unsettle(event: &mut Event) -> f64 {
     settling
 }
 
-/// How much longer than the wait three events take that are the way to a rest, standing there and
-/// the way back, within the limits, s; `None` where they are not that.
+/// Excess time of the three events (way out, standing, way back) over the wait, s; `None` if they
+/// are not these or exceed limits.
 fn excess(
     model: &Model,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! The result of a retrofit from what its stages found.
+//! Assembles the result of a retrofit.
 
 use super::figures::{Figures, LowerLimits, Retrofit, SegmentKind};
 use super::job::Job;
@@ -20,7 +20,7 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
     let mut segments = segments(&original, &simulated, &candidates, &dwells, &waits);
     for segment in &mut segments {
         if mean.is_some() {
-            // The bounds are of the mean robot, the energies of the model.
+            // The bounds refer to the mean robot, the energies to the model.
             segment.lower_bound_j = None;
         }
         if segment.kind == SegmentKind::Timing && respeeded.contains(&segment.span) {
@@ -43,7 +43,7 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
         (&before, &optimized, padding.as_ref()),
     );
     if settings.form != Form::Speeds {
-        // A padded original waits less where its movements take longer.
+        // The padded original is at least as long as the retrofit.
         if padding.is_some() {
             for LowerLimits { original_s, .. } in &mut lower_limits {
                 *original_s = original_s.max(before.cycle_s);

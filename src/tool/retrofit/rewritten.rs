@@ -1,4 +1,4 @@
-//! A rewritten program with what the verifier saw.
+//! A rewritten program with its verification.
 
 use std::collections::BTreeSet;
 
@@ -13,12 +13,11 @@ use crate::rapid::text::Span;
 pub(super) struct Rewritten {
     pub(super) candidates: Vec<Candidate>,
     pub(super) waits: Vec<RelocatedWait>,
-    /// Sites that have other speeds.
+    /// Sites with other speeds.
     pub(super) respeeded: BTreeSet<Span>,
     pub(super) outputs: Outputs,
-    /// The emitted program, with the waits where they were.
+    /// The emitted program, with the waits at their original places.
     pub(super) simulated: Simulated,
     pub(super) verification: Verification,
-    /// Both cycles under lower limits.
     pub(super) lower_limits: Vec<LowerLimits>,
 }

@@ -1,4 +1,4 @@
-//! Rounds of emitting and verifying: each leaves out what did not hold in the emitted text.
+//! Emits and verifies repeatedly: each round removes the pieces that failed the verification.
 
 use super::candidate::{Candidate, State, with_states};
 use super::emission_context::EmissionContext;
@@ -18,10 +18,10 @@ use super::verify::{Attempt, Rewrite, verify};
 use crate::retime::optimize::allowed::Loads;
 use crate::retime::optimize::reason::Reason;
 
-/// Rounds of leaving out what did not hold; in the last one nothing is kept.
+/// Maximum number of rounds; the last one keeps no stream.
 const MOST_ROUNDS: usize = 12;
 
-/// The program with the streams and waits that hold in the emitted text.
+/// The program with the streams and waits that pass the verification.
 pub(super) fn verified(
     planning: &Planning<'_>,
     context: &EmissionContext<'_>,
@@ -30,7 +30,7 @@ pub(super) fn verified(
 ) -> Result<Rewritten, RetrofitError> {
     let Job { original, model, settings, .. } = planning.job;
     let mut torque_bound = TorqueBound::new(planning.job);
-    // No more is asked of robots of whose limits nothing is known than what they do already.
+    // With estimated torque limits, `TorqueBound` limits the torques to those of the original.
     let mut settings = settings.clone();
     if let (Some(_), Some(loads)) = (&torque_bound, &mut settings.freedom.loads) {
         loads.torque = Loads::limits(model).torque;
@@ -66,7 +66,7 @@ pub(super) fn verified(
         }
         let mut failed = attempt.failed;
         if failed.is_empty() || rounds == MOST_ROUNDS {
-            // No single stream is at fault: none is kept.
+            // The fault has no single cause: all streams are refused.
             let why = attempt.verification.broken().unwrap_or("the verification failed");
             let reason = Reason::Verification(format!("did not hold: {why}"));
             let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
@@ -78,8 +78,8 @@ pub(super) fn verified(
     }
 }
 
-/// Both cycles under lower limits, and new states of candidates whose streams hold but are not worth
-/// it, or ask for too much.
+/// Both cycles under lower limits, and new states of candidates whose streams pass the verification
+/// but do not pay or load a joint too much.
 fn changes(
     planning: &Planning<'_>,
     torque_bound: Option<&mut TorqueBound<'_>>,
@@ -94,7 +94,7 @@ fn changes(
     if is_without_waits {
         changes = lower_limits::losing(original, &after.simulation, &lowered, candidates);
     }
-    // Where more or less time is asked for, runs may take more energy on purpose.
+    // With another budget or objective, runs may deliberately take more energy.
     let must_save = settings.budget == Budget::AsBefore && settings.objective == Objective::Energy;
     if let (Some(robots), true) = (robots, changes.is_empty() && is_without_waits && must_save) {
         changes = uncertain(model, robots, original, after, candidates);

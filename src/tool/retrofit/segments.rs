@@ -1,4 +1,4 @@
-//! The costs of each piece before and after.
+//! Time and energy of each segment before and after.
 
 use std::collections::BTreeMap;
 
@@ -16,10 +16,10 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::PathUse;
 use crate::retime::optimize::site::not_reached;
 
-/// Dwells shorter than this are not listed, s: gripper times.
+/// Shorter dwells are not listed, s: gripper times.
 const SHORTEST_DWELL: f64 = 0.1;
 
-/// The segments in the order of the source. `dwells`: of the original.
+/// The segments in source order. `dwells`: of the original.
 pub(super) fn segments(
     original: &Original<'_>,
     after: &Simulated,
@@ -88,7 +88,7 @@ fn cost(cycle: &Simulated, events: &[usize]) -> (f64, f64) {
     (time, parts.fold(EnergyParts::default(), |sum, part| sum + *part).energy_j())
 }
 
-/// Movements that could not be worked out, by statement.
+/// Movements that could not be resolved, by statement.
 fn unresolved(simulation: &Simulation) -> Vec<Segment> {
     let mut by_place: BTreeMap<Span, Segment> = BTreeMap::new();
     for event in &simulation.events {
@@ -103,7 +103,6 @@ fn unresolved(simulation: &Simulation) -> Vec<Segment> {
     by_place.into_values().collect()
 }
 
-/// Dwells by place.
 fn idle(
     before: &Simulated,
     after: &Simulated,

@@ -1,4 +1,4 @@
-//! How a program is retrofitted.
+//! Settings of a retrofit.
 
 use std::collections::BTreeSet;
 
@@ -9,25 +9,25 @@ use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::Freedom;
 use crate::tool::emit::Layout;
 
-/// What is to be minimised.
+/// The quantity to minimise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
-    /// Energy in the time that there is.
+    /// Energy within the time budget.
     #[default]
     Energy,
-    /// Time.
+    /// Cycle time.
     Time,
 }
 
-/// The time that there is.
+/// The time budget.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Budget {
-    /// No run takes longer than before.
+    /// No run takes longer than in the original.
     #[default]
     AsBefore,
-    /// The cycle takes this long, s.
+    /// Cycle time, s.
     Takt(f64),
-    /// Each run takes this many times as long as before, at most
+    /// Duration of each run as a multiple of its original duration, at most
     /// [`SLOWEST`](crate::retime::optimize::retime::SLOWEST).
     Factor(f64),
 }
@@ -40,54 +40,54 @@ pub enum Form {
     Streams,
     /// The movements with other speeds.
     Speeds,
-    /// Positions for externally guided motion beside the program.
+    /// Positions for externally guided motion in separate files.
     Guided,
 }
 
-/// How a program is retrofitted.
+/// Settings of a retrofit.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The routine that starts the program.
     pub entry: String,
-    /// For the simulations.
+    /// Options of the simulations.
     pub options: Options,
-    /// What is to be minimised.
+    /// The quantity to minimise.
     pub objective: Objective,
-    /// The time that there is.
+    /// The time budget.
     pub budget: Budget,
-    /// Least time between two points of a stream, s.
+    /// Minimum time between two points of a stream, s.
     pub spacing_s: f64,
-    /// The same where the polygon of the points would be too far from the path otherwise, s.
+    /// The same if the polygon of the points would otherwise be too far from the path, s.
     pub closest_s: f64,
-    /// What streams may do that the movements did not.
+    /// Which constraints of the movements a stream may leave.
     pub freedom: Freedom,
-    /// What is written.
+    /// The form of the output.
     pub form: Form,
-    /// How the points of streams are written.
+    /// Layout of the points of streams.
     pub layout: Layout,
-    /// What stands for energy.
+    /// The cost that represents energy.
     pub cost: Cost,
-    /// How far each joint may go to a pose at which waiting takes less, rad; `None` where the robot
-    /// waits where it stands.
+    /// Maximum displacement of each joint to a waiting pose of lower power, rad; `None`: no
+    /// relocation.
     pub dwell_pose: Option<f64>,
-    /// Whether the model's numbers are taken as they are, without robots that are as plausible.
+    /// Whether to use only the model's own numbers, without plausible robots.
     pub point_estimate: bool,
-    /// Whether movements may become streams whose targets stand in them: `ModPos` would change the
-    /// text of such a movement, behind its guard.
+    /// Whether movements with inline targets may become streams: `ModPos` would change such a
+    /// target only in the original branch of the guard.
     pub inline_targets: bool,
-    /// Points of the curve of energy over time of each segment; 0 for none.
+    /// Number of points of each segment's energy-time curve; 0 for no curve.
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
     pub written_elsewhere: BTreeSet<String>,
 }
 
-/// Spacing of the points that a controller plans in time, s.
+/// Time spacing of the points that a controller plans, s.
 pub const SPACING_S: f64 = 0.05;
-/// The same where the polygon of the points would be too far from the path otherwise, s.
+/// The same if the polygon of the points would otherwise be too far from the path, s.
 pub const CLOSEST_S: f64 = 0.04;
 
 impl Default for Settings {
-    /// Streams of least energy from `main`, with no freedom.
+    /// Minimum-energy streams from `main`, with no freedom.
     fn default() -> Settings {
         Settings {
             entry: "main".into(),
@@ -110,8 +110,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The settings with the loads that the joints of a robot bear in the original: streams ask no
-    /// more of them.
+    /// The settings with the peak joint loads of the original as limits for streams.
     pub(super) fn with_shown_loads(&self, model: &Model, original: &Simulation) -> Settings {
         let loads = Some(Loads::shown(model, original));
         Settings { freedom: Freedom { loads, ..self.freedom.clone() }, ..self.clone() }

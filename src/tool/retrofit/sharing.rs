@@ -1,4 +1,4 @@
-//! What runs make of their shares of the cycle's time, and what follows for the others.
+//! Streams for the time goals, and corrections if goals are missed.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,11 +9,11 @@ use super::settings::Budget;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, Retiming, Task, retime};
 
-/// Times that the cycle's time is shared anew, at most.
+/// Maximum number of new distributions of the cycle time.
 const MOST_SHARINGS: usize = 4;
 
-/// A stream for each task of a plan, or why there is none. `progress` is told how many of how many
-/// are done.
+/// A stream for each task of a plan, or the reason for none. `progress` receives the number of
+/// finished tasks and the total.
 pub(super) fn streams(
     plan: &Plan,
     tasks: &[(usize, Task<'_>)],
@@ -32,16 +32,15 @@ pub(super) fn streams(
     outcomes.collect()
 }
 
-/// A stream, or why there is none.
 type Outcome = Result<Retiming, Reason>;
 
-/// A stream in the run's share of the cycle; where there is none, in its time before.
+/// A stream for the goal, or else in the original time of the run.
 fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
     let outcome = retime(task, goal);
     if goal == within_before(task) { outcome } else { outcome.or_else(|_| as_before(task)) }
 }
 
-/// A stream in the time that the run took before.
+/// A stream in the original time of the run.
 fn as_before(task: &Task<'_>) -> Outcome {
     retime(task, within_before(task))
 }
@@ -50,12 +49,12 @@ fn within_before(task: &Task<'_>) -> Goal {
     Goal::Within(task.run.duration())
 }
 
-/// Time \[s\] and energy of the motion \[J\] of the original run.
+/// Time \[s\] and motion energy \[J\] of the original run.
 fn taken_before(task: &Task<'_>) -> (f64, f64) {
     (task.run.duration(), task.energy_before.motion_energy_j())
 }
 
-/// Time \[s\] and energy of the motion \[J\] of each run with its outcome.
+/// Time \[s\] and motion energy \[J\] of each run after its outcome.
 fn taken(tasks: &[(usize, Task<'_>)], outcomes: &[Outcome]) -> Vec<(f64, f64)> {
     let pairs = tasks.iter().zip(outcomes);
     pairs.map(|((_, task), outcome)| taken_with(task, outcome)).collect()
@@ -68,14 +67,14 @@ fn taken_with(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
     }
 }
 
-/// The streams that there are, each in the time of its run before.
+/// The existing streams, planned again in the original time of their runs.
 fn all_as_before(tasks: &[(usize, Task<'_>)], outcomes: Vec<Outcome>) -> Vec<Outcome> {
     let pairs = tasks.par_iter().zip(outcomes);
     pairs.map(|((_, task), outcome)| outcome.and_then(|_| as_before(task))).collect()
 }
 
-/// Where a run did not get quicker as it should have, so that the others were given too much time,
-/// the time is shared anew; where that does not help, every run goes back to its time before.
+/// If a run misses its goal, the others have too much time: the time is distributed again. If that
+/// fails, every run returns to its original time.
 pub(super) fn keep_to_the_cycle(
     mut plan: Plan,
     tasks: &[(usize, Task<'_>)],
@@ -105,9 +104,9 @@ pub(super) fn keep_to_the_cycle(
     (plan, outcomes)
 }
 
-/// A run that takes more energy than before has to give its time to others that save more, or to
-/// spare the arm a wait. Where the cycle is no worse without it, it goes back to its time before,
-/// and so do all where nothing is saved in all.
+/// A run may take more energy than before if its time saves more in other runs or in waits. If the
+/// cycle costs less without it, it returns to its original time; if the whole saves nothing, all
+/// runs do.
 pub(super) fn leave_what_does_not_pay(
     plan: &Plan,
     tasks: &[(usize, Task<'_>)],

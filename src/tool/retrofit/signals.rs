@@ -1,35 +1,35 @@
-//! What the signals of a program do before and after: their order, and how far they shift.
+//! The order and the time shifts of the signals of a program.
 
 use std::collections::BTreeMap;
 
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::What;
 
-/// What the program does with a signal.
+/// How the program uses a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SignalKind {
-    /// It waits for it.
+    /// It waits for the signal.
     Input,
-    /// It sets it.
+    /// It sets the signal.
     Output,
 }
 
 /// A signal in one cycle before and after.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalShift {
-    /// As the program writes it first.
+    /// Name, as in its first use.
     pub name: String,
     /// Set or waited for.
     pub kind: SignalKind,
-    /// How often in a cycle.
+    /// Number of uses in a cycle.
     pub times: usize,
-    /// True if its values come in the same order, and at the same places among all signals.
+    /// Whether its values and its order among all signals are unchanged.
     pub order_kept: bool,
     /// Largest change of its time since the start of the cycle, s; later is positive.
     pub largest_shift_s: f64,
 }
 
-/// Something that a signal does.
+/// One use of a signal.
 struct Change<'a> {
     name: &'a str,
     kind: SignalKind,
@@ -75,7 +75,7 @@ fn changes(simulation: &Simulation) -> Vec<Change<'_>> {
                 at: event.t_start,
             }),
             What::Wait(record) => {
-                // The wait ends with the signal.
+                // The signal arrives at the end of the wait.
                 if let Some(name) = &record.wait.signal {
                     let at = event.t_start + event.duration;
                     changes.push(Change { name, kind: SignalKind::Input, value: "", at });

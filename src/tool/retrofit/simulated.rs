@@ -1,4 +1,4 @@
-//! A program as it runs on the virtual controller.
+//! A program simulated on the virtual controller.
 
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;
@@ -10,17 +10,16 @@ use crate::retime::path::joint_path::Joints;
 
 /// Rounding of a time, s.
 pub(super) const TIME_TOLERANCE: f64 = 1e-6;
-/// Distance of a joint from where it should be, after the rounding of emitted text, rad.
+/// Tolerance of a joint position after the rounding of emitted text, rad.
 pub(super) const ENDPOINT_TOLERANCE: f64 = 1e-4;
 
-/// One cycle of a program with its energy.
+/// One simulated cycle with its energy.
 pub(super) struct Simulated {
     pub(super) simulation: Simulation,
     pub(super) account: Account,
 }
 
 impl Simulated {
-    /// The cycle of a program.
     pub(super) fn new(
         program: &Program,
         entry: RoutineId,
@@ -30,7 +29,7 @@ impl Simulated {
         Simulated::with_energy(model, simulate(program, entry, model, options))
     }
 
-    /// A simulation with the energy that this robot takes for it.
+    /// A simulation with the energy of this robot.
     pub(super) fn with_energy(model: &Model, simulation: Simulation) -> Simulated {
         Simulated { account: account(model, &simulation), simulation }
     }

@@ -1,4 +1,4 @@
-//! The arguments of movements that say how fast they are.
+//! Arguments that determine the speed of movements.
 
 use std::collections::BTreeMap;
 
@@ -13,11 +13,11 @@ use crate::rapid::text::Span;
 #[derive(Clone)]
 pub(super) struct Argument {
     pub(super) span: Span,
-    /// The text of a datum; none of numbers that the text itself has.
+    /// The text of a datum; `None` for literal numbers.
     pub(super) datum: Option<String>,
 }
 
-/// The speed argument of each movement that has nothing else that says how fast it is.
+/// The speed argument of each movement that has no other argument for its speed.
 pub(super) fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<Span, Argument> {
     let mut found = BTreeMap::new();
     let routines = program.modules.iter().flat_map(|module| &module.routines);
@@ -40,13 +40,13 @@ pub(super) fn speed_arguments(program: &Program, files: &[Source]) -> BTreeMap<S
     found
 }
 
-/// How a speed argument is written; `None` for what a statement may not say twice.
+/// How a speed argument is written; `None` if its text cannot be repeated.
 fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argument> {
     let span = speed.span;
     let is_number = |part: &Expr| matches!(part.kind, ExprKind::Num(_));
     let datum = match &speed.kind {
         ExprKind::Aggregate(parts) if parts.iter().all(is_number) => None,
-        // Its value is that of the controller.
+        // Its value depends on the controller.
         ExprKind::Ref(name) if name.key == "vmax" && program.resolve_global("vmax").is_none() => {
             None
         }
@@ -63,7 +63,7 @@ fn argument(program: &Program, files: &[Source], speed: &Expr) -> Option<Argumen
     Some(Argument { span, datum })
 }
 
-/// A name with components and elements, without calls.
+/// Whether it is a name with components and elements, without calls.
 fn is_datum(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Ref(_) => true,

@@ -1,4 +1,4 @@
-//! The search for the speeds that take least energy.
+//! The search for the programmed speeds of least energy.
 
 use std::collections::BTreeMap;
 
@@ -15,16 +15,16 @@ use crate::retime::energy::EnergyParts;
 use crate::retime::motion::simulate;
 use crate::retime::optimize::cycle::TradeOff;
 
-/// Factors on the programmed speeds that are tried for every run.
+/// Grid of factors on the programmed speeds.
 const FACTORS: [f64; 18] =
     [0.03, 0.05, 0.08, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.4, 1.8, 2.5, 4.0];
-/// Halvings of the range in which a factor is searched.
+/// Number of bisections of a factor.
 const HALVINGS: usize = 6;
-/// A factor this close to 1 is none.
+/// Factors this close to 1 count as 1.
 const UNCHANGED: f64 = 2e-3;
 
-/// The factors that take least energy, and the files of the program with them. `progress` is told how
-/// many of how many rounds are done.
+/// The factors of least energy, and the program files with them. `progress` receives the number of
+/// finished rounds and the total.
 pub(super) fn search(
     job: &Job<'_>,
     slots: &[Slot],
@@ -37,7 +37,7 @@ pub(super) fn search(
     let mut known: Vec<Vec<(f64, f64, f64)>> = vec![Vec::new(); slots.len()];
     for (round, factor) in FACTORS.iter().enumerate() {
         done(round + 1);
-        // A cycle may become too long to be simulated.
+        // A slow cycle may be too long for the simulation.
         let factors = vec![*factor; slots.len()];
         let Some(tried) = try_speeds(job, slots, &factors) else { continue };
         for (slot, list) in slots.iter().zip(&mut known) {
@@ -49,7 +49,7 @@ pub(super) fn search(
         return None;
     }
     let times = times(job, slots, &known)?;
-    // Of the factors whose time fits the slowest one, and a slower one whose time does not.
+    // The slowest factor that fits the time, and the next slower one, which does not.
     let mut fits: Vec<f64> = Vec::new();
     let mut slower: Vec<Option<f64>> = Vec::new();
     for (list, time) in known.iter().zip(&times) {
@@ -85,7 +85,7 @@ pub(super) fn search(
     Some((fits, outputs))
 }
 
-/// The time of each slot, s.
+/// The time goal of each slot, s.
 fn times(job: &Job<'_>, slots: &[Slot], known: &[Vec<(f64, f64, f64)>]) -> Option<Vec<f64>> {
     let settings = &job.settings;
     if settings.objective == Objective::Time {
@@ -108,7 +108,7 @@ fn times(job: &Job<'_>, slots: &[Slot], known: &[Vec<(f64, f64, f64)>]) -> Optio
     cycle.share(&curves?)
 }
 
-/// Time (s) and motion energy (J) of an execution of a slot's site in the mean.
+/// Mean time (s) and motion energy (J) of an execution of a slot.
 fn mean(slot: &Slot, tried: &Simulated) -> (f64, f64) {
     let n = slot.events.len().max(1) as f64;
     let time: f64 = slot.events.iter().map(|event| tried.simulation.events[*event].duration).sum();
@@ -116,7 +116,7 @@ fn mean(slot: &Slot, tried: &Simulated) -> (f64, f64) {
     (time / n, parts.map(EnergyParts::motion_energy_j).sum::<f64>() / n)
 }
 
-/// The cycle with these factors; `None` where it does not run as before.
+/// The cycle with these factors; `None` if its order of events differs.
 fn try_speeds(job: &Job<'_>, slots: &[Slot], factors: &[f64]) -> Option<Simulated> {
     let outputs = with_speeds(job.original.files, slots, factors)?;
     let settings = &job.settings;

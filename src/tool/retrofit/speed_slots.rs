@@ -1,4 +1,4 @@
-//! Sites whose programmed speeds can be written anew, and the text of other speeds.
+//! Sites whose programmed speeds can be replaced, and the text of the new speeds.
 
 use std::collections::BTreeMap;
 
@@ -13,11 +13,11 @@ use crate::retime::motion::timeline::What;
 use crate::retime::optimize::freedom::Bound;
 use crate::retime::optimize::reason::Reason;
 
-/// The largest programmed speed that a controller takes, m/s.
+/// Maximum programmed speed of a controller, m/s.
 const FASTEST: f64 = 7.0;
 /// Decimals of a speed in mm/s and degrees/s.
 const DECIMALS: usize = 1;
-/// Decimals of a share of a speed.
+/// Decimals of a factor on a speed.
 const SHARE_DECIMALS: usize = 4;
 
 /// A site whose speeds may change.
@@ -29,11 +29,10 @@ pub(super) struct Slot {
     speeds: Vec<Programmed>,
 }
 
-/// A speed as programmed.
 struct Programmed {
     argument: Argument,
     speed: Speed,
-    /// Whether it may not be exceeded.
+    /// Whether it is an upper limit.
     ceiling: bool,
 }
 
@@ -53,7 +52,7 @@ impl Slot {
     }
 }
 
-/// The sites whose speeds can be written in their place; the candidates of others get their reason.
+/// The sites whose speeds can be replaced in the text; the other candidates get the reason.
 pub(super) fn slots(
     original: &Original<'_>,
     settings: &Settings,
@@ -78,7 +77,7 @@ pub(super) fn slots(
     (slots, with_states(candidates, refused))
 }
 
-/// The speeds of a site; why they can't be written where that is so.
+/// The speeds of a site, or why they cannot be replaced.
 fn slot(
     original: &Original<'_>,
     settings: &Settings,
@@ -105,13 +104,13 @@ fn slot(
     Ok(Slot { site, events, speeds: speeds.into_values().collect() })
 }
 
-/// The factor that a speed gets where its run gets `factor`.
+/// The factor on a speed in a run with factor `factor`, limited by the ceiling.
 fn factor_of(programmed: &Programmed, factor: f64) -> f64 {
     let most = if programmed.ceiling { 1.0 } else { (FASTEST / programmed.speed.tcp).max(1.0) };
     factor.min(most)
 }
 
-/// A `speeddata`. External axes stand in runs that are changed.
+/// A `speeddata`. External axes do not move in changed runs.
 fn speed_text(Programmed { argument, speed, .. }: &Programmed, factor: f64) -> String {
     if let Some(datum) = &argument.datum {
         let share = number(down(factor, 1e4), SHARE_DECIMALS);
@@ -123,9 +122,9 @@ fn speed_text(Programmed { argument, speed, .. }: &Programmed, factor: f64) -> S
     format!("[{},{},5000,1000]", number(tcp, DECIMALS), number(orientation, DECIMALS))
 }
 
-/// Rounded down to what the text says, in parts of 1, so that no ceiling is exceeded by rounding.
+/// Rounded down to a multiple of `1 / parts`, so that rounding never exceeds a ceiling.
 fn down(x: f64, parts: f64) -> f64 {
-    /// What arithmetic may take from a round figure.
+    /// Rounding error of the arithmetic.
     const SLACK: f64 = 1e-9;
     (x * parts + SLACK).floor().max(1.0) / parts
 }

@@ -1,10 +1,10 @@
-//! The alternative to streams: movements stay as they are, and only their programmed speeds change.
+//! The alternative to streams: only the programmed speeds of movements change.
 //!
-//! Runs stand still between each other, so that the virtual controller can try a speed for all of
-//! them at once. What it finds is each run's energy over time; the time of the cycle is then shared
-//! as for streams, and the speeds are searched that take these times. A programmed speed of a line
-//! or arc is never exceeded, zones and targets stay. What is a datum is written as a share of that
-//! datum: who lowers it lowers the speed.
+//! The robot stands still between runs, so one simulation tries a speed for all runs at once. This
+//! gives the energy of each run over time. The cycle time is distributed as for streams, then the
+//! speeds for these times are searched. Programmed speeds of lines and arcs are upper limits; zones
+//! and targets stay. A speed datum is written as a product with that datum, so its later changes
+//! still act.
 
 use std::collections::BTreeSet;
 
@@ -23,11 +23,11 @@ use super::uncertainty::{ENOUGH, share_that_saves};
 use super::verify::{Attempt, Rewrite, verify};
 use crate::retime::optimize::reason::Reason;
 
-/// Smallest saving that is worth a change, share of all energy: what is searched on a grid of
-/// factors ends elsewhere by about so much when it is searched again.
+/// Minimum relative saving of all energy; repeating the grid search changes its result by about
+/// this.
 const WORTHWHILE: f64 = 1e-3;
 
-/// Rewrites the speeds of a program; it stays as it was where no other speeds are better.
+/// Changes the speeds of a program; it stays unchanged if no other speeds are better.
 pub(super) fn rewritten(job: &Job<'_>, progress: &dyn Fn(usize, usize)) -> Rewritten {
     let Job { original, model, settings, .. } = job;
     let (slots, candidates) = slots(original, settings, candidates(&original.sites));
@@ -71,7 +71,7 @@ pub(super) fn rewritten(job: &Job<'_>, progress: &dyn Fn(usize, usize)) -> Rewri
     }
 }
 
-/// Why other speeds are not kept, all together.
+/// Why all other speeds are rejected, if they are.
 fn reason_to_stay(job: &Job<'_>, attempt: &Attempt) -> Option<Reason> {
     let Job { original, model, settings, robots, .. } = job;
     if let Some(why) = attempt.verification.broken() {

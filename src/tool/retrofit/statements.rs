@@ -1,8 +1,8 @@
-//! The statements of a routine, with those inside of others.
+//! The statements of a routine, nested ones included.
 
 use crate::rapid::ir::hir::{Block, Call, Callee, Ident, Stmt, StmtKind};
 
-/// The statements of a block and of the blocks in them, in the order of the text.
+/// The statements of a block and of its nested blocks, in text order.
 pub(super) fn statements(block: &Block) -> Vec<&Stmt> {
     let mut found = Vec::new();
     let mut open: Vec<&Stmt> = block.iter().rev().collect();
@@ -13,7 +13,7 @@ pub(super) fn statements(block: &Block) -> Vec<&Stmt> {
     found
 }
 
-/// The calls among them that name what they call.
+/// The calls among them with a static callee name.
 pub(super) fn calls(block: &Block) -> impl Iterator<Item = (&Stmt, &Ident, &Call)> {
     statements(block).into_iter().filter_map(|stmt| match &stmt.kind {
         StmtKind::Call(call) => match &call.callee {

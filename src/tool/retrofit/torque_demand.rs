@@ -1,8 +1,8 @@
-//! Streams ask no more of a joint than the original motion, where nobody says what it can do.
+//! A limit on joint torques for robots whose torque limits are estimated.
 //!
-//! That a robot can do what it does already is known. Accelerations of streams stay below those of the
-//! original cycle anyway (`optimize::allowed::Loads`); where limits of torque are
-//! estimated, so does the largest torque of each joint in 95 % of the plausible robots.
+//! The robot is known to be able to do its original motion. Accelerations of streams always stay
+//! within those of the original cycle (`optimize::allowed::Loads`). With estimated torque limits,
+//! the same holds for the peak torque of each joint in 95 % of the plausible robots.
 
 use std::collections::BTreeMap;
 
@@ -20,24 +20,23 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, retime};
 use crate::retime::path::joint_path::DOF;
 
-/// Share of the plausible robots in which the torque stays below.
+/// Share of the plausible robots in which the torque must stay within the limit.
 const ENOUGH: f64 = 0.95;
-/// Time between two instants that are looked at \[s\], and what a peak between them may add.
+/// Sampling step \[s\], and the factor that allows for peaks between samples.
 const STEP: f64 = 0.01;
 const BETWEEN: f64 = 1.01;
 
-/// How often a stream is planned anew with less torque, and what it is planned with less than the
-/// plausible robots ask for: what is at its bound with one robot is above it with others.
+/// Maximum number of plans of a stream, and the extra reduction of torque per plan: a torque at its
+/// limit in one robot exceeds it in others.
 const MOST_PLANS: usize = 4;
 const LESS: f64 = 0.99;
 
-/// Whether nothing is known of the torques that a robot can do.
+/// Whether the torque limits are estimates.
 fn is_estimated(model: &Model) -> bool {
     model.provenance_of("limits", "torque") == Some(Provenance::Estimated)
 }
 
-/// The robot whose energy is minimised: the mean over the plausible robots where nothing is known of the
-/// limits, so that the dynamics are estimated, too.
+/// The mean over the plausible robots, whose energy is minimised, if torque limits are estimates.
 pub(super) fn mean_robot(
     model: &Model,
     robots: Option<&Robots>,
@@ -46,11 +45,11 @@ pub(super) fn mean_robot(
     robots.filter(|_| is_estimated(model))?.mean(model, &moments(model, simulation))
 }
 
-/// Largest torque of each joint in a motion \[Nm\], robot by robot.
+/// Peak torque of each joint in a motion \[Nm\], one entry per robot.
 struct PeakTorques(Vec<[f64; DOF]>);
 
 impl PeakTorques {
-    /// In the runs among some events.
+    /// The peaks over the runs among some events.
     fn in_runs<'e>(
         model: &Model,
         robots: &Robots,
@@ -72,8 +71,8 @@ impl PeakTorques {
         PeakTorques((0..count).map(largest).collect())
     }
 
-    /// What is asked of each joint over what `original` asks, in 95 % of the robots; and of the first
-    /// joint of which more is asked, its number from 1 and the share in which no more is asked.
+    /// The 95 % quantile over the robots of each joint's torque ratio to `original`; and the first
+    /// joint beyond the limit (from 1) with the share of robots within it.
     fn over(&self, original: &PeakTorques) -> ([f64; DOF], Option<(usize, f64)>) {
         let mut exceeds = None;
         let ratios = std::array::from_fn(|j| {
@@ -93,18 +92,17 @@ impl PeakTorques {
     }
 }
 
-/// Plans streams anew that ask more torque than the original cycle.
+/// Plans streams again that exceed the torques of the original cycle.
 pub(super) struct TorqueBound<'a> {
     job: &'a Job<'a>,
     robots: &'a Robots,
     original: PeakTorques,
-    /// Of each candidate that asked for more: plans so far, torques to plan with over those of the
-    /// original.
+    /// Per candidate beyond the limit: number of plans, torque limits relative to the original.
     planned: BTreeMap<usize, (usize, [f64; DOF])>,
 }
 
 impl<'a> TorqueBound<'a> {
-    /// `None` where something is known of the torques that the robot can do.
+    /// `None` if the torque limits are not estimates.
     pub(super) fn new(job: &'a Job<'a>) -> Option<TorqueBound<'a>> {
         let robots = job.robots.as_ref().filter(|_| is_estimated(job.model))?;
         let events = job.original.cycle.simulation.events.iter();
@@ -112,8 +110,8 @@ impl<'a> TorqueBound<'a> {
         Some(TorqueBound { job, robots, original, planned: BTreeMap::new() })
     }
 
-    /// New states of the candidates whose streams ask more of a joint in the simulation `after` than
-    /// the original cycle does: a stream with less torque, or the reason why there is none.
+    /// New states of the candidates whose streams exceed the torques of the original in the
+    /// simulation `after`: a stream with less torque, or the reason for refusal.
     pub(super) fn replanned(
         &mut self,
         after: &Simulation,

@@ -1,4 +1,4 @@
-//! What a retrofit saves over plausible robots.
+//! Energies and savings over plausible robots.
 
 use super::candidate::{Candidate, State};
 use super::job::Original;
@@ -10,23 +10,23 @@ use crate::retime::energy::moments::Moments;
 use crate::retime::energy::plausible::{Contribution, Interval, Robots, moments};
 use crate::retime::optimize::reason::Reason;
 
-/// Share of the plausible robots in which a stream has to save.
+/// Share of the plausible robots in which a stream must save energy.
 pub(super) const ENOUGH: f64 = 0.95;
 
 /// Energies and savings over plausible robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Of the original: all energy, that of motions, J.
+    /// Original: total energy, motion energy, J.
     pub original: [Interval; 2],
-    /// Of the retrofit.
+    /// Retrofit: the same.
     pub optimized: [Interval; 2],
-    /// Saved, %: of all energy, of that of motions.
+    /// Saving, %: of total energy, of motion energy.
     pub saving_percent: [Interval; 2],
-    /// What the variance of the saving comes from.
+    /// Contributions to the variance of the saving.
     pub contributions: Vec<Contribution>,
 }
 
-/// Refuses the candidates whose streams do not save in enough of the robots.
+/// Refuses the candidates whose streams save energy in too few robots.
 pub(super) fn uncertain(
     model: &Model,
     robots: &Robots,
@@ -52,7 +52,7 @@ pub(super) fn uncertain(
     streams.filter_map(|(index, candidate)| Some((index, weak(candidate)?))).collect()
 }
 
-/// The share of the robots that take less motion energy in the whole cycle after than before.
+/// The share of the robots whose motion energy of the whole cycle falls.
 pub(super) fn share_that_saves(
     model: &Model,
     robots: &Robots,
@@ -64,7 +64,7 @@ pub(super) fn share_that_saves(
     share(model, robots, energy(before) - energy(after), moments)
 }
 
-/// The share of the robots whose motion energy falls, where that of the model falls by `saved` J.
+/// The share of the robots whose motion energy falls. `saved`: saving of the model, J.
 fn share(model: &Model, robots: &Robots, saved: f64, [mut less, after]: [Moments; 2]) -> f64 {
     less.add(&after, -1.0);
     let changes = robots.changes(model, &less);
@@ -72,7 +72,6 @@ fn share(model: &Model, robots: &Robots, saved: f64, [mut less, after]: [Moments
     falls.count() as f64 / changes.len() as f64
 }
 
-/// Energies and savings of the whole cycle.
 pub(super) fn uncertainty(
     model: &Model,
     robots: &Robots,

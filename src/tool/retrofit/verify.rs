@@ -1,4 +1,4 @@
-//! The verifier: reads the emitted text again, simulates it, and compares it with the original.
+//! The verifier: reads the emitted text, simulates it, and compares it with the original.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,27 +19,27 @@ use crate::rapid::syntax;
 use crate::retime::motion::{Options, Simulation, simulate};
 use crate::retime::optimize::reason::Reason;
 
-/// What an emitted program does in another way than the original.
+/// How an emitted program differs from the original.
 #[derive(Clone, Copy)]
 pub(super) enum Rewrite<'a> {
-    /// Streams stand for movements, and waits are spent elsewhere. Text is only inserted.
+    /// Streams replace movements, and waits move to other poses. Text is only inserted.
     Streams { candidates: &'a [Candidate], waits: &'a [RelocatedWait] },
-    /// Movements have other speeds: a factor for each slot.
+    /// Movements have other speeds: one factor for each slot.
     Speeds { slots: &'a [Slot], factors: &'a [f64] },
 }
 
-/// What the verifier saw of an emitted program.
+/// The result of the verification.
 pub(super) struct Attempt {
-    /// The cycle of the emitted program, with the waits where they were.
+    /// The cycle of the emitted program, with the waits at their original places.
     pub(super) simulated: Simulated,
     pub(super) verification: Verification,
-    /// Candidates that did not hold, with the reason.
+    /// Candidates that failed, with the reason.
     pub(super) failed: Vec<(usize, Reason)>,
-    /// Waits that are not spent elsewhere as intended, by their index.
+    /// Faults of relocated waits, by index.
     pub(super) wait_faults: BTreeMap<usize, Fault>,
 }
 
-/// Whether files that are new or changed have no syntax errors besides those of the original.
+/// Whether new and changed files have no syntax errors beyond those of the original.
 pub(in crate::tool) fn parses(files: &[Source], outputs: &[OutputFile]) -> bool {
     outputs.iter().all(|output| match output.kind {
         OutputKind::New => {
@@ -55,10 +55,10 @@ pub(in crate::tool) fn parses(files: &[Source], outputs: &[OutputFile]) -> bool 
     })
 }
 
-/// Reads an emitted program again and simulates it.
+/// Reads an emitted program and simulates it.
 ///
 /// # Errors
-/// A program that can't be read.
+/// The program cannot be read.
 pub(in crate::tool) fn run_again(
     outputs: &[OutputFile],
     entry: &str,
@@ -69,8 +69,8 @@ pub(in crate::tool) fn run_again(
     Ok(simulate(&program, entry, model, options))
 }
 
-/// Verifies an emitted program. Every candidate that fails is named; where the fault can't be given
-/// to one of them, all that have streams are.
+/// Verifies an emitted program and lists the candidates that fail; all candidates with streams if
+/// the cause is unclear.
 pub(super) fn verify(
     original: &Original<'_>,
     outputs: &[OutputFile],
@@ -117,7 +117,7 @@ pub(super) fn verify(
                 Vec::new()
             };
             if !order_kept {
-                // Rather than judge the streams by it, the waits go back to where they were.
+                // The order is checked again without relocated waits before a stream is refused.
                 for index in 0..waits.len() {
                     attempt.wait_faults.entry(index).or_insert(Fault::Other);
                 }
@@ -148,7 +148,7 @@ pub(super) fn verify(
     attempt
 }
 
-/// What is known of an emitted program that can't be read.
+/// The result for an emitted program that cannot be read.
 fn unreadable(model: &Model, verification: Verification, rewrite: Rewrite<'_>) -> Attempt {
     let nothing = Simulation {
         events: Vec::new(),
@@ -173,7 +173,7 @@ fn unreadable(model: &Model, verification: Verification, rewrite: Rewrite<'_>) -
     }
 }
 
-/// Whether the bytes of the original are all there, in order.
+/// Whether the output contains all bytes of the original in order.
 fn keeps_bytes(files: &[Source], output: &OutputFile) -> bool {
     match (output.kind, output.input) {
         (OutputKind::Changed, Some(i)) => is_subsequence(&files[i].file.bytes, &output.bytes),
@@ -182,13 +182,13 @@ fn keeps_bytes(files: &[Source], output: &OutputFile) -> bool {
     }
 }
 
-/// Whether all bytes of `part` stand in `whole`, in order.
+/// Whether `whole` contains all bytes of `part` in order.
 fn is_subsequence(part: &[u8], whole: &[u8]) -> bool {
     let mut rest = whole.iter();
     part.iter().all(|byte| rest.any(|other| other == byte))
 }
 
-/// Whether a cycle takes no longer than it may, both times in s.
+/// Whether a cycle keeps its time limit; times in s.
 fn keeps_cycle(budget: Budget, before_s: f64, after_s: f64) -> bool {
     match budget {
         Budget::AsBefore => after_s <= before_s + TIME_TOLERANCE,
@@ -214,7 +214,7 @@ mod tests {
         SetDO doA,1;\nWaitTime 0.5;\nSetDO doB,1;\n\
         ENDPROC\nENDMODULE\n";
 
-    /// Whether the program holds as before with some text in place of other text.
+    /// Whether verification passes after a text replacement.
     fn holds(from: &str, to: &str, rewrite: Rewrite<'_>) -> bool {
         let file = SourceFile::new(FileId(0), "m.mod".into(), PROGRAM.into());
         let files = [Source { file, relative: "m.mod".into() }];

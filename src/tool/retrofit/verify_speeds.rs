@@ -1,4 +1,4 @@
-//! The verification of other programmed speeds: the same path, and no speed above a ceiling.
+//! Verifies other programmed speeds: the same path, and no speed above a ceiling.
 
 use super::job::Original;
 use super::settings::Settings;
@@ -12,23 +12,22 @@ use crate::retime::optimize::check::Check;
 use crate::retime::optimize::freedom::{Bound, Freedom};
 use crate::retime::path::joint_path::DOF;
 
-/// Step of the samples of the verified motions, s.
+/// Time step of the samples, s.
 const STEP: f64 = 0.002;
-/// Distance of the ends of the same target, rad.
+/// Maximum distance of the ends of the same target, rad.
 const SAME_END: f64 = 1e-6;
 
-/// What the runs with other speeds do.
 pub(super) struct SpeedFigures {
     /// Worst figures of all changed runs.
     pub(super) worst: Check,
-    /// Whether targets and zones are those of before.
+    /// Whether targets and zones are unchanged.
     pub(super) same_paths: bool,
     /// Whether no programmed speed is exceeded.
     pub(super) keeps_ceilings: bool,
 }
 
-/// Compares the runs of an emitted program, whose events are those of the original. `factors`: one
-/// for each slot.
+/// Compares the runs of an emitted program that has the events of the original. `factors`: one for
+/// each slot.
 pub(super) fn compared(
     original: &Original<'_>,
     emitted: &Simulation,
@@ -65,7 +64,7 @@ fn keeps_ceilings(was: &Run, now: &Run, freedom: &Freedom) -> bool {
     })
 }
 
-/// Shares of the limits that a run uses as the virtual controller plans it.
+/// The peak shares of the limits in a run, as the virtual controller plans it.
 fn shares(model: &Model, run: &Run) -> Check {
     let limits = &model.limits;
     let share = |values: &[f64], limit: &Option<Vec<f64>>| {

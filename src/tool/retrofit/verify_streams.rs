@@ -1,4 +1,4 @@
-//! The verification of streams: each against the run that it stands for.
+//! Verifies each stream against the run that it replaces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,23 +20,22 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::PathUse;
 use crate::retime::path::joint_path::DOF;
 
-/// Largest distance of a simulated stream from the intended one at any time, rad: the rounding of
-/// the text is in the intended one already.
+/// Maximum distance of a simulated stream from the intended one, rad. The intended one already
+/// contains the rounding of the text.
 const INTENDED_TOLERANCE: f64 = 1e-6;
-/// Step between two comparisons of them, s.
+/// Time step of this comparison, s.
 const STEP: f64 = 0.002;
 
-/// What the streams of an emitted program do.
 pub(super) struct StreamFigures {
     /// Worst figures of all streams.
     pub(super) worst: Check,
     /// Largest distance of a joint from the intended stream at any time, rad.
     pub(super) intended_error_rad: f64,
-    /// Candidates whose streams do not hold, and why.
+    /// Candidates whose streams fail, with the reason.
     pub(super) failed: Vec<(usize, Reason)>,
 }
 
-/// Compares the streams of an emitted program, whose events are those of the original.
+/// Compares the streams of an emitted program that has the events of the original.
 pub(super) fn compared(
     original: &Original<'_>,
     emitted: &Simulation,
@@ -71,14 +70,13 @@ pub(super) fn compared(
     figures
 }
 
-/// All candidates that have streams, with this reason.
+/// All candidates with streams, with this reason.
 pub(super) fn all_failed(candidates: &[Candidate], why: &str) -> Vec<(usize, Reason)> {
     let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
     streams.map(|(index, _)| (index, Reason::Verification(why.to_owned()))).collect()
 }
 
-/// The stream at the first event that is another one than before, or the last one before it; all
-/// streams where there is none.
+/// The stream at or before the first event that differs; all streams if there is none.
 pub(super) fn reordering(
     original: &Original<'_>,
     emitted: &Simulation,
@@ -93,13 +91,12 @@ pub(super) fn reordering(
     }
 }
 
-/// The candidates with streams, by the events in which they run.
 fn streams(original: &Original<'_>, candidates: &[Candidate]) -> BTreeMap<usize, usize> {
     let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
     streams.flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i))).collect()
 }
 
-/// The streams behind which a movement that stays takes longer than before.
+/// The streams that precede an unchanged movement that takes longer than before.
 pub(super) fn slowing(
     original: &Original<'_>,
     emitted: &Simulation,
@@ -117,8 +114,8 @@ pub(super) fn slowing(
     blamed.into_iter().map(|i| (i, Reason::Verification(why.into()))).collect()
 }
 
-/// The stream that runs now against the run that was, and its distance (rad) from the intended
-/// one.
+/// The check of an emitted stream against the original run, and its distance (rad) from the
+/// intended one.
 fn compare(
     model: &Model,
     freedom: &Freedom,
@@ -153,8 +150,7 @@ fn compare(
     Ok((check, strayed))
 }
 
-/// Largest distance of a joint between two streams at the same time, rad; infinite where they do
-/// not take the same time.
+/// Largest joint distance of two streams at the same time, rad; infinite if their durations differ.
 fn distance(intended: &Stream, stream: &Stream) -> f64 {
     let duration = intended.duration();
     if (stream.duration() - duration).abs() > TIME_TOLERANCE {

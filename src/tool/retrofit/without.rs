@@ -1,6 +1,6 @@
-//! A retrofitted program without its streams: the original's text with the data of today.
+//! Removes the streams from a retrofitted program: the original text with its current data.
 //!
-//! A retrofit only inserts. What it inserted is found again by the names of its module.
+//! A retrofit only inserts text; the names of its module identify the insertions.
 
 use crate::rapid::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::lower;
@@ -8,9 +8,9 @@ use crate::rapid::syntax;
 use crate::rapid::text::{Edit, SourceFile, Span, apply};
 use crate::tool::emit::EDIT_REMARK;
 
-/// What the head of each module of streams says.
+/// Text in the header of each module of streams.
 const HEAD: &[u8] = b"! Joint streams, written by joulepath";
-/// What follows the prefix of its names in one place.
+/// The declaration that follows the prefix.
 const COUNTERS: &[u8] = b"ByStream{";
 
 /// Whether a file is a module of streams.
@@ -18,7 +18,7 @@ pub fn is_streams(bytes: &[u8]) -> bool {
     find(bytes, HEAD).is_some()
 }
 
-/// The prefix of the names of a module of streams; none of one that only goes on with another.
+/// The name prefix of a module of streams; `None` for a continuation module.
 pub fn prefix(bytes: &[u8]) -> Option<String> {
     let end = find(bytes, COUNTERS)?;
     let is_word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_';
@@ -26,8 +26,7 @@ pub fn prefix(bytes: &[u8]) -> Option<String> {
     String::from_utf8(bytes[end - length..end].to_vec()).ok()
 }
 
-/// The bytes of a file of a program without the guards and notes of the module of streams with this
-/// prefix.
+/// The bytes of a file without the guards and records of the module with this prefix.
 pub fn without_streams(file: &SourceFile, prefix: &str) -> Vec<u8> {
     let parse = syntax::parse(&file.bytes);
     let mut found = Found { bytes: &file.bytes, prefix: prefix.to_lowercase(), edits: Vec::new() };
@@ -66,7 +65,7 @@ impl Found<'_> {
         }
     }
 
-    /// Whether an expression names something of the module of streams.
+    /// Whether an expression is a name of the module of streams.
     fn is_own(&self, expr: &Expr) -> bool {
         matches!(&expr.kind, ExprKind::Ref(name) if name.key.starts_with(&self.prefix))
     }
@@ -77,7 +76,7 @@ impl Found<'_> {
         rest.is_some_and(|number| number.parse::<usize>().is_ok())
     }
 
-    /// Takes a guard away: all up to the line behind its ELSE, and its ENDIF with the line of that.
+    /// Deletes a guard: the text through the line of ELSE, and ENDIF with its line.
     fn guard(&mut self, stmt: &Stmt, original: &Block) {
         let (Some(first), Some(last)) = (original.first(), original.last()) else { return };
         let head = &self.bytes[stmt.span.start as usize..first.span.start as usize];
@@ -108,14 +107,14 @@ impl Found<'_> {
         self.block(original);
     }
 
-    /// Takes away what writes a load or a setting down, with the space before it.
+    /// Deletes a record of a load or setting, with the space before it.
     fn note(&mut self, span: Span) {
         let start = span.start as usize;
         let space = usize::from(start > 0 && self.bytes[start - 1] == b' ');
         self.delete(span, start - space, span.end as usize);
     }
 
-    /// Makes an IF compact again that had to hold a second statement.
+    /// Restores a compact IF that was extended for a record.
     fn compact(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) {
         let [_, Stmt { kind: StmtKind::Assign { target, .. }, span }] = body.as_slice() else {
             return;

@@ -1,6 +1,6 @@
-//! Families of effects of the torque: what is likely to be taken for each other.
+//! Families of torque effects that are easily confused.
 
-/// A family by its name, with the ids of its effects.
+/// Family names with the ids of their effects.
 const FAMILIES: [(&str, &[&str]); 4] = [
     (
         "friction",
@@ -47,7 +47,7 @@ const FAMILIES: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// All ids of an effect's family; nothing of effects of the motion and of the power.
+/// All ids of an effect's family; empty for effects of motion and power.
 pub(super) fn family(id: &str) -> &'static [&'static str] {
     let of = FAMILIES.iter().find(|(_, ids)| ids.contains(&id));
     of.map_or(&[], |(_, ids)| ids)

@@ -1,4 +1,4 @@
-//! Power and motion of logs, beside their torques.
+//! Power and motion of logs, in addition to their torques.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::retime::motion::timeline::{MoveRecord, What};
 use crate::tool::report::place::Places;
 use crate::tool::retrofit::read_program;
 
-/// Mean powers of the motions of logs that have them.
+/// Mean powers of the motions in logs with power.
 pub(super) fn powers(logs: &[Ready]) -> Vec<Powers> {
     logs.iter().filter_map(power).collect()
 }
@@ -43,7 +43,7 @@ fn power(log: &Ready) -> Option<Powers> {
     Some(Powers { qd: block.qd.clone(), tau: block.tau.clone(), power: mean })
 }
 
-/// Runs of a program, of logs that mark its movements.
+/// Program runs in logs that mark the movements.
 pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
     logs.iter()
         .filter_map(|log| {
@@ -61,7 +61,7 @@ pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
 /// File and line of each movement of a program.
 ///
 /// # Errors
-/// The program can't be run.
+/// The program cannot be run.
 pub(super) fn lines(program: &Path, robot: &str) -> anyhow::Result<Vec<(String, usize)>> {
     let cell = CellArgs {
         paths: vec![program.to_path_buf()],

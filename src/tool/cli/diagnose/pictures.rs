@@ -1,4 +1,4 @@
-//! What the page of a diagnosis shows beside its figures.
+//! The figures and source excerpts on the page of a diagnosis.
 
 use std::fs;
 
@@ -9,10 +9,9 @@ use crate::gap::{
 use crate::rapid::text::decode;
 use crate::tool::report::html::{Excerpt, Line, Pictures};
 
-/// Lines of the program before and after a place.
+/// Number of program lines before and after a place.
 const AROUND: usize = 4;
 
-/// The pictures of a diagnosis of `model` on `records`.
 pub(super) fn pictures(model: &Model, records: &[Record<'_>], found: &Diagnosis) -> Pictures {
     let models = [model, &found.refit.applied, &found.improved.applied];
     let missed = models.map(|model| missed(records, model));
@@ -36,7 +35,7 @@ pub(super) fn pictures(model: &Model, records: &[Record<'_>], found: &Diagnosis)
     }
 }
 
-/// The program around the places that are told.
+/// The program lines around the reported places.
 fn sources(found: &Diagnosis) -> Vec<Excerpt> {
     let places = found.places.iter().filter_map(|place| place.line.as_ref());
     let excerpt = |(file, line): &(String, usize)| {

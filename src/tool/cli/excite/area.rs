@@ -1,11 +1,11 @@
-//! Planes, boxes and lists of figures as options say them.
+//! Parses planes, boxes and number lists of options.
 
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
 
 use crate::arm::kinematics::{KeepOut, Plane};
 
-/// No length is so large, in m or mm.
+/// Upper limit of any length, in m or mm.
 const BEYOND: f64 = 1e6;
 
 pub(super) fn plane(text: &str) -> anyhow::Result<Plane> {

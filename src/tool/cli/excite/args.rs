@@ -8,9 +8,9 @@ use clap::{Args, ValueEnum};
 use crate::learn::excite::State;
 use crate::tool::cli::common::Format;
 
-/// Largest distance of adaptive points from the path \[rad\].
+/// Maximum distance of adaptive points from the path \[rad\].
 const OFF_PATH: f64 = 1e-3;
-/// Largest time between points \[s\].
+/// Maximum time between points \[s\].
 pub(super) const WIDEST: f64 = 0.1;
 
 /// A motion that lets a robot's parameters be told from its torques, as RAPID with a logger.
@@ -85,12 +85,11 @@ pub struct ExciteArgs {
     pub(super) quiet: bool,
 }
 
-/// Time between points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Spacing {
     /// \[s\].
     Seconds(f64),
-    /// As far apart as the motion allows.
+    /// The longest spacing that keeps the path tolerance.
     Adaptive,
 }
 
@@ -118,7 +117,7 @@ impl Spacing {
             Spacing::Adaptive => {
                 let hardest = states.iter().flat_map(|[_, _, qdd]| qdd.iter());
                 let hardest = hardest.fold(0.0, |m: f64, x| m.max(x.abs()));
-                // A corner is cut in the middle between points: q̈ Δt²/8 off.
+                // The corner at a point is cut by q̈ Δt²/8.
                 (8.0 * OFF_PATH / hardest).sqrt().min(WIDEST)
             }
         }

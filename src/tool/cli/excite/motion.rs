@@ -1,4 +1,4 @@
-//! The motion of an experiment: designed by search, or of plateaus.
+//! The motion of an experiment: optimised, or made of speed plateaus.
 
 use anyhow::bail;
 
@@ -10,24 +10,24 @@ use crate::learn::excite::{
 };
 use crate::tool::cli::common::progress;
 
-/// Interval of the rows of the table \[s\]: the grid on which limits are checked.
+/// Row interval of the table \[s\]: the grid on which limits are checked.
 pub(super) const FINE: f64 = 0.001;
-/// Resolution of the time between points in the RAPID \[s\].
+/// Resolution of the time between RAPID points \[s\].
 const TICK: f64 = 1e-4;
-/// How many times as many points as asked for a period may have, to be divided exactly.
+/// Maximum factor on the number of points per period that makes the spacing a multiple of the tick.
 const MORE_POINTS: f64 = 1.3;
-/// How many times as far apart the points of straight moves may be.
+/// Factor on the point spacing for straight moves.
 const EVEN: f64 = 10.0;
-/// Repetitions that take a robot from cold to warm.
+/// Number of repetitions that warm a robot up.
 const WARMING: usize = 120;
 
-/// A motion to be written.
+/// A motion to write.
 pub(super) struct Motion {
     pub(super) period: f64,
     pub(super) cycles: usize,
     /// One repetition.
     pub(super) states: Vec<State>,
-    /// The states every `spacing`.
+    /// The states at intervals of `spacing`.
     pub(super) points: Vec<State>,
     pub(super) blends: Option<[Blend; 2]>,
     pub(super) information: Option<Information>,
@@ -58,7 +58,7 @@ pub(super) fn designed(
         bail!("no way from rest into the motion keeps the limits: give another --seed");
     };
     let states = sampled(&series);
-    // A period is a whole number of points; a slow motion needs no more of them.
+    // A period has a whole number of points; a slow motion needs no more points.
     let spacing = match args.spacing {
         Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
         Spacing::Adaptive => 1.0,
@@ -77,8 +77,8 @@ pub(super) fn designed(
     })
 }
 
-/// Number of points of a period that are at most `spacing` \[s\] apart; if possible one that divides
-/// the period into whole ticks: otherwise repetitions would last longer than the period.
+/// Number of points per period, at most `spacing` \[s\] apart; if possible the spacing is a
+/// multiple of the tick, so that repetitions last exactly a period.
 fn whole(period: f64, spacing: f64) -> usize {
     let least = (period / spacing - 1e-6).ceil().max(3.0) as usize;
     let most = (MORE_POINTS * least as f64) as usize;

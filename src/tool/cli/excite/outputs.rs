@@ -1,4 +1,4 @@
-//! What `joulepath excite` writes: the modules, the table, and the result.
+//! Writes the output of `joulepath excite`: modules, table and result.
 
 use std::fmt::Write as _;
 
@@ -13,10 +13,10 @@ use crate::learn::excite::State;
 use crate::tool::cli::output;
 use crate::tool::emit::{Excitation, LoggedTorques, Points, excitation};
 
-/// Share of joint 1's range by which its marks lie off its middle.
+/// Distance of the marks from the middle of joint 1's motion, as share of its range of motion.
 const MARKS: f64 = 0.02;
 
-/// Writes the modules and the table; their paths.
+/// Writes the modules and the table; returns their paths.
 pub(super) fn write(
     args: &ExciteArgs,
     model: &Model,
@@ -35,7 +35,7 @@ pub(super) fn write(
         let points = positions(into.get(1..).unwrap_or_default());
         lists.push(Points { what: "From rest", name: "In", repeated: false, points });
     }
-    // A blend ends where the period begins, and the period where the next one does.
+    // The blend ends at the first point, and the period ends with it again.
     let mut period = motion.points.clone();
     if motion.blends.is_some() && !period.is_empty() {
         period.rotate_left(1);
@@ -97,7 +97,7 @@ fn title(variant: Variant) -> &'static str {
     }
 }
 
-/// One repetition, every millisecond.
+/// One repetition in steps of 1 ms.
 fn table(model: &Model, load: &Load, motion: &Motion) -> String {
     let n = model.dof;
     let mut csv = String::from("t");
@@ -110,7 +110,7 @@ fn table(model: &Model, load: &Load, motion: &Motion) -> String {
     let mut data = Data::new();
     let step = motion.period / motion.states.len().max(1) as f64;
     for (row, [q, qd, qdd]) in motion.states.iter().enumerate() {
-        // Whole microseconds read better than what rounding leaves.
+        // Rounded to whole microseconds.
         let _ = write!(csv, "{}", (step * row as f64 * 1e6).round() / 1e6);
         for values in [q, qd, qdd] {
             for value in &values[..n] {

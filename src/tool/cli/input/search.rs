@@ -1,4 +1,4 @@
-//! Which files a path stands for: a file, a folder that is walked, or the modules of a `.pgf`.
+//! Finds the files of a path: a file, a folder to search, or the modules of a `.pgf`.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,9 +13,9 @@ use crate::tool::cli::backup;
 const MODULES: [&str; 5] = ["mod", "sys", "prg", "modx", "sysx"];
 /// Extension of a program file, which lists modules.
 const PROGRAM: &str = "pgf";
-/// What a folder was searched for, for messages.
+/// Searched extensions, for messages.
 const SOUGHT: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
-/// Deepest folder that is searched.
+/// Maximum depth of folders.
 const MAX_FOLDERS: usize = 32;
 
 /// A file or folder that could not be read.
@@ -23,7 +23,7 @@ const MAX_FOLDERS: usize = 32;
 pub struct Unreadable {
     /// Its path.
     pub path: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
@@ -33,7 +33,7 @@ pub enum InputError {
     /// No path was given.
     #[error("no file or folder given; name a RAPID file, a folder or a .pgf program")]
     Nothing,
-    /// A folder without RAPID.
+    /// The folder contains no RAPID.
     #[error(
         "no RAPID in '{path}': looked in it and its folders for {SOUGHT}; name a file to read it \
          whatever its extension"
@@ -42,14 +42,14 @@ pub enum InputError {
         /// The folder.
         path: String,
     },
-    /// A `.pgf` whose modules are not there.
+    /// None of the modules of a `.pgf` exists.
     #[error("'{path}' lists no module that can be read; name the module files themselves")]
     EmptyProgram {
         /// The program file.
         path: String,
     },
-    /// A `.pgf` that lists a file outside of its folder: such a file would be copied and changed
-    /// with the program.
+    /// A `.pgf` lists a file outside its folder, which would be copied and changed with the
+    /// program.
     #[error(
         "{program}:{line}: '{module}' is not a file below the folder of the program ({why}); move \
          it there and list it by its name, or name the module files in place of the .pgf"
@@ -61,31 +61,30 @@ pub enum InputError {
         line: usize,
         /// As listed.
         module: String,
-        /// What leads outside.
+        /// The part that leads outside.
         why: &'static str,
     },
-    /// Something that cannot be read.
+    /// The path cannot be read.
     #[error("cannot read '{path}': {reason}; check the path and its permissions")]
     Unreadable {
         /// The path.
         path: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
 
-/// A file to be read.
 pub(super) struct Found {
     pub(super) path: PathBuf,
-    /// Its path below the input, with `/`.
+    /// Its path relative to the input, with `/`.
     pub(super) relative: String,
-    /// Whether the command line names it, or a program file that lists it.
+    /// Whether the command line names it, directly or by a program file.
     pub(super) named: bool,
-    /// Of a program file: the paths of its modules.
+    /// The paths of the modules of a program file.
     pub(super) modules: Option<Vec<String>>,
 }
 
-/// The files that a path names; what of a folder cannot be read goes into `unreadable`.
+/// The files of a path; unreadable parts of a folder are added to `unreadable`.
 pub(super) fn find(
     path: &Path,
     unreadable: &mut Vec<Unreadable>,
@@ -134,8 +133,8 @@ fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
     Found { modules: Some(modules), ..found_below(root, path, true) }
 }
 
-/// Where two files would go to the same place below `--out`, all of them go below the deepest
-/// folder that they share.
+/// Gives files with equal paths below `--out` distinct ones, relative to their deepest common
+/// folder.
 pub(super) fn tell_apart(found: &mut [Found]) {
     let mut places = BTreeSet::new();
     if found.iter().all(|file| places.insert(file.relative.clone())) {
@@ -152,7 +151,7 @@ pub(super) fn tell_apart(found: &mut [Found]) {
     }
 }
 
-/// A path without anything that would lead out of a folder.
+/// A path without components that lead out of a folder.
 pub(super) fn below(path: &Path) -> String {
     let parts = path.components().filter_map(|part| match part {
         Component::Normal(name) => Some(name.to_string_lossy()),
@@ -210,7 +209,7 @@ fn listed(path: &Path) -> Result<Vec<PathBuf>, InputError> {
     Ok(modules)
 }
 
-/// What leads out of the folder of a program file in the name of a module that it lists.
+/// Why a listed module lies outside the folder of its program file; `None` if it does not.
 fn leads_outside(folder: &Path, name: &str, module: &Path) -> Option<&'static str> {
     if name.starts_with(['/', '\\']) {
         return Some("the path is absolute");
@@ -228,7 +227,7 @@ fn leads_outside(folder: &Path, name: &str, module: &Path) -> Option<&'static st
     (!module.starts_with(folder)).then_some("a symbolic link leads out of it")
 }
 
-/// A path of a controller, whose file system has its own separators and knows no case.
+/// Resolves a path of a controller, which accepts both separators and ignores case.
 fn below_in_any_case(folder: &Path, path: &str) -> PathBuf {
     let parts = path.split(['/', '\\']).filter(|part| !part.is_empty());
     parts.fold(folder.to_path_buf(), |folder, part| {
@@ -236,14 +235,14 @@ fn below_in_any_case(folder: &Path, path: &str) -> PathBuf {
     })
 }
 
-/// XML text without its escapes.
+/// Resolves the escapes of XML text.
 fn unescaped(text: &str) -> String {
     let escapes = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
     escapes.iter().fold(text.to_owned(), |text, (escape, sign)| text.replace(escape, sign))
 }
 
-/// Collects the files with RAPID below a folder. Links to folders are not
-/// followed: they could lead in a circle.
+/// Collects the RAPID files below a folder. Links to folders are not followed, as they may be
+/// cyclic.
 fn walk(folder: &Path, depth: usize, files: &mut Vec<PathBuf>, unreadable: &mut Vec<Unreadable>) {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -279,7 +278,7 @@ pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// A path as it is shown, with `/`.
+/// A path for display, with `/`.
 pub(super) fn shown(path: &Path) -> String {
     let text = path.to_string_lossy();
     if std::path::MAIN_SEPARATOR == '/' { text.into_owned() } else { text.replace('\\', "/") }

@@ -1,20 +1,20 @@
-//! Signs that a logged motion is in other units than expected.
+//! Indications that a logged motion has unexpected units.
 
 use crate::arm::robot::Model;
 use crate::learn::log::Motion;
 
-/// How far outside its range a joint may be \[rad\].
+/// Tolerance outside a joint's range \[rad\].
 const OUTSIDE: f64 = 0.2;
-/// Largest ratio of a logged speed to the speed limit.
+/// Maximum ratio of logged speed to speed limit.
 const FASTER: f64 = 1.5;
-/// Interval of rows that is too long to differentiate a motion \[s\].
+/// Maximum row interval for differentiation \[s\].
 const SPARSE: f64 = 0.5;
-/// Least ratio of the change of positions to the integral of the rates.
+/// Minimum ratio of the position change to the integral of the rates.
 const LEAST: f64 = 0.05;
 /// Figures from here on are shown with an exponent.
 const HUGE: f64 = 1e9;
 
-/// The warnings, each with the way out.
+/// The warnings, each with a remedy.
 pub(super) fn doubts(model: &Model, motion: &Motion) -> Vec<String> {
     let mut found: Vec<String> =
         (0..model.dof).filter_map(|joint| position(model, motion, joint)).collect();
@@ -77,7 +77,7 @@ fn figure(value: f64) -> String {
     if value.abs() < HUGE { format!("{value:.3}") } else { format!("{value:.3e}") }
 }
 
-/// The row of the largest figure, and the figure.
+/// The row of the largest absolute value, and the value.
 fn farthest(values: &[f64]) -> Option<(usize, f64)> {
     values.iter().copied().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
 }

@@ -1,4 +1,4 @@
-//! `joulepath robots check`: whether a robot is sound, and what it lacks.
+//! `joulepath robots check`: checks a robot and lists its missing data.
 
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -10,13 +10,12 @@ use crate::arm::kinematics::{fk, ik_near, limits_ok, radical_inverse};
 use crate::arm::robot::{self, Lack, Model, Use, implausible, lacking};
 use crate::tool::cli::common::{Format, print};
 
-/// Poses over the ranges of the joints at which forward and inverse kinematics
-/// are held against each other.
+/// Number of poses at which forward and inverse kinematics are compared.
 const POSES: u32 = 64;
-/// Largest difference of the poses \[m\] and \[rad\].
+/// Maximum difference of the poses \[m\] and \[rad\].
 const SAME: f64 = 1e-6;
 
-/// What was found of one robot.
+/// The findings on one robot.
 struct Finding {
     name: String,
     joints: usize,
@@ -24,7 +23,7 @@ struct Finding {
     lacks: Vec<(Use, Vec<Lack>)>,
 }
 
-/// Checks the robots; all of the catalogue where none is named.
+/// Checks the named robots, or the whole catalogue.
 pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode> {
     let names: Vec<String> = if robots.is_empty() {
         robot::names().map(str::to_owned).collect()
@@ -48,7 +47,7 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
     Ok(if passed == findings.len() { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-/// What is found of a robot as its file has it, and with estimates.
+/// The findings on a robot, from its file and from the estimate.
 fn checked(model: &Model, estimated: &Model) -> Finding {
     let mut problems = implausible(model);
     let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
@@ -59,8 +58,8 @@ fn checked(model: &Model, estimated: &Model) -> Finding {
     Finding { name: model.name.clone(), joints: model.dof, problems, lacks }
 }
 
-/// Whether the inverse of the `n`-th pose has that pose. Robots without six joints
-/// need a finite pose only.
+/// Whether the inverse of the `n`-th pose leads back to it. Without six joints, only a finite pose
+/// is required.
 fn leads_back(model: &Model, n: u32) -> bool {
     const BASES: [u32; 7] = [2, 3, 5, 7, 11, 13, 17];
     let q: Vec<f64> = model
@@ -74,7 +73,7 @@ fn leads_back(model: &Model, n: u32) -> bool {
     let Ok(q) = <[f64; 6]>::try_from(q.as_slice()) else {
         return pose.to_homogeneous().iter().all(|entry| entry.is_finite());
     };
-    // The rods of a parallelogram may not allow the pose: then nothing is to be found.
+    // A parallelogram may not allow the pose: no finding.
     if limits_ok(model, &q).is_err() {
         return true;
     }

@@ -1,4 +1,4 @@
-//! `joulepath robots import`: a robot's own files as Robot TOML.
+//! `joulepath robots import`: converts a robot's own files to Robot TOML.
 
 use std::fs;
 use std::io::Write;
@@ -27,7 +27,6 @@ pub(super) struct ImportArgs {
     out: Option<PathBuf>,
 }
 
-/// Writes the Robot TOML.
 pub(super) fn run(args: &ImportArgs) -> anyhow::Result<()> {
     let path = configuration(&args.source)?;
     let shown = path.display().to_string();
@@ -40,7 +39,7 @@ pub(super) fn run(args: &ImportArgs) -> anyhow::Result<()> {
         "cfg" => import_moc(&shown, &text, args.unit.as_deref())?,
         _ => bail!("'{shown}': give a file that ends in .urdf or .cfg, or a backup folder"),
     };
-    // What is written can be loaded.
+    // Checks that the output can be loaded.
     from_toml(&shown, &imported)?;
     match &args.out {
         Some(out) => output::write(out, imported.as_bytes()),

@@ -1,4 +1,4 @@
-//! `joulepath robots`: the catalogue, and robots of one's own.
+//! `joulepath robots`: the catalogue, and the user's own robots.
 
 mod check;
 mod import;
@@ -47,7 +47,7 @@ enum RobotsCommand {
 /// Runs the command.
 ///
 /// # Errors
-/// An unknown robot or a wrong file.
+/// An unknown robot or an invalid file.
 pub fn run(args: &RobotsArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         RobotsCommand::List => list(args.format)?,

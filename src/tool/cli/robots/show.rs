@@ -1,4 +1,4 @@
-//! `joulepath robots show`: what is known of a robot.
+//! `joulepath robots show`: the data of a robot.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,6 @@ use crate::arm::robot::{Model, Provenance};
 use crate::retime::energy::plausible::{DRAWS, Interval};
 use crate::tool::cli::common::{Format, print};
 
-/// Shows one robot.
 pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
     let model = effects::load_estimated(robot)?;
     print(format, || document(&model), || text(&model))
@@ -21,7 +20,7 @@ fn text(model: &Model) -> String {
     let degrees = |list: &[f64]| {
         list.iter().map(|x| format!("{:.1}", x.to_degrees())).collect::<Vec<_>>().join(" ")
     };
-    // Hundredths, but no zeros behind them; -0 is 0.
+    // Two decimals at most, and no -0.
     let shown = |angle: f64| (angle.to_degrees() * 100.0).round() / 100.0 + 0.0;
     let range = |[low, high]: &[f64; 2]| format!("{}…{}", shown(*low), shown(*high));
     let ranges: Vec<String> = model.limits.position.iter().map(range).collect();
@@ -93,21 +92,21 @@ fn three_figures(x: f64) -> String {
     }
 }
 
-/// A figure of the dynamics, and how well it is known.
+/// A figure of the dynamics with its uncertainty.
 struct Figure {
     what: String,
     provenance: Option<Provenance>,
     value: f64,
-    /// Over plausible robots.
+    /// Its interval over plausible robots.
     range: Interval,
 }
 
-/// What, table and key, value of a joint.
+/// Label, table and key, value of a joint.
 type OfJoint = (&'static str, [&'static str; 2], fn(&Plausible, usize) -> f64);
-/// The same of the whole robot.
+/// The same for the whole robot.
 type OfRobot = (&'static str, [&'static str; 2], fn(&Plausible) -> f64);
 
-/// All that plausible robots differ in; of a robot without dynamics nothing.
+/// All quantities in which plausible robots differ; empty without dynamics.
 fn figures(model: &Model) -> Vec<Figure> {
     if !model.has_dynamics() {
         return Vec::new();

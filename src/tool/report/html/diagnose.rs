@@ -1,4 +1,4 @@
-//! A diagnosis as a page: what was found, where, and how far the gap shrinks.
+//! The HTML page of a diagnosis: effects, places, and reduction of the residuals.
 
 use serde::Serialize;
 use tera::Context;
@@ -16,23 +16,23 @@ use crate::tool::report::svg::{Curve, Plot, Size};
 
 /// Size of the plots, px.
 const SIZE: Size = Size { width: 620.0, height: 220.0 };
-/// Share of the squared gap that a joint needs for its regimes to be shown, %.
+/// Minimum share of the squared residuals for a joint's regimes to be shown, %.
 const SHOWN: f64 = 5.0;
-/// Classes of curves: the model as it was, refitted, with effects.
+/// Style classes of the curves: original model, refitted model, model with effects.
 const MODELS: [&str; 3] = ["j2", "j4", "j3"];
 
-/// What is drawn.
+/// The plots and source excerpts of the page.
 #[derive(Clone, Debug, Default)]
 pub struct Pictures {
-    /// Shares of the squared gap.
+    /// Shares of the squared residuals.
     pub attribution: Attribution,
-    /// Residuals of the nominal, the refitted and the improved model over time.
+    /// Residuals of the original, the refitted and the improved model over time.
     pub trace: Option<Trace>,
     /// By joint: these residuals over speed and over position.
     pub profiles: Vec<Vec<[Profile; 3]>>,
     /// Torques of the effects.
     pub shapes: Vec<Shape>,
-    /// The program around the places of the gap.
+    /// Program lines around the places with large residuals.
     pub sources: Vec<Excerpt>,
 }
 
@@ -52,7 +52,7 @@ pub struct Line {
     pub number: usize,
     /// Its text.
     pub text: String,
-    /// Whether it is the place.
+    /// Whether it is the place itself.
     pub hot: bool,
 }
 
@@ -121,7 +121,7 @@ struct Picture {
 /// The page of a diagnosis of the robot `robot`.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn diagnose_report(
     robot: &str,
     found: &Diagnosis,
@@ -131,7 +131,7 @@ pub fn diagnose_report(
     let mut context = Context::new();
     let asserted = found.effects.iter().map(|of| effect(of, true));
     let considered = found.candidates.iter().map(|of| effect(of, false));
-    // The regimes of the joints are in the table of the attribution.
+    // The attribution table already shows the regimes of the joints.
     let whole = |of: &&Place| of.joint.is_none() || of.regime == "all";
     let places: Vec<PlaceRow> = found.places.iter().filter(whole).map(place).collect();
     context.insert("robot", robot);
@@ -158,7 +158,7 @@ pub fn diagnose_report(
     render(include_str!("../../../../templates/diagnose.html.tera"), context)
 }
 
-/// What was held out, in words.
+/// The held-out data in words.
 fn heldout(basis: &Basis) -> String {
     let logs = basis.graded.join(", ");
     match basis.heldout.as_str() {
@@ -255,7 +255,7 @@ fn place(of: &Place) -> PlaceRow {
 fn cells(of: &Attribution) -> Vec<CellRow> {
     let percent = |x: f64| Share {
         text: fixed(100.0 * x, 1),
-        // The darkest colour stands for half of the gap or more.
+        // The darkest colour means half of the squared residuals or more.
         heat: format!("{:.0}", (200.0 * x).clamp(0.0, 100.0)),
     };
     let row = |joint: usize, regime: String, gap: f64, taken: &[f64]| {

@@ -1,5 +1,5 @@
-//! Energy over time of each segment, as figure 5 of Paes et al. 2014: where it was, where it is,
-//! and the least energy that the same path can take in its time.
+//! Energy over time of each segment, as figure 5 of Paes et al. 2014: original, retrofit, and lower
+//! bound of the energy on the same path.
 
 use std::fmt::Write;
 
@@ -10,14 +10,14 @@ use crate::tool::report::svg::{Frame, Scale, Size, escape};
 use crate::tool::retrofit::{Retrofit, SegmentKind};
 
 const SIZE: Size = Size { width: 1260.0, height: 460.0 };
-/// Half the width of the tick of a lower bound, px.
+/// Half width of the tick of a lower bound, px.
 const BOUND: f64 = 6.0;
-/// Length and half width of an arrow's head, px.
+/// Length and half width of an arrow head, px.
 const HEAD: (f64, f64) = (7.0, 3.5);
-/// Least distance of a label from points and other labels, px.
+/// Minimum distance of a label from points and other labels, px.
 const LABEL: (f64, f64) = (17.0, 12.0);
 
-/// A segment's mean execution.
+/// The mean execution of a segment.
 struct Point {
     number: usize,
     name: String,
@@ -28,11 +28,11 @@ struct Point {
     after: [f64; 2],
     /// J.
     bound: Option<f64>,
-    /// Least energy of the path over time, s and J.
+    /// Minimum energy on the path over time, s and J.
     curve: Vec<[f64; 2]>,
 }
 
-/// The figure; none where nothing moves.
+/// The figure; `None` if nothing moves.
 pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<String> {
     let points: Vec<Point> = numbered(retrofit)
         .filter(|(_, segment)| segment.kind != SegmentKind::Idle && segment.time_before_s > 0.0)
@@ -73,10 +73,10 @@ pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<Str
     ))
 }
 
-/// Room around the values, as a share of their range.
+/// Margin around the values, as share of their range.
 const MARGIN: f64 = 0.05;
 
-/// A scale without 0: the arrows are short beside their distance from it.
+/// A scale that need not contain 0: the arrows are short relative to the values.
 fn scale(values: impl Iterator<Item = f64>, count: usize) -> Scale {
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
@@ -119,7 +119,7 @@ fn mark(out: &mut String, frame: &Frame, point: &Point) {
     let length = (x1 - x0).hypot(y1 - y0);
     if point.rewritten && length > 0.0 {
         let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
-        // A short arrow is all head.
+        // A short arrow consists of its head only.
         let head = HEAD.0.min(length);
         let side = HEAD.1 * head / HEAD.0;
         let (bx, by) = (x1 - head * ux, y1 - head * uy);
@@ -136,12 +136,12 @@ fn mark(out: &mut String, frame: &Frame, point: &Point) {
     out.push_str("</g>");
 }
 
-/// The numbers of the segments beside their points, where there is room.
+/// The numbers of the segments next to their points, as far as they fit.
 fn labels(out: &mut String, frame: &Frame, points: &[Point]) {
     let mut taken: Vec<[f64; 2]> =
         points.iter().flat_map(|p| [p.before, p.after]).map(|[t, e]| frame.at(t, e)).collect();
     let [left, top, right, bottom] = frame.area();
-    // Those that save most come first.
+    // The largest savings get their labels first.
     let mut order: Vec<&Point> = points.iter().collect();
     let saved = |point: &Point| point.before[1] - point.after[1];
     order.sort_by(|a, b| saved(b).total_cmp(&saved(a)));

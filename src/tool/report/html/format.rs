@@ -1,9 +1,9 @@
-//! Figures as text.
+//! Formats figures as text.
 
-/// Deviations to each side that hold 95 %.
+/// Number of standard deviations to each side that contain 95 %.
 pub(super) const INTERVAL: f64 = 1.96;
 
-/// A number with so many decimals, a real minus sign, and a dash where there is none.
+/// A number with `decimals` decimals and a minus sign; a dash if not finite.
 pub(super) fn fixed(x: f64, decimals: usize) -> String {
     if !x.is_finite() {
         return "\u{2013}".to_owned();
@@ -16,27 +16,27 @@ pub(super) fn fixed(x: f64, decimals: usize) -> String {
     }
 }
 
-/// A share as %, to a tenth.
+/// A share in %, one decimal.
 pub(super) fn percent(share: f64) -> String {
     fixed(100.0 * share, 1)
 }
 
-/// s, to the millisecond.
+/// s, three decimals.
 pub(super) fn seconds(x: f64) -> String {
     fixed(x, 3)
 }
 
-/// J, to a tenth.
+/// J, one decimal.
 pub(super) fn joules(x: f64) -> String {
     fixed(x, 1)
 }
 
-/// What is saved of `before`, %; nothing of nothing.
+/// The saving relative to `before`, %; 0 if `before` is not positive.
 pub(super) fn saved_percent(before: f64, after: f64) -> f64 {
     if before > 0.0 { 100.0 * (before - after) / before } else { 0.0 }
 }
 
-/// The smallest and the largest figure, or one where they read the same.
+/// The smallest and the largest figure, or one figure if their texts are equal.
 pub(super) fn range(values: impl IntoIterator<Item = f64>, decimals: usize) -> String {
     let (low, high) = values
         .into_iter()

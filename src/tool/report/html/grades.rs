@@ -1,4 +1,4 @@
-//! Grades of an examination as a page: confusion, rates, reliability of the probabilities.
+//! The HTML page of an examination: confusion, rates, reliability of the probabilities.
 
 use std::collections::BTreeSet;
 
@@ -37,7 +37,7 @@ struct WrongRow<'a> {
 /// The page of an examination.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn grades_report(grades: &Grades) -> Result<String, ReportError> {
     let outcomes: BTreeSet<&str> =
         grades.confusion.values().flat_map(|row| row.keys().copied()).collect();

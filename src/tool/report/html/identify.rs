@@ -1,4 +1,4 @@
-//! An identification as a page: what the model is good for, and what it is not.
+//! The HTML page of an identification, with its limits of validity.
 
 use serde::Serialize;
 use tera::Context;
@@ -12,10 +12,10 @@ use crate::tool::report::svg::{Curve, Plot, Size};
 /// Size of the plots, px.
 const SIZE: Size = Size { width: 720.0, height: 200.0 };
 
-/// Torques of a log and what the model says of them, by instant.
+/// Measured and predicted torques of a log, by sample.
 #[derive(Clone, Debug, Default)]
 pub struct Traces {
-    /// What was predicted, in words.
+    /// The predicted data in words.
     pub title: String,
     /// Times \[s\].
     pub t: Vec<f64>,
@@ -55,7 +55,7 @@ struct LogRow {
     left_out: usize,
 }
 
-/// Digits of a hash that tell logs apart.
+/// Number of shown digits of a log's hash.
 const SHOWN: usize = 12;
 
 #[derive(Serialize)]
@@ -67,7 +67,7 @@ struct Missing {
 /// The page.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn identify_report(
     found: &Identified,
     basis: &Basis,

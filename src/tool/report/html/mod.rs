@@ -1,5 +1,5 @@
-//! Results as one self-contained page: HTML with its style sheet and its plots inside, without
-//! scripts and without anything that is loaded.
+//! Results as one self-contained HTML page: style sheet and plots inline, no scripts, no external
+//! resources.
 
 mod diagnose;
 mod energy_time;
@@ -34,19 +34,19 @@ use crate::arm::robot::Model;
 use crate::rapid::text::SourceFile;
 use crate::tool::retrofit::{Retrofit, Source};
 
-/// The report of a retrofit as one HTML file: figures of the cycle, a table of the segments,
-/// plots of what was rewritten, dwells, the source with its joules, verification and assumptions.
-/// `files` are the program's, indexed by their ids; `entry` is the routine that starts it.
+/// The HTML report of a retrofit: figures of the cycle, segments, plots, dwells, source with
+/// energies, verification, assumptions. `files` are indexed by file id; `entry` is the routine that
+/// starts the program.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn optimize_report(
     retrofit: &Retrofit,
     files: &[Source],
     model: &Model,
     entry: &str,
 ) -> Result<String, ReportError> {
-    // Paths below the input are short, and the same wherever the program lies.
+    // Relative paths are short and do not depend on the location of the program.
     let originals: Vec<SourceFile> = files
         .iter()
         .map(|source| SourceFile { path: source.relative.clone(), ..source.file.clone() })

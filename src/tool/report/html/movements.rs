@@ -15,24 +15,23 @@ use crate::tool::report::place::Places;
 use crate::tool::report::svg::{Curve, NEAR, Plot, Rule, Size};
 use crate::tool::retrofit::Retrofit;
 
-/// Ways with plots at most: those that save most. Beyond it a page takes long to open.
+/// Maximum number of plotted variants, those with the largest savings; more make the page slow.
 const MAX_PLOTTED: usize = 60;
 /// Size of each plot, px.
 const SIZE: Size = Size { width: 620.0, height: 250.0 };
-/// Abscissa of all plots.
+/// Label of the abscissa.
 const TIME: &str = "time (s)";
 
-/// A rewritten segment.
 #[derive(Serialize)]
 pub(super) struct Movement {
     number: usize,
     place: String,
     ways: Vec<WayPlots>,
-    /// Ways without plots.
+    /// Number of variants without plots.
     left_out: usize,
 }
 
-/// One way in which it runs.
+/// The plots of one variant.
 #[derive(Serialize)]
 struct WayPlots {
     name: String,
@@ -51,7 +50,6 @@ struct Figure {
     svg: String,
 }
 
-/// The rewritten segments of a retrofit.
 pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Vec<Movement> {
     let rewritten: Vec<_> = numbered(retrofit)
         .filter(|(_, segment)| segment.rewritten)
@@ -78,20 +76,20 @@ pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) 
         .collect()
 }
 
-/// The saving from which on a way is plotted, J.
+/// Minimum saving of a plotted variant, J.
 fn least_plotted<'a>(retrofit: &Retrofit, ways: impl Iterator<Item = &'a Way<'a>>) -> f64 {
     let mut savings: Vec<f64> = ways.map(|way| saved(retrofit, way)).collect();
     savings.sort_by(|a, b| b.total_cmp(a));
     savings.get(MAX_PLOTTED - 1).copied().unwrap_or(f64::NEG_INFINITY)
 }
 
-/// Saved by all executions of a way, J.
+/// Saving over all executions of a variant, J.
 fn saved(retrofit: &Retrofit, way: &Way<'_>) -> f64 {
     let [before, after] = energies(retrofit, way);
     (before - after) * way.executions as f64
 }
 
-/// Of one execution before and after, J.
+/// Energy of one execution before and after, J.
 fn energies(retrofit: &Retrofit, way: &Way<'_>) -> [f64; 2] {
     let energy = |account: &Account| -> f64 {
         account.events.get(way.event).into_iter().flatten().map(EnergyParts::energy_j).sum()
@@ -137,7 +135,7 @@ fn plots(model: &Model, sides: &[Vec<Sample>; 2]) -> Vec<Figure> {
     figures
 }
 
-/// The ceiling of the TCP speed over the time of the new motion, where it comes near the speeds.
+/// The maximum TCP speed over the time of the new motion, if the speeds come near it.
 fn ceiling(sides: &[Vec<Sample>; 2]) -> Curve {
     let fastest = sides.iter().flatten().map(|s| s.tcp_speed).fold(0.0, f64::max);
     let near = |s: &Sample| if NEAR * s.ceiling <= fastest { s.ceiling } else { f64::NAN };
@@ -165,7 +163,7 @@ fn shares(
     figure(caption, title, curves, rules)
 }
 
-/// One figure before and after.
+/// One quantity before and after.
 fn pair(sides: &[Vec<Sample>; 2], value: impl Fn(&Sample) -> f64) -> Vec<Curve> {
     ["before", "after"]
         .into_iter()

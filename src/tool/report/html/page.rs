@@ -1,8 +1,8 @@
-//! A page from its template and the data that it shows.
+//! Renders a page from its template and data.
 
 use tera::{Context, Tera};
 
-/// Why there is no report.
+/// Errors of a report.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// A template failed.
@@ -13,7 +13,7 @@ pub enum ReportError {
 /// Renders a template with the style sheet and the version of the program.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub(super) fn render(template: &str, mut context: Context) -> Result<String, ReportError> {
     context.insert("version", env!("CARGO_PKG_VERSION"));
     let mut tera = Tera::default();

@@ -1,4 +1,4 @@
-//! The verification, and the assumptions behind the figures.
+//! The verification and the assumptions of the figures.
 
 use serde::Serialize;
 
@@ -7,7 +7,6 @@ use crate::arm::robot::Model;
 use crate::tool::report::place::Places;
 use crate::tool::retrofit::{OutputKind, Retrofit, SignalKind};
 
-/// The verification.
 #[derive(Serialize)]
 pub(super) struct Verification {
     passed: bool,
@@ -26,7 +25,7 @@ struct Held {
     held: bool,
 }
 
-/// The largest share of a limit that any stream uses.
+/// The largest share of a limit over all streams.
 #[derive(Serialize)]
 struct Share {
     name: &'static str,
@@ -35,7 +34,7 @@ struct Share {
     length: String,
 }
 
-/// What a signal of the program does before and after.
+/// A signal before and after.
 #[derive(Serialize)]
 struct Signal {
     name: String,
@@ -52,7 +51,6 @@ struct Output {
     kind: &'static str,
 }
 
-/// The verification of a retrofit.
 pub(super) fn verification(retrofit: &Retrofit) -> Verification {
     let seen = &retrofit.verification;
     let worst = &seen.worst;
@@ -113,7 +111,7 @@ fn tiny(x: f64) -> String {
     if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
 }
 
-/// The assumptions behind the figures.
+/// The assumptions of the figures.
 #[derive(Serialize)]
 pub(super) struct Basis {
     robot: Vec<String>,
@@ -127,7 +125,7 @@ struct Unresolved {
     reason: String,
 }
 
-/// Assumptions about robot and program, and what could not be simulated.
+/// Assumptions on robot and program, and unresolved movements.
 pub(super) fn basis(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Basis {
     let simulation = &retrofit.before.0;
     Basis {

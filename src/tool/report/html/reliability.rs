@@ -1,4 +1,4 @@
-//! The reliability diagram: how often effects were present, over their stated probability.
+//! The reliability diagram: observed frequency of effects over their stated probability.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::tool::report::svg::{Curve, Plot, Size};
 /// Size of the diagram, px.
 const SIZE: Size = Size { width: 460.0, height: 400.0 };
 
-/// What `templates/reliability.html.tera` shows.
+/// Data of `templates/reliability.html.tera`.
 #[derive(Debug, Serialize)]
 pub(super) struct Reliability {
     diagram: String,
@@ -26,7 +26,7 @@ struct BinRow {
     interval: String,
 }
 
-/// The bins with something in them; nothing where all are empty.
+/// The non-empty bins; `None` if all are empty.
 pub(super) fn reliability(bins: &[Bin]) -> Option<Reliability> {
     let used: Vec<&Bin> = bins.iter().filter(|bin| bin.of > 0).collect();
     (!used.is_empty()).then(|| Reliability {

@@ -1,4 +1,4 @@
-//! A run as samples over time.
+//! Samples of a run over time.
 
 use crate::arm::dynamics::Data;
 use crate::arm::kinematics::fk;
@@ -9,12 +9,12 @@ use crate::retime::motion::timeline::Run;
 use crate::retime::optimize::corridor::Corridor;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Longest step between two samples, s.
+/// Maximum step between two samples, s.
 const STEP: f64 = 0.002;
-/// Samples of a run at most.
+/// Maximum number of samples of a run.
 const MAX_SAMPLES: f64 = 1500.0;
 
-/// What a plot shows at one time.
+/// The plotted quantities at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// s from the start of the run.
@@ -27,12 +27,11 @@ pub(super) struct Sample {
     pub(super) electrical_w: f64,
     /// m/s.
     pub(super) tcp_speed: f64,
-    /// Largest TCP speed that the program and the robot allow there, m/s.
+    /// Maximum TCP speed that program and robot allow there, m/s.
     pub(super) ceiling: f64,
 }
 
-/// Samples of a run from its start to its end, evenly spread. `corridor` is the path that it
-/// follows.
+/// Evenly spaced samples of a run, ends included. `corridor`: the path that it follows.
 pub(super) fn samples(model: &Model, run: &Run, corridor: Option<&Corridor>) -> Vec<Sample> {
     let duration = run.duration();
     let steps = (duration / STEP).ceil().clamp(1.0, MAX_SAMPLES);
@@ -91,7 +90,7 @@ MoveAbsJ b,v1000,z10,tool0;
 MoveL c,v300,fine,tool0;
 ENDPROC
 ENDMODULE";
-    /// The trapezoidal rule over jumps of the power, relative.
+    /// Relative error of the trapezoidal rule at jumps of the power.
     const QUADRATURE: f64 = 2e-3;
 
     #[test]
@@ -112,7 +111,7 @@ ENDMODULE";
         let energy: f64 = run_energy(&model, run).iter().map(EnergyParts::energy_j).sum();
         assert!((area - energy).abs() < QUADRATURE * energy, "{area} J for {energy} J");
 
-        // A line may be as fast as programmed, a joint movement only as fast as it is.
+        // A line may reach its programmed speed, a joint movement only its own original speed.
         assert!((samples.last().unwrap().ceiling - 0.3).abs() < 1e-6);
         let fastest = samples.iter().map(|s| s.tcp_speed).fold(0.0, f64::max);
         assert!((samples[0].ceiling - fastest).abs() < 0.01 * fastest);

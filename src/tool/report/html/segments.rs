@@ -1,4 +1,4 @@
-//! The table of segments. With what lies between them it adds up to the cycle.
+//! The table of segments. With the rest it adds up to the cycle.
 
 use serde::Serialize;
 
@@ -7,7 +7,6 @@ use crate::retime::optimize::reason::Reason;
 use crate::tool::report::place::Places;
 use crate::tool::retrofit::{Retrofit, Segment, SegmentKind};
 
-/// A row of the table.
 #[derive(Serialize)]
 pub(super) struct Row {
     number: usize,
@@ -34,27 +33,26 @@ pub(super) struct Costs {
     saved_percent: String,
 }
 
-/// Why something stays.
+/// Why a segment is unchanged.
 #[derive(Serialize)]
 pub(super) struct ReasonText {
     code: &'static str,
     words: String,
 }
 
-/// The table.
 #[derive(Serialize)]
 pub(super) struct Table {
     rows: Vec<Row>,
-    /// The wait that the original is counted with, so that both sides take the same time.
+    /// The wait that the padding adds to the original.
     padding: Option<Costs>,
-    /// What no segment has: short waits.
+    /// Events outside all segments: short waits.
     rest: Costs,
     total: Costs,
-    /// Places of movements that do not run in the cycle.
+    /// Places of movements that never run in the cycle.
     not_reached: Vec<String>,
 }
 
-/// Seconds and joules before and after.
+/// Time (s) and energy (J) before and after.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     time: [f64; 2],
@@ -87,7 +85,6 @@ impl Sums {
     }
 }
 
-/// The table of a retrofit.
 pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
     let total = Sums {
         time: [retrofit.original.cycle_s, retrofit.optimized.cycle_s],
@@ -113,7 +110,7 @@ pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
     }
 }
 
-/// The segments that run, with the numbers that the report gives them.
+/// The executed segments with their numbers in the report.
 pub(super) fn numbered(retrofit: &Retrofit) -> impl Iterator<Item = (usize, &Segment)> {
     retrofit
         .segments

@@ -1,5 +1,5 @@
-//! The report of a simulation: the cycle as bars over time, power, joints beside their limits, and
-//! the source with seconds and joules.
+//! The report of a simulation: cycle as bars over time, power, joints with limits, source with
+//! times and energies.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -23,19 +23,19 @@ use crate::tool::report::simulated::Simulated;
 use crate::tool::report::svg::{Curve, Plot, Rule, Scale, Size, escape};
 
 const SIZE: Size = Size { width: 1260.0, height: 280.0 };
-/// Points of a curve at most.
+/// Maximum number of points of a curve.
 const MAX_POINTS: usize = 6000;
-/// Rows of the bars at most: beyond, each row is a routine.
+/// Maximum number of bar rows for statements; with more, each row is a routine.
 const MAX_ROWS: usize = 60;
-/// Height of a row, width of its name, and room for the axis below, px.
+/// Height of a row, width of its name, and height of the axis, px.
 const ROW: f64 = 20.0;
 const NAMES: f64 = 300.0;
 const AXIS: f64 = 34.0;
-/// Width of the mark of a wait that counts 0 s because its length is not known, px.
+/// Width of a wait of unknown length, which counts as 0 s, px.
 const UNKNOWN_WIDTH: f64 = 3.0;
-/// Ticks of the time.
+/// Number of ticks on the time axis.
 const TICKS: usize = 10;
-/// Lines shown before and after those that cost something.
+/// Number of lines shown around lines with costs.
 const CONTEXT: u32 = 2;
 
 /// A movement or a wait of the cycle.
@@ -47,7 +47,7 @@ struct Step<'a> {
     duration: f64,
     energy: f64,
     waits: bool,
-    /// True for a wait of a length that is not known, which counts 0 s.
+    /// Whether it is a wait of unknown length, which counts as 0 s.
     unknown: bool,
 }
 
@@ -67,12 +67,12 @@ struct Annotated {
 #[derive(Serialize)]
 struct Line {
     number: u32,
-    /// Lines left out before it.
+    /// Number of lines left out before it.
     gap: u32,
     text: String,
     time: Option<String>,
     energy: Option<String>,
-    /// Share of the most expensive line, %.
+    /// Energy relative to the most expensive line of all files, %.
     heat: Option<String>,
 }
 
@@ -82,11 +82,10 @@ struct Noted {
     reason: String,
 }
 
-/// The report of a simulation as one HTML file. `samples` is its planned motion; `files` are the
-/// program's, indexed by their ids.
+/// The HTML report of a simulation. `samples`: its planned motion; `files` are indexed by file id.
 ///
 /// # Errors
-/// A template that does not fit its data.
+/// A template does not fit its data.
 pub fn simulate_report(
     of: Simulated<'_>,
     samples: &[Sample],
@@ -157,8 +156,8 @@ fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {
     steps
 }
 
-/// The cycle as bars over time: a row for each statement in the order of their first run, or for
-/// each routine where there are many.
+/// The cycle as bars over time: a row per statement in order of the first execution, or per routine
+/// if there are too many.
 fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
     let shared = shared_folder(steps.iter().map(|step| places.of(step.span).file));
     let statement = |step: &Step<'_>| {
@@ -229,7 +228,7 @@ fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
     out
 }
 
-/// Length of the folder, with its separator, that all paths begin with.
+/// Length of the longest common folder prefix of all paths, separator included.
 fn shared_folder(paths: impl Iterator<Item = String>) -> usize {
     let folder = |path: &str| path.rfind('/').map_or(0, |at| at + 1);
     let mut shared: Option<String> = None;
@@ -243,7 +242,7 @@ fn shared_folder(paths: impl Iterator<Item = String>) -> usize {
     shared.map_or(0, |prefix| prefix.len())
 }
 
-/// Steps of the same name together, in the order of the first of them.
+/// Groups the steps by name, in order of the first step of each name.
 fn rows<'s, 'a>(
     steps: &'s [Step<'a>],
     name: impl Fn(&Step<'a>) -> String,
@@ -261,7 +260,7 @@ fn rows<'s, 'a>(
     rows
 }
 
-/// The end of a long name.
+/// The last characters of a long name.
 fn shortened(name: &str) -> String {
     const CHARACTERS: usize = 46;
     let count = name.chars().count();
@@ -296,7 +295,7 @@ fn figures(model: &Model, samples: &[Sample]) -> Vec<Figure> {
         figures.push(figure("Electrical power", "power (W)", curves, Vec::new()));
     }
     figures.push(figure("TCP speed", "speed (m/s)", one(&|s| s.tcp_speed), Vec::new()));
-    // From −100 % at the lower end of the range to 100 % at the upper one.
+    // −100 % at the lower end of the range, 100 % at the upper one.
     let place = joints(&|s, j| {
         let [low, high] = limits.position_at(&s.state.q, j);
         100.0 * (2.0 * s.state.q[j] - low - high) / (high - low)
@@ -328,7 +327,7 @@ fn figure(
     Figure { caption, svg: plot.svg(SIZE) }
 }
 
-/// The files that take time, with seconds and joules by line.
+/// The files with steps, with time and energy by line.
 fn sources(steps: &[Step<'_>], files: &[SourceFile], known: bool) -> Vec<Annotated> {
     let mut costs: Vec<BTreeMap<u32, [f64; 2]>> = vec![BTreeMap::new(); files.len()];
     for step in steps {
@@ -344,7 +343,7 @@ fn sources(steps: &[Step<'_>], files: &[SourceFile], known: bool) -> Vec<Annotat
     used.map(|(file, costs)| annotated(file, costs, hottest, known)).collect()
 }
 
-/// `hottest` is the energy of the most expensive line of all files, J.
+/// `hottest`: energy of the most expensive line of all files, J.
 fn annotated(
     file: &SourceFile,
     costs: &BTreeMap<u32, [f64; 2]>,

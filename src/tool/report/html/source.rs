@@ -1,4 +1,4 @@
-//! The original source with the joules of each line.
+//! The original source with the energy of each line.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use crate::retime::energy::EnergyParts;
 use crate::retime::motion::timeline::What;
 use crate::tool::retrofit::Retrofit;
 
-/// Lines shown before and after those that cost something.
+/// Number of lines shown around lines with costs.
 const CONTEXT: u32 = 3;
-/// Characters of a line that are shown.
+/// Maximum number of shown characters of a line.
 const MAX_CHARACTERS: usize = 300;
 
-/// A file with lines that cost something.
+/// A file with at least one line with costs.
 #[derive(Serialize)]
 pub(super) struct Annotated {
     path: String,
@@ -24,22 +24,22 @@ pub(super) struct Annotated {
     lines: Vec<Line>,
 }
 
-/// A line, or a gap.
+/// A shown line.
 #[derive(Serialize)]
 struct Line {
     /// From 1.
     number: u32,
-    /// Lines left out before it.
+    /// Number of lines left out before it.
     gap: u32,
     text: String,
     before: Option<String>,
-    /// Share of the most expensive line, %.
+    /// Energy relative to the most expensive line of the file, %.
     heat: Option<String>,
-    /// The cell of the joules afterwards, unless a cell above reaches down to here.
+    /// The cell with the energy after the retrofit, unless a cell above spans this row.
     after: Option<Cell>,
 }
 
-/// Joules of one or several lines.
+/// Energy of one or several lines.
 #[derive(Serialize)]
 struct Cell {
     rows: u32,
@@ -47,18 +47,17 @@ struct Cell {
     rewritten: bool,
 }
 
-/// What the lines of one file cost, J.
+/// Energies of the lines of a file, J.
 #[derive(Default)]
 struct Costs {
     before: BTreeMap<u32, f64>,
     after: BTreeMap<u32, f64>,
-    /// Rewritten lines by their first: last line and joules afterwards.
+    /// Rewritten lines by first line: last line and energy after the retrofit.
     streams: BTreeMap<u32, (u32, f64)>,
 }
 
 impl Costs {
-    /// Lines that run as a stream now, with their joules. Streams that share a line share a
-    /// cell.
+    /// Adds lines that run as a stream, with its energy. Streams with common lines share a cell.
     fn add_stream(&mut self, mut first: u32, mut last: u32, mut energy: f64) {
         while let Some((other, (end, joules))) =
             self.streams.range(..=last).next_back().map(|(k, v)| (*k, *v))
@@ -70,13 +69,13 @@ impl Costs {
         self.streams.insert(first, (last, energy));
     }
 
-    /// Whether a line runs as a stream now.
+    /// Whether a line now runs as a stream.
     fn is_streamed(&self, line: u32) -> bool {
         self.streams.range(..=line).next_back().is_some_and(|(_, (end, _))| line <= *end)
     }
 }
 
-/// The files that cost something, in their order.
+/// The files with costs, in order.
 pub(super) fn sources(retrofit: &Retrofit, files: &[SourceFile]) -> Vec<Annotated> {
     let mut all: Vec<Costs> = files.iter().map(|_| Costs::default()).collect();
     streams(retrofit, files, &mut all);
@@ -174,7 +173,7 @@ fn annotated(file: &SourceFile, costs: &Costs) -> Annotated {
     }
 }
 
-/// A line without its end and without control characters, cut where it is very long.
+/// A line without line ending and control characters, truncated if very long.
 pub(super) fn text(file: &SourceFile, number: u32) -> String {
     let range = file.lines.range(number);
     let span = Span { file: file.id, start: range.start, end: range.end };

@@ -1,4 +1,4 @@
-//! Dwells: holding power and break-even of the brakes, as table 3 of Paes et al. 2014.
+//! Dwells with holding power and break-even time of the brakes, as table 3 of Paes et al. 2014.
 
 use std::collections::BTreeMap;
 
@@ -18,19 +18,19 @@ use crate::tool::retrofit::Retrofit;
 pub(super) struct Row {
     place: String,
     executions: usize,
-    /// s; none where it is not known.
+    /// s; `None` if unknown.
     duration: Option<String>,
     /// W, mean over the executions.
     joints: Vec<String>,
     /// W.
     holding: String,
-    /// s; none where nothing is to be held or no brake is known.
+    /// s; `None` if nothing is to be held or no brake is known.
     break_even: Option<String>,
-    /// J; none where the brake does not pay.
+    /// J; `None` if the brake does not pay.
     potential: Option<String>,
 }
 
-/// The dwells of the original program by place, in the order of the source.
+/// The dwells of the original program by place, in source order.
 pub(super) fn standstill(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Vec<Row> {
     let dwells = dwells(model, &retrofit.before.0);
     let mut by_place: BTreeMap<Span, Vec<&Dwell>> = BTreeMap::new();

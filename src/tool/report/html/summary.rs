@@ -1,4 +1,4 @@
-//! The head of the report: time and energy before and after, and the six parts.
+//! The head of the report: time, energy and the six energy parts before and after.
 
 use std::fmt::Write;
 
@@ -9,7 +9,6 @@ use crate::retime::energy::EnergyParts;
 use crate::tool::report::svg::Scale;
 use crate::tool::retrofit::{Retrofit, SegmentKind};
 
-/// A figure of the whole cycle.
 #[derive(Serialize)]
 pub(super) struct Card {
     name: &'static str,
@@ -20,7 +19,6 @@ pub(super) struct Card {
     change: String,
 }
 
-/// A part of the energy.
 #[derive(Serialize)]
 pub(super) struct Part {
     name: &'static str,
@@ -31,19 +29,18 @@ pub(super) struct Part {
     saved: String,
 }
 
-/// The head of the report.
 #[derive(Serialize)]
 pub(super) struct Summary {
     cards: Vec<Card>,
     parts: Vec<Part>,
     bars: String,
-    /// What brakes could save besides, J; none where nothing.
+    /// Further saving by brakes, J; `None` for zero.
     potential: Option<String>,
     rewritten: usize,
     movements: usize,
 }
 
-/// Class, name, explanation and value of a part.
+/// Style class, name, explanation and value of a part.
 type PartOf = (&'static str, &'static str, &'static str, fn(&EnergyParts) -> f64);
 
 const PARTS: [PartOf; 6] = [
@@ -55,7 +52,6 @@ const PARTS: [PartOf; 6] = [
     ("brake", "brake", "keeping brakes open, and opening them", |p| p.brake_j),
 ];
 
-/// The head of a retrofit's report.
 pub(super) fn summary(retrofit: &Retrofit) -> Summary {
     let (before, after) = (&retrofit.original, &retrofit.optimized);
     let energy = |name, before, after| Card {
@@ -115,14 +111,14 @@ fn change(before: f64, after: f64, less: &str, more: &str) -> String {
     format!("{text} % {word}")
 }
 
-/// Width and height of a bar, and the room of its name, px.
+/// Width and height of a bar, and width of its label, px.
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 26.0;
 const GAP: f64 = 10.0;
 const NAME: f64 = 56.0;
 const VALUE: f64 = 80.0;
 
-/// The parts before and after as stacked bars, what is negative to the left of zero.
+/// The parts before and after as stacked bars, negative ones to the left of zero.
 fn bars(sides: [&EnergyParts; 2]) -> String {
     let values = |parts: &EnergyParts| PARTS.map(|(.., value)| value(parts));
     let sums = sides.map(|parts| {

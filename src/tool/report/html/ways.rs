@@ -1,4 +1,4 @@
-//! The ways in which a segment runs as a stream.
+//! The variants in which a segment runs as a stream.
 
 use crate::retime::motion::Simulation;
 use crate::retime::motion::stream::Stream;
@@ -6,20 +6,20 @@ use crate::retime::motion::timed::TimedMotion;
 use crate::retime::motion::timeline::{Run, What};
 use crate::tool::retrofit::{Retrofit, Segment};
 
-/// Executions of a segment that run as one and the same stream.
+/// Executions of a segment with the same stream.
 pub(super) struct Way<'a> {
-    /// The first of them in the original program.
+    /// Their first run in the original program.
     pub(super) before: &'a Run,
-    /// The first of them now.
+    /// Their first run in the retrofit.
     pub(super) after: &'a Run,
-    /// Event of the first of them.
+    /// Event of the first run.
     pub(super) event: usize,
     /// Their number.
     pub(super) executions: usize,
     stream: &'a Stream,
 }
 
-/// The distinct streams of a segment, in the order of their first executions.
+/// The distinct streams of a segment, in order of their first execution.
 pub(super) fn ways<'a>(retrofit: &'a Retrofit, segment: &Segment) -> Vec<Way<'a>> {
     let mut ways: Vec<Way<'a>> = Vec::new();
     for event in &segment.events {

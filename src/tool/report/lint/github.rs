@@ -1,4 +1,4 @@
-//! Findings as commands of a GitHub workflow: remarks beside the changed lines.
+//! Findings as commands of a GitHub workflow, shown next to the changed lines.
 
 use crate::rapid::diagnostics::Severity;
 use crate::rapid::text::SourceFile;
@@ -16,7 +16,7 @@ pub fn github(report: &Report, files: &[SourceFile]) -> String {
             Severity::Info => "notice",
         };
         let rule = finding.rule;
-        // Columns are allowed within one line only.
+        // Columns are only allowed within one line.
         let columns = if start.line == end.line {
             format!(",col={},endColumn={}", start.column, end.column)
         } else {

@@ -7,7 +7,7 @@ use crate::rapid::diagnostics::Severity;
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::Report;
 
-/// A list with an entry for each finding.
+/// A list with one entry per finding.
 #[must_use]
 pub fn gitlab(report: &Report, files: &[SourceFile]) -> Value {
     let prints = fingerprints(&report.findings, files);

@@ -1,11 +1,11 @@
-//! Findings for programs.
+//! Findings as JSON.
 
 use serde_json::{Value, json};
 
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Finding, Report};
 
-/// The report as the contract says.
+/// The JSON of the stable interface.
 #[must_use]
 pub fn json(report: &Report, files: &[SourceFile]) -> Value {
     let findings: Vec<Value> = report.findings.iter().map(|it| finding(it, files)).collect();

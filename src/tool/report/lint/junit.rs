@@ -1,4 +1,4 @@
-//! Findings as a test report in the form of `JUnit`: a suite for each file.
+//! Findings as a `JUnit` test report: one suite per file.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Finding, Report};
 use crate::tool::report::svg::escape;
 
-/// The report; a file without findings is a test that passed.
+/// The report; a file without findings is a passed test.
 #[must_use]
 pub fn junit(report: &Report, files: &[SourceFile]) -> String {
     let mut suites = String::new();
@@ -48,7 +48,7 @@ pub fn junit(report: &Report, files: &[SourceFile]) -> String {
     )
 }
 
-/// Text for an attribute in one line; characters that XML can't hold become U+FFFD.
+/// Escapes an attribute text in one line; characters that XML forbids become U+FFFD.
 fn escaped(text: &str) -> String {
     let held = |c: char| match c {
         '\t' | '\n' | '\r' => ' ',

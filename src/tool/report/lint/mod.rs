@@ -1,4 +1,4 @@
-//! Findings of the linter, one form a file.
+//! Findings of the linter, one output format per file.
 
 pub mod github;
 pub mod gitlab;
@@ -14,8 +14,8 @@ use sha2::{Digest, Sha256};
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::Finding;
 
-/// What tells a finding from others when lines move: rule, file, statement, and its number among
-/// the same.
+/// Identifiers of findings that stay when lines move: rule, file, statement, and a counter among
+/// equal ones.
 #[must_use]
 pub fn fingerprints(findings: &[Finding], files: &[SourceFile]) -> Vec<String> {
     let mut seen = std::collections::BTreeMap::new();

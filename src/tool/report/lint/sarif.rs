@@ -1,4 +1,4 @@
-//! Findings as SARIF 2.1.0, the form that code scanning of many hosts reads.
+//! Findings as SARIF 2.1.0, for code scanning services.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::rapid::diagnostics::Severity;
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::{ALL, Finding, Report};
 
-/// Where the schema of the form is published.
+/// URL of the schema.
 const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 
 /// One run with all rules and findings.
@@ -126,7 +126,7 @@ fn pascal(name: &str) -> String {
     name.split('-').map(word).collect::<Vec<String>>().concat()
 }
 
-/// A path as a relative reference: what is no letter, digit or one of `-._~/` as `%XX`.
+/// A path as a relative reference: letters, digits and `-._~/` stay, others become `%XX`.
 fn uri(path: &str) -> String {
     let mut out = String::with_capacity(path.len());
     for byte in path.bytes() {

@@ -1,4 +1,4 @@
-//! Findings for people: with their source, in one line, counted.
+//! Findings as text: with source, in one line each, and counted.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,10 +8,10 @@ use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Applicability, Finding, Report};
 use crate::tool::report::table::{Align, table};
 
-/// Findings that are listed by their joules.
+/// Number of findings in the list of largest savings.
 const TOP: usize = 10;
 
-/// Each finding with its source, an empty line after each.
+/// Each finding with its source, separated by empty lines.
 #[must_use]
 pub fn full(report: &Report, files: &[SourceFile], paint: Paint) -> String {
     let shown = report.findings.iter().map(|finding| {
@@ -54,7 +54,7 @@ fn diagnostic(finding: &Finding) -> Diagnostic {
     diagnostic
 }
 
-/// The last line.
+/// The summary line.
 #[must_use]
 pub fn summary(report: &Report) -> String {
     let count = report.findings.len();
@@ -72,7 +72,8 @@ pub fn summary(report: &Report) -> String {
     out
 }
 
-/// Findings by rule, `-` where no joules are known, and those that save most.
+/// The number of findings by rule (`-` without energies), and the findings with the largest
+/// savings.
 #[must_use]
 pub fn statistics(report: &Report, files: &[SourceFile]) -> String {
     let mut by_rule: BTreeMap<(&str, &str), (usize, Option<f64>)> = BTreeMap::new();

@@ -1,7 +1,6 @@
 //! Text inside markup.
 
-/// Text with the characters that mean something in HTML and XML replaced, for content and quoted
-/// attributes.
+/// Escapes the special characters of HTML and XML, for content and quoted attributes.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,11 +1,11 @@
-//! The frame of a plot: axes, grid, ticks, and where a value lies in it.
+//! The frame of a plot: axes, grid, ticks, and position of a value.
 
 use std::fmt::Write;
 
 use super::escape::escape;
 use super::scale::Scale;
 
-/// Room for the tick labels and axis titles, px.
+/// Margins for tick labels and axis titles, px.
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 20.0;
@@ -36,7 +36,7 @@ impl Frame {
         Frame { size, x, y }
     }
 
-    /// Place of a value, px from the top left corner.
+    /// Position of a value, px from the top left corner.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         let Size { width, height } = self.size;
         [
@@ -50,8 +50,8 @@ impl Frame {
         [LEFT, TOP, self.size.width - RIGHT, self.size.height - BOTTOM]
     }
 
-    /// The whole plot: the axes with their titles, and `content` on top of them. `name` is read
-    /// out instead of the picture.
+    /// The whole plot: axes with titles, and `content` on top. `name` is the text for screen
+    /// readers.
     pub fn svg(&self, name: &str, x_title: &str, y_title: &str, content: &str) -> String {
         let Size { width, height } = self.size;
         let mut out = format!(

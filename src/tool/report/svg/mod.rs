@@ -1,8 +1,6 @@
-//! Plots as inline SVG.
-//!
-//! Written here rather than with a plotting library: colours come from the page's style sheet by
-//! class, so that one plot serves light, dark and print, and a reader can hide single curves;
-//! text stays text; and the little that is needed (ticks, polylines) is less than an adapter.
+//! Plots as inline SVG, written without a plotting library: colours come from the style sheet by
+//! class, so one plot works for light, dark and print and single curves can be hidden; text stays
+//! text.
 
 mod escape;
 mod frame;

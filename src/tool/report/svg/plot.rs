@@ -7,12 +7,12 @@ use super::frame::{Frame, Size};
 use super::polyline::{points, simplify};
 use super::scale::Scale;
 
-/// Ticks of the abscissa.
+/// Number of ticks of the abscissa.
 const X_TICKS: usize = 8;
-/// Ticks of the ordinate.
+/// Number of ticks of the ordinate.
 const Y_TICKS: usize = 5;
 
-/// A curve. Where a value is not finite, it has a gap.
+/// A curve, with gaps at values that are not finite.
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// Classes of the style sheet.
@@ -21,35 +21,35 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
 }
 
-/// A level to be seen in relation to the curves; drawn where the curves come near.
+/// A reference level, drawn if the curves come near it.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
     /// Ordinate.
     pub value: f64,
-    /// What it is.
+    /// Its name.
     pub label: &'static str,
 }
 
 /// Curves in a frame.
 #[derive(Clone, Debug)]
 pub struct Plot<'a> {
-    /// Read out instead of the picture.
+    /// Text for screen readers.
     pub name: &'a str,
-    /// With its unit.
+    /// Title with unit.
     pub x_title: &'a str,
-    /// With its unit.
+    /// Title with unit.
     pub y_title: &'a str,
-    /// Later ones on top.
+    /// Curves; later ones are drawn on top.
     pub curves: Vec<Curve>,
     /// Levels.
     pub rules: Vec<Rule>,
 }
 
-/// Share of a level from which on a plot is extended to it.
+/// A plot is extended to a level if a curve reaches this share of it.
 pub const NEAR: f64 = 0.6;
 
 impl Plot<'_> {
-    /// As SVG.
+    /// The plot as SVG.
     pub fn svg(&self, size: Size) -> String {
         let all = || self.curves.iter().flat_map(|curve| &curve.points);
         let ordinates = || all().map(|p| p[1]).filter(|y| y.is_finite());

@@ -1,15 +1,14 @@
-//! Curves reduced to the points that can be seen.
+//! Reduces curves to the visible points.
 
 use std::fmt::Write;
 
-/// Most points of a curve.
+/// Maximum number of points of a curve.
 pub const MAX_POINTS: usize = 400;
-/// Distance that cannot be seen, px.
+/// Invisible distance, px.
 const INVISIBLE: f64 = 0.15;
 
-/// The points of a curve (px) that are needed to draw it, at most [`MAX_POINTS`]: every point
-/// left out lies within a fraction of a pixel of the curve that is drawn, or more where the
-/// number demands it. Ends are kept.
+/// At most [`MAX_POINTS`] points (px) of a curve, ends included. Every omitted point lies within a
+/// fraction of a pixel of the drawn curve, or within more if the number requires it.
 pub fn simplify(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut tolerance = INVISIBLE;
     loop {
@@ -21,7 +20,7 @@ pub fn simplify(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     }
 }
 
-/// Ramer's and Douglas's method, with a list instead of recursion.
+/// The Ramer–Douglas–Peucker algorithm, iterative.
 fn kept(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
     let mut keep = vec![false; points.len()];
@@ -45,7 +44,7 @@ fn kept(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     points.iter().zip(keep).filter_map(|(point, keep)| keep.then_some(*point)).collect()
 }
 
-/// Distance of `p` from the stretch between `a` and `b`.
+/// Distance of `p` from the segment between `a` and `b`.
 fn distance(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let (px, py) = (p[0] - a[0], p[1] - a[1]);
@@ -68,7 +67,7 @@ pub fn points(points: &[[f64; 2]]) -> String {
 mod tests {
     use super::*;
 
-    /// Rounding of the test's own distances, px.
+    /// Rounding of the distances in this test, px.
     const ROUNDING: f64 = 1e-9;
 
     fn wave(n: usize, amplitude: f64) -> Vec<[f64; 2]> {

@@ -13,7 +13,7 @@ pub struct Scale {
 const ROUNDING: f64 = 1e-6;
 
 impl Scale {
-    /// The smallest scale that holds `low` to `high`, has about `count` ticks and ends at ticks.
+    /// The smallest scale that contains `low` to `high`, has about `count` ticks and ends at ticks.
     pub fn new(low: f64, high: f64, count: usize) -> Scale {
         let scale = Scale::exact(low, high, count);
         let step = scale.step;
@@ -24,12 +24,12 @@ impl Scale {
         }
     }
 
-    /// The scale from `low` to `high` with about `count` ticks. What is not finite counts as 0,
-    /// and a range without extent gets one.
+    /// The scale from `low` to `high` with about `count` ticks. Values that are not finite count as
+    /// 0; an empty range is widened.
     pub fn exact(low: f64, high: f64, count: usize) -> Scale {
         let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
         let (low, high) = (finite(low).min(finite(high)), finite(low).max(finite(high)));
-        // Below this share of the values a range is rounding.
+        // A smaller relative range is rounding.
         let least = 1e-9 * low.abs().max(high.abs()).max(1.0);
         let (low, high) = if high - low < least { (low - 0.5, high + 0.5) } else { (low, high) };
         let raw = (high - low) / count.max(1) as f64;
@@ -50,7 +50,7 @@ impl Scale {
         Scale::new(low, high, count)
     }
 
-    /// Where `x` lies, 0 at the low end, 1 at the high end.
+    /// Relative position of `x`: 0 at the low end, 1 at the high end.
     pub fn share(&self, x: f64) -> f64 {
         (x - self.low) / (self.high - self.low)
     }
@@ -62,7 +62,7 @@ impl Scale {
         let count = (last - first).max(0.0) as usize;
         (0..=count)
             .map(|i| {
-                // Not -0.
+                // Avoids -0.
                 let x = (first + i as f64) * self.step + 0.0;
                 (x, format!("{x:.*}", self.decimals).replace('-', "\u{2212}"))
             })
