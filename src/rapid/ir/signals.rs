@@ -80,43 +80,18 @@ impl Found<'_> {
 
     fn statement(&mut self, stmt: &Stmt) {
         match &stmt.kind {
-            StmtKind::Assign { target, value } => {
-                self.expr(target);
-                self.expr(value);
-            }
             StmtKind::Call(call) => {
-                let key = match &call.callee {
-                    Callee::Name(name) => name.key.as_str(),
-                    Callee::Late(_) => "",
-                };
-                self.args(key, &call.args);
+                let Callee::Name(name) = &call.callee else { return self.args("", &call.args) };
+                return self.args(&name.key, &call.args);
             }
-            StmtKind::If { branches, .. } => {
-                for (condition, _) in branches {
-                    self.expr(condition);
-                }
-            }
-            StmtKind::For { var, from, to, step, .. } => {
-                self.own.push(var.key.clone());
-                for expr in [from, to].into_iter().chain(step) {
-                    self.expr(expr);
-                }
-            }
-            StmtKind::While { condition, .. } => self.expr(condition),
-            StmtKind::Test { value, cases, .. } => {
-                self.expr(value);
-                for expr in cases.iter().flat_map(|(values, _)| values) {
-                    self.expr(expr);
-                }
-            }
-            StmtKind::Return(Some(value)) => self.expr(value),
-            StmtKind::Data(data) => {
-                self.own.push(data.name.key.clone());
-                if let Some(value) = &data.init {
-                    self.expr(value);
-                }
-            }
+            StmtKind::For { var, .. } => self.own.push(var.key.clone()),
+            StmtKind::Data(data) => self.own.push(data.name.key.clone()),
+            // These name no signal.
+            StmtKind::Raise(_) | StmtKind::Connect { .. } => return,
             _ => {}
+        }
+        for expr in stmt.kind.exprs() {
+            self.expr(expr);
         }
     }
 
@@ -137,24 +112,12 @@ impl Found<'_> {
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Ref(name) => self.name(name, None),
-            ExprKind::Field(base, _) | ExprKind::Unary(_, base) => self.expr(base),
-            ExprKind::Index(base, indices) => {
-                self.expr(base);
-                for index in indices {
-                    self.expr(index);
-                }
-            }
             ExprKind::Call(name, args) => self.args(&name.key, args),
-            ExprKind::Aggregate(items) => {
-                for item in items {
-                    self.expr(item);
+            _ => {
+                for part in expr.parts() {
+                    self.expr(part);
                 }
             }
-            ExprKind::Binary(_, left, right) => {
-                self.expr(left);
-                self.expr(right);
-            }
-            _ => {}
         }
     }
 

@@ -2,21 +2,47 @@
 
 use std::ops::Range;
 
-/// Declares the kinds and their names in messages.
+/// Declares the kinds with their names in messages; the keywords also as a table and as a look-up by
+/// the packed word.
 macro_rules! token_kinds {
-    ($($(#[$doc:meta])* $kind:ident = $text:literal,)*) => {
+    (
+        $($(#[$doc:meta])* $kind:ident = $text:literal,)*
+        keywords { $($keyword:ident = $word:literal,)* }
+        $(#[$end_doc:meta])* $end:ident = $end_text:literal,
+    ) => {
         /// Kind of a token. The first two are trivia.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u8)]
         pub enum TokenKind {
             $($(#[$doc])* #[doc = concat!("In messages: ", $text)] $kind,)*
+            $(#[doc = concat!("In messages: ", $word)] $keyword,)*
+            $(#[$end_doc])* #[doc = concat!("In messages: ", $end_text)] $end,
         }
 
         impl TokenKind {
             /// Its name in messages.
             #[must_use]
             pub fn describe(self) -> &'static str {
-                match self { $(TokenKind::$kind => $text,)* }
+                match self {
+                    $(TokenKind::$kind => $text,)*
+                    $(TokenKind::$keyword => $word,)*
+                    TokenKind::$end => $end_text,
+                }
+            }
+        }
+
+        /// RAPID's keywords in upper case.
+        pub const KEYWORDS: &[(&str, TokenKind)] = &[$(($word, TokenKind::$keyword),)*];
+
+        #[expect(non_upper_case_globals, reason = "named as the kinds they stand for")]
+        mod packed {
+            $(pub(super) const $keyword: u64 = super::pack($word.as_bytes());)*
+        }
+
+        fn by_packed(word: u64) -> Option<TokenKind> {
+            match word {
+                $(packed::$keyword => Some(TokenKind::$keyword),)*
+                _ => None,
             }
         }
     };
@@ -68,137 +94,63 @@ token_kinds! {
     LessEqual = "'<='",
     Greater = "'>'",
     GreaterEqual = "'>='",
-    Alias = "ALIAS",
-    And = "AND",
-    Backward = "BACKWARD",
-    Case = "CASE",
-    Connect = "CONNECT",
-    Const = "CONST",
-    Default = "DEFAULT",
-    Div = "DIV",
-    Do = "DO",
-    Else = "ELSE",
-    ElseIf = "ELSEIF",
-    EndFor = "ENDFOR",
-    EndFunc = "ENDFUNC",
-    EndIf = "ENDIF",
-    EndModule = "ENDMODULE",
-    EndProc = "ENDPROC",
-    EndRecord = "ENDRECORD",
-    EndTest = "ENDTEST",
-    EndTrap = "ENDTRAP",
-    EndWhile = "ENDWHILE",
-    Error = "ERROR",
-    Exit = "EXIT",
-    False = "FALSE",
-    For = "FOR",
-    From = "FROM",
-    Func = "FUNC",
-    Goto = "GOTO",
-    If = "IF",
-    InOut = "INOUT",
-    Local = "LOCAL",
-    Mod = "MOD",
-    Module = "MODULE",
-    Not = "NOT",
-    Or = "OR",
-    Pers = "PERS",
-    Proc = "PROC",
-    Raise = "RAISE",
-    Record = "RECORD",
-    Retry = "RETRY",
-    Return = "RETURN",
-    Step = "STEP",
-    Task = "TASK",
-    Test = "TEST",
-    Then = "THEN",
-    To = "TO",
-    Trap = "TRAP",
-    True = "TRUE",
-    TryNext = "TRYNEXT",
-    Undo = "UNDO",
-    Var = "VAR",
-    While = "WHILE",
-    With = "WITH",
-    Xor = "XOR",
+    keywords {
+        Alias = "ALIAS",
+        And = "AND",
+        Backward = "BACKWARD",
+        Case = "CASE",
+        Connect = "CONNECT",
+        Const = "CONST",
+        Default = "DEFAULT",
+        Div = "DIV",
+        Do = "DO",
+        Else = "ELSE",
+        ElseIf = "ELSEIF",
+        EndFor = "ENDFOR",
+        EndFunc = "ENDFUNC",
+        EndIf = "ENDIF",
+        EndModule = "ENDMODULE",
+        EndProc = "ENDPROC",
+        EndRecord = "ENDRECORD",
+        EndTest = "ENDTEST",
+        EndTrap = "ENDTRAP",
+        EndWhile = "ENDWHILE",
+        Error = "ERROR",
+        Exit = "EXIT",
+        False = "FALSE",
+        For = "FOR",
+        From = "FROM",
+        Func = "FUNC",
+        Goto = "GOTO",
+        If = "IF",
+        InOut = "INOUT",
+        Local = "LOCAL",
+        Mod = "MOD",
+        Module = "MODULE",
+        Not = "NOT",
+        Or = "OR",
+        Pers = "PERS",
+        Proc = "PROC",
+        Raise = "RAISE",
+        Record = "RECORD",
+        Retry = "RETRY",
+        Return = "RETURN",
+        Step = "STEP",
+        Task = "TASK",
+        Test = "TEST",
+        Then = "THEN",
+        To = "TO",
+        Trap = "TRAP",
+        True = "TRUE",
+        TryNext = "TRYNEXT",
+        Undo = "UNDO",
+        Var = "VAR",
+        While = "WHILE",
+        With = "WITH",
+        Xor = "XOR",
+    }
     /// The kind after the last token; no token has it.
     EndOfFile = "the end of the file",
-}
-
-/// Declares the keywords as a table and as a look-up by the packed word.
-macro_rules! keywords {
-    ($($kind:ident = $word:literal,)*) => {
-        /// RAPID's keywords in upper case.
-        pub const KEYWORDS: &[(&str, TokenKind)] = &[$(($word, TokenKind::$kind),)*];
-
-        #[expect(non_upper_case_globals, reason = "named as the kinds they stand for")]
-        mod packed {
-            $(pub(super) const $kind: u64 = super::pack($word.as_bytes());)*
-        }
-
-        fn by_packed(word: u64) -> Option<TokenKind> {
-            match word {
-                $(packed::$kind => Some(TokenKind::$kind),)*
-                _ => None,
-            }
-        }
-    };
-}
-
-keywords! {
-    Alias = "ALIAS",
-    And = "AND",
-    Backward = "BACKWARD",
-    Case = "CASE",
-    Connect = "CONNECT",
-    Const = "CONST",
-    Default = "DEFAULT",
-    Div = "DIV",
-    Do = "DO",
-    Else = "ELSE",
-    ElseIf = "ELSEIF",
-    EndFor = "ENDFOR",
-    EndFunc = "ENDFUNC",
-    EndIf = "ENDIF",
-    EndModule = "ENDMODULE",
-    EndProc = "ENDPROC",
-    EndRecord = "ENDRECORD",
-    EndTest = "ENDTEST",
-    EndTrap = "ENDTRAP",
-    EndWhile = "ENDWHILE",
-    Error = "ERROR",
-    Exit = "EXIT",
-    False = "FALSE",
-    For = "FOR",
-    From = "FROM",
-    Func = "FUNC",
-    Goto = "GOTO",
-    If = "IF",
-    InOut = "INOUT",
-    Local = "LOCAL",
-    Mod = "MOD",
-    Module = "MODULE",
-    Not = "NOT",
-    Or = "OR",
-    Pers = "PERS",
-    Proc = "PROC",
-    Raise = "RAISE",
-    Record = "RECORD",
-    Retry = "RETRY",
-    Return = "RETURN",
-    Step = "STEP",
-    Task = "TASK",
-    Test = "TEST",
-    Then = "THEN",
-    To = "TO",
-    Trap = "TRAP",
-    True = "TRUE",
-    TryNext = "TRYNEXT",
-    Undo = "UNDO",
-    Var = "VAR",
-    While = "WHILE",
-    With = "WITH",
-    Xor = "XOR",
 }
 
 /// Number of letters of the longest keywords (`ENDMODULE`, `ENDRECORD`).

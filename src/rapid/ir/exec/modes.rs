@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::arguments::Arguments;
 use super::executor::Executor;
 use crate::rapid::ir::hir::{Expr, ExprKind, Stmt};
-use crate::rapid::ir::movement::Settings;
 
 /// Options of `CirPathMode` in the order of their numbers in `C_MOTSET.cirpathreori`.
 /// Source: RAPID reference, `motsetdata`.
@@ -23,9 +22,7 @@ impl Executor<'_> {
         } else {
             self.unmodelled(stmt, text);
         }
-        let mut settings = Settings::clone(&self.settings);
-        settings.circle_mode = mode as u8;
-        self.settings = Arc::new(settings);
+        Arc::make_mut(&mut self.settings).circle_mode = mode as u8;
     }
 
     /// `PathResol`: how densely a path is interpolated; default 100 %.
@@ -36,9 +33,7 @@ impl Executor<'_> {
         } else {
             self.unmodelled(stmt, text);
         }
-        let mut settings = Settings::clone(&self.settings);
-        settings.path_resolution = percent.map(|percent| percent / 100.0);
-        self.settings = Arc::new(settings);
+        Arc::make_mut(&mut self.settings).path_resolution = percent.map(|percent| percent / 100.0);
     }
 
     /// `MotionProcessModeSet`: the tuning of the servo; default `OPTIMAL_CYCLE_TIME_MODE`.

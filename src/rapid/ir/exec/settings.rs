@@ -144,10 +144,7 @@ impl Executor<'_> {
                  not there"
             ),
         );
-        let mut settings = Settings::clone(&self.settings);
-        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        settings.other.push(text.into());
-        self.settings = Arc::new(settings);
+        self.mark_unmodelled(text);
     }
 
     fn not_known(&mut self, stmt: &Stmt, text: &str) {
@@ -156,13 +153,11 @@ impl Executor<'_> {
     }
 
     fn sing_area(&mut self, text: &str, arguments: &Arguments<'_>) {
-        let mut settings = Settings::clone(&self.settings);
-        settings.sing_area = arguments
+        Arc::make_mut(&mut self.settings).sing_area = arguments
             .optional
             .iter()
             .find(|(key, _, _)| *key != "off")
             .map(|(_, option, _)| format!("{text}\\{option}").into());
-        self.settings = Arc::new(settings);
     }
 
     /// `PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`.
@@ -183,15 +178,13 @@ impl Executor<'_> {
                 _ => known = false,
             }
         }
-        let mut settings = Settings::clone(&self.settings);
-        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
         if known {
-            settings.path_acceleration = limits;
+            self.clear_unmodelled(&["pathacclim"]);
+            Arc::make_mut(&mut self.settings).path_acceleration = limits;
         } else {
-            settings.other.push(text.into());
+            self.mark_unmodelled(text);
             self.not_known(stmt, text);
         }
-        self.settings = Arc::new(settings);
     }
 
     /// An acceleration limit, raised to [`LEAST_ACCELERATION`] if it is smaller.
@@ -209,19 +202,16 @@ impl Executor<'_> {
     /// `WorldAccLim \On := m/s²` or `\Off`.
     fn world_acceleration(&mut self, stmt: &Stmt, text: &str, arguments: &Arguments<'_>) {
         let on = arguments.option_value("on").map(|expr| self.eval(expr).datum.num());
-        let mut settings = Settings::clone(&self.settings);
-        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        match on {
-            None if arguments.has_option("off") => settings.world_acceleration = f64::INFINITY,
-            Some(Some(limit)) => {
-                settings.world_acceleration = self.least(stmt, text, limit);
-            }
+        let limit = match on {
+            None if arguments.has_option("off") => f64::INFINITY,
+            Some(Some(limit)) => self.least(stmt, text, limit),
             _ => {
-                settings.other.push(text.into());
-                self.not_known(stmt, text);
+                self.mark_unmodelled(text);
+                return self.not_known(stmt, text);
             }
-        }
-        self.settings = Arc::new(settings);
+        };
+        self.clear_unmodelled(&["worldacclim"]);
+        Arc::make_mut(&mut self.settings).world_acceleration = limit;
     }
 
     /// Records a setting whose effect on movements is not modelled.
@@ -230,16 +220,19 @@ impl Executor<'_> {
             stmt.span,
             format!("{text} is not simulated: what follows runs as if it were not there"),
         );
-        let mut settings = Settings::clone(&self.settings);
-        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        settings.other.push(text.into());
-        self.settings = Arc::new(settings);
+        self.mark_unmodelled(text);
     }
 
+    /// Adds an instruction to those whose effect is not modelled, as the last one.
+    fn mark_unmodelled(&mut self, text: &str) {
+        self.clear_unmodelled(&[&text.to_lowercase()]);
+        Arc::make_mut(&mut self.settings).other.push(text.into());
+    }
+
+    /// Removes instructions (lower case) from those whose effect is not modelled.
     pub(super) fn clear_unmodelled(&mut self, keys: &[&str]) {
-        let mut settings = Settings::clone(&self.settings);
+        let settings = Arc::make_mut(&mut self.settings);
         settings.other.retain(|name| !keys.contains(&name.to_lowercase().as_str()));
-        self.settings = Arc::new(settings);
     }
 }
 
