@@ -1,5 +1,4 @@
-//! The sealed examination of `gap`: simulated robots with known faults.
-//!
-//! It uses robot models alone: the examiner shares no formula with the examined.
+//! Sealed examination of `gap` with simulated robots and known faults. It uses robot models only:
+//! simulator and diagnosis share no formula.
 
 pub mod blind;
