@@ -14,7 +14,7 @@ const WAVES: usize = 3;
 const SHARE: [f64; 2] = [0.001, 0.006];
 /// Ripple over the noise's standard deviation.
 const RIPPLE: f64 = 0.15;
-/// Additional friction at low speed over Coulomb friction, and the speed at which it has vanished \[rad/s\].
+/// Stiction over Coulomb friction, and the speed at which it has vanished \[rad/s\].
 const STICTION: f64 = 0.02;
 const SLOW: f64 = 0.08;
 

@@ -46,7 +46,7 @@ impl Workspace {
                 }
             }
         }
-        // The forearm of a parallelogram moves with the upper arm: a narrower range satisfies both limits.
+        // The forearm of a parallelogram moves with the upper arm: half a range suits both.
         if let Some([low, high]) = model.limits.coupled {
             let half = 0.25 * (high - low).min(2.0);
             for joint in [1, 2] {

@@ -8,7 +8,7 @@ use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step}
 
 /// Least correlation of a pass with the simulated cycle.
 const LEAST: f64 = 0.6;
-/// Largest relative deviation of a cycle's duration from the simulated one, and steps of its search.
+/// Largest relative deviation of a cycle's duration, and steps of its search.
 const PACE: f64 = 0.05;
 const PACES: usize = 10;
 /// Largest ratio of the power of two cycles: above it, the unit changes within the log.
@@ -204,7 +204,7 @@ struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// Start and pace of the passes, where the logged power correlates best with the simulated power.
+    /// Start and pace of the passes with the best correlation with the simulated power.
     fn search(&self) -> Result<Vec<(f64, f64)>, Refusal> {
         let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
         let step = self.cycle.duration / COARSE;
@@ -276,7 +276,7 @@ impl Curve<'_> {
             let reach = if round == 0 { 1.5 * step } else { 0.5 * step };
             begin = golden_section([begin - reach, begin + reach], SECTIONS, |x| -fit(x, pace));
             let reach = PACE / PACES as f64;
-            // The pace changes about the middle of the pass, so that start and pace are nearly independent.
+            // Changing the pace about the middle of the pass keeps both nearly independent.
             let middle = begin + 0.5 * duration * pace;
             let from_middle = |x: f64| -fit(middle - 0.5 * duration * x, x);
             pace = golden_section([pace - reach, pace + reach], SECTIONS, from_middle);

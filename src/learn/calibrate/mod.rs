@@ -57,7 +57,7 @@ pub struct Calibrated {
     pub robots: usize,
     /// Properties of the log.
     pub found: Found,
-    /// Groups of parameters whose uncertainty decreased: name, remaining share of the standard deviation.
+    /// Groups of parameters with less uncertainty: name, remaining share of the deviation.
     pub narrowed: Vec<(String, f64)>,
 }
 

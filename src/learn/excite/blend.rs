@@ -100,7 +100,7 @@ fn at_the_edge(
     Some([shortest(1.0)?, shortest(-1.0)?])
 }
 
-/// Quintic between rest and the state `edge`; `sense` 1 accelerates from rest, −1 decelerates to rest.
+/// Quintic between rest and the state `edge`; `sense` 1 starts at rest, −1 ends at rest.
 fn blend(model: &Model, edge: &State, duration: f64, sense: f64) -> Blend {
     // Multiples of 10 ms, so that the points of a stream include the end of the blend.
     let duration = (duration * 100.0).round() / 100.0;

@@ -129,7 +129,7 @@ fn deviation(stream: &Stream, rows: &Rows) -> f64 {
     rows.t.iter().zip(&rows.q).map(of_row).fold(0.0, f64::max)
 }
 
-/// Distance of a motion from the inner points of a stream, as the least-squares multiple of the law's.
+/// Distance of a motion from the inner points, as the least-squares multiple of the law's.
 fn corners(stream: &Stream, rows: &Rows, law: &Rows) -> Option<f64> {
     let points = stream.points();
     let pairs: Vec<[f64; 2]> = points[..points.len() - 1]

@@ -11,7 +11,7 @@ use crate::learn::log::{
 
 use super::torque::motor_angle;
 
-/// Search range to each side in sample intervals of the slower recorder, and steps in each interval.
+/// Search range in intervals of the slower recorder, and steps in each interval.
 const REACH: i32 = 2;
 const STEPS: i32 = 8;
 /// Rows that the search evaluates, in total and in each piece of the log.

@@ -130,7 +130,7 @@ mod tests {
         assert!(found[1..].iter().all(|x| x.abs() < SAMPLED), "{found:?}");
     }
 
-    /// Differences of white noise have no power at frequency 0, but their mean needs a positive variance.
+    /// Differences of white noise have no power at frequency 0; their mean needs a variance > 0.
     #[test]
     fn sums_of_noise_have_a_positive_variance() {
         let white = noise(20_000, 0.0);

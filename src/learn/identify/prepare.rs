@@ -227,8 +227,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
                 .enumerate()
                 .flat_map(|(r, of)| of.iter().enumerate().map(move |(k, e)| (r, k, *e)))
                 .collect();
-            // The spread is relative to the mean. The noise variance of the mean is that of a
-            // repetition over their number.
+            // The noise variance of the mean is that of a repetition over their number.
             let lost = residuals.len() as f64 / count;
             autocovariance(&residuals, lost).iter().map(|c| c / count).collect()
         })

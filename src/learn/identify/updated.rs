@@ -206,7 +206,7 @@ pub(super) fn informed_links(base: &BaseParameters, solution: &Solution) -> Vec<
     informed
 }
 
-/// Splits values into positive ones, which a robot can have, and negative ones, which appear only in the log.
+/// Splits values into positive and negative ones; the latter exist only in the log.
 fn split_by_sign(values: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
     values.into_iter().map(|value| (value.max(0.0), value.min(0.0))).unzip()
 }

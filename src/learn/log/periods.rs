@@ -5,7 +5,7 @@ use super::uniform::range;
 
 /// Largest number of samples in the coarse search.
 const COMPARED: usize = 3000;
-/// Largest difference of repetitions as a share of a joint's range, in the final and in the coarse search.
+/// Largest relative difference of repetitions, in the final and in the coarse search.
 const SAME: f64 = 0.01;
 const NEARLY: f64 = 0.03;
 /// Least difference of different motions as a share of a joint's range.

@@ -116,7 +116,7 @@ pub(super) fn gravity_spring(scale: &Scale<'_>, random: &mut Random) -> Disturba
         .acting(Action::Joints(memoryless(joint, move |m| {
             let x = m.q[joint] - centre;
             match form {
-                // A spring between points on circles of radius 1 and 0.4, a third longer than at rest.
+                // A spring between circles of radius 1 and 0.4, longer by a third at rest.
                 1 => {
                     let length = (1.16 - 0.8 * x.cos()).sqrt();
                     stiffness * 1.6 * (1.0 - 0.4 / length) * x.sin()
