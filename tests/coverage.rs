@@ -1,4 +1,4 @@
-//! Intervals of estimated torques compared with published bodies. `examples/coverage` has more cases.
+//! Intervals of estimated torques compared with published bodies; `examples/coverage` has more.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 

@@ -262,7 +262,7 @@ fn power(model: &Model, tau: &[f64], rigid: &[f64], friction: &[f64], qd: &[f64;
     total + copper + lost * (1.0 - model.drive.regeneration)
 }
 
-/// Without corner zones the robot stops at every point and moves in a straight joint line to the next.
+/// Without corner zones the robot stops at every point, with straight joint lines between.
 fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
     const STEPS: usize = 40;
     let stops = [stream.start, *stream.points.last().unwrap()].map(|q| flange(&q).0);

@@ -158,8 +158,8 @@ fn table(name: &str, key: &str) -> f64 {
     tables[name][key].as_float().unwrap()
 }
 
-/// Standard deviation of the logarithm of an acceleration: root of the mean square of the largest torques of
-/// axes 1 to 3 relative to their rule (0.22, 0.17, 0.34) and of the share available for acceleration (0.18).
+/// Standard deviation of the logarithm of an acceleration, in the mean squares: of the largest torques of
+/// axes 1 to 3 over their rule (0.22, 0.17, 0.34) and of the share left to accelerate (0.18).
 const ACCELERATION: f64 = 0.31;
 
 /// Mean powers \[W\] of plausible robots in the motions possible for a figure.

@@ -99,7 +99,7 @@ fn signals(texts: &[String]) -> Vec<String> {
 struct Way {
     /// Whether it may take longer than the original.
     slower: bool,
-    /// Whether other tasks may write its `PERS` data at any moment, or only where no stream runs.
+    /// Whether other tasks may write its `PERS` data at any time, or only while no stream runs.
     elsewhere: bool,
 }
 

@@ -66,7 +66,7 @@ fn parameters_come_back_from_phase_currents() {
     let settings =
         Settings { free: Free::All, weighting: Weighting::Joint, source: "a test".into() };
     let found = identify(&model, &samples, &[], &settings).unwrap();
-    // The cross-validation error is that of one repetition, the fit's that of the mean of six or seven.
+    // The cross-validation error is that of one repetition, the fit's that of a mean.
     assert!(found.fit.over_repetitions);
     for (one, mean) in found.fit.cross_rms.iter().zip(&found.fit.rms) {
         assert!((1.8..3.6).contains(&(one / mean)), "{one} {mean}");

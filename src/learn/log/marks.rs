@@ -1,7 +1,7 @@
 //! Synchronisation of two recorders of the same run by common marks.
 //!
-//! A digital output changes while the robot moves; one recorder logs it with the positions, the other as a
-//! voltage with the currents. The times of the changes give offset and rate of the clocks.
+//! A digital output changes while the robot moves. One recorder logs it with the positions, the other with
+//! the currents, as a voltage. The times of the changes give offset and rate of the clocks.
 
 use super::channel::{Channel, Family};
 use super::data::Log;
