@@ -84,7 +84,7 @@ fn what_the_cell_keeps_free_holds_for_free_paths_only() {
     assert!(alone < kept);
     let far = "[[keep_out]]\nplane = [0, 0, 1, -9]\n";
     assert_eq!(energy(&optimize(far, &free)), alone);
-    // No free space is left beside the path.
+    // The zone leaves no space to deviate from the path.
     let everywhere = "[[keep_out]]\nbox = [[-4, -4, -4], [4, 4, 4]]\n";
     assert_eq!(energy(&optimize(everywhere, &free)), kept);
 }

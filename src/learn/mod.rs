@@ -1,4 +1,4 @@
-//! Measurements: logs, motions that tell parameters, and models from logs.
+//! Measurements: logs, excitation motions, and models from logs.
 //!
 //! It uses `arm` and `retime`.
 

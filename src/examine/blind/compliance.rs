@@ -18,7 +18,7 @@ const REACH: usize = 5;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Spring {
     Linear,
-    /// Half of the stiffness below this torque \[Nm\].
+    /// Twice the stiffness above this torque \[Nm\].
     Hardening(f64),
     /// Zero torque within half the gap \[rad\] to both sides, then linear.
     Gap(f64),

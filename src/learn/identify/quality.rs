@@ -19,7 +19,7 @@ const FAIR: f64 = 0.7;
 /// Least explained share of the worst joint for a good model.
 const GOOD_WORST: f64 = 0.87;
 /// Ratio of the residuals of the physically consistent model to those of the unconstrained fit
-/// above which signs or columns are suspicious, and above which the model is rejected.
+/// above which a model is at most fair, and above which it is poor.
 const ASTRAY: [f64; 2] = [1.5, 3.0];
 /// Least mean explained share of a usable model.
 const NONE: f64 = 0.25;

@@ -104,9 +104,9 @@ pub enum LogError {
         "the marks (column sync) change {here} times beside the positions and {there} times beside the currents: both need three of the same changes at least"
     )]
     Marks {
-        /// Changes beside the positions.
+        /// Changes in the log with the positions.
         here: usize,
-        /// Changes beside the currents.
+        /// Changes in the log with the currents.
         there: usize,
     },
     /// The marks of two recorders are not of the same run.

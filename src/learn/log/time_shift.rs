@@ -80,8 +80,7 @@ pub fn vertex([before, here, after]: [f64; 3]) -> Option<f64> {
     (curvature > 0.0).then(|| 0.5 * (before - after) / curvature)
 }
 
-/// The minimum of a unimodal function between two points; the interval shrinks by [`GOLDEN`] in
-/// each of the `steps`.
+/// The minimum of a unimodal function between two points; each step shrinks the interval by 0.618.
 pub fn golden_section(
     [mut low, mut high]: [f64; 2],
     steps: usize,
