@@ -24,8 +24,8 @@ const OFF: f64 = 0.03;
 /// in the model.
 const COARSE: f64 = 0.006;
 
-/// Tolerances of the logarithms of the moments about axes 2 and 3 and of the inertia about axis 1:
-/// 2.5 standard deviations of the rule and of the share of the foot.
+/// Largest logarithms of the ratios of the moments about axes 2 and 3 and of the inertia about axis
+/// 1: 2.5 standard deviations of the rule and of the share of the foot.
 const FAR: [f64; 3] = [0.5, 0.75, 0.6];
 
 fn simulated(model: &Model) -> (Simulation, Account) {

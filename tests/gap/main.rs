@@ -309,7 +309,7 @@ fn two_effects_are_told() {
     assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
 }
 
-/// A weak effect has no alternative at the same body; one at another joint is not its alternative.
+/// A strong load, or a strong friction of another joint, does not hide a weak effect.
 #[test]
 fn weak_effects_beside_strong_ones_are_told() {
     let nominal = irb1600();

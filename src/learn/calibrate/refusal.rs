@@ -41,9 +41,9 @@ pub enum Refusal {
         "the log holds {log_s:.1} s and no whole cycle of {cycle_s:.1} s: log the power over several cycles, or say when inputs come (--input)"
     )]
     Short {
-        /// Duration of the log.
+        /// Duration of the log \[s\].
         log_s: f64,
-        /// Duration of the cycle.
+        /// Duration of the cycle \[s\].
         cycle_s: f64,
     },
     /// The cycles have another duration.
@@ -51,9 +51,9 @@ pub enum Refusal {
         "the log is of another program: its cycles take {measured_s:.1} s, the simulated one {cycle_s:.1} s (5 % may differ); say when inputs come (--input) if waits are longer, and --speed-override if the cell ran with one"
     )]
     Length {
-        /// Duration in the log.
+        /// Duration in the log \[s\].
         measured_s: f64,
-        /// Simulated duration.
+        /// Simulated duration \[s\].
         cycle_s: f64,
     },
     /// The number of movements differs.
@@ -69,7 +69,7 @@ pub enum Refusal {
     /// The mean power is not positive.
     #[error("the power is {mean_w:.0} W in the mean: is its sign turned, or is it another column?")]
     Negative {
-        /// Mean power.
+        /// Mean power \[W\].
         mean_w: f64,
     },
     /// The power is constant.
@@ -77,7 +77,7 @@ pub enum Refusal {
         "the power is {power_w:.0} W all the time: it has no cycle; log it while the program runs"
     )]
     Constant {
-        /// The power.
+        /// The power \[W\].
         power_w: f64,
     },
     /// The power differs between cycles.
@@ -85,7 +85,7 @@ pub enum Refusal {
         "the power of the cycle at {begin_s:.1} s is {factor:.0} times that of another one: does its unit change within the log?"
     )]
     Unlike {
-        /// Start of the cycle in the log.
+        /// Start of the cycle in the log \[s\].
         begin_s: f64,
         /// Largest mean power over the smallest.
         factor: f64,
@@ -130,11 +130,11 @@ pub enum Refusal {
         name: String,
         /// The quantity that differs.
         what: &'static str,
-        /// Measured value.
+        /// Measured value \[W\].
         measured: f64,
-        /// Lower plausible value.
+        /// Lower plausible value \[W\].
         low: f64,
-        /// Upper plausible value.
+        /// Upper plausible value \[W\].
         high: f64,
     },
     /// Too few draws fit the log.

@@ -18,7 +18,7 @@ const ROWS: usize = 3000;
 const DECIDES: f64 = 0.3;
 /// Standard deviation of the logarithm of a factor from gravity.
 const DEVIATION: f64 = 0.02;
-/// Relative uncertainty of the torques of the robot file.
+/// Factor within which measured and modelled torques count as alike.
 const ALIKE: f64 = 3.0;
 /// Largest logarithmic distance from a known factor.
 const UNKNOWN: f64 = 0.12;
