@@ -1,5 +1,5 @@
-//! Time per call of the dynamics and of the kinematics, six joints. With the times of
-//! Pinocchio beside them: `benches/peers/pinocchio/run`.
+//! Time per call of the dynamics and of the kinematics with six joints.
+//! `benches/peers/pinocchio/run` compares it with Pinocchio.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! A whole diagnosis: two motions of seven periods of 10 s at 100 Hz, six joints, all effects.
+//! A complete diagnosis: two motions of seven periods of 10 s at 100 Hz, six joints, all effects.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed bench")]
 
@@ -14,7 +14,7 @@ use joulepath::arm::effects::ALL;
 use joulepath::examine::blind::{self, Case, Kind, Settings};
 use joulepath::gap;
 
-/// Of the examination's cases those of development.
+/// Seed of the development cases.
 const SEED: u64 = 101;
 
 fn bench(criterion: &mut Criterion) {
@@ -23,7 +23,7 @@ fn bench(criterion: &mut Criterion) {
     group.sample_size(10).measurement_time(Duration::from_secs(60));
     for kind in [Kind::Healthy, Kind::One] {
         let mut cases = (1..).map(|number| blind::case(&settings, number).unwrap());
-        // Runs of a program are not searched for effects of torques.
+        // Diagnoses of program runs do not include torque effects.
         let is_run = |case: &Case| case.files.iter().any(|(name, _)| name.contains('/'));
         let case = cases.find(|case| case.label.kind == kind && !is_run(case)).unwrap();
         let of = examined(&case, &settings);

@@ -1,4 +1,4 @@
-//! Identification from ten minutes at 100 Hz: 60,000 rows as CSV, to a model.
+//! Identification from ten minutes at 100 Hz: from 60,000 rows of CSV to a model.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed bench")]
 
@@ -13,7 +13,7 @@ use joulepath::learn::log::{ColumnMap, read_csv};
 
 const ROWS: usize = 60_000;
 
-/// Positions that do not repeat, torques with noise, and rates where they are wanted.
+/// Positions without repetition, torques with noise, and optional rates.
 fn csv(model: &Model, rates: &[&str]) -> String {
     let mut text = String::from("t");
     for name in ["q"].iter().chain(rates).chain(&["tau"]) {

@@ -1,5 +1,5 @@
-//! Linting folders: files and megabytes a second, with a robot. Each file is a program of its own
-//! that picks and places, some 120 lines and 55 movements long, and no two are alike.
+//! Lints folders with a robot: files and megabytes per second. Each file is a different
+//! pick-and-place program with about 120 lines and 55 movements.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,7 +10,7 @@ use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::Options;
 use joulepath::tool::lint::{Group, Job, Settings, lint};
 
-/// Tool, part and targets that an IRB 1600-10/1.45 reaches.
+/// Tool, load and targets within reach of an IRB 1600-10/1.45.
 const DATA: &str = "\
     PERS tooldata tGripper:=[TRUE,[[58,0,172.46],[0.965925826,0,0.258819045,0]],
         [3.1,[31.5,0,78.2],[1,0,0,0],0.018,0.022,0.009]];
@@ -22,7 +22,7 @@ const DATA: &str = "\
         [9E9,9E9,9E9,9E9,9E9,9E9]];
 ";
 
-/// Numbers that look random and are the same each time.
+/// Reproducible pseudo-random numbers.
 struct Numbers(u64);
 
 impl Numbers {
@@ -37,7 +37,7 @@ impl Numbers {
     }
 }
 
-/// A program that fetches parts and puts them down.
+/// A program that picks and places parts.
 fn program(index: usize) -> String {
     let mut numbers = Numbers(index as u64);
     let mut text = format!("MODULE Cell{index}\n{DATA}    PROC main()\n");
@@ -64,7 +64,7 @@ fn program(index: usize) -> String {
     text + "    ENDPROC\nENDMODULE\n"
 }
 
-/// A folder of so many programs.
+/// A folder of `count` programs.
 fn folder(count: usize) -> Vec<SourceFile> {
     let file = |i: usize| {
         let path = Path::new("plant").join(format!("{i}.mod")).display().to_string();

@@ -1,4 +1,4 @@
-//! The numerical core of the optimiser on a synthetic arm: its times without any set-up.
+//! The numerical core of the optimiser on a synthetic arm, without set-up.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed benchmark")]
 
 use std::hint::black_box;
@@ -19,7 +19,7 @@ use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 #[path = "../tests/optimize/arm.rs"]
 mod arm;
 
-/// The path that all benchmarks share.
+/// The path of all benchmarks.
 const SEED: u64 = 2;
 
 fn reachability(c: &mut Criterion) {

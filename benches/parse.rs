@@ -1,5 +1,5 @@
-//! Bytes per second of the front end on one core, with `wc -l` on the same
-//! file as the yardstick. The shipped programs are repeated to some megabytes.
+//! Bytes per second of the front end on one core, compared with `wc -l` on the same file. The
+//! shipped programs are repeated to some megabytes.
 
 use std::fs;
 use std::hint::black_box;
@@ -9,11 +9,10 @@ use std::process::{Command, Stdio};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use joulepath::rapid::syntax;
 
-/// Size of the input: more than the caches hold, little enough for many rounds.
+/// Size of the input: larger than the caches, small enough for many rounds.
 const BYTES: usize = 10_000_000;
 
-/// The programs below `fixtures`, those of the parser's tests apart, again and
-/// again.
+/// The programs below `fixtures` without those of the parser's tests, repeated.
 fn programs() -> Vec<u8> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
     let mut paths: Vec<PathBuf> = ["hard", "paper", "pick_place"]
@@ -26,7 +25,7 @@ fn programs() -> Vec<u8> {
     let once: Vec<u8> = paths
         .iter()
         .filter_map(|path| fs::read(path).ok())
-        // One encoding for the whole file, and nothing to report.
+        // One encoding for the whole file, and no errors.
         .filter(|bytes| bytes.is_ascii() && syntax::parse(bytes).errors.is_empty())
         .flatten()
         .collect();
@@ -49,7 +48,7 @@ fn front_end(c: &mut Criterion) {
     group.finish();
 }
 
-/// Runs the program; where there is none the figure means nothing.
+/// Runs the program; without it the figure is meaningless.
 fn count_lines(path: &Path) -> bool {
     let status = Command::new("wc").arg("-l").arg(path).stdout(Stdio::null()).status();
     status.is_ok_and(|status| status.success())

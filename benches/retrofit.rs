@@ -1,4 +1,4 @@
-//! The whole of `optimize` on the shipped cell: read, simulate, optimise, emit, verify.
+//! The complete `optimize` on the shipped cell: read, simulate, optimise, emit, verify.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the bench")]
 
 use std::path::Path;

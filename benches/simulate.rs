@@ -1,4 +1,4 @@
-//! The virtual controller: the shipped cell, and how its time grows with the movements.
+//! The virtual controller: the shipped cell, and the time as a function of the movements.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the bench")]
 
 use std::fmt::Write;
@@ -24,7 +24,7 @@ fn sources(folder: &str) -> Vec<Source> {
     paths.iter().enumerate().map(source).collect()
 }
 
-/// Throughput: simulated milliseconds ("elements") per second of the clock.
+/// Throughput: simulated milliseconds ("elements") per second of computing time.
 fn pick_place(c: &mut Criterion) {
     let model = robot::find("IRB1600-10/1.45").unwrap();
     let files = sources("fixtures/pick_place");

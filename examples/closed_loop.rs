@@ -1,7 +1,6 @@
-//! The loop closes: a nominal model, logs of a robot with an effect that it lacks, the diagnosis,
-//! the improved model, and what that predicts of motions that took no part, against the torques
-//! and the electrical power of the robot itself:
-//! `cargo run --release --example closed_loop -- [SEED [CASES]]`.
+//! The complete loop: a nominal model, logs of a robot with an additional effect, the diagnosis,
+//! the improved model, and its predictions of torques and power for unused motions: `cargo run
+//! --release --example closed_loop -- [SEED [CASES]]`.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
@@ -16,13 +15,13 @@ use joulepath::examine::blind::{self, Kind, Settings, Unlogged};
 use joulepath::gap::{self, diagnose, predicted};
 use joulepath::retime::energy::power::{power_at, supply_w};
 
-/// A seed of development, and cases of it.
+/// Seed of the development cases, and their number.
 const SEED: u64 = 101;
 const CASES: usize = 24;
-/// Motions that took no part.
+/// Number of unused motions.
 const MOTIONS: usize = 4;
 
-/// What a model misses of a robot: torques over their size, power \[W\], energy \[1\].
+/// Residuals of a model: relative torque, power \[W\], relative energy.
 struct Missed {
     torque: f64,
     power: f64,
@@ -64,7 +63,7 @@ fn main() {
     }
 }
 
-/// What a model misses of the robot's own torques and power.
+/// Residuals of a model for the robot's true torques and power.
 fn missed(model: &Model, nominal: &Model, motions: &[Unlogged], settings: &Settings) -> Missed {
     let logs = noiseless(motions, settings);
     let (mut torque, mut size) = (vec![0.0; model.dof], vec![0.0; model.dof]);

@@ -1,5 +1,5 @@
-//! Reads mutated RAPID files for some time and checks that nothing is lost,
-//! nothing panics and the work stays linear.
+//! Parses mutated RAPID files and checks that the tree is lossless, nothing panics and the work
+//! stays linear.
 //!
 //! `cargo run --release --example fuzz -- [SECONDS [SEED [FILE…]]]`; without
 //! files the parser's fixtures are mutated. An input that fails is written to
@@ -21,7 +21,7 @@ use joulepath::rapid::text::FileId;
 use support::{Random, check_tree, check_work, fixtures, mutate, token_ranges};
 
 const SECONDS: u64 = 60;
-/// Mutations of one file on top of each other, at most.
+/// Largest number of successive mutations of a file.
 const LAYERS: usize = 12;
 
 fn main() -> ExitCode {
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// A few mutations; now and then a piece again and again.
+/// A few mutations; sometimes a piece is repeated many times.
 fn mutated(source: &[u8], random: &mut Random) -> Vec<u8> {
     let tokens = token_ranges(source);
     let mut bytes = source.to_vec();

@@ -1,7 +1,7 @@
-//! Figures 4 and 5 and table 3 of Paes et al., "Energy efficient trajectories for an industrial
-//! ABB robot", Procedia CIRP 15 (2014) 105–110, beside ours: `cargo run --example paes2014`.
-//! `docs/paes2014.md` explains each difference. The points and poses are ours, see
-//! `fixtures/paper/README.md`.
+//! Compares figures 4 and 5 and table 3 of Paes et al., "Energy efficient trajectories for an
+//! industrial ABB robot", Procedia CIRP 15 (2014) 105–110, with computed values: `cargo run
+//! --example paes2014`. `docs/paes2014.md` explains each difference; `fixtures/paper/README.md`
+//! describes the assumed points and poses.
 
 #![expect(clippy::print_stdout, reason = "an example shows something")]
 
@@ -20,17 +20,17 @@ use joulepath::tool::retrofit::{Source, read_program};
 const PROGRAM: &str = include_str!("../fixtures/paper/Paper.mod");
 const POSES: &str = include_str!("../fixtures/paper/standstill.csv");
 const SPEEDS: [&str; 6] = ["v300", "v600", "v1000", "v1500", "v2000", "vmax"];
-/// Times of C over that of the fastest joint move.
+/// Durations of C over that of the fastest joint move.
 const FACTORS: [f64; 6] = [0.97, 1.0, 1.1, 1.3, 1.6, 2.2];
-/// How far C may leave the joint move, m: as far as it likes.
+/// Tolerance of C in m: practically unlimited.
 const ANYWHERE: f64 = 1.0;
 
 /// One measured move.
 #[derive(Clone, Copy)]
 struct Point {
-    /// s.
+    /// Duration in s.
     time: f64,
-    /// Motion energy, J: without base power and brakes, which the paper does not count.
+    /// Motion energy in J, without base power and brakes, as in the paper.
     energy: f64,
 }
 
@@ -83,7 +83,7 @@ fn simulation(model: &Model) -> Result<Simulation, Box<dyn std::error::Error>> {
     Ok(simulate(&program, entry, model, &Options::default()))
 }
 
-/// The moves of a routine at each speed; the last run of each is the way back.
+/// The moves of a routine at each speed; the last run of each speed is the way back.
 fn measured<'a>(
     model: &Model,
     simulation: &'a Simulation,
@@ -117,7 +117,7 @@ fn points(moves: &[Vec<Measured<'_>>]) -> Vec<Point> {
     moves.iter().map(sum).collect()
 }
 
-/// The time-optimal move on the path of D, and C at its times.
+/// The time-optimal move on the path of D, and C for several durations.
 fn computed(model: &Model, d: &Measured<'_>, fastest: Point) -> (Point, Vec<Option<Point>>) {
     let freedom = |deviation: f64| Freedom {
         deviation,
@@ -178,7 +178,7 @@ fn compare(
     }
 }
 
-/// The power that standing still takes.
+/// The power at standstill.
 fn table_3(model: &Model) -> Result<(), Box<dyn std::error::Error>> {
     println!();
     println!("table 3: holding power (W) of joints 1 + 2 + 3 = sum, and what a brake has to beat");

@@ -1,6 +1,6 @@
-//! The chain of Paes et al. 2014 on a simulated IRB1600: an excitation as RAPID, run by the
-//! virtual controller, three phase currents at 3,200 Hz over seven periods, and from them the
-//! parameters of joints 1 to 3, as in table 2, and the power.
+//! The chain of Paes et al. 2014 on a simulated IRB1600: an excitation as RAPID, executed by the
+//! virtual controller, three phase currents at 3,200 Hz over seven periods, and the identified
+//! parameters of joints 1 to 3 (table 2) and the power.
 //!
 //! `cargo run --release --example paper_identification -- DIR`
 
@@ -17,10 +17,10 @@ use joulepath::arm::robot::find;
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
-/// Of the analyser \[s\].
+/// Sampling interval of the analyser \[s\].
 const STEP: f64 = 1.0 / 3200.0;
 const POLE_PAIRS: f64 = 4.0;
-/// Of a phase current \[A\], and of an angle \[rad\].
+/// Noise of a phase current \[A\] and of an angle \[rad\].
 const NOISE: [f64; 2] = [0.05, 2e-6];
 
 fn main() -> anyhow::Result<()> {
@@ -35,7 +35,7 @@ fn main() -> anyhow::Result<()> {
         ensure!(output.status.success(), "joulepath failed");
         Ok(output.stdout)
     };
-    // The gate of the paper stands 80 cm behind the robot.
+    // The gate of the paper is 80 cm behind the robot.
     let plane = ["--plane", "1,0,0,-0.8"];
     let other = ["--seed", "7", "--harmonics", "1,2,5"];
     let runs: [(&str, &[&str], u64); 2] = [("run", &[], 1), ("validation", &other, 2)];
@@ -71,7 +71,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Table 2: what the torques tell of joints 1 to 3, beside what the robot was simulated with.
+/// Table 2: identified and true parameters of joints 1 to 3.
 fn show(found: &Value) -> anyhow::Result<()> {
     let model = find(ROBOT)?;
     let base = base_parameters(&model);
@@ -94,7 +94,7 @@ fn show(found: &Value) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The currents that an analyser would have recorded while the robot ran a trajectory.
+/// The currents recorded by an analyser while the robot executes a trajectory.
 fn record(table: &str, out: &str, seed: u64) -> anyhow::Result<()> {
     let model = find(ROBOT)?;
     let motors = model.motors.as_ref().context("the robot has motors")?;
@@ -129,7 +129,7 @@ fn record(table: &str, out: &str, seed: u64) -> anyhow::Result<()> {
         }
         let (from, to) = (&rows[after - 1], &rows[after]);
         let (into, long) = (t - from[0], to[0] - from[0]);
-        // Rates are linear between rows, accelerations jump where points of the stream lie.
+        // Rates are linear between rows; accelerations jump at points of the stream.
         let qdd: [f64; 6] = std::array::from_fn(|j| (to[7 + j] - from[7 + j]) / long);
         let qd: [f64; 6] = std::array::from_fn(|j| from[7 + j] + into * qdd[j]);
         let q: [f64; 6] =

@@ -1,4 +1,4 @@
-//! Paths with their coefficients and the times that this crate takes for them, as JSON for
+//! Writes paths with their coefficients and the computing times of this crate as JSON for
 //! `benches/peers/trajectories`: `cargo run --release --example peer_paths`.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
@@ -35,22 +35,22 @@ use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::path::joint_path::DOF;
 use serde_json::{Value, json};
 
-/// Paths.
+/// Number of paths.
 const COUNT: usize = 12;
-/// Paths whose streams are compared under the same limit on jerk.
+/// Number of paths whose streams are compared under the same jerk limit.
 const JERK_COUNT: usize = 48;
-/// Intervals of the grids.
+/// Numbers of grid intervals.
 const SIZES: [usize; 2] = [100, 1000];
 const JERK_INTERVALS: usize = 300;
-/// Points of the free streams, and their time over that of the fastest profile.
+/// Points of the free streams, and their duration over that of the fastest profile.
 const FREE_POINTS: usize = 50;
 const FREE_FACTOR: f64 = 1.3;
-/// Repetitions; the least time counts.
+/// Repetitions of a time measurement, of which the least value is used.
 const REPEATS: usize = 15;
-/// Repetitions of what takes long.
+/// Repetitions of slow calls.
 const FEW: usize = 3;
 
-/// The least time of some repetitions, s.
+/// The least time of the repetitions in s.
 fn least_s<T>(repeats: usize, mut work: impl FnMut() -> T) -> f64 {
     let once = |_| {
         let start = Instant::now();
@@ -81,7 +81,7 @@ impl Plant for Arm<'_> {
 }
 
 fn main() {
-    // The kinds in turn, the first robot first.
+    // The kinds alternate; the first robot comes first.
     let cases = cases::cases(&EASY, 2 * JERK_COUNT);
     let first = cases[0].model.name.clone();
     let jerk: Vec<&Case> = cases.iter().filter(|case| case.model.name == first).collect();
@@ -155,14 +155,14 @@ fn path(case: &Case) -> Value {
     json!({ "name": case.name, "sizes": sizes, "free": free(case, &limits, &caps) })
 }
 
-/// What a peer needs: the nodes and the path there.
+/// Input of the peers: the nodes and the path at these.
 fn coefficients(grid: &PathGrid) -> Value {
     let ends = grid.ends();
     let points = ends.iter().map(|pair| pair[0].q).chain(ends.last().map(|pair| pair[1].q));
     json!({ "s": grid.s(), "q": points.collect::<Vec<_>>() })
 }
 
-/// The time of the fastest stream, less settling, with its path; `None` without one.
+/// The duration of the fastest stream without settling, and its path; `None` without a stream.
 fn fastest_stream(case: &Case) -> Option<Value> {
     let (path, run) = (case.path()?, case.run());
     let moves = run.moves.iter().map(|record| record.movement.line_speed());
@@ -193,7 +193,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
     }))
 }
 
-/// A stream that may leave its path, from the fastest profile made slower.
+/// A stream that may leave its path, from the slowed fastest profile.
 fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     let path = case.path().unwrap();
     let loaded = Loaded { model: &case.model, load: &case.run().load };

@@ -1,6 +1,6 @@
-//! Diagnosis of public logs of real robots whose effects are withheld from the model:
-//! `cargo run --release --example real_robots -- FOLDER`. docs/gap.md says where the logs come from
-//! and how they have to lie in the folder.
+//! Diagnosis of public logs of real robots, with models that lack some effects: `cargo run
+//! --release --example real_robots -- FOLDER`. docs/gap.md describes the sources of the logs and
+//! the layout of the folder.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 

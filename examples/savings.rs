@@ -1,5 +1,5 @@
-//! What timing saves on reference paths, and what streams realise of it:
-//! `cargo run --release --example savings`. `docs/trajectories.md` has the table.
+//! Energy savings by timing on reference paths, and the share that streams realise: `cargo run
+//! --release --example savings`. `docs/trajectories.md` contains the table.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
@@ -28,21 +28,21 @@ use joulepath::retime::optimize::retime::{Goal, Task, retime};
 use joulepath::retime::path::joint_path::DOF;
 use rayon::prelude::*;
 
-/// Paths, on both robots in turn.
+/// Number of paths on both robots.
 const COUNT: usize = 96;
-/// Intervals of the grids.
+/// Number of grid intervals.
 const INTERVALS: usize = 100;
-/// Times over the least one.
+/// Durations over the least one.
 const FACTORS: [f64; 3] = [1.1, 1.2, 1.3];
-/// Moves that are shorter are not compared, s.
+/// Least duration of a compared move in s.
 const SHORTEST: f64 = 0.2;
 
-/// Shares of the energy of the fastest profile.
+/// Saved shares of the energy of the fastest profile.
 struct Saving {
     uniform: f64,
     optimal: f64,
     gap: f64,
-    /// None where there is no stream in this time.
+    /// `None` without a stream of this duration.
     realised: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ fn main() {
     println!("                    {}", quartiles(ratios));
 }
 
-/// Lowest, quarter, median, three quarters, highest.
+/// Minimum, lower quartile, median, upper quartile, maximum.
 fn quartiles(mut values: Vec<f64>) -> String {
     values.sort_by(f64::total_cmp);
     if values.is_empty() {
@@ -97,7 +97,7 @@ fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
     }
 }
 
-/// The fastest profile on the path of a case, without a limit on jerk, with its grid and limits.
+/// The fastest profile on the path of a case without a jerk limit, with grid and limits.
 fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
     let (path, run) = (case.path()?, case.run());
     let limits = motion_limits(&case.model, 1.0);
@@ -111,8 +111,8 @@ fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
     Some((grid, limits, profile))
 }
 
-/// Time of the fastest stream over the least of its path without a limit on jerk: more than what
-/// the limit costs any controller.
+/// Duration of the fastest stream over the least one on its path without a jerk limit: an upper
+/// bound of the cost of the jerk limit.
 fn slowness(case: &Case) -> Option<f64> {
     let least = fastest(case)?.2.duration();
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
@@ -147,8 +147,8 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     })
 }
 
-/// Time of the fastest stream of a joint move over the least in which any of its joints alone can
-/// go its way with its speed, acceleration and jerk: no synchronous motion is faster.
+/// Duration of the fastest stream of a joint move over the largest least duration of its single
+/// joints with limits on speed, acceleration and jerk: a lower bound of any synchronous motion.
 fn lateness(case: &Case) -> Option<f64> {
     let run = case.run();
     let limits = &case.model.limits;
@@ -162,10 +162,10 @@ fn lateness(case: &Case) -> Option<f64> {
     (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
 }
 
-/// Least time from rest to rest over a distance with limits on speed, acceleration and jerk.
+/// Least duration from rest to rest over a distance, with limits on speed, acceleration and jerk.
 fn seven_segments(distance: f64, v: f64, a: f64, j: f64) -> f64 {
     let ramp = |v: f64| if v * j >= a * a { v / a + a / j } else { 2.0 * (v / j).sqrt() };
-    // v · ramp(v) is the way of speeding up and slowing down.
+    // v · ramp(v) is the distance of speeding up and slowing down.
     if v * ramp(v) <= distance {
         return distance / v + ramp(v);
     }

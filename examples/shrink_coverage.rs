@@ -1,10 +1,8 @@
-//! How often the interval of a claimed shrink holds the shrink that is achieved: that of the same
-//! improved model on a long motion of the same robot that no log has, without noise:
-//! `cargo run --release --example shrink_coverage -- [SEED [CASES]]`.
-//!
-//! A case's diagnosis looks for its own effects only, to be quick. The long motion is eight of the
-//! kind of the held-out log; rests and rows beside jumps of an acceleration are left out as in the
-//! claim.
+//! Coverage of the interval of a claimed reduction of residuals. The achieved reduction is that of
+//! the same improved model on eight noiseless motions of the same robot, of the kind of the
+//! held-out log, which no log contains: `cargo run --release --example shrink_coverage -- [SEED
+//! [CASES]]`. To save time, the diagnosis of a case considers only its own effects. Rest and rows
+//! near jumps of an acceleration are excluded, as in the claim.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
@@ -18,16 +16,16 @@ use joulepath::examine::blind::{self, Kind, Settings};
 use joulepath::gap::{self, Interval, Record, beside_no_jump, diagnose, predicted};
 use rayon::prelude::*;
 
-/// A seed of development, and cases of it.
+/// Seed of the development cases, and their number.
 const SEED: u64 = 301;
 const CASES: usize = 110;
-/// Repetitions of each log, and their length \[s\].
+/// Repetitions of each log, and duration of a repetition \[s\].
 const CYCLES: usize = 5;
 const PERIOD_S: f64 = 5.0;
-/// Motions of what is achieved.
+/// Number of motions for the achieved reduction.
 const MOTIONS: usize = 8;
 
-/// What a case claims of all changes and of the effects alone, and what is achieved.
+/// Claimed intervals of all changes and of the effects alone, and the achieved reductions.
 type Held = [(Interval, f64); 2];
 
 fn main() {
@@ -51,7 +49,7 @@ fn main() {
         }
     }
     for (k, name) in ["all changes", "effects alone"].into_iter().enumerate() {
-        // Without an effect nothing is claimed of effects.
+        // Without an asserted effect there is no claim for effects.
         let asked = all.iter().filter(|(_, _, has_effect)| k == 0 || *has_effect);
         let claims: Vec<&(Interval, f64)> = asked.map(|(_, held, _)| &held[k]).collect();
         let count = claims.iter().filter(|of| is_held(of)).count();
@@ -70,7 +68,7 @@ fn is_held((claim, achieved): &(Interval, f64)) -> bool {
     (claim.low..=claim.high).contains(achieved)
 }
 
-/// Claims and achievements of a case of torques, and whether an effect was asserted.
+/// Claims and achieved reductions of a torque case, and whether an effect was asserted.
 fn held(settings: &Settings, number: usize) -> Option<(usize, Held, bool)> {
     let motions = blind::unlogged(settings, number, MOTIONS)?;
     let case = blind::case(settings, number).filter(|case| case.label.kind != Kind::Power)?;
@@ -87,7 +85,7 @@ fn held(settings: &Settings, number: usize) -> Option<(usize, Held, bool)> {
     Some((number, claims, !found.effects.is_empty()))
 }
 
-/// Squares that models miss, each joint in units of its torque.
+/// Squared residuals of models; each joint is scaled by its torque.
 fn squares(records: &[Record<'_>], models: [&Model; 3]) -> [f64; 3] {
     let n = models[0].dof;
     let (mut missed, mut size) = (vec![[0.0; 3]; n], vec![0.0; n]);

@@ -1,5 +1,5 @@
-//! Every robot of the catalogue, and an arm of which only a URDF without inertias is known, with every
-//! command that needs dynamics, on a program laid into its workspace.
+//! Runs every command that needs dynamics on a program in the workspace of every robot of the
+//! catalogue, and of an arm from a URDF without inertias.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -13,17 +13,17 @@ use joulepath::arm::robot::{Model, find, load, names};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-/// Sine of axis 5 at a pose, at least: no pose is near a singular one.
+/// Least sine of axis 5 at a pose: keeps distance from singularities.
 const BENT: f64 = 0.35;
-/// Height and distance of the wrist from axis 1 over its largest reach in the tries.
+/// Height and distance of the wrist from axis 1 over its largest reach.
 const HEIGHT: f64 = 0.15;
 const FAR: [f64; 2] = [0.45, 0.9];
-/// Poses that are tried for a robot.
+/// Number of tried poses per robot.
 const TRIES: usize = 20_000;
 /// Length of lines over that reach.
 const LINE: f64 = 0.08;
 
-/// Poses that a robot can take in front of it, well away from singular ones.
+/// Reachable poses in front of a robot, away from singularities.
 fn poses(model: &Model) -> Vec<[f64; 6]> {
     let mut random = fastrand::Rng::with_seed(27);
     let tries: Vec<([f64; 6], [f64; 3])> = (0..TRIES)
@@ -51,7 +51,7 @@ fn jointtarget(q: &[f64; 6]) -> String {
     format!("[[{}],[9E9,9E9,9E9,9E9,9E9,9E9]]", degrees.join(","))
 }
 
-/// A robtarget in the pose `q`, moved up.
+/// A robtarget at the pose `q`, raised by `up`.
 fn robtarget(model: &Model, q: &[f64; 6], up: f64) -> String {
     let pose = fk(model, q);
     let at = pose.translation.vector;
@@ -104,10 +104,10 @@ fn joulepath(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_joulepath")).args(arguments).output().unwrap()
 }
 
-/// Of so many robots one runs the commands that take long.
+/// One of this many robots runs the slow commands.
 const ONE_IN: usize = 6;
 
-/// What goes wrong with a robot.
+/// Errors of the commands with a robot.
 fn faults(model: &Model, robot: &str, slow: bool) -> Vec<String> {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("generated.mod");
@@ -131,7 +131,7 @@ fn faults(model: &Model, robot: &str, slow: bool) -> Vec<String> {
     }
     let mut faults = Vec::new();
     for (command, output, key) in runs {
-        // `lint` tells of findings by its exit code.
+        // The exit code of `lint` reports findings.
         let code = output.status.code();
         let text = String::from_utf8_lossy(&output.stdout);
         let done = code == Some(0) || (command == "lint" && code == Some(1));
@@ -146,7 +146,7 @@ fn faults(model: &Model, robot: &str, slow: bool) -> Vec<String> {
     faults
 }
 
-/// Faults of all robots; one in so many runs the commands that take long.
+/// Errors with all robots; one in `one_in` runs the slow commands.
 fn faults_of_all(one_in: usize) -> String {
     let all: Vec<Model> = names().map(|name| find(name).unwrap()).filter(|m| m.dof == 6).collect();
     assert!(all.len() >= 70, "{}", all.len());
@@ -156,7 +156,7 @@ fn faults_of_all(one_in: usize) -> String {
     faults.join("\n")
 }
 
-/// With `ALL_ROBOTS` set, which takes ten minutes in release, each robot runs the slow commands, too.
+/// With `ALL_ROBOTS` set (ten minutes in release mode), each robot also runs the slow commands.
 #[test]
 fn every_six_axis_robot_of_the_catalogue_runs_each_command() {
     let all = std::env::var_os("ALL_ROBOTS").is_some();
@@ -164,7 +164,7 @@ fn every_six_axis_robot_of_the_catalogue_runs_each_command() {
     assert!(faults.is_empty(), "{faults}");
 }
 
-/// Origins (m, rad), of the joints of an arm that no table knows, about their z axes.
+/// Joint origins (m, rad) of an unknown arm; the joints turn about their z axes.
 const ARM: [([f64; 3], [f64; 3]); 6] = [
     ([0.0, 0.0, 0.35], [0.0, 0.0, 0.0]),
     ([0.08, 0.0, 0.0], [-FRAC_PI_2, 0.0, 0.0]),

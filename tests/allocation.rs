@@ -1,4 +1,4 @@
-//! The algorithms of the dynamics allocate nothing.
+//! The algorithms of the dynamics do not allocate.
 
 mod arms;
 

@@ -1,4 +1,4 @@
-//! The documentation names what exists.
+//! The names in the documentation exist.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -10,10 +10,10 @@ use std::path::Path;
 
 use rust_source::tokens::tokens;
 
-/// Terms that the glossary has at least.
+/// Least number of glossary terms.
 const MIN_TERMS: usize = 40;
 
-/// Pages that people are sent to.
+/// Pages for users and contributors.
 const PAGES: [&str; 16] = [
     "README.md",
     "CONTRIBUTING.md",
@@ -37,19 +37,19 @@ fn page(path: &str) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// What stands between backticks or in the brackets of a link, outside of code blocks.
+/// Text between backticks or in the brackets of a link, outside code blocks.
 fn named(text: &str) -> Vec<&str> {
     let prose = text.split("```").step_by(2);
     let mut named = Vec::new();
     for part in prose {
         named.extend(part.split('`').skip(1).step_by(2));
-        // A link may lead to a place within a page.
+        // A link may have an anchor.
         named.extend(part.split("](").skip(1).filter_map(|link| link.split([')', '#']).next()));
     }
     named
 }
 
-/// Whether text between backticks is meant as a file or folder of the crate.
+/// Whether text between backticks is a file or folder of the crate.
 fn is_path(text: &str) -> bool {
     const FOLDERS: [&str; 10] = [
         "src",
@@ -101,7 +101,7 @@ fn every_folder_has_its_place_on_the_map() {
     }
 }
 
-/// The third column of the glossary names items of the sources.
+/// The third column of the glossary names existing items.
 #[test]
 fn terms_of_the_glossary_are_used() {
     let sources = rust_source::files(&["src"]);

@@ -1,4 +1,4 @@
-//! Controller backups through the binary: what is chosen, what is said.
+//! Controller backups through the binary: selected task and messages.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ fn joulepath(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
 }
 
-/// The fixture away from the configuration that lies above it.
+/// The fixture without the configuration in its parent folders.
 fn backup() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     copy(Path::new("fixtures/backup"), folder.path());
@@ -31,7 +31,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Instructions that ran, and the notes.
+/// Executed instructions, and the notes.
 fn simulated(path: &Path) -> (Vec<String>, String) {
     let output = joulepath(&["simulate", path.to_str().unwrap(), "--format", "json"]);
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -48,7 +48,7 @@ fn the_task_that_moves_the_robot_is_run_with_the_robot_of_the_backup() {
     assert_eq!(moves, ["MoveAbsJ", "MoveJ", "MoveL", "MoveL", "MoveAbsJ"]);
     assert!(notes.contains("T_ROB1 (RAPID/TASK2)"), "{notes}");
     assert!(notes.contains("ROB1_1600_1.45_10"), "{notes}");
-    // From inside and from one named module it is the same robot.
+    // A subfolder or a single module selects the same robot.
     assert_eq!(simulated(&backup.path().join("RAPID/TASK2")).0, moves);
     let module = backup.path().join("RAPID/TASK2/PROGMOD/MainModule.mod");
     assert_eq!(simulated(&module).0, moves);
@@ -112,7 +112,7 @@ fn parse_reads_every_task_and_tells_what_the_backup_says() {
     assert_eq!(value["backups"][0]["robotware"], "6.08.01.00");
 }
 
-/// All files below a folder, by their paths in it.
+/// All files below a folder with their relative paths.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
@@ -127,7 +127,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// The task's block with the new module, and every other byte as it was.
+/// The task lists the new module; every other byte is unchanged.
 fn assert_lists_the_new_module(before: &[u8], after: &[u8]) {
     let line = "PROGMOD/Locked.mod @ ";
     let before = String::from_utf8(before.to_vec()).unwrap();
@@ -147,7 +147,7 @@ fn the_retrofit_of_a_backup_is_the_whole_backup() {
         let text = fs::read_to_string(&info).unwrap().replace("\r\n", "\n").replace('\n', end);
         fs::write(&info, text).unwrap();
         let before = files(backup.path());
-        // Inside of the backup, too.
+        // Also inside the backup.
         let out = backup.path().join("out");
         let path = backup.path().to_str().unwrap();
         let output = joulepath(&["optimize", path, "--out", out.to_str().unwrap(), "--quiet"]);
@@ -162,7 +162,7 @@ fn the_retrofit_of_a_backup_is_the_whole_backup() {
             assert_eq!(before.get(path), Some(bytes), "{path}");
         }
         assert_eq!(after.len() + 2, before.len(), "{:?}", after.keys());
-        // It can be read again as a backup.
+        // The output is a readable backup.
         let (moves, notes) = simulated(&out);
         assert!(moves.len() >= 5 && notes.contains("T_ROB1 (RAPID/TASK2)"), "{moves:?} {notes}");
     }
@@ -174,7 +174,7 @@ fn a_backup_is_changed_in_place_and_taken_back() {
     let backup = folder.path().join("monday");
     copy(Path::new("fixtures/backup"), &backup);
     let before = files(folder.path());
-    // Also by a task or a module of it.
+    // Also with the name of a task or of its module.
     for named in ["", "RAPID/TASK2", "RAPID/TASK2/PROGMOD/MainModule.mod"] {
         let path = if named.is_empty() { backup.clone() } else { backup.join(named) };
         let path = path.to_str().unwrap();

@@ -1,4 +1,4 @@
-//! The examination's simulator against the library's dynamics, its seals and its grades.
+//! The simulator of the examination compared with the library's dynamics; its seals and grades.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::fs;
@@ -11,16 +11,16 @@ use joulepath::examine::blind::{self, Case, Grades, Kind, Label, Settings, TrueP
 use joulepath::learn::log::{ColumnMap, read_csv};
 use serde_json::{Value, json};
 
-/// What two formulations of the same dynamics may differ by, over the largest torque.
+/// Largest difference of two formulations of the dynamics, relative to the largest torque.
 const SAME: f64 = 1e-9;
-/// What a residual of averaged and differentiated logs may differ from the label's, relatively.
+/// Relative tolerance between a residual of averaged and differentiated logs and its label.
 const RESIDUAL: f64 = 0.15;
-/// A log's resolution of a duration \[s\].
+/// Resolution of a duration in a log \[s\].
 const TWO_ROWS: f64 = 0.02;
-/// Slower joints rest \[rad/s\].
+/// Rate below which a joint counts as at rest \[rad/s\].
 const RESTS: f64 = 0.02;
 
-/// Some state of a robot: angles, rates, accelerations.
+/// A state of a robot: angles, rates, accelerations.
 fn state(k: usize) -> [[f64; MAX_DOF]; 3] {
     let of = |offset: f64, size: f64| {
         std::array::from_fn(|joint| size * (offset + 1.7 * k as f64 + 2.3 * joint as f64).sin())
@@ -71,7 +71,7 @@ fn the_same_seed_gives_the_same_bytes() {
     assert_ne!(once.files, blind::case(&short(5), 4).unwrap().files);
 }
 
-/// Names, order and header of the files say nothing about the kind of a case.
+/// Names, order and headers of the files do not reveal the kind of a case.
 #[test]
 fn files_are_alike() {
     for number in 1..=12 {
@@ -108,7 +108,7 @@ fn first(kind: Kind, settings: &Settings) -> Case {
     cases.find(|case| case.label.kind == kind && !case.label.heldout.is_empty()).unwrap()
 }
 
-/// A program's moves are as long as it says, an extra wait is after the move that is named.
+/// The moves of a program have the stated durations; an extra wait follows the stated move.
 #[test]
 fn programs_run_as_they_say() {
     let settings = short(4);
@@ -149,7 +149,7 @@ fn programs_run_as_they_say() {
     assert!(healthy > 0 && late > 0, "{healthy} healthy, {late} late");
 }
 
-/// A column's mean over the periods.
+/// Mean of a column over the periods.
 fn averaged(column: &[f64], count: usize) -> Vec<f64> {
     let cycles = column.len() / count;
     (0..count)
@@ -157,7 +157,7 @@ fn averaged(column: &[f64], count: usize) -> Vec<f64> {
         .collect()
 }
 
-/// What the library's model misses of a healthy log is what the label says.
+/// The residual of the nominal model on a healthy log agrees with the label.
 #[test]
 fn healthy_residuals_are_as_stated() {
     let settings = Settings { cycles: 6, period_s: 8.0, ..Settings::new(21) };
@@ -173,7 +173,7 @@ fn healthy_residuals_are_as_stated() {
         .collect();
     let mut data = Data::new();
     let mut sums = vec![(0.0, 0.0); model.dof];
-    // The middle period: derivatives have rows to both sides.
+    // The middle period has rows on both sides for the derivatives.
     for (row, t) in motion.time.iter().enumerate() {
         let k = ((t - log.time()[0]) * 100.0).round() as usize;
         if !(2 * count..3 * count).contains(&k) {
@@ -196,7 +196,7 @@ fn healthy_residuals_are_as_stated() {
         let rms = f64::sqrt(squares / rows);
         near += usize::from((rms / held.model - 1.0).abs() < RESIDUAL);
     }
-    // Of a wrist's small torques the noise is a larger part.
+    // Noise is a larger share of the small wrist torques.
     assert!(near >= 4, "{near} of 6 joints");
 }
 
@@ -239,7 +239,7 @@ fn diagnosis(verdict: &str, effects: &[Value]) -> Value {
                   {"joint": 2, "share_percent": 25.0}], "gap": [], "model": null})
 }
 
-/// Labels with diagnoses whose grades are counted by hand.
+/// Labels and diagnoses with manually counted grades.
 fn graded_by_hand() -> (Vec<Label>, Vec<Value>) {
     let offset =
         |joints: &[usize], class: &[&str], value| said("torque_offset", joints, class, value);
@@ -301,7 +301,7 @@ fn rates_are_those_counted_by_hand() {
     assert_eq!(wrong, ["b", "f"]);
     assert_eq!(grades.confusion["torque_offset"]["right_name"], 2);
     assert_eq!(grades.confusion["torque_offset"]["right_class"], 1);
-    // Eight effects were stated with 0.97, all but those of b and f are there.
+    // Eight effects have a stated probability of 0.97; those of b and f are absent.
     let bin = grades.reliability.iter().find(|bin| bin.of > 0).unwrap();
     assert_eq!((bin.hits, bin.of), (6, 8));
 }
@@ -313,7 +313,7 @@ fn without_its_effect_a_library_may_not_know() {
     assert_eq!(grades.cases, 5);
     assert_eq!(hits(&grades, "left_out_unknown_or_class"), (4, 5));
     assert_eq!(hits(&grades, "left_out_wrong_name"), (1, 5));
-    // All single effects of the torque are of some family.
+    // Every torque effect belongs to a family.
     let family = blind::grade(&labels, &diagnoses, Some(blind::FAMILY)).unwrap();
     assert_eq!((family.cases, family.rates), (5, grades.rates));
 }
@@ -398,7 +398,7 @@ fn generated_cases_are_graded() {
     hostile(&out, shown);
 }
 
-/// Of a pair neither effect is left out.
+/// No effect of a pair is left out.
 #[test]
 fn of_pairs_nothing_is_left_out() {
     let folder = tempfile::tempdir().unwrap();
@@ -412,7 +412,7 @@ fn of_pairs_nothing_is_left_out() {
     refused(&["blind", "grade", shown, "--leave-out", id], "no case has this effect alone");
 }
 
-/// Without its family an effect is looked for anew, and none of the family is named.
+/// The library lacks the family; the diagnosis names none of its effects.
 #[test]
 fn families_are_left_out() {
     let folder = tempfile::tempdir().unwrap();
@@ -449,7 +449,7 @@ fn families_are_left_out() {
     }
 }
 
-/// Files that are broken, missing or changed.
+/// Damaged, missing or changed files.
 fn hostile(out: &Path, shown: &str) {
     let diagnosis = out.join("case-0002/diagnosis.json");
     let good = fs::read(&diagnosis).unwrap();

@@ -1,4 +1,4 @@
-//! Calibration by a log of power: logs of drawn robots, of other programs and other robots.
+//! Calibration with power logs of random robots, of other programs and of other robots.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -20,7 +20,7 @@ use joulepath::tool::report::html::optimize_report;
 use joulepath::tool::retrofit::{Settings, Source, read_program, retrofit};
 use rayon::prelude::*;
 
-/// A program of another cycle.
+/// A program with another cycle.
 const OTHER: &str = "MODULE Other
   CONST jointtarget a:=[[0,-10,20,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
   CONST jointtarget b:=[[70,30,-20,40,60,90],[9E9,9E9,9E9,9E9,9E9,9E9]];
@@ -38,10 +38,10 @@ const OTHER: &str = "MODULE Other
 ENDMODULE
 ";
 
-/// Truths of which 90 % should lie in the intervals, and how many of them may.
+/// Number of true robots, and accepted number of them within the 90 % intervals.
 const TRUTHS: usize = 100;
 const INSIDE: std::ops::RangeInclusive<usize> = 85..=95;
-/// Robots whose own energy lies in its interval.
+/// Number of robots with their own energy in its interval.
 const POINTS: usize = 95;
 
 fn source(text: &str) -> Vec<Source> {
@@ -62,20 +62,20 @@ fn robot(name: &str) -> Model {
     with_estimates(find(name).unwrap()).unwrap()
 }
 
-/// How a meter logs.
+/// Properties of a recording.
 struct Recording {
-    /// s.
+    /// Interval, s.
     step: f64,
-    /// Standard deviation of a row over its value.
+    /// Standard deviation of the noise relative to the value.
     noise: f64,
     seed: u64,
     cycles: f64,
-    /// What 1 W is in the log.
+    /// Unit of the log over 1 W.
     unit: f64,
     marks: Marks,
 }
 
-/// What a log says of where the program is.
+/// Marks of the program's progress in a log.
 #[derive(Clone, Copy)]
 enum Marks {
     None,
@@ -85,12 +85,12 @@ enum Marks {
     Cycles,
 }
 
-/// The power of a robot in a program, as a meter logs it that starts anywhere.
+/// A log of a robot's power in a program; it starts anywhere in the cycle.
 fn log(model: &Model, simulation: &Simulation, recording: &Recording) -> Log {
     recorded(model, simulation, recording).0
 }
 
-/// The same, and the torques of its joints.
+/// The log, and the torques of the joints.
 fn recorded(model: &Model, simulation: &Simulation, recording: &Recording) -> (Log, Vec<Vec<f64>>) {
     let samples = trajectory(model, simulation);
     let duration = simulation.cycle_s;
@@ -180,21 +180,21 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
         }
     }
     assert!(points >= POINTS, "{points} energies of the robot as it is written");
-    // The energy of the program itself is measured: its interval holds it nearly always.
+    // The energy of the calibrated program is measured: its interval nearly always holds.
     assert!(inside[0] >= *INSIDE.start(), "{inside:?}");
     assert!(inside[1..].iter().all(|count| INSIDE.contains(count)), "{inside:?}");
 }
 
-/// Half of the interval of the saving over the saving, at most.
+/// Largest half width of the interval of the saving, relative to the saving.
 const OF_USE: f64 = 0.5;
 
-/// Share of plausible robots whose joints need no more torque in a run than in the original cycle, and
-/// what a peak between two instants may add.
+/// Least share of plausible robots without a larger joint torque in a run than in the original
+/// cycle, and tolerance of a peak between two instants.
 const NO_MORE: f64 = 0.95;
 const BETWEEN: f64 = 1.02;
 
-/// Whether each run of a retrofit asks no more torque of the joints than the original cycle, robot by
-/// robot, each with its own dynamics.
+/// Whether each run of a retrofit needs no larger joint torque than the original cycle, for each
+/// robot with its own dynamics.
 fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool {
     let robots = Spread::new(model).draws(model, DRAWS).robots;
     let robots: Vec<Model> = robots.iter().map(|robot| drawn(model, robot).unwrap()).collect();
@@ -257,7 +257,7 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
     }
 }
 
-/// In a program of few movements each of them is among those with the largest torques.
+/// In a short program each movement is among those with the largest torques.
 #[test]
 fn few_movements_get_streams_that_ask_no_more() {
     let files = source(OTHER);
@@ -288,7 +288,7 @@ fn logs_of_other_programs_and_robots_are_refused() {
     let large = robot("IRB6700-200/2.6");
     let of_large = log(&large, &simulated(&large, &pick_place()), &METER);
     assert!(calibrate(&model, &program, &of_large, None).is_err());
-    // The same motion, but thirty times the power beyond that at rest.
+    // The same motion with thirty times the power above that at rest.
     let own = log(&model, &program, &METER);
     let rest = own.values[1].iter().copied().fold(f64::INFINITY, f64::min);
     let mut strong = own.clone();
@@ -316,10 +316,10 @@ fn kilowatts_and_numbers_of_movements_and_cycles_are_understood() {
     }
 }
 
-/// Where a log begins decides which movement its first pass begins with.
+/// The start of a log determines the first movement of its first pass.
 #[test]
 fn logs_with_numbers_of_movements_may_begin_anywhere() {
-    // Of a large robot movements take many times the power of waits.
+    // For a large robot the power of movements is many times that of waits.
     let model = robot("IRB7600-400/2.55");
     let program = simulated(&model, &source(OTHER));
     for seed in 1..=BEGINS {
@@ -330,7 +330,7 @@ fn logs_with_numbers_of_movements_may_begin_anywhere() {
     }
 }
 
-/// Places in the cycle at which logs begin.
+/// Number of starts of the logs in the cycle.
 const BEGINS: u64 = 8;
 
 #[test]
@@ -366,7 +366,7 @@ fn torques_tell_more_than_power_alone() {
     let z = standard_normals(spread.latents.len(), 8, 5);
     let truth = drawn(&model, &spread.robot(&model, |k| z[k][2])).unwrap();
     let (log, torques) = recorded(&truth, &program, &METER);
-    // Shares of the spread of the friction that are left, by joint.
+    // Remaining share of the friction's uncertainty, by joint.
     let left = |torques: Option<&[Vec<f64>]>| -> Vec<f64> {
         let found = calibrate(&model, &program, &log, torques).unwrap();
         let friction = (1..=model.dof).map(|j| format!("friction of joint {j}"));
@@ -394,7 +394,7 @@ fn logs_without_use_are_refused() {
     );
     let mut negative = own.clone();
     negative.values[1].iter_mut().for_each(|w| *w -= 5000.0);
-    // kW from the middle on.
+    // In kW from the middle on.
     let mut mixed = own.clone();
     let half = mixed.values[1].len() / 2;
     mixed.values[1][half..].iter_mut().for_each(|w| *w /= 1000.0);
@@ -416,14 +416,14 @@ fn a_calibrated_robot_is_read_back_as_it_was() {
     let read = with_estimates(from_toml("cell.toml", &to_toml(&found.model)).unwrap()).unwrap();
     let energy = |model: &Model| plausibility(model, &program, &account(model, &program)).unwrap();
     assert_eq!(energy(&found.model), energy(&read));
-    // Groups that only go together do not count twice.
+    // Groups that are coupled do not count twice.
     let shares = energy(&read).contributions.iter().map(|part| part.share).sum::<f64>();
     assert!((0.0..=1.0).contains(&shares), "{shares}");
     assert!(matches!(
         calibrate(&read, &program, &log(&model, &program, &METER), None),
         Err(Refusal::Again { .. })
     ));
-    // Another name does not make it another robot.
+    // Another name does not change the robot.
     let text = to_toml(&found.model).replace("name = \"IRB2600-20/1.65\"", "name = \"cell 7\"");
     let renamed = with_estimates(from_toml("cell.toml", &text).unwrap()).unwrap();
     assert_eq!(renamed.name, "cell 7");

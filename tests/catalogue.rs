@@ -1,5 +1,4 @@
-//! The robots that come with the crate: what they promise, and the errors of their
-//! sources that they must not repeat.
+//! The robots of the crate: their contract, and errors of the sources that must not recur.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -89,7 +88,7 @@ fn axis_2_of_every_irb1600_reaches_further_while_axis_1_looks_forward() {
     }
 }
 
-/// ABB's data sheet; the URDF has 450 deg/s for axis 6.
+/// The data sheet has priority; the URDF has 450 deg/s for axis 6.
 #[test]
 fn data_sheets_come_before_other_sources() {
     assert_eq!(speeds(&robot("IRB1600-6/1.2")), Some(vec![150, 160, 170, 320, 400, 460]));
@@ -97,7 +96,7 @@ fn data_sheets_come_before_other_sources() {
     assert_eq!(speeds(&robot("IRB6650S-200/3.0")), Some(vec![110, 90, 90, 150, 120, 235]));
 }
 
-/// The URDFs have the flange in a fixed joint, so that their c4 reads as 0.
+/// The URDFs have the flange in a fixed joint, so that c4 seems to be 0.
 #[test]
 fn the_flange_belongs_to_axis_6() {
     for (name, c4) in [("IRB2400-12/1.55", 0.085), ("IRB2400", 0.085), ("IRB4400L-30/2.43", 0.14)] {
@@ -140,7 +139,7 @@ fn poses_of_a_gofa_lead_back() {
     assert!(missed <= 4, "{missed} of 200");
 }
 
-/// `irb6640` of ROS was measured on meshes (b = 11 mm, c3 = 1395 mm).
+/// The dimensions of `irb6640` in ROS come from meshes (b = 11 mm, c3 = 1395 mm).
 #[test]
 fn no_arm_is_measured_on_meshes() {
     for model in robots() {
@@ -156,7 +155,7 @@ fn no_arm_is_measured_on_meshes() {
     );
 }
 
-/// ROS has −155…95.
+/// ROS states −155…95.
 #[test]
 fn axis_2_of_the_irb2600_has_the_right_sign() {
     for name in ["IRB2600-12/1.65", "IRB2600-20/1.65", "IRB2600-12/1.85"] {
@@ -164,7 +163,7 @@ fn axis_2_of_the_irb2600_has_the_right_sign() {
     }
 }
 
-/// `RobotComponents` has −120…125, a controller −125…120.
+/// `RobotComponents` states −120…125, a controller −125…120.
 #[test]
 fn axis_5_of_the_irb4600_is_the_controllers() {
     let model = robot("IRB4600-40/2.55");
@@ -173,7 +172,7 @@ fn axis_5_of_the_irb4600_is_the_controllers() {
     );
 }
 
-/// ROS has 180 deg/s for every axis, and nobody else has any.
+/// ROS states 180 deg/s for every axis, and no other source has speeds.
 #[test]
 fn dummy_speeds_are_left_out() {
     for name in ["IRB52-7/1.2", "IRB52-7/1.45"] {
@@ -181,7 +180,7 @@ fn dummy_speeds_are_left_out() {
     }
 }
 
-/// ARTE repeats the IRB140's speeds and one set of masses in many robots.
+/// ARTE has the speeds of the IRB140 and one set of masses for many robots.
 #[test]
 fn copied_figures_are_left_out() {
     for model in robots() {
@@ -193,7 +192,7 @@ fn copied_figures_are_left_out() {
     }
 }
 
-/// The controller counts the joint between axes 2 and 3 as the seventh.
+/// The controller numbers the joint between axes 2 and 3 as the seventh.
 #[test]
 fn the_joints_of_a_yumi_are_in_the_order_of_the_chain() {
     for name in ["IRB14000 left", "IRB14000 right"] {
@@ -204,7 +203,7 @@ fn the_joints_of_a_yumi_are_in_the_order_of_the_chain() {
     }
 }
 
-/// The table of Denavit and Hartenberg that the files cite.
+/// The Denavit–Hartenberg table that the files cite.
 #[test]
 fn a_yumi_turns_as_its_table_says() {
     const SAME: f64 = 1e-12;
@@ -250,7 +249,7 @@ fn robots_with_rods_report_the_angle_of_the_forearm() {
     assert!(a.angle_to(&b) < 1e-12);
 }
 
-/// Its Robot Web Services manual: all joints at zero, [515, 0, 712] mm.
+/// The Robot Web Services manual: at zero joint angles, [515, 0, 712] mm.
 #[test]
 fn zero_pose_of_an_irb140() {
     let t = fk(&robot("IRB140-6/0.81"), &[0.0; 6]).translation.vector;

@@ -1,4 +1,4 @@
-//! What `diagnose` claims of held-out logs, recomputed from the output of `predict`.
+//! Held-out claims of `diagnose`, recomputed from the output of `predict`.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
@@ -12,14 +12,14 @@ use serde_json::Value;
 
 /// Repetitions of each log.
 const CYCLES: usize = 4;
-/// Rate below which a joint rests \[rad/s\].
+/// Rate below which a joint counts as at rest \[rad/s\].
 const RESTS: f64 = 0.02;
-/// What both may differ by: of the claim, and of the noise of the mean.
+/// Tolerance relative to the claim, and relative to the noise of the mean.
 const OF_CLAIM: f64 = 0.05;
 const OF_NOISE: f64 = 0.25;
-/// An angle that is farther than its log says \[rad\].
+/// Offset of an angle against its log \[rad\].
 const OFFSET: f64 = 0.04;
-/// Points of percentage that the shrink may differ by.
+/// Tolerance of the claimed reduction in percentage points.
 const OF_SHRINK: f64 = 4.0;
 
 fn joulepath(args: &[&str]) -> Output {
@@ -31,8 +31,8 @@ fn log(text: &str) -> Log {
     read_csv(text.as_bytes(), &ColumnMap::default()).unwrap()
 }
 
-/// Rms that a model misses of a log's torques, and that of these, joint by joint: of the mean of
-/// the repetitions, at the instants at which the joint moves.
+/// Rms of the residuals and of the torques by joint: of the mean of the repetitions, while the
+/// joint moves.
 fn missed(robot: &str, held: &str) -> [Vec<f64>; 2] {
     let output = joulepath(&["predict", "--robot", robot, "--log", held, "--quiet"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -74,15 +74,15 @@ fn case(seed: u64, number: usize) -> Case {
     blind::case(&settings, number).unwrap()
 }
 
-/// Holds the claims for a case of the examination that has the effect: the shrink, %.
+/// Verifies the claims for an examination case with the effect `id`; returns the reduction, %.
 fn of_case(seed: u64, number: usize, id: &str) -> f64 {
     let case = case(seed, number);
     assert!(case.label.effects.iter().any(|truth| truth.id == id), "{:?}", case.label.effects);
     holds(&case, id)
 }
 
-/// Diagnoses a case with one effect in the library, and holds its claims against `predict`: the
-/// shrink, %.
+/// Diagnoses a case with one effect of the library and verifies its claims with `predict`; returns
+/// the reduction, %.
 fn holds(case: &Case, id: &str) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in &case.files {
@@ -90,7 +90,7 @@ fn holds(case: &Case, id: &str) -> f64 {
     }
     let at = |name: &str| Path::join(folder.path(), name).display().to_string();
     let (nominal, better) = (at("nominal.toml"), at("better.toml"));
-    // In the second log accelerations never jump, so that both ways to differentiate agree.
+    // The second log has no jumps of the acceleration, so that both differentiations agree.
     let (first, last, held) = (at("log-1.csv"), at("heldout.csv"), at("log-2.csv"));
     let args = ["diagnose", "--robot", &nominal, "--log", &first, &last, "--heldout", &held];
     let rest = ["--trust", &case.label.trust, "--period", "5", "--effects", id];
@@ -143,7 +143,7 @@ fn of_a_flipped_sign() {
     of_case(13, 53, "current_sign");
 }
 
-/// A healthy robot whose second angle is not where its logs say.
+/// A healthy robot with an offset of the second angle in its logs.
 #[test]
 fn of_an_encoder_offset() {
     let mut case = case(11, 5);
@@ -170,8 +170,8 @@ fn of_a_coupled_wrist() {
     of_case(13, 38, "wrist_coupling");
 }
 
-/// Friction of motor 6 that changes its sense over a few per cent of its rate: rows at which it turns
-/// so slowly tell nothing of its coupling.
+/// Friction of motor 6 with a smooth change of sign over a few per cent of its rate: rows at such
+/// slow rates contain no information on its coupling.
 #[test]
 fn of_a_coupled_wrist_whose_friction_is_rounded() {
     let shrink = of_case(13, 1, "wrist_coupling");
@@ -188,7 +188,7 @@ fn of_a_force_from_outside() {
     of_case(13, 26, "contact");
 }
 
-/// A robot that is cold when the clock of its logs begins is warm later.
+/// A robot that is cold at the start of the log clock and warms up.
 #[test]
 fn warming_up_counts_by_the_clock_of_the_logs() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,6 @@
-//! The walkthroughs of `CONTRIBUTING.md` are those of the sources.
-//!
-//! Each has a diff in `docs/contributing` that added the example. The diff has to be what the sources
-//! say today: every hunk is there as it leaves the file, and the walkthrough names every file.
+//! The walkthroughs of `CONTRIBUTING.md` agree with the sources: each has a diff in
+//! `docs/contributing` that added its example. Every resulting hunk is in the sources, and the
+//! walkthrough names every file.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -16,12 +15,12 @@ const WALKTHROUGHS: [(&str, &str); 5] = [
     ("## Add a section to the report", "docs/contributing/report_section.diff"),
 ];
 
-/// What a diff makes of one place of a file.
+/// The result of a diff at one place of a file.
 struct Hunk {
     path: String,
-    /// Lines of the file behind the change.
+    /// Lines of the file after the change.
     after: Vec<String>,
-    /// Number of lines that were added.
+    /// Number of added lines.
     added: usize,
 }
 
@@ -44,7 +43,7 @@ fn hunks(diff: &str) -> Vec<Hunk> {
     found
 }
 
-/// Whether a file has these lines one after the other.
+/// Whether a file contains these lines in succession.
 fn has(text: &str, lines: &[String]) -> bool {
     let all: Vec<&str> = text.lines().collect();
     all.windows(lines.len()).any(|window| window == lines)

@@ -1,5 +1,4 @@
-//! `joulepath optimize` with other costs, curves of energy over time, and parts of the cell that
-//! are kept free.
+//! `joulepath optimize` with other cost functions, curves of energy over time, and keep-out zones.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -19,7 +18,7 @@ const PROGRAM: &str = "MODULE M\n\
     ENDMODULE\n";
 /// The robot with known limits.
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
-/// What a local solution may miss of the best, share.
+/// Relative tolerance of a local optimum.
 const LOCAL: f64 = 5e-3;
 
 fn optimize(config: &str, options: &[&str]) -> Value {
@@ -49,9 +48,9 @@ fn no_other_cost_saves_more_joules() {
     let others = ["electrical-no-regeneration", "mechanical", "velocity", "torque"]
         .map(|cost| energy(&optimize("", &["--energy", cost])));
     assert!(others.iter().all(|other| *other > (1.0 - LOCAL) * electrical), "{others:?}");
-    // The costs of the literature are other timings.
+    // Each cost function of the literature has another timing.
     assert!(others[2] != electrical && others[3] != electrical && others[2] != others[3]);
-    // This robot gives nothing back.
+    // This robot does not regenerate.
     assert_eq!(others[0], electrical);
 }
 
@@ -70,7 +69,7 @@ fn curves_fall_and_stay_above_their_bounds() {
         for pair in curve.windows(2) {
             assert!(number(&pair[0], "time_s") < number(&pair[1], "time_s"));
         }
-        // The first steps away from the least time pay most.
+        // The first increases of the duration save most.
         assert!(number(&curve[1], "energy_j") < number(&curve[0], "energy_j"));
         assert!(number(&curve[0], "time_s") < number(segment, "time_before_s"));
     }
@@ -85,7 +84,7 @@ fn what_the_cell_keeps_free_holds_for_free_paths_only() {
     assert!(alone < kept);
     let far = "[[keep_out]]\nplane = [0, 0, 1, -9]\n";
     assert_eq!(energy(&optimize(far, &free)), alone);
-    // Nothing is left to leave the path for.
+    // The zone leaves no space to deviate from the path.
     let everywhere = "[[keep_out]]\nbox = [[-4, -4, -4], [4, 4, 4]]\n";
     assert_eq!(energy(&optimize(everywhere, &free)), kept);
 }

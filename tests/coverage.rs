@@ -1,4 +1,4 @@
-//! Intervals of estimated torques against bodies that other makers publish. `examples/coverage` counts more.
+//! Intervals of estimated torques compared with published bodies; `examples/coverage` has more.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -10,7 +10,7 @@ use std::path::Path;
 use joulepath::arm::robot::{Model, find, load};
 use torques::{Kind, held, unknown};
 
-/// Share of cases that 90 % intervals have to hold over arms of many makers.
+/// Accepted coverage of 90 % intervals over arms of many makers.
 const COVERAGE: std::ops::RangeInclusive<f64> = 0.80..=0.97;
 
 /// The arms in a folder.
@@ -23,7 +23,7 @@ fn arms(folder: &str) -> Vec<Model> {
         .collect()
 }
 
-/// Share of the torques of some arms that the intervals hold.
+/// Coverage of the torques of arms.
 fn rate(arms: &[Model], kind: Kind) -> f64 {
     let all: Vec<bool> = arms.iter().flat_map(|arm| held(arm, &unknown(arm), kind)).collect();
     all.iter().filter(|held| **held).count() as f64 / all.len() as f64
@@ -39,7 +39,7 @@ fn intervals_hold_gravity_and_inertia_of_other_makers_arms() {
     }
 }
 
-/// Of the Panda the friction beyond the torque sensors is known, of the `UR5e` none.
+/// For the Panda the friction behind the torque sensors is known, for the `UR5e` none.
 #[test]
 fn intervals_hold_the_friction_that_was_identified() {
     let mut arms = arms(".");

@@ -1,4 +1,4 @@
-//! Derivatives, mass matrix and forward dynamics against the inverse dynamics.
+//! Derivatives, mass matrix and forward dynamics compared with inverse dynamics.
 
 mod arms;
 
@@ -9,14 +9,14 @@ use joulepath::arm::dynamics::{
 use joulepath::arm::robot::MAX_DOF;
 use proptest::prelude::*;
 
-/// Relative error of the differences used here.
+/// Relative error of the finite differences.
 const DIFFERENCES: f64 = 1e-8;
 /// Relative error of two exact algorithms.
 const EXACT: f64 = 1e-10;
-/// Step of the differences \[rad, rad/s\].
+/// Step of the finite differences \[rad, rad/s\].
 const H: f64 = 2e-3;
 
-/// Slope of `f` along `joint`, by central differences of sixth order.
+/// Derivative of `f` along `joint`, by central differences of sixth order.
 fn slope(at: &[f64], joint: usize, f: impl Fn(&[f64]) -> [f64; MAX_DOF]) -> [f64; MAX_DOF] {
     let moved = |steps: f64| {
         let mut there = at.to_vec();

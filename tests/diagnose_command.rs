@@ -1,4 +1,4 @@
-//! The command `diagnose`: its JSON, its model, what it refuses.
+//! The command `diagnose`: its JSON, its model, its refusals.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
@@ -70,19 +70,19 @@ fn the_json_has_what_is_promised() {
     for text in ["How far the gap shrinks", "joint 6, over time", "<polyline", "</html>"] {
         assert!(page.contains(text), "no {text}");
     }
-    // What is to be measured next is a command that is understood.
+    // The proposed next experiment is a valid command.
     if let Some(command) = value["next_experiment"]["command"].as_str() {
         let words: Vec<&str> = command.split(' ').skip(1).collect();
         let output = joulepath(&[&words[..], &["--seed", "none"]].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(message.contains("--seed"), "{command}: {message}");
     }
-    // The model predicts by itself.
+    // The written model is complete for predictions.
     let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The thirds of a quantity have the share of their joint, the effects that of their third.
+/// The thirds of a quantity add up to the share of its joint, the effects to that of their third.
 fn regimes_add_up(places: &Value) {
     let places = places.as_array().unwrap();
     let share = |place: &Value| place["share_percent"].as_f64().unwrap();
@@ -110,7 +110,7 @@ fn regimes_add_up(places: &Value) {
     }
 }
 
-/// Of one log alone the last repetitions grade.
+/// Of a single log the last repetitions are held out.
 #[test]
 fn of_one_log_the_last_cycles_are_held_out() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,12 +144,12 @@ fn of_one_log_the_last_cycles_are_held_out() {
         assert_eq!(value["gap"][0]["heldout"], "cycles");
         value["gap"][0]["per_joint"][0]["model"].as_f64().unwrap()
     };
-    // What is added to the last repetition is held out, what is added to the one before is not.
+    // The last repetition is held out, the one before is not.
     let [none, last] = [1e9, 16.0].map(|from| gap(&noisy(from)));
     assert!((last - none).abs() > 1.0, "{none} {last}");
 }
 
-/// A period that the motion does not have is told, and the one that it has is used.
+/// A wrong stated period causes a note, and the true period is used.
 #[test]
 fn wrong_periods_are_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `optimize --dwell-pose`: waits spent where holding takes less.
+//! `optimize --dwell-pose`: moves a wait to a pose with less holding power.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -11,12 +11,12 @@ use serde_json::Value;
 const ROBOT: &str = "IRB1600-10/1.45";
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
-/// Two integrations of the same energy, relative.
+/// Relative tolerance of two integrations of the same energy.
 const ENERGY: f64 = 1e-6;
 
 const FAR: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
 
-/// Two long waits with the arm stretched out, the second one after an output.
+/// Two long waits with the arm extended, the second one after an output.
 fn program(end_of_line: &str) -> String {
     format!(
         "MODULE M\n\
@@ -59,7 +59,7 @@ fn optimize(folder: &Path, text: &str, options: &[&str]) -> Value {
     result
 }
 
-/// What the written program does.
+/// Simulation of the written program.
 fn simulate(folder: &Path) -> Value {
     let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
         .current_dir(folder)
@@ -73,7 +73,7 @@ fn number(value: &Value, pointer: &str) -> f64 {
     value.pointer(pointer).and_then(Value::as_f64).unwrap()
 }
 
-/// Lines of the waits that are spent elsewhere.
+/// Lines of the moved waits.
 fn rewritten(result: &Value) -> Vec<u64> {
     let segments = result["segments"].as_array().unwrap();
     let idle = segments.iter().filter(|s| s["kind"] == "idle" && s["rewritten"] == true);
@@ -97,16 +97,16 @@ fn a_wait_is_spent_where_holding_takes_less() {
         ["time_before_s", "time_after_s"].map(|key| wait.unwrap()[key].as_f64().unwrap());
     assert!((before - 80.0).abs() < TIME && (after - 80.0).abs() < TIME, "{before} {after}");
 
-    // The original wait is still there, for a robot that stands elsewhere.
+    // The original wait remains, for a robot at another position.
     let written = fs::read_to_string(folder.join("out/m.mod")).unwrap();
     let branch =
         "ELSE ! after an edit of these lines: joulepath refresh\nWaitTime 40;\nENDIF ! cools down";
     assert!(written.contains(branch), "{written}");
-    // The promise is what the written program does.
+    // The written program has the predicted energy.
     let simulated = simulate(folder);
     assert!((number(&simulated, "/energy_j") / energy(&result) - 1.0).abs() < ENERGY);
     assert!((number(&simulated, "/cycle_s") - cycle(&result)).abs() < TIME);
-    // There is nothing left to do.
+    // A second run finds no saving.
     let again = Command::new(env!("CARGO_BIN_EXE_joulepath"))
         .current_dir(folder)
         .args(["optimize", "out", "--robot", ROBOT, "--dwell-pose=30", "--out", "again", "--quiet"])
@@ -143,7 +143,7 @@ fn a_wait_whose_length_may_change_stays() {
 #[test]
 fn what_the_cell_keeps_free_is_not_entered() {
     let folder = tempfile::tempdir().unwrap();
-    // Nothing of the arm may come higher than where it stretches out.
+    // No part of the arm may rise above its height in the extended pose.
     fs::write(
         folder.path().join("joulepath.toml"),
         "[[keep_out]]\nbox = [[-2.0, -2.0, 0.0], [2.0, 2.0, 3.0]]\n",

@@ -1,5 +1,5 @@
-//! Inverse dynamics against energies and against the Lagrangian's derivatives.
-//! The energies are summed in the base frame, so that neither side proves itself.
+//! Inverse dynamics compared with energies and derivatives of the Lagrangian. The energies are
+//! computed in the base frame, independently of the inverse dynamics.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -52,7 +52,7 @@ proptest! {
         let lagrangian = |q: &[f64], qd: &[f64]| {
             kinetic_energy(model, &load(), q, qd) - potential_energy(model, &load(), q)
         };
-        // Large steps: the kinetic energy is quadratic in the velocities.
+        // Large steps are exact: the kinetic energy is quadratic in the velocities.
         let momentum = |t: f64, joint: usize| {
             let at: Vec<f64> =
                 (0..model.dof).map(|i| q[i] + t * qd[i] + 0.5 * t * t * qdd[i]).collect();
@@ -113,7 +113,7 @@ fn load_acts_as_a_heavier_last_link() {
     let q = [0.2, 0.4, -0.3, 0.5, 0.7, 0.1];
     let held = |load: &Load| gravity(&model, &mut Data::new(), load, &q);
     let point = Load { mass: 10.0, com: Vector3::new(0.0, 0.0, 0.1), inertia: Matrix3::zeros() };
-    // 10 kg, 0.1 m out of the flange: its lever arm about axis 2 by hand.
+    // 10 kg at 0.1 m from the flange: manual lever arm about axis 2.
     let tcp = joulepath::arm::kinematics::fk(&model, &q)
         * nalgebra::Isometry3::translation(0.0, 0.0, 0.1);
     let radius = tcp.translation.x * 0.2_f64.cos() + tcp.translation.y * 0.2_f64.sin();

@@ -1,4 +1,4 @@
-//! The colours of the editor's extension are those of the grammar.
+//! The syntax colours of the editor extension agree with the grammar.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 const GRAMMAR: &str = "editors/vscode/syntaxes/rapid.tmLanguage.json";
 
-/// The words of a production, as the grammar quotes them.
+/// The quoted words of a production.
 fn words(text: &str, production: &str) -> Vec<String> {
     let body = text.split(&format!("\n{production} =")).nth(1).unwrap();
     let body = body.split(';').next().unwrap();

@@ -1,4 +1,4 @@
-//! What a diagnosis wrote into a robot file is in every torque and power.
+//! The effects in a robot file change every torque and power.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -8,7 +8,7 @@ use joulepath::arm::effects::from_toml;
 use joulepath::arm::robot::{MAX_DOF, Model};
 use nalgebra::{Matrix3, Vector3};
 
-/// Largest relative difference of torques.
+/// Relative tolerance of torques.
 const SAME: f64 = 1e-12;
 
 fn robot(more: &str) -> Model {
@@ -28,7 +28,7 @@ fn same(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(1.0))
 }
 
-/// The effect in each of its forms is the figure that it changes.
+/// Each form of an effect changes the corresponding parameter.
 #[test]
 fn an_effect_is_what_it_changes() {
     let plain = torques(&robot(""), &Load::none());
@@ -86,7 +86,7 @@ fn rotors_and_losses() {
     assert_eq!(changed.sensors.torque_error[1], 0.05);
 }
 
-/// The bound of one effect is no matter of another one's numbers.
+/// The bound of an effect does not depend on the values of another effect.
 #[test]
 fn a_joint_may_rub_less_at_breakaway_down_to_nothing() {
     let text = "extends = \"IRB1600-10/1.45\"\nname = \"changed\"\n\

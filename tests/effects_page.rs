@@ -1,4 +1,4 @@
-//! `docs/effects.md` is what the register says.
+//! `docs/effects.md` agrees with the register of effects.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 

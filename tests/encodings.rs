@@ -1,4 +1,4 @@
-//! Files in other encodings and with other ends of line, through the binary.
+//! Files with other encodings and line ends, through the binary.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::fs;
@@ -18,7 +18,7 @@ fn parsed(path: &Path) -> Value {
     value["files"][0].clone()
 }
 
-/// The bytes of a text in UTF-16, the low byte first, with the byte order mark.
+/// A text in UTF-16, little-endian, with the byte order mark.
 fn utf16(text: &str) -> Vec<u8> {
     "\u{FEFF}".encode_utf16().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
 }

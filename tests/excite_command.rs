@@ -1,4 +1,4 @@
-//! `excite` through the binary: what it writes keeps the limits and is RAPID.
+//! `excite` through the binary: its program is RAPID and keeps the limits.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::fs;
@@ -13,9 +13,9 @@ use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
-/// What the issue asks for.
+/// Required condition number.
 const CONDITION: f64 = 20.0;
-/// Random motions that a design has to be as good as.
+/// Number of random motions that a design has to match.
 const RANDOM: usize = 2000;
 
 fn joulepath(args: &[&str]) -> Output {
@@ -30,7 +30,7 @@ fn excite(folder: &tempfile::TempDir, more: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The modules parse without errors and without a tolerance.
+/// The modules parse without errors and without tolerances.
 fn is_rapid(folder: &tempfile::TempDir) {
     for name in ["JoulepathExcitation.mod", "JoulepathLogger.mod"] {
         let bytes = fs::read(folder.path().join(name)).unwrap();
@@ -87,7 +87,7 @@ fn the_motion_tells_all_parameters_within_all_limits() {
     assert!(found["log_det"].as_f64().unwrap() >= random, "{random} {found}");
 }
 
-/// Every capsule on a line of points, against the box by clamping.
+/// Points on the axis of every capsule, compared with the box by clamping.
 #[test]
 fn arm_and_tool_stay_out_of_a_box() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,7 +154,7 @@ fn wrong_options_say_the_way_out() {
     }
 }
 
-/// Numbers that no motion can be made of, and those that are in reach of one.
+/// Impossible values, and similar possible ones.
 #[test]
 fn impossible_numbers_are_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -184,7 +184,7 @@ fn impossible_numbers_are_refused_at_once() {
     }
 }
 
-/// Repetitions of points that are a rounded time apart would last longer than the period.
+/// Repetitions of points with rounded intervals would exceed the period.
 #[test]
 fn adaptive_points_make_a_whole_period() {
     let folder = tempfile::tempdir().unwrap();

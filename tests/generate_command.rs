@@ -1,4 +1,4 @@
-//! `joulepath generate`, as a user runs it.
+//! `joulepath generate` through the binary.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use joulepath::retime::motion::stream::Stream;
 
 const ROBOT: &str = "IRB1600-10/1.45";
-/// Distance of the realised joints from the trajectory, rad: 1 mm at the reach of the arm.
+/// Tolerance of the realised joints, rad: 1 mm at the reach of the arm.
 const JOINT_TOLERANCE: f64 = 1e-3;
 
 fn generate(folder: &Path, csv: &str, options: &[&str]) -> Output {
@@ -33,7 +33,7 @@ fn simulate(folder: &Path) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Where a smooth motion in `duration` is at a time, rad.
+/// Position in a smooth motion of `duration` at a time, rad.
 fn position(t: f64, duration: f64) -> [f64; 6] {
     let x = (t / duration).clamp(0.0, 1.0);
     let s = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
@@ -51,7 +51,7 @@ fn trajectory(duration: f64) -> String {
     text
 }
 
-/// The numbers in some text.
+/// The numbers in a text.
 fn numbers(text: &str) -> Vec<f64> {
     let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-');
     text.split(|c| !is_number(c)).filter_map(|word| word.parse().ok()).collect()
@@ -67,7 +67,7 @@ fn a_trajectory_becomes_a_stream_that_follows_it() {
     for ratio in report["verification"]["max_ratio"].as_object().unwrap().values() {
         assert!(ratio.as_f64().unwrap() <= 1.0);
     }
-    // The text alone, played back.
+    // Plays back the text alone.
     let text = fs::read_to_string(folder.path().join("out/pointsMod.mod")).unwrap();
     let mut points = Vec::new();
     let mut times = Vec::new();

@@ -1,7 +1,6 @@
-//! Programs in which something besides the movements decides what a stream would do.
-//!
-//! Each movement says behind `! =>` what has to become of it: `stream`, or the code of the reason
-//! why it stays.
+//! Programs in which other statements than movements determine the effect of a stream. The comment
+//! `! =>` of each movement contains the expected result: `stream`, or the code of the reason for
+//! keeping the movement.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -22,7 +21,7 @@ CONST robtarget pD:=[[850,-300,1000],[0,0,1,0],[-1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9
 PERS tooldata tP:=[TRUE,[[0,0,90],[1,0,0,0]],[1,[0,0,40],[1,0,0,0],0,0,0]];
 ";
 
-/// A program whose `main` has these statements, and what stands behind them in the routine.
+/// A program with these statements in `main`, followed by `handlers` in the routine.
 fn program(declarations: &str, statements: &str, handlers: &str) -> String {
     format!(
         "MODULE M\n{DATA}{declarations}\nPROC main()\nConfL \\Off; ConfJ \\Off;\n\
@@ -31,7 +30,7 @@ fn program(declarations: &str, statements: &str, handlers: &str) -> String {
     )
 }
 
-/// Two movements that both become the same.
+/// Two movements with the same expected result.
 fn both(what: &str) -> String {
     format!("MoveAbsJ jB,v1000,fine,tP; ! => {what}\nMoveAbsJ jA,v1000,fine,tP; ! => {what}")
 }
@@ -51,7 +50,7 @@ fn optimize(folder: &Path, text: impl AsRef<[u8]>, options: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Holds what became of each movement against what its line says; the folder has the output.
+/// Compares the result of each movement with its comment; the returned folder contains the output.
 fn check(text: &str, options: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let result = optimize(folder.path(), text, options);
@@ -105,10 +104,10 @@ fn error_handlers_that_go_on_keep_their_movements() {
     for handlers in go {
         check(&program("VAR bool bAgain:=TRUE;", &both("stream"), handlers), &[]);
     }
-    // The handler of a caller sees the whole call, with and without streams.
+    // The handler of a caller covers the whole call, with and without streams.
     let called = format!("PROC rGo()\n{}\nENDPROC", both("stream"));
     check(&program(&called, "rGo;", "ERROR\nRETRY;"), &[]);
-    // A movement that runs in a handler.
+    // A movement in a handler.
     let late = "WaitDI diX,1\\MaxTime:=1;\nMoveAbsJ jA,v1000,fine,tP; ! => not-reached";
     let handlers = "ERROR\nMoveAbsJ jB,v1000,fine,tP; ! => handler\nRETURN;";
     check(&program("", late, handlers), &["--input", "diX=30"]);
@@ -141,7 +140,7 @@ fn interrupt_routines_that_touch_movements_keep_them() {
     ];
     for body in touching {
         check(&program(&trap(body), &connected("interrupt"), ""), &[]);
-        // Nothing connects it.
+        // No interrupt is connected to it.
         check(&program(&trap(body), &both("stream"), ""), &[]);
     }
 }
@@ -174,7 +173,7 @@ fn settings_in_force_keep_movements() {
         let statements = format!("{on}\n{}\n{off}\n{}", both("setting"), both(after));
         check(&program(data, &statements, ""), &[]);
     }
-    // What streams do not mind.
+    // Settings that do not affect streams.
     for harmless in ["ConfJ \\Off;", "ConfL \\On;", "MotionSup \\Off;", "PathResol 100;"] {
         check(&program("", &format!("{harmless}\n{}", both("stream")), ""), &[]);
     }
@@ -204,7 +203,7 @@ fn what_does_more_than_move_is_never_rewritten() {
         let statements = format!("MoveJ pC,v1000,fine,tP; ! => stream\n{statement} ! => {code}");
         check(&program(data, &statements, ""), &[]);
     }
-    // A process instruction whose arguments are not certain may end anywhere.
+    // A process instruction with unknown arguments may end anywhere.
     let process = "MoveJ pC,v1000,fine,tP; ! => stream\nPaintL pD,v500,sm,wd,fine,tP;\n\
                    MoveAbsJ jE,v1000,fine,tP; ! => unknown-start\n\
                    MoveAbsJ jA,v1000,fine,tP; ! => stream";
@@ -225,12 +224,12 @@ fn external_axes_are_held_or_keep_their_movements() {
     let held: Vec<bool> =
         moves.map(|line| line.contains("],[1500,9E9,9E9,9E9,9E9,9E9]],")).collect();
     assert!(held.contains(&true) && held.contains(&false), "{streams}");
-    // A movement of their own brings them elsewhere.
+    // A separate movement changes their positions.
     let apart = "MoveAbsJ jB,v1000,fine,tP; ! => stream\nMoveExtJ jE,vlin100,fine;\n\
                  MoveAbsJ jE,v1000,fine,tP; ! => stream\nMoveExtJ jE,vlin100,fine;\n\
                  MoveAbsJ jB,v1000,fine,tP; ! => external-axes";
     check(&program(data, apart, ""), &[]);
-    // The same way twice, with the track at two places.
+    // The same movement twice, with different positions of the track.
     let twice = "CONST jointtarget jG:=[[0,-12,14,0,60,0],[0,9E9,9E9,9E9,9E9,9E9]];\n\
                  CONST jointtarget jH:=[[60,20,0,-20,65,30],[0,9E9,9E9,9E9,9E9,9E9]];\n\
                  PROC rGo(jointtarget jX,jointtarget jY)\n\
@@ -238,7 +237,7 @@ fn external_axes_are_held_or_keep_their_movements() {
                  MoveAbsJ jY,v1000,fine,tP; ! => stream\nENDPROC";
     let calls = "MoveExtJ jG,vlin100,fine;\nrGo jH,jG;\nMoveExtJ jE,vlin100,fine;\nrGo jF,jE;";
     check(&program(&format!("{data}\n{twice}"), calls, ""), &[]);
-    // The external axes of each stream are the same all the way.
+    // The external axes are constant in each stream.
     let changes = held.windows(2).filter(|pair| pair[0] != pair[1]).count();
     assert_eq!(changes, 1, "{streams}");
 }
@@ -253,7 +252,7 @@ fn tools_and_places_may_be_named_in_any_way() {
     let handed = "PROC rGo(PERS tooldata tX)\nMoveAbsJ jB,v1000,fine,tX; ! => stream\n\
                   MoveAbsJ jA,v1000,fine,tX; ! => stream\nENDPROC";
     check(&program(handed, "rGo tP;\nrGo tool0;", ""), &[]);
-    // Where it runs once, another call may come with other data: the guard looks at them.
+    // Another call may pass other data: the guard compares them.
     let handed = "PERS wobjdata wA:=[FALSE,TRUE,\"\",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];\n\
                   PROC rGo(PERS wobjdata wX,PERS tooldata tX)\n\
                   MoveJ pC,v1000,fine,tX\\WObj:=wX; ! => stream\nENDPROC";
@@ -275,7 +274,7 @@ fn tools_and_places_may_be_named_in_any_way() {
     let statements = "again:\nMoveAbsJ jB,v1000,fine,tP; ! => stream\n\
                       MoveAbsJ jA,v1000,fine,tP; ! => stream\nIncr n;\nIF n<2 GOTO again;";
     check(&program(jump, statements, ""), &[]);
-    // A work object that something else moves.
+    // A work object moved by another mechanism.
     let belt =
         "PERS wobjdata wBelt:=[FALSE,FALSE,\"CNV1\",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];";
     let statements = "MoveJ pC,v1000,fine,tP\\WObj:=wBelt; ! => path\n\
@@ -285,7 +284,7 @@ fn tools_and_places_may_be_named_in_any_way() {
     for segment in result["segments"].as_array().unwrap() {
         assert_eq!(segment["rewritten"], false, "{segment}");
     }
-    // Names that the streams would have.
+    // Names that collide with those of the streams.
     let names = "MODULE Joulepath\nVAR num jpAt;\nPROC jpRun1()\nENDPROC\nENDMODULE\n";
     check(&format!("{}{names}", program("", &both("stream"), "")), &[]);
 }

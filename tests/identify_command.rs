@@ -1,4 +1,4 @@
-//! `identify` through the binary: what it promises, and logs that can't be used.
+//! `identify` through the binary: contract, and unusable logs.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::fmt::Write as _;
@@ -98,7 +98,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
     assert_eq!(found["base_parameters"].as_array().unwrap().len(), 58);
     assert_eq!(found["physically_consistent"], true);
     assert_eq!(found["quality"]["grade"], "good");
-    // Its noise is white.
+    // The simulated noise is white.
     for of in found["whiteness"].as_array().unwrap() {
         assert!(of["p_value"].as_f64().unwrap() > 1e-4, "{of}");
     }
@@ -109,7 +109,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
     assert!(found["condition"]["scaled"].as_f64().unwrap() > 1.0);
     assert!(fs::read_to_string(&page).unwrap().contains("not determined") || page.exists());
 
-    // Prediction and JSON tell the same error.
+    // `predict` and the JSON report the same error.
     let args = ["predict", "--robot", model.to_str().unwrap(), "--log", log.to_str().unwrap()];
     let output = joulepath(&[&args[..], &["-q"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -158,14 +158,14 @@ fn what_is_repaired_is_said() {
     ] {
         assert!(said.contains(text), "{text}: {said}");
     }
-    // Rates of some joints are no use, and that is said.
+    // A note reports rates of only some joints as unusable.
     let mut few = header();
     few[12] = "other".into();
     let output = identify(&bench.write(&few, &cells(&rows()), ","), &[]);
     assert!(output.status.success());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{said}");
-    // Semicolons and decimal commas change nothing.
+    // Semicolons and decimal commas give the same result.
     let plain = bench.write(&header(), &cells(&rows()), ",");
     let expected = identify(&plain, &["-q"]).stdout;
     let commas: Vec<Vec<String>> = cells(&rows())
@@ -245,7 +245,7 @@ fn what_can_not_be_used_ends_with_the_way_out() {
     }
 }
 
-/// Torques that are not those of the motion: turned round, of another time, of nothing.
+/// Torques unrelated to the motion: reversed, delayed, or noise.
 #[test]
 fn torques_of_something_else_are_no_model() {
     let bench = Bench::new();
@@ -266,7 +266,7 @@ fn torques_of_something_else_are_no_model() {
         assert_eq!(output.status.code(), Some(2), "{message}: {text}");
         assert!(text.contains("no robot that can be") && text.contains(message), "{text}");
     }
-    // Half a second is 20 rows.
+    // Half a second has 20 rows.
     let late: Vec<Vec<f64>> = all
         .iter()
         .zip(&all[20..])
@@ -277,7 +277,7 @@ fn torques_of_something_else_are_no_model() {
     assert!(text.contains("0.50 s later than the positions"), "{text}");
 }
 
-/// A torque that goes astray over three seconds is explained by the many parameters, not foretold.
+/// The many parameters explain a disturbance of three seconds, but do not predict it.
 #[test]
 fn what_explains_only_its_own_data_is_not_good() {
     let bench = Bench::new();
@@ -316,8 +316,8 @@ fn a_constant_joint_is_named() {
     assert_eq!(found["joints"][3]["excited"], false);
 }
 
-/// The paper's fit can't be better than the free one, and begins at the robot file, which is
-/// right here.
+/// The fit of the paper cannot be better than the unconstrained one; it starts with the true
+/// parameters of the robot file.
 #[test]
 fn the_descent_of_the_paper_comes_near_the_free_fit() {
     let bench = Bench::new();
@@ -337,7 +337,7 @@ fn the_descent_of_the_paper_comes_near_the_free_fit() {
     assert!(last <= first, "{first} {last}");
 }
 
-/// A robot file with masses, without gear ratios.
+/// A robot file with masses and without gear ratios.
 fn without_motors(bench: &Bench) -> PathBuf {
     let robot = bench.folder.path().join("direct.toml");
     let text = to_toml(&find(ROBOT).unwrap());
@@ -355,7 +355,7 @@ fn without_motors(bench: &Bench) -> PathBuf {
     robot
 }
 
-/// Without ratios torques of motors are only known by the weight that they carry.
+/// Without gear ratios, motor torques are recognised only by the carried weight.
 #[test]
 fn torques_that_carry_too_little_are_no_good_model() {
     let bench = Bench::new();
@@ -375,7 +375,7 @@ fn torques_that_carry_too_little_are_no_good_model() {
     assert!(found["quality"]["statement"].as_str().unwrap().contains("weight"));
 }
 
-/// A URDF without gear ratios has its rotors at the joint; what is written is read again.
+/// With a URDF without gear ratios the rotors are at the joints; the written model can be read.
 #[test]
 fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
     let bench = Bench::new();
@@ -443,7 +443,7 @@ fn options_that_do_not_fit_the_logs_are_said() {
     }
 }
 
-/// 10 to 100 ms late, torques are still explained well; the delay is named.
+/// With a delay of 10 to 100 ms torques are still explained well; the delay is reported.
 #[test]
 fn a_short_delay_is_named() {
     let bench = Bench::new();
@@ -468,7 +468,7 @@ fn a_short_delay_is_named() {
     }
 }
 
-/// One joint on the motor's side spoils a model, however well the others are explained.
+/// One motor-side joint makes a model bad, independent of the other joints.
 #[test]
 fn the_worst_joint_counts() {
     let bench = Bench::new();
@@ -483,12 +483,12 @@ fn the_worst_joint_counts() {
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
 }
 
-/// What is held out judges the model that is written, not the free fit.
+/// The held-out error is that of the written model, not of the unconstrained fit.
 #[test]
 fn without_other_logs_the_written_model_is_judged() {
     let bench = Bench::new();
     let mut all = rows();
-    // Friction that gives power, which no model that can be has.
+    // Negative friction, which no physical model has.
     for row in &mut all {
         row[20] -= 200.0 * row[8].signum();
     }

@@ -1,5 +1,5 @@
-//! Identification of real robots from published logs. The logs are not part of the crate;
-//! where they are absent these tests say so, in a CI run they fail.
+//! Identification of real robots from published logs. The logs are not part of the crate; without
+//! them these tests print a note, and fail in CI.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 #![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
 
@@ -14,9 +14,9 @@ use joulepath::learn::identify::{
 };
 use joulepath::learn::log::{ColumnMap, Log, read_csv};
 
-/// Shares of the time that are fitted; the rest is predicted. The first one is compared.
+/// Training shares of the time; the rest is predicted. The first is compared with known results.
 const TRAINED: [[f64; 2]; 3] = [[0.0, 0.7], [0.3, 1.0], [0.0, 0.5]];
-/// By how much the written model may miss more than the free fit, all joints together.
+/// Largest ratio of residuals, written model to unconstrained fit, over all joints.
 const CONSISTENT: f64 = 1.02;
 
 fn shared(path: &str) -> Option<String> {
@@ -29,7 +29,7 @@ fn shared(path: &str) -> Option<String> {
     None
 }
 
-/// Rows of a log, as a log of their own.
+/// A log of a range of rows.
 fn rows(log: &Log, range: std::ops::Range<usize>) -> Log {
     Log {
         channels: log.channels.clone(),
@@ -67,7 +67,7 @@ fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Ident
         assert!(found.physically_consistent);
         assert_eq!(found.quality.late, None);
         misses_little_more(urdf, &found);
-        // What is written is read back as it was.
+        // The written model is read without a change.
         let again = from_toml("written", &to_toml(&found.model)).unwrap();
         assert_eq!(again.sensors, found.model.sensors);
         first.get_or_insert(found);
@@ -75,7 +75,7 @@ fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Ident
     first
 }
 
-/// The written model against the free fit, on time that neither has seen.
+/// The written model compared with the unconstrained fit, on held-out time.
 fn misses_little_more(name: &str, found: &Identified) {
     let free = &found.unconstrained_validation.as_ref().unwrap().rms;
     let written = &found.validation.as_ref().unwrap().rms;
@@ -93,7 +93,7 @@ fn misses_little_more(name: &str, found: &Identified) {
     assert!(all < CONSISTENT, "{name}: {all}");
 }
 
-/// Held-out figures against what plain least squares are known to give.
+/// Held-out errors compared with those known for ordinary least squares.
 fn compare(name: &str, found: &Identified, known: &[f64]) {
     let free = &found.unconstrained_validation.as_ref().unwrap().rms;
     let written = &found.validation.as_ref().unwrap().rms;
@@ -115,7 +115,7 @@ fn staubli_tx40_has_the_published_friction_and_a_coupled_wrist() {
         let row = all.iter().find(|row| found.base.name(**row) == name).unwrap();
         found.fit.solution.beta[*row]
     };
-    // Axis 5 carries the friction of motor 6 too.
+    // Axis 5 also carries the friction of motor 6.
     let fifth = beta("fv5") + coupling * coupling * beta("fv6");
     let viscous = [beta("fv1"), beta("fv2"), beta("fv3"), beta("fv4"), fifth, beta("fv6")];
     for (found, known) in viscous.into_iter().zip([8.05, 5.53, 1.97, 1.11, 1.86, 0.65]) {
@@ -146,7 +146,7 @@ fn universal_robots_ur10() {
         ("ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf", "ur10_unisa/ur10_exciting_trajectory.csv");
     let Some(found) = identified(urdf, csv, 6, true) else { return };
     assert_eq!(found.coupling, None);
-    // Of joint 4 0.56 is known, on another part of the time.
+    // For joint 4, 0.56 is known from another part of the time.
     compare("UR10", &found, &[3.2, 3.5, 2.0, 0.85, 0.60, 2.0]);
 }
 
@@ -155,6 +155,6 @@ fn franka_panda() {
     let (urdf, csv) =
         ("ur10_unisa/panda_mdh_dummy_inertia.urdf", "ur10_unisa/panda_exciting_trajectory.csv");
     let Some(found) = identified(urdf, csv, 7, true) else { return };
-    // Of joint 4 0.17 is known, on another part of the time.
+    // For joint 4, 0.17 is known from another part of the time.
     compare("Panda", &found, &[0.28, 0.18, 0.23, 0.19, 0.15, 0.11, 0.08]);
 }

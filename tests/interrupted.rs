@@ -1,4 +1,4 @@
-//! Output that is written whole or not at all, and a second retrofit that finds nothing to do.
+//! Output is written completely or not at all, and a second retrofit changes nothing.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Times between two kills, share of the whole run.
+/// Number of kill times within the duration of a run.
 const KILLS: u32 = 12;
 
 fn optimize(program: &str, out: &Path) -> Command {
@@ -17,7 +17,7 @@ fn optimize(program: &str, out: &Path) -> Command {
     command
 }
 
-/// Every file of a folder with its bytes.
+/// All files of a folder with their bytes.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
     entries
@@ -41,7 +41,7 @@ fn a_kill_at_any_moment_leaves_all_or_nothing() {
     for kill in 0..=KILLS {
         let out = folder.path().join(format!("out{kill}"));
         let mut child = optimize(program, &out).spawn().unwrap();
-        // The last kills come late on purpose: around the moment of writing.
+        // The last kills are near the moment of writing.
         std::thread::sleep(took * kill / (KILLS - 3));
         child.kill().unwrap();
         child.wait().unwrap();

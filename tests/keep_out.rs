@@ -1,5 +1,5 @@
-//! Free paths among boxes and planes: the motion of the emitted program, looked at densely, with
-//! distances that are computed here.
+//! Free paths among boxes and planes: dense checks of the motion of the emitted program with
+//! independently computed distances.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -13,9 +13,9 @@ use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
-/// The same with known limits.
+/// The robot with known limits.
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
-/// There and back with a tool, away from the limits.
+/// A movement and its return with a tool, away from the limits.
 const PROGRAM: &str = "MODULE M\n\
     PERS tooldata tLong:=[TRUE,[[0,0,180],[1,0,0,0]],[2,[0,0,60],[1,0,0,0],0,0,0]];\n\
     CONST jointtarget jA:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
@@ -28,20 +28,20 @@ const PROGRAM: &str = "MODULE M\n\
     ENDMODULE\n";
 const TOOL: [f64; 3] = [0.0, 0.0, 0.18];
 const FREE: [&str; 3] = ["--free-path", "--deviation", "80"];
-/// Parts of the time between two rows of a trajectory, and of a capsule's line.
+/// Subdivisions between two rows of a trajectory, and of a capsule's axis.
 const PARTS: usize = 4;
-/// Parts of the way from one point to the next.
+/// Subdivisions between two points.
 const EDGE_PARTS: usize = 100;
 /// Half the width of the box, m.
 const WIDTH: f64 = 0.03;
-/// What a figure of a trajectory's text leaves out, m.
+/// Rounding of a value in a trajectory's text, m.
 const ROUNDING: f64 = 1e-9;
 
 struct Run {
     result: Value,
     /// Joint angles, rad.
     motion: Vec<Vec<f64>>,
-    /// The same from point to point of the streams.
+    /// The same on the polygon of the points of the streams.
     polygon: Vec<Vec<f64>>,
 }
 
@@ -50,7 +50,7 @@ impl Run {
         self.result["optimized"]["motion_energy_j"].as_f64().unwrap()
     }
 
-    /// The deepest point of arm and tool against `along`, and how deep.
+    /// The lowest point of arm and tool in the direction `along`, and its position along it.
     fn deepest(&self, along: &Vector3<f64>) -> (Point3<f64>, f64) {
         let points = surface(&self.motion).map(|(point, radius)| {
             let point = point - along * radius;
@@ -93,7 +93,7 @@ fn optimized(config: &str, options: &[&str]) -> Run {
     Run { result, motion: motion(Path::new(&csv)), polygon: polygon(&text) }
 }
 
-/// The ways from point to point of all streams in a module's text.
+/// The polygons of all streams in a module's text.
 fn polygon(text: &str) -> Vec<Vec<f64>> {
     let joints = |statement: &str| -> Option<Vec<f64>> {
         let numbers = statement.split("MoveAbsJ [[").nth(1)?.split(']').next()?;
@@ -130,7 +130,7 @@ fn motion(csv: &Path) -> Vec<Vec<f64>> {
     rows.windows(2).flat_map(between).collect()
 }
 
-/// Points of the middle lines of arm and tool, each with the radius around it.
+/// Points on the axes of the capsules of arm and tool, with their radii.
 fn surface(motion: &[Vec<f64>]) -> impl Iterator<Item = (Point3<f64>, f64)> {
     let model = find(ROBOT).unwrap();
     let capsules: Vec<Capsule> = motion
@@ -142,7 +142,7 @@ fn surface(motion: &[Vec<f64>]) -> impl Iterator<Item = (Point3<f64>, f64)> {
     })
 }
 
-/// The least distance of arm and tool from a box, negative inside.
+/// Least distance of arm and tool from a box, negative inside.
 fn room(motion: &[Vec<f64>], corners: &[Point3<f64>; 2]) -> f64 {
     let distance = |point: &Point3<f64>| {
         let outside: Vector3<f64> = (corners[0] - point).sup(&(point - corners[1]));
@@ -152,7 +152,7 @@ fn room(motion: &[Vec<f64>], corners: &[Point3<f64>; 2]) -> f64 {
     surface(motion).map(|(point, radius)| distance(&point) - radius).fold(f64::INFINITY, f64::min)
 }
 
-/// The tip of the tool and its radius, along the motion.
+/// Positions of the tool tip along the motion, and its radius.
 fn tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
     let model = find(ROBOT).unwrap();
     let body = Body::new(&model, TOOL.into(), &[]);
@@ -160,8 +160,8 @@ fn tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
     tool.map(|capsule| (capsule.to, capsule.radius)).collect()
 }
 
-/// From the nearest place of the tip on an original to each place of it on a motion, with that place
-/// and the radius around it.
+/// For each position of the tip on a motion, the vector from the nearest one on the original, the
+/// position, and the radius.
 fn aways(original: &[Vec<f64>], motion: &[Vec<f64>]) -> Vec<(Vector3<f64>, Point3<f64>, f64)> {
     let original = tips(original);
     let away = |tip: &Point3<f64>| {
@@ -171,8 +171,8 @@ fn aways(original: &[Vec<f64>], motion: &[Vec<f64>]) -> Vec<(Vector3<f64>, Point
     tips(motion).into_iter().map(|(tip, radius)| (away(&tip), tip, radius)).collect()
 }
 
-/// Where a motion passes the farthest from the original along an axis: the axis, the place of the
-/// surface of the tool, and the distance.
+/// The largest distance from the original along an axis: the axis, the point on the tool surface,
+/// and the distance.
 fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
     let all = aways(&kept.motion, &free.motion).into_iter().map(|(away, tip, radius)| {
         let mut axis = Vector3::zeros();
@@ -182,8 +182,8 @@ fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
     all.max_by(|a, b| a.2.total_cmp(&b.2)).unwrap()
 }
 
-/// A small box that a motion enters and the original does not, as far out as can be: its middle and
-/// half its width.
+/// A small box that a motion enters and the original does not, as far from the original as
+/// possible: its centre and half its width.
 fn small_box(original: &[Vec<f64>], motion: &[Vec<f64>]) -> (Point3<f64>, f64) {
     let mut all = aways(original, motion);
     all.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
@@ -195,7 +195,7 @@ fn small_box(original: &[Vec<f64>], motion: &[Vec<f64>]) -> (Point3<f64>, f64) {
     far.clone().find(|(middle, half)| distance(original, middle) > corner * half).unwrap()
 }
 
-/// The least distance of arm and tool from a point.
+/// Least distance of arm and tool from a point.
 fn distance(motion: &[Vec<f64>], point: &Point3<f64>) -> f64 {
     let model = find(ROBOT).unwrap();
     let body = Body::new(&model, TOOL.into(), &[]);
@@ -214,7 +214,7 @@ fn free_paths_go_round_a_box() {
     let (axis, point, depth) = excursion(&kept, &free);
     assert!(depth > 0.02, "the free motion leaves the original by {depth} m only");
 
-    // Its face cuts off half of what the free motion goes farther.
+    // The face of the box cuts off half of the additional distance of the free motion.
     let face = point - axis * (0.5 * depth);
     let across = Vector3::repeat(WIDTH) - axis.abs() * WIDTH;
     let (one, other) = (face - across, face + across + axis * (2.0 * WIDTH));
@@ -231,7 +231,7 @@ fn free_paths_go_round_a_box() {
     assert_eq!(boxed.result["segments"][1]["kind"], "path");
 }
 
-/// A path that is kept is kept within millimetres: those must not be in a box, either.
+/// A kept path has a tolerance of millimetres, and these must not enter a box either.
 #[test]
 fn kept_paths_and_their_polygons_go_round_a_box() {
     let kept = optimized("", &[]);
@@ -286,7 +286,7 @@ fn free_paths_stay_on_one_side_of_a_plane() {
     let (side, level, depth) = sides.max_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
     assert!(depth > 1e-3, "the free motion goes {depth} m farther only");
 
-    // A normal of any length.
+    // A normal vector of any length.
     let [x, y, z]: [f64; 3] = (2.0 * side).into();
     let config = format!("[[keep_out]]\nplane = [{x:?}, {y:?}, {z:?}, {:?}]\n", 2.0 * level);
     let planar = optimized(&config, &FREE);

@@ -1,5 +1,5 @@
-//! Forward and inverse kinematics against each other, against finite
-//! differences and against an independent solver.
+//! Forward and inverse kinematics compared with each other, with finite differences and with an
+//! independent solver.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -12,12 +12,12 @@ use joulepath::arm::robot::{Coupling, Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-/// Largest difference of angles that count as one \[rad\].
+/// Tolerance of angles \[rad\].
 const SAME_ANGLE: f64 = 1e-8;
-/// Largest difference of poses that count as one \[m\] and \[rad\].
+/// Tolerance of poses \[m\] and \[rad\].
 const SAME_POSE: f64 = 1e-10;
 
-/// A serial arm with and one without an elbow offset, and one with rods.
+/// Serial arms with and without an elbow offset, and one with rods.
 fn robots() -> [Model; 3] {
     let rods = "extends = \"IRB6640-180/2.55\"\nname = \"rods\"\n\
                 [kinematics]\ncoupling = \"parallelogram\"\n";
@@ -98,7 +98,7 @@ proptest! {
         let model = irb1600();
         let q = inside(&model, shares).map(|angle| 0.99 * angle);
         let near: [f64; 6] = std::array::from_fn(|i| q[i] + step[i]);
-        // Within a step of a singular pose another branch may be the nearest one.
+        // Within a step of a singularity another branch may be the nearest one.
         let apart = singularity(&model, &q).unwrap();
         let least = apart.wrist.min(apart.elbow).min(apart.shoulder);
         prop_assume!(least > 0.05 && limits_ok(&model, &q).is_ok());
@@ -162,13 +162,13 @@ fn deg(degrees: [f64; 6]) -> [f64; 6] {
     degrees.map(f64::to_radians)
 }
 
-/// Forearm upright above the IRB1600's axis 1 \[deg\].
+/// The wrist centre of the IRB1600 is above axis 1 \[deg\].
 fn shoulder_singular() -> [f64; 6] {
     let q2 = -(0.15_f64 / 0.7).asin().to_degrees();
     [10.0, q2, -90.0 - q2, 10.0, 20.0, 30.0]
 }
 
-/// Poses at which solutions meet: each solution still gives the pose.
+/// At poses with coinciding solutions, each solution gives the pose.
 #[test]
 fn singular_poses_have_finite_solutions() {
     let shoulder = shoulder_singular();
@@ -188,8 +188,8 @@ fn singular_poses_have_finite_solutions() {
     }
 }
 
-/// Random arms of the whole catalogue in one, two or three singularities at once, and at the
-/// edge of their reach.
+/// Random arms of the whole catalogue in one, two or three singularities at once, and at the limit
+/// of their reach.
 #[test]
 fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
     for name in joulepath::arm::robot::names() {
@@ -204,7 +204,7 @@ fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
                 q[4] = 0.0;
             }
             if n % 3 == 0 {
-                // Stretched: the forearm goes on where the upper arm ends.
+                // Extended: the forearm continues the upper arm.
                 let bend = model
                     .kinematics
                     .opw
@@ -226,7 +226,7 @@ fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
                     || limits_ok(&model, &q).is_err(),
                 "{name} {q:?}"
             );
-            // With the wrist centre on axis 1 the quarter turns of the others hang on its angle.
+            // With the wrist centre on axis 1, the other quarter turns depend on its angle.
             let on_axis = singularity(&model, &q).is_some_and(|found| found.shoulder < 1e-6);
             match ik_conf(&model, &pose, conf_of(&model, &q)) {
                 Ok(found) => assert!(found.iter().all(|x| x.is_finite()), "{name} {q:?}"),
@@ -248,7 +248,7 @@ fn wrist_singularity_keeps_joint_4() {
     let q = deg([10.0, 20.0, 30.0, 70.0, 0.0, 50.0]);
     let found = ik_near(&model, &fk(&model, &q), &q).unwrap();
     assert!(found.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME_ANGLE), "{found:?}");
-    // The configuration asks for joint 4 in its second quarter turn.
+    // The configuration requires joint 4 in its second quarter turn.
     let conf = Conf { cf1: 0, cf4: 1, cf6: 0, cfx: 0 };
     let found = ik_conf(&model, &fk(&model, &q), conf).unwrap();
     assert!((found[3].to_degrees() - 90.0).abs() < 1e-6, "{found:?}");
@@ -320,7 +320,7 @@ fn nearest_solution_follows_a_line_through_half_a_turn() {
     let pose = fk(&model, &start);
     let mut q = start;
     for step in 1..=200 {
-        // 0.4 m to the side while the tool turns by a quarter.
+        // 0.4 m to the side during a quarter turn of the tool.
         let share = f64::from(step) / 200.0;
         let shift = Translation3::new(0.0, 0.4 * share, 0.0);
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -1.5 * share);

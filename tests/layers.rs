@@ -1,4 +1,4 @@
-//! Who may import whom: the wings and rooms of `docs/architecture.md`, checked against the sources.
+//! Import rules: the wings and rooms of `docs/architecture.md`, checked against the sources.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -12,7 +12,7 @@ use layer_paths::circles::circles;
 use layer_paths::{Named, named};
 use rust_source::SourceFile;
 
-/// A folder of a wing, and what it may import besides itself: rooms, or wings for all of their rooms.
+/// A folder of a wing, and its permitted imports: rooms, or wings for all of their rooms.
 struct Room {
     name: &'static str,
     imports: &'static [&'static str],
@@ -32,7 +32,7 @@ const fn wing(name: &'static str, rooms: &'static [Room]) -> Wing {
     Wing { name, rooms }
 }
 
-/// Lowest first, the rooms of a wing too.
+/// From the lowest to the highest; the rooms of a wing, too.
 const WINGS: [Wing; 7] = [
     wing(
         "rapid",
@@ -97,11 +97,11 @@ const WINGS: [Wing; 7] = [
     ),
 ];
 
-/// Something that only some files may name.
+/// A name that only some files may use.
 struct Reserved {
     /// A crate or a module of the standard library.
     path: &'static [&'static str],
-    /// Files, or folders with a `/` at the end.
+    /// Files, or folders with a trailing `/`.
     places: &'static [&'static str],
     why: &'static str,
 }
@@ -156,7 +156,7 @@ const RESERVED: [Reserved; 15] = [
     Reserved { path: &["std", "net"], places: FILES_AND_TERMINALS, why: PURE },
 ];
 
-/// The rooms in their order, each with the name of its wing.
+/// All rooms in order, each with the name of its wing.
 fn rooms() -> impl Iterator<Item = (&'static str, &'static Room)> {
     WINGS.iter().flat_map(|wing| wing.rooms.iter().map(|room| (wing.name, room)))
 }
@@ -165,7 +165,7 @@ fn wing_named(name: &str) -> Option<&'static Wing> {
     WINGS.iter().find(|wing| wing.name == name)
 }
 
-/// The room of a path of names below the crate's root; `None` for the root and a wing's `mod.rs`.
+/// The room of a path below the crate's root; `None` for the root and a wing's `mod.rs`.
 fn room_of(wing: &str, next: Option<&str>) -> Option<&'static Room> {
     let wing = wing_named(wing)?;
     match wing.rooms {
@@ -180,13 +180,13 @@ fn room_of_file(path: &str) -> Option<&'static Room> {
     room_of(parts.next()?, parts.next())
 }
 
-/// The entry of a room's table that allows it to import `to`.
+/// The entry of a room's table that permits the import of `to`.
 fn entry(from: &Room, to: &Room) -> Option<&'static str> {
     let wing = rooms().find(|(_, room)| room.name == to.name).map(|(wing, _)| wing);
     from.imports.iter().copied().find(|entry| *entry == to.name || Some(*entry) == wing)
 }
 
-/// What a file does that the tables forbid, one line each.
+/// Violations of the tables in a file, one line each.
 fn violations(path: &str, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for Named { line, path: names } in named(path, text) {
@@ -212,7 +212,7 @@ fn violations(path: &str, text: &str) -> Vec<String> {
     found
 }
 
-/// Why a file may not name `crate::wing::next`.
+/// The reason why a file may not import `crate::wing::next`.
 fn import(path: &str, wing: &str, next: Option<&str>) -> Option<String> {
     let from = room_of_file(path)?;
     if wing_named(wing).is_none() {
@@ -276,7 +276,7 @@ fn rooms_are_in_order() {
     }
 }
 
-/// Entries of the table that no `use` needs, one line each.
+/// Entries of the table without a corresponding `use`, one line each.
 fn unused_entries(sources: &[SourceFile]) -> Vec<String> {
     let mut used = BTreeSet::new();
     for file in sources {
@@ -312,7 +312,7 @@ fn files_import_each_other_in_no_circle() {
     assert!(circles.is_empty(), "files that import each other:\n    {}", shown.join("\n\n    "));
 }
 
-/// The table in the documentation is the one above.
+/// The documentation shows the table of this file.
 #[test]
 fn documentation_shows_the_rooms() {
     let shown = |room: &Room| match room.imports {
@@ -328,7 +328,7 @@ fn documentation_shows_the_rooms() {
     assert!(text.contains(&format!("```\n{table}```")), "docs/architecture.md lacks:\n{table}");
 }
 
-/// Sources that break a rule each, and what has to be said of them.
+/// Sources with a violation each, and the expected message.
 #[test]
 fn forbidden_imports_are_found() {
     let cases = [
@@ -357,7 +357,7 @@ fn forbidden_imports_are_found() {
     }
 }
 
-/// Sources that break none.
+/// Sources without a violation.
 #[test]
 fn allowed_imports_are_left_alone() {
     let cases = [
@@ -394,7 +394,7 @@ fn allowed_imports_are_left_alone() {
     }
 }
 
-/// Sources with a circle and without.
+/// Sources with and without a cycle.
 #[test]
 fn circles_are_found() {
     let file = |path: &str, text: &str| SourceFile { path: path.into(), text: text.into() };
@@ -402,7 +402,7 @@ fn circles_are_found() {
     let a = file("src/rapid/ir/a.rs", "use super::b::B; pub struct A;");
     let b = file("src/rapid/ir/b.rs", "#[cfg(test)] mod tests { use super::*; }");
     assert_eq!(circles(&[parent.clone(), a.clone(), b]), [[""; 0]; 0]);
-    // Through the name that the parent exports, and through the one that it calls.
+    // Through the parent's export, and through the name that the parent calls.
     let to_sibling = file("src/rapid/ir/b.rs", "use super::a;");
     assert_eq!(circles(&[a.clone(), to_sibling]), [["src/rapid/ir/a.rs", "src/rapid/ir/b.rs"]]);
     let to_parent = file("src/rapid/ir/b.rs", "use super::A;");
@@ -412,7 +412,7 @@ fn circles_are_found() {
     );
 }
 
-/// An entry counts as used only if a file names what it allows.
+/// An entry counts as used only if a file names a permitted item.
 #[test]
 fn unused_entries_are_found() {
     let source =
@@ -425,7 +425,7 @@ fn unused_entries_are_found() {
     assert!(!unused("use crate::rapid::text::Span;"));
 }
 
-/// Each public module of the front door with the names that it exports, the root first.
+/// Each public module of the root with its exported names, the root first.
 fn exported(source: &str) -> String {
     let module = |part: &str| {
         let name = part.split_once(" {").map_or("", |(name, _)| name);
@@ -445,7 +445,7 @@ fn exported(source: &str) -> String {
 #[test]
 fn exported_names_are_these() {
     let source = fs::read_to_string("src/lib.rs").unwrap();
-    // The modules of the front door stand behind the declarations of the wings.
+    // The exports follow the declarations of the wings.
     let doors = source.rfind("pub mod tool;").unwrap() + "pub mod tool;".len();
     insta::assert_snapshot!("exported_names", exported(&source[doors..]));
 }

@@ -1,4 +1,4 @@
-//! `lint` and `rule` as commands: exit codes, configuration, baselines, fixes, backups.
+//! The commands `lint` and `rule`: exit codes, configuration, baselines, fixes, backups.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -19,7 +19,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// A folder with one of the programs of `fixtures/lint`.
+/// A folder with a program of `fixtures/lint`.
 fn folder(name: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let from = Path::new("fixtures/lint").join(name);
@@ -85,7 +85,7 @@ fn a_baseline_takes_back_what_is_known() {
     let before = codes(&["--write-baseline", "known.json"], folder.path());
     assert!(!before.is_empty());
     assert!(codes(&["--baseline", "known.json"], folder.path()).is_empty());
-    // What moves is known, what is new is not.
+    // Moved findings are known, new ones are not.
     let path = folder.path().join("Cell.mod");
     let moved = fs::read_to_string(&path).unwrap().replacen("    VAR", "\n\n    VAR", 1);
     let new = moved.replacen(
@@ -111,7 +111,7 @@ fn fixes_are_shown_and_written() {
     assert_eq!(diff.lines().filter(|line| line.starts_with("-  ")).count(), 1, "{diff}");
     assert!(diff.contains("+        MoveJ Offs(pAUp,-50,450,100),v1500,z50,tGripper"), "{diff}");
     assert_eq!(fs::read(&path).unwrap(), before);
-    // What has to be looked at first is not applied by --fix alone.
+    // `--fix` alone does not apply fixes that need a review.
     joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
     assert_eq!(fs::read(&path).unwrap(), before);
     let output = joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
@@ -120,7 +120,7 @@ fn fixes_are_shown_and_written() {
     assert_ne!(after, before);
     joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
     assert_eq!(fs::read(&path).unwrap(), after);
-    // Without a robot nothing can be tried.
+    // Without a robot no fix can be verified.
     fs::write(&path, &before).unwrap();
     joulepath(&[&["lint", "."], &UNSAFE[..]].concat(), folder.path());
     assert_eq!(fs::read(&path).unwrap(), before);
@@ -150,7 +150,7 @@ fn protected_files_stay_and_links_stay_links() {
     assert_ne!(fs::read(&path).unwrap(), before);
 }
 
-/// One program with a number that nobody means takes no budget of the others away.
+/// A program with an absurd number does not use up the budget of the others.
 #[test]
 fn endless_energy_is_not_added() {
     let folder = folder("EW101_unneeded_stop_point.mod");
@@ -185,7 +185,7 @@ fn nobody_has_to_read_on() {
     }
 }
 
-/// Without a robot nobody knows joules: none are not 0 J.
+/// Without a robot, unknown joules are not 0 J.
 #[test]
 fn statistics_tell_joules_where_there_are_some() {
     let folder = folder("EW102_stop_in_line.mod");
@@ -207,7 +207,7 @@ fn what_has_no_joules_is_told() {
     assert!(lint(&[]).contains("nothing has joules: no robot is named"));
     let bare = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
     fs::write(folder.path().join("bare.toml"), bare).unwrap();
-    // An arm of which nobody knows the bodies gets estimated ones.
+    // An arm with unknown bodies has estimated ones.
     assert_eq!(lint(&["--robot", "bare.toml"]), "");
     assert!(lint(&[&ROBOT[..], &["--entry", "nowhere"]].concat()).contains("--entry NAME"));
     assert_eq!(lint(&ROBOT), "");
@@ -215,7 +215,7 @@ fn what_has_no_joules_is_told() {
     assert!(said(&["lint", locked.to_str().unwrap()]).contains("is an encoded module"));
 }
 
-/// A backup with a signal for energy saving, used or not, and a brake timeout or none.
+/// A backup with or without use of a signal for energy saving, and with or without a brake timeout.
 fn backup(io: &str, motion: &str) -> tempfile::TempDir {
     let program = "MODULE M\n    PROC main()\n        WaitTime 60;\n        WaitTime 5;\n    \
                    ENDPROC\nENDMODULE\n";
@@ -240,7 +240,7 @@ fn backups_are_asked_for_settings_that_save() {
                   \"DI\" -Label \"System Enable Energy Saving\"\n";
     let unused = backup(signal, "MOC:CFG_1.0:6:0::\n");
     assert_eq!(codes(&["--select", "system"], unused.path()), ["EW801", "EW802"]);
-    // A label that repeats the name ties nothing; a statement of another task does.
+    // A label with the same name does not connect the signal; a statement of another task does.
     let labelled = signal.replace("System Enable Energy Saving", "diSyEnEnSav");
     let labelled = backup(&labelled, "MOC:CFG_1.0:6:0::\n");
     assert_eq!(codes(&["--select", "EW802"], labelled.path()), ["EW802"]);
@@ -255,7 +255,7 @@ fn backups_are_asked_for_settings_that_save() {
     assert!(codes(&["--select", "system"], used.path()).is_empty());
 }
 
-/// Three plants and three near misses of each rule that asks for a backup.
+/// Three plants and three near misses of each rule that needs a backup.
 #[test]
 fn backups_are_planted() {
     let motion = "MOC:CFG_1.0:6:0::\n";
@@ -312,7 +312,7 @@ fn manuals_are_shown() {
     assert!(text(&wrong.stderr).contains("did you mean EW101"), "{}", text(&wrong.stderr));
 }
 
-/// A folder of unrelated programs, each with its own entry, is linted file by file.
+/// A folder of unrelated programs with an entry each is linted file by file.
 #[test]
 fn unrelated_programs_stand_alone() {
     let output = joulepath(
@@ -325,7 +325,7 @@ fn unrelated_programs_stand_alone() {
     assert!(has("EW101") && has("EW405") && has("EW703"));
 }
 
-/// Nothing that is on disk makes it stop.
+/// No file content makes the command fail.
 #[test]
 fn broken_programs_are_linted_too() {
     for folder in ["fixtures/syntax/err", "fixtures/syntax/ok", "fixtures/hard", "fixtures/backup"]
@@ -338,7 +338,7 @@ fn broken_programs_are_linted_too() {
     }
 }
 
-/// The hook for pre-commit is told which files have changed; the rest of their program counts too.
+/// The pre-commit hook receives the changed files and also reads the rest of their program.
 #[test]
 fn the_hook_looks_at_whole_programs() {
     let hook = fs::read_to_string(".pre-commit-hooks.yaml").unwrap();
@@ -356,7 +356,7 @@ fn the_hook_looks_at_whole_programs() {
     let output = joulepath(&args, folder.path());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     assert_eq!(text(&output.stdout), "");
-    // One of the files alone would be remarked on.
+    // A single file alone would have a finding.
     let alone = joulepath(&["lint", "Cell.mod", "--format", "concise"], folder.path());
     assert!(text(&alone.stdout).contains("EW704"), "{}", text(&alone.stdout));
 }

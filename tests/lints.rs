@@ -1,4 +1,4 @@
-//! House rules that clippy does not know.
+//! Rules of the project that clippy does not check.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -7,13 +7,13 @@ mod rust_source;
 use rust_source::files;
 use rust_source::tokens::{Token, tokens};
 
-/// Lines beyond which a file has more than one purpose.
+/// Largest number of lines of a file.
 const MAX_LINES: usize = 500;
 
-/// Stands for the rest of an attribute that gives no reason.
+/// Stands for the rest of an attribute without a reason.
 const BARE: &str = "";
 
-/// Signs of unfinished work and of silenced lints, as sequences of tokens.
+/// Marks of unfinished work and of disabled lints, as sequences of tokens.
 const FORBIDDEN: [(&[&str], &str); 4] = [
     (
         &["[", "allow", "(", BARE],
@@ -34,7 +34,7 @@ fn find(source: &[Token<'_>], sequence: &[&str]) -> Option<usize> {
     (0..source.len()).find(|i| starts_at(*i)).map(|i| source[i].line)
 }
 
-/// Whether an attribute gives no reason, from the inside of its parenthesis on.
+/// Whether an attribute has no reason; the tokens start inside its parenthesis.
 fn is_bare(attribute: &[Token<'_>]) -> bool {
     let mut inside = attribute.iter().take_while(|token| token.text != "]");
     !inside.any(|token| token.text == "reason")

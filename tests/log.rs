@@ -1,4 +1,4 @@
-//! Logs: differentiation, other names of columns, Parquet.
+//! Logs: differentiation, column names, Parquet.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -7,8 +7,7 @@ use std::fmt::Write;
 use insta::assert_snapshot;
 use joulepath::learn::log::{Channel, ColumnMap, LogError, derivatives, read};
 
-/// A joint that swings through 0.6 rad at 0.4 Hz and less at 1.1 Hz: position, rate,
-/// acceleration.
+/// A joint that swings by 0.6 rad at 0.4 Hz and by less at 1.1 Hz: position, rate, acceleration.
 fn swing(t: f64) -> [f64; 3] {
     let parts = [(0.6, 2.5), (0.1, 6.9)];
     [
@@ -18,7 +17,7 @@ fn swing(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Even noise in (−1, 1), of variance 1/3.
+/// Uniform noise in (−1, 1) with the variance 1/3.
 fn noise(index: usize) -> f64 {
     let mut z = (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -39,7 +38,7 @@ fn errors(t: &[f64], x: &[f64]) -> [f64; 2] {
 
 #[test]
 fn a_polynomial_is_differentiated_exactly() {
-    // Uneven times: whatever the window, the polynomial is its own fit.
+    // With uneven times, the fit of a polynomial is exact for any window.
     let t: Vec<f64> = (0..60).map(|i| 0.01 * f64::from(i) + 0.003 * noise(i as usize)).collect();
     let x: Vec<f64> = t.iter().map(|t| 2.0 - t + 3.0 * t * t - 4.0 * t.powi(4)).collect();
     for (t, found) in t.iter().zip(derivatives(&t, &x)) {
@@ -56,7 +55,7 @@ fn noise_is_smoothed_and_nothing_is_late() {
     let [rate, acceleration] = errors(&t, &clean);
     assert!(rate < 1e-5 && acceleration < 1e-3, "{rate} {acceleration}");
 
-    // A resolver behind a gear, 0.1 mrad: differences alone would give 20 mrad/s and 9 rad/s².
+    // A resolver with errors of 0.1 mrad: differences would err by 20 mrad/s and 9 rad/s².
     let logged: Vec<f64> = clean.iter().enumerate().map(|(i, x)| x + 1e-4 * noise(i)).collect();
     let [rate, acceleration] = errors(&t, &logged);
     assert!(rate < 1e-3 && acceleration < 0.05, "{rate} {acceleration}");
@@ -69,7 +68,7 @@ fn rest_is_rest_and_gaps_are_not_bridged() {
     let moving = derivatives(&t, &still).iter().filter(|at| at.unwrap()[0] != 0.0).count();
     assert!(moving < 15, "{moving} of 300 samples at rest have a rate");
 
-    // A jump over a gap of one second is not a motion; two rows alone have no rate.
+    // A jump across a gap of one second is not a motion; two rows alone have no rate.
     let late = |i: usize| if i < 100 { 0.0 } else { 1.0 } + if i < 298 { 0.0 } else { 1.0 };
     let t: Vec<f64> = t.iter().enumerate().map(|(i, t)| t + late(i)).collect();
     let x: Vec<f64> = t.iter().enumerate().map(|(i, t)| 0.2 * t + late(i)).collect();
@@ -93,7 +92,7 @@ fn columns_have_other_names() {
     let log = read(csv("Time [s];Axis 1;q1", ";").as_bytes(), &map).unwrap();
     assert_eq!(log.channels, [Channel::Time, Channel::Position(0), Channel::Torque(0)]);
     assert!((log.values[1][11] - 11.0_f64.to_radians()).abs() < 1e-12);
-    // Spaces separate as well.
+    // Spaces as delimiters.
     let log = read(csv("t q1 power", " ").as_bytes(), &ColumnMap::default()).unwrap();
     assert_eq!(log.column(Channel::Power).unwrap()[0], 5.0);
     // A quoted decimal comma.
@@ -195,7 +194,7 @@ mod parquet_files {
         for i in (0..good.len()).step_by(7) {
             let mut bad = good.clone();
             bad[i] ^= 0x5A;
-            // Whatever comes out, nothing ends the program.
+            // The reader may fail, but must not panic.
             let _ = read(&bad, &ColumnMap::default());
         }
     }

@@ -1,4 +1,4 @@
-//! The language server through its protocol, as a process.
+//! Tests the language server as a process through its protocol.
 
 #![cfg(feature = "lsp")]
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
@@ -69,7 +69,7 @@ impl Client {
         answer["result"].clone()
     }
 
-    /// The error that a request gets.
+    /// The error in the answer to a request.
     fn ask_wrongly(&mut self, method: &str, params: &Value) -> Value {
         self.answer(method, params)["error"].clone()
     }
@@ -86,12 +86,12 @@ impl Client {
         }
     }
 
-    /// The diagnostics that come next.
+    /// The next diagnostics.
     fn told(&mut self) -> Vec<Value> {
         self.told_of().1
     }
 
-    /// The name of a document and the diagnostics that come next, of it.
+    /// The document of the next diagnostics, and these.
     fn told_of(&mut self) -> (String, Vec<Value>) {
         let message = self.read();
         assert_eq!(message["method"], "textDocument/publishDiagnostics", "{message}");
@@ -125,7 +125,7 @@ fn an_editor_is_served() {
     let document = json!({ "uri": uri });
     let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
 
-    // What the editor holds counts, not what is on disk.
+    // The text of the editor has priority over the file.
     let opened = json!({
         "textDocument": { "uri": uri, "languageId": "rapid", "version": 1, "text": text }
     });
@@ -150,7 +150,7 @@ fn an_editor_is_served() {
     let edit = &action["edit"]["changes"][&uri][0];
     assert_eq!(edit["newText"], "z50");
 
-    // The fix, as an incremental change: nothing of that kind is left.
+    // The fix as an incremental change removes all findings of that kind.
     let change = json!({
         "textDocument": { "uri": uri, "version": 2 },
         "contentChanges": [{ "range": edit["range"], "text": edit["newText"] }]
@@ -163,8 +163,8 @@ fn an_editor_is_served() {
     client.stop();
 }
 
-/// With an unknown robot and a folder that does not exist the document is linted alone, without
-/// joules; a malformed request gets an error.
+/// With an unknown robot and a missing folder the document is linted alone, without joules; a
+/// malformed request receives an error.
 #[test]
 fn a_document_is_linted_without_a_robot_and_a_folder() {
     let mut client = Client::start(&json!({ "robot": "no such robot" }));
@@ -198,7 +198,7 @@ fn a_document_is_linted_without_a_robot_and_a_folder() {
     client.stop();
 }
 
-/// A change is followed by what it means for the open documents of the same program, and for no
+/// After a change, diagnostics are updated for the open documents of the same program, and for no
 /// other document of the folder.
 #[test]
 fn changes_are_told_where_they_matter() {
@@ -230,7 +230,7 @@ fn changes_are_told_where_they_matter() {
     let mut names = [client.told_of().0, client.told_of().0];
     names.sort();
     assert_eq!(names, ["Cell.mod", "Work.mod"]);
-    // Without its call the procedure is dead, and that is told in the other document.
+    // Without its call the procedure is dead, which is reported in the other document.
     let change = json!({
         "textDocument": { "uri": cell, "version": 2 },
         "contentChanges": [{ "text": paths[1].1.replace("rWork;\n", "") }],
@@ -243,8 +243,8 @@ fn changes_are_told_where_they_matter() {
     client.stop();
 }
 
-/// What the editor held of a document stands for what is on disk until it is closed; then the
-/// open documents of the same program are told anew, with the hovers and fixes that go with it.
+/// The text of the editor replaces the file until the document is closed; then the diagnostics,
+/// hovers and fixes of the program's other open documents are updated.
 #[test]
 fn closing_a_document_is_told_to_the_others() {
     let folder = tempfile::tempdir().unwrap();

@@ -15,9 +15,9 @@ use joulepath::tool::emit::{
 };
 use joulepath::tool::retrofit::{Source, read_program};
 
-/// Points of each stream: two of them do not fit into one module.
+/// Points of each stream: two streams do not fit into one module.
 const POINTS: usize = 900;
-/// s.
+/// Interval of the points, s.
 const INTERVAL: f64 = 0.05;
 /// Rounding of emitted positions, rad.
 const ROUNDING: f64 = 2e-8;
@@ -31,7 +31,7 @@ const PROGRAM: &str = "MODULE M\n\
 const ENDS: [[f64; 6]; 2] =
     [[0.0, 0.0, 0.0, 0.0, 30.0, 0.0], [50.0, 20.0, 10.0, -20.0, 40.0, 60.0]];
 
-/// A way from one end to the other that eases in and out.
+/// A smooth movement between the two ends.
 fn points(from: usize) -> Vec<[f64; 6]> {
     let (a, b) = (ENDS[from], ENDS[1 - from]);
     let eased = |i: usize| {
@@ -122,7 +122,7 @@ fn each_module_holds_what_it_can_and_all_run_as_one_program() {
             let loops = text.matches("FOR i FROM 1 TO 899 DO").count();
             let expected = usize::from(layout != Layout::Plain && file.path != "m.mod");
             assert_eq!(loops, expected, "{layout:?} {}", file.path);
-            // The functions of the guards stand in one module only.
+            // Only one module contains the guard functions.
             let functions = text.contains("FUNC bool jpAt(");
             assert_eq!(functions, file.path == "Joulepath.mod");
         }

@@ -1,4 +1,4 @@
-//! The main job through the binary: the contract of its JSON, what it writes, what it says.
+//! `optimize` through the binary: contract of its JSON, output files, messages.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::collections::BTreeMap;
@@ -9,9 +9,9 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// End points may differ from the programmed ones by this, rad.
+/// Tolerance of end points, rad.
 const ENDPOINT_TOLERANCE: f64 = 1e-4;
-/// Share of the eligible moving time that has to be rewritten.
+/// Least share of the eligible moving time that is rewritten.
 const REWRITTEN_SHARE: f64 = 0.8;
 
 fn joulepath(args: &[&str]) -> Output {
@@ -32,7 +32,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Settings under which snapshots do not hang on the last digits of a platform's sine.
+/// Settings that remove platform-dependent last digits from snapshots.
 fn snapshots() -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.add_filter(r"(\d+\.\d)\d+", "$1…");
@@ -53,7 +53,7 @@ fn pick_place_keeps_the_contract() {
     assert!(number(&result, "/verification/endpoint_error_rad") <= ENDPOINT_TOLERANCE);
     assert!(number(&result, "/motion_saving_percent") > 0.0);
     assert!(number(&result, "/optimized/cycle_s") <= number(&result, "/original/cycle_s"));
-    // The mill takes 12 s, in which closed brakes spare 60 W of their coils besides the holding.
+    // In the mill's 12 s, closed brakes save the 60 W of their coils and the holding power.
     assert!(number(&result, "/potential_j") > 60.0 * 11.0, "{}", result["potential_j"]);
 
     let (mut eligible, mut rewritten) = (0.0, 0.0);
@@ -67,7 +67,7 @@ fn pick_place_keeps_the_contract() {
             eligible += time;
             rewritten += time;
             assert!(number(segment, "/points") > 0.0);
-            // One that gives time to the others may take more energy itself.
+            // A run that gives time to the others may need more energy itself.
             let quicker = number(segment, "/time_after_s") < time;
             let saves = number(segment, "/energy_after_j") < number(segment, "/energy_before_j");
             assert!(quicker || saves, "{segment}");
@@ -99,12 +99,12 @@ fn what_was_written_simulates_as_promised() {
     let waits = simulated["waits"].as_array().unwrap();
     let sum: f64 = moves.iter().chain(waits).map(|entry| number(entry, "/duration_s")).sum();
     assert!((sum - number(&simulated, "/cycle_s")).abs() < 1e-9, "moves and waits tile the cycle");
-    // Untouched files are the same bytes.
+    // Other files are unchanged.
     for name in ["CellData.mod", "Pallet.sys"] {
         let original = fs::read(Path::new("fixtures/pick_place").join(name)).unwrap();
         assert_eq!(fs::read(Path::new(out).join(name)).unwrap(), original, "{name}");
     }
-    // A second time there is nothing left to do.
+    // A second run finds no saving.
     let again = json(&["optimize", out, "--robot", robot, "--format", "json"]);
     assert_eq!(number(&again, "/saving_percent"), 0.0);
 }
@@ -124,7 +124,7 @@ fn paper_order_holds() {
         let found = segments.iter().find(|s| s["line_first"] == line).unwrap();
         found[key].as_f64().unwrap()
     };
-    // B at vmax stands in line 78, D at vmax in line 94, B at v300 in line 68.
+    // Lines: B at vmax 78, D at vmax 94, B at v300 68.
     let (straight, joint, slow) = (78, 94, 68);
     let fastest = segment(&time, joint, "time_after_s");
     assert!(fastest < segment(&time, straight, "time_before_s"), "time-optimal beats the line");
@@ -134,7 +134,7 @@ fn paper_order_holds() {
             "energy-optimal is below the controller's move at equal time"
         );
     }
-    // Slowing down: from vmax to v1000 the same line costs less motion energy.
+    // The same line at v1000 instead of vmax needs less motion energy.
     let half = 72;
     let idle_w = 210.0;
     let motion = |line| {
@@ -144,7 +144,7 @@ fn paper_order_holds() {
     assert!(segment(&energy, slow, "time_before_s") > segment(&energy, half, "time_before_s"));
 }
 
-/// What lies in a folder, with its bytes.
+/// All files of a folder with their bytes.
 fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -180,7 +180,7 @@ fn in_place_is_taken_back_to_the_byte() {
         assert!(joulepath(&args).status.success());
         assert_ne!(fs::read(&program).unwrap(), before[&program]);
         assert!(cell.join("Joulepath.mod").is_file());
-        // The originals lie outside of what is loaded.
+        // The originals are outside the loaded folder.
         let kept = folder.path().join("cell.joulepath-undo");
         assert_eq!(fs::read(kept.join("files/waits.mod")).unwrap(), before[&program]);
         let names = fs::read_dir(&cell).unwrap().map(|entry| entry.unwrap().file_name());
@@ -210,7 +210,7 @@ fn what_was_changed_since_is_not_taken_back() {
     let again = joulepath(&args);
     assert_eq!(again.status.code(), Some(2));
     assert!(text(&again.stderr).contains("--undo"), "{}", text(&again.stderr));
-    // What somebody has changed stays, and everything else with it.
+    // An edited file remains, and so do all others.
     for changed in ["waits.mod", "Joulepath.mod"] {
         fs::write(&program, &written).unwrap();
         fs::write(cell.join(changed), "MODULE M\nENDMODULE\n").unwrap();
@@ -221,7 +221,7 @@ fn what_was_changed_since_is_not_taken_back() {
         assert!(said.contains(&format!("{changed}' was changed since")), "{said}");
         assert_eq!(tree(folder.path()), now);
     }
-    // What is as it was already, or gone already, is no obstacle.
+    // Already restored or removed files are no obstacle.
     fs::remove_file(cell.join("Joulepath.mod")).unwrap();
     fs::write(&program, &original).unwrap();
     assert!(joulepath(&["optimize", path, "--undo"]).status.success());
@@ -301,7 +301,7 @@ fn unusable_input_names_the_way_out() {
     snapshots().bind(|| insta::assert_snapshot!("messages", said));
 }
 
-/// A program with these declarations and statements of `main`, two of them movements.
+/// A program with these declarations and statements of `main`, which include two movements.
 fn program(declarations: &str, statements: &str) -> String {
     format!(
         "MODULE M\n\
@@ -323,7 +323,7 @@ const KNOWN: [&str; 2] =
     ["--robot", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml")];
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 
-/// What `command` prints on standard error, without what is assumed, and its exit code.
+/// Standard error of a command without its assumptions, and the exit code.
 fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
     let output = joulepath(&[args, &ROBOT].concat());
     let message = text(&output.stderr).replace(folder.to_str().unwrap(), "[folder]");
@@ -331,7 +331,7 @@ fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
     (lines.flat_map(|line| [line, "\n"]).collect(), output.status.code())
 }
 
-/// The same for the program of one file.
+/// Standard error for a program of one file.
 fn said_of(declarations: &str, statements: &str, args: &[&str]) -> (String, Option<i32>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
@@ -339,7 +339,7 @@ fn said_of(declarations: &str, statements: &str, args: &[&str]) -> (String, Opti
     said(folder.path(), &[&["optimize", path.to_str().unwrap()], args].concat())
 }
 
-/// The JSON of a retrofit of such a program.
+/// The JSON of a retrofit of a program.
 fn optimized(statements: &str, options: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
@@ -366,7 +366,7 @@ fn the_time_asked_for_has_bounds() {
     snapshots().bind(|| insta::assert_snapshot!("time", all));
 }
 
-/// A takt that the original itself keeps is possible.
+/// A takt that the original keeps is possible.
 #[test]
 fn a_takt_above_the_cycle_is_possible() {
     let folder = tempfile::tempdir().unwrap();
@@ -380,7 +380,7 @@ fn a_takt_above_the_cycle_is_possible() {
     json(&[&args[..], &ROBOT].concat());
 }
 
-/// `ModPos` changes the text of a movement whose target stands in it: no guard sees that.
+/// `ModPos` changes the text of a movement with its target inside, which no guard detects.
 #[test]
 fn movements_with_the_target_in_them_stay() {
     let own = "MoveAbsJ [[30,0,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tP;";
@@ -397,7 +397,7 @@ fn movements_with_the_target_in_them_stay() {
     }
 }
 
-/// Guards compare values: names may be edited everywhere, or get another value.
+/// Guards compare values: a name may be edited or receive another value.
 #[test]
 fn a_name_with_another_value_keeps_the_stream_out() {
     let folder = tempfile::tempdir().unwrap();
@@ -426,14 +426,14 @@ fn a_name_with_another_value_keeps_the_stream_out() {
         }
         assert!(time() > 2.0 * before, "{}", changed[0]);
     }
-    // The zones of streams are their own.
+    // Streams have their own zones.
     let small = "CONST zonedata z200:=[FALSE,1,1,1,1,1,1];\nPROC main";
     fs::write(&files[0], written[0].replacen("PROC main", small, 1)).unwrap();
     fs::write(&files[1], &written[1]).unwrap();
     assert!((time() - before).abs() < 1e-6);
 }
 
-/// The time of a stream is stretched by the operator's override as that of the movements is.
+/// The operator's override scales the duration of streams and movements equally.
 #[test]
 fn streams_for_a_speed_override_take_no_longer() {
     for percent in ["50", "99"] {
@@ -448,7 +448,7 @@ fn streams_for_a_speed_override_take_no_longer() {
     }
 }
 
-/// Strings of RAPID have quotes and backslashes twice.
+/// In strings of RAPID, quotes and backslashes are doubled.
 #[test]
 fn arguments_in_messages_are_strings_of_rapid() {
     let folder = tempfile::tempdir().unwrap();
@@ -489,7 +489,7 @@ fn what_a_message_tells_to_give_does() {
 fn slower_than_pays_has_a_note() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
-    // The stretched arm is held at more power than the pose in which the cycle ends.
+    // The extended arm needs more holding power than the final pose of the cycle.
     let far = "CONST jointtarget jFar:=[[20,85,-5,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
                CONST jointtarget jOut:=[[35,85,-5,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
     let out = "MoveAbsJ jFar,v1000,fine,tP;\nMoveAbsJ jOut,v1000,fine,tP;";
@@ -502,7 +502,7 @@ fn slower_than_pays_has_a_note() {
     assert!(note.contains("m.mod:10)"), "{note}");
 }
 
-/// The original of a longer takt is the original with a wait behind it.
+/// With a longer takt, the original is padded with a wait.
 #[test]
 fn a_longer_time_is_compared_with_a_padded_original() {
     let folder = tempfile::tempdir().unwrap();
@@ -542,13 +542,13 @@ fn a_longer_time_is_compared_with_a_padded_original() {
             assert!(row.is_some_and(|row| row.contains("padding")), "{table}");
         }
     }
-    // In its own time nothing is added.
+    // With its own takt, no wait is added.
     let result = json(&[&["optimize", path, "--format", "json", "--quiet"][..], &KNOWN].concat());
     assert_eq!(number(&result, "/original/padding_s"), 0.0);
 }
 
-/// With assumed limits, too, a run may take the time that it is given. What it loses if the limits
-/// are lower is no more than the original loses: a known wait keeps a reserve for that.
+/// With assumed limits a run may also use additional time. If the true limits are lower, it loses
+/// no more than the original: a known wait keeps a reserve.
 #[test]
 fn given_time_is_used_where_limits_are_assumed() {
     let statements = "WaitTime 0.5;\nMoveAbsJ jB,v1000,fine,tP;\nWaitDI diGo,1;";
@@ -579,10 +579,10 @@ fn given_time_is_used_where_limits_are_assumed() {
     }
 }
 
-/// Share of the cycle by which a retrofit may lose more than the original under lower limits.
+/// Accepted additional loss of a retrofit under lower limits, as a share of the cycle.
 const LOSS: f64 = 0.005;
 
-/// What `command` prints on standard output.
+/// Standard output of a command.
 fn text_of(args: &[&str]) -> String {
     text(&joulepath(args).stdout)
 }
@@ -615,7 +615,7 @@ fn an_unknown_call_is_the_reason_for_what_it_may_change() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     let target = "PERS jointtarget jP:=[[40,10,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];";
-    // A tool that it is handed is taken to stay: nothing in the program writes it.
+    // A tool that is passed counts as constant: no statement of the program writes it.
     let statements = "MoveAbsJ jB,v500,fine,tP;\nrElsewhere jP,tP;\nMoveAbsJ jA,v500,fine,tP;\n\
                       MoveAbsJ jP,v500,fine,tP;";
     fs::write(&path, program(target, statements)).unwrap();
@@ -626,7 +626,7 @@ fn an_unknown_call_is_the_reason_for_what_it_may_change() {
     insta::assert_snapshot!("unknown_call", reasons.join("\n"));
 }
 
-/// A long way of the arm stretched out: points that lie far apart need zones of their size.
+/// A long movement of the extended arm: distant points need larger zones.
 const FAR: &str = "CONST jointtarget jC:=[[-100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
                    CONST jointtarget jD:=[[100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
 
@@ -664,7 +664,7 @@ fn statements_may_stand_close_together() {
 
 #[test]
 fn what_flies_on_into_the_next_pass_of_a_loop_stays() {
-    // The last movement of the loop and the first one are one path from the second pass on.
+    // From the second pass on, the last and the first movement of the loop form one path.
     let flies = |zone: &str| {
         format!(
             "MoveAbsJ jB,v500,fine,tP;\nWHILE TRUE DO\nMoveAbsJ jA,v500,fine,tP;\n\
@@ -749,7 +749,7 @@ fn the_list_of_modules_names_the_new_one() {
     let entry = "\r\n\t<Module>Joulepath.mod</Module>";
     let expected = list.replace("m.mod</Module>", &format!("m.mod</Module>{entry}"));
     assert_eq!(text(&fs::read(out.join("cell.pgf")).unwrap()), expected);
-    // What was written is a whole program.
+    // The output is a complete program.
     let (message, code) = said(&folder, &["simulate", out.join("cell.pgf").to_str().unwrap()]);
     assert_eq!((message.as_str(), code), ("", Some(0)));
     let args = ["optimize", path.to_str().unwrap(), "--in-place"];

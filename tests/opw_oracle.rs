@@ -1,4 +1,4 @@
-//! Against rs-opw-kinematics, an independent solver of the same arms.
+//! Comparison with rs-opw-kinematics, an independent solver for the same arms.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -9,9 +9,9 @@ use rs_opw_kinematics::kinematic_traits::Kinematics;
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
 use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
 
-/// Largest difference of positions \[m\] and quaternion entries.
+/// Tolerance of positions \[m\] and quaternion entries.
 const POSE: f64 = 1e-12;
-/// Arms of the catalogue of all sizes.
+/// Arms of the catalogue of different sizes.
 const ROBOTS: [&str; 8] = [
     "IRB1010-1.5/0.37",
     "IRB120-3/0.58",
@@ -22,12 +22,12 @@ const ROBOTS: [&str; 8] = [
     "IRB6640-180/2.55",
     "IRB6650S-90/3.9",
 ];
-/// Largest difference of angles \[rad\].
+/// Tolerance of angles \[rad\].
 const ANGLE: f64 = 1e-7;
 
 fn robots() -> Vec<Model> {
     let position = "[limits]\nposition = [[-3,3],[-3,3],[-3,3],[-3,3],[-3,3],[-3,3]]\n";
-    // A lateral offset, reversed senses, odd zeros: nothing that an ABB arm has.
+    // Lateral offset, reversed directions, unusual zeros: properties that no ABB arm has.
     let odd = "name = \"odd\"\n[kinematics.opw]\na1 = 0.2\na2 = -0.05\nb = 0.08\nc1 = 0.5\n\
                c2 = 0.6\nc3 = 0.65\nc4 = 0.1\noffsets = [0.1, -0.2, -1.4, 0.3, 0.2, -0.5]\n\
                signs = [-1, 1, -1, -1, 1, -1]\n";

@@ -62,7 +62,7 @@ fn number(value: &Value, pointer: &str) -> f64 {
     value.pointer(pointer).and_then(Value::as_f64).unwrap()
 }
 
-/// TCP speed that a statement's second argument names, mm/s.
+/// TCP speed in a statement's second argument, mm/s.
 fn speed(statement: &str) -> f64 {
     let inside =
         statement.split_once(",v").map(|(_, rest)| rest.split([',', '\\']).next().unwrap());
@@ -96,20 +96,20 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
             continue;
         }
         changed += 1;
-        // All but the speed is the same.
+        // Only the speed changes.
         let (head, tail) = (was.find(",v").unwrap(), was.find(",fine").or(was.find(",z")).unwrap());
         assert!(now.starts_with(&was[..=head]) && now.ends_with(&was[tail..]), "{was}\n{now}");
-        // Those of joint movements are ceilings, too.
+        // For joint movements it is an upper bound, too.
         assert!(speed(now) <= speed(was), "{was}\n{now}");
     }
     assert_eq!(original.lines().count(), written.lines().count());
     assert!(changed >= 1, "{written}");
-    // The quick way before the wait is slower now; a speed with \V stays.
+    // The quick movement before the wait is slower now; a speed with \V stays.
     assert!(
         written.contains("MoveAbsJ jB,[") && written.contains("v1000\\V:=700,fine"),
         "{written}"
     );
-    // The promise is what the written program does.
+    // The written program has the predicted result.
     let out = folder.path().join("out");
     let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
         .args(["simulate", out.to_str().unwrap(), "--robot", ROBOT, "--format", "json"])
@@ -119,7 +119,7 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
     let simulated: Value = serde_json::from_slice(&simulated.stdout).unwrap();
     let promised = number(&result, "/optimized/energy_j");
     assert!((number(&simulated, "/energy_j") - promised).abs() < 1e-6 * promised);
-    // There is nothing left to do.
+    // A second run finds no saving.
     let folder = tempfile::tempdir().unwrap();
     let again = run_text(folder.path(), &written, &["--emit", "retime", "--input", "diPart=4"]);
     assert_eq!(fs::read_to_string(folder.path().join("out/m.mod")).unwrap(), written, "{again}");
@@ -134,7 +134,7 @@ fn streams_save_more_than_speeds() {
         let streams = run(folder.path(), input);
         let saved = |result: &Value| number(result, "/saving_percent");
         assert!(saved(&streams) > saved(&speeds), "{} {}", saved(&streams), saved(&speeds));
-        // What is waited for anyway is used up, and the cycle takes as long as it may.
+        // The wait for an input is used, and the cycle keeps its duration.
         let cycle = |which: &str| number(&streams, &format!("/{which}/cycle_s"));
         assert!(cycle("optimized") <= cycle("original") + TIME, "{streams}");
         assert!(cycle("optimized") > 0.995 * cycle("original"), "{streams}");
@@ -171,7 +171,7 @@ fn positions_for_a_guide_stand_beside_an_unchanged_program() {
             .skip(1)
             .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
             .collect();
-        // Speeds of the data sheet, and rest at both ends.
+        // Speed limits of the data sheet, and rest at both ends.
         let limit = [180.0, 180.0, 185.0, 385.0, 400.0, 460.0];
         for pair in rows.windows(2) {
             assert!((pair[1][0] - pair[0][0] - TICK).abs() < TIME);
@@ -185,14 +185,14 @@ fn positions_for_a_guide_stand_beside_an_unchanged_program() {
             assert!((a.parse::<f64>().unwrap() - b).abs() < ROUNDING, "{module}");
         }
         assert!(module.contains("EGMRunJoint"), "{module}");
-        // Without it the controller lets a joint turn by a degree in a second.
+        // Without it the controller accepts a joint motion of a degree per second.
         let steps =
             rows.windows(2).flat_map(|pair| (1..7).map(|j| (pair[1][j] - pair[0][j]).abs()));
         let fastest = steps.fold(0.0, f64::max) / TICK;
         let stated = module.split(r"\MaxSpeedDeviation:=").nth(1).unwrap();
         let stated: f64 = stated.split(';').next().unwrap().parse().unwrap();
         assert!(stated >= 1.2 * fastest && stated <= 1.3 * fastest + 1.0, "{stated}, {fastest}");
-        // The run with the gun and the others.
+        // The run with the gun and the other runs.
         let named = if module.contains(",tGun") { ("tGun", "woTable") } else { ("tool0", "wobj0") };
         let (tool, work_object) = named;
         assert!(module.contains(&format!(",fine,{tool}\\WObj:={work_object};")), "{module}");
@@ -203,7 +203,7 @@ fn positions_for_a_guide_stand_beside_an_unchanged_program() {
     assert_eq!(tools.len(), 2, "{tools:?}");
 }
 
-/// The module stands beside the program, where data of a module alone are not known.
+/// The module is next to the program, which does not see the module's local data.
 #[test]
 fn a_tool_of_its_module_alone_has_no_equivalent_for_a_guide() {
     let folder = tempfile::tempdir().unwrap();
@@ -217,7 +217,7 @@ fn a_tool_of_its_module_alone_has_no_equivalent_for_a_guide() {
     assert!(guided > 0, "{reasons:?}");
 }
 
-/// An operator who lowers a speed gets a lower one, in a retimed program as well.
+/// If the operator reduces a speed, a retimed program becomes slower, too.
 #[test]
 fn retimed_speeds_follow_the_data_that_they_come_from() {
     let folder = tempfile::tempdir().unwrap();
@@ -238,9 +238,9 @@ fn retimed_speeds_follow_the_data_that_they_come_from() {
     assert!(line("MoveJ pC,[").contains("*vWay.v_ori,vWay.v_leax,vWay.v_reax]"), "{retimed}");
     assert!(line("MoveL pD,[").contains("*vAll{2}.v_tcp,"), "{retimed}");
     assert!(line("MoveJ pC,fSlow()").ends_with(",fine,tool0;"), "{retimed}");
-    // Names that every controller has as well: who replaces v1000 by v100 gets that.
+    // Standard names: replacing v1000 by v100 has the same effect.
     assert!(line("MoveAbsJ jA,[").contains("*v1000.v_ori,v1000.v_leax,v1000.v_reax]"), "{retimed}");
-    // What vmax is depends on the controller.
+    // The value of vmax depends on the controller.
     assert!(line("MoveAbsJ jB,[").contains(",5000,1000]"), "{retimed}");
 
     let times = |text: &str, name: &str| -> Vec<(u64, f64)> {

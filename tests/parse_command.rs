@@ -1,4 +1,4 @@
-//! `joulepath parse`: contract of its JSON, its text, its exit codes.
+//! `joulepath parse`: contract of its JSON, text and exit codes.
 
 #![expect(clippy::unwrap_used, reason = "what cannot be run or read fails the test")]
 
@@ -61,7 +61,7 @@ fn exit_codes_tell_errors_from_unusable_input() {
     assert_eq!(code(&[&path("gone.mod")]), Some(2));
     assert_eq!(code(&[&path("notes")]), Some(2));
     assert_eq!(code(&[]), Some(2));
-    // Something can be read, so what cannot is a note.
+    // One file is readable, so the missing one is only a note.
     let output = parse(&[&path("gone.mod"), &path("good.mod")]);
     assert_eq!(output.status.code(), Some(0));
     assert!(String::from_utf8_lossy(&output.stderr).contains("gone.mod"));
@@ -85,7 +85,7 @@ fn an_empty_file_is_valid() {
     assert_eq!(value["totals"]["errors"], 0);
 }
 
-/// Movements are counted in the tree; here by the tokens before the name.
+/// The command counts movements in the tree; this test counts tokens.
 #[test]
 fn movements_are_those_at_the_start_of_statements() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");

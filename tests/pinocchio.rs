@@ -1,11 +1,11 @@
-//! Torques and derivatives against those of Pinocchio, of three robots in 1,000
-//! states each; `benches/peers/pinocchio/vectors.py` writes the fixtures.
+//! Torques and derivatives compared with Pinocchio for three robots in 1,000 states each;
+//! `benches/peers/pinocchio/vectors.py` writes the fixtures.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use joulepath::arm::dynamics::{Data, JointMatrix, Load, crba, rnea, rnea_derivatives};
 use joulepath::arm::robot::{MAX_DOF, Model, find, load};
 
-/// Relative to the largest torque of a row; the fixtures have 13 digits.
+/// Tolerance relative to the largest torque of a row; the fixtures have 13 digits.
 const EXACT: f64 = 1e-9;
 /// Largest angle \[rad\], velocity \[rad/s\] and acceleration \[rad/s²\].
 const REACH: [f64; 3] = [3.0, 4.0, 20.0];

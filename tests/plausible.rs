@@ -1,4 +1,4 @@
-//! Energies over plausible robots: sums over a motion against the energy of each robot by itself.
+//! Energies over plausible robots: sums over a motion compared with the energy of each robot.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -15,17 +15,17 @@ use joulepath::retime::energy::{Account, EnergyParts, account};
 use joulepath::retime::motion::{Options, Simulation, simulate};
 use joulepath::tool::retrofit::read_program;
 
-/// Robots that are compared.
+/// Number of compared robots.
 const ROBOTS: usize = 12;
-/// Difference of both ways over the change of the energy: the drive's braking is taken where the
-/// model brakes, not where the robot does.
+/// Tolerance relative to the change of the energy: the sums use the braking phases of the model,
+/// not of each robot.
 const OFF: f64 = 0.03;
-/// The same over the energy of the motions: the sums are worked out by a coarse rule, and where braking
-/// ends is that of the model.
+/// Tolerance relative to the energy of the motions: the quadrature is coarse, and braking ends as
+/// in the model.
 const COARSE: f64 = 0.006;
 
-/// Deviations of the logarithm of moments about axes 2 and 3 and of the inertia about axis 1, 2.5 times
-/// those of the rule, and those of the share of the foot.
+/// Largest logarithms of the ratios of the moments about axes 2 and 3 and of the inertia about axis
+/// 1: 2.5 standard deviations of the rule and of the share of the foot.
 const FAR: [f64; 3] = [0.5, 0.75, 0.6];
 
 fn simulated(model: &Model) -> (Simulation, Account) {
@@ -78,8 +78,8 @@ fn moments_of(model: &Model) -> [f64; 3] {
     [still[1].abs(), still[2].abs(), moved - rests]
 }
 
-/// Arms whose name and bodies nobody knows, with the mass and the payload of the robots that they are: the
-/// rule of the axes against the meshes. A tenth may be farther than [`FAR`].
+/// Arms with unknown name and bodies and with the mass and payload of known robots: the rule by
+/// axes compared with meshes. A tenth may exceed [`FAR`].
 #[test]
 fn an_arm_of_axes_alone_is_near_its_meshes() {
     let tables: toml::Table =
@@ -137,7 +137,7 @@ fn an_arm_without_dynamics_gets_them() {
     }
 }
 
-/// Difference of the mean robot's energy and the mean of the robots, over the latter.
+/// Relative difference of the mean robot's energy and the robots' mean energy.
 const MEAN_OFF: f64 = 0.01;
 
 #[test]
@@ -163,7 +163,7 @@ fn a_balancer_helps_to_hold() {
     let without = Model { laws: Vec::new(), ..model.clone() };
     let forwards = [0.0, 1.0, 0.0, 0.0, 0.5, 0.0];
     let [with, without] = [&model, &without].map(|m| holding_w(m, &Load::none(), &forwards)[1]);
-    // Copper loss goes with the square of the torque.
+    // Copper loss is proportional to the square of the torque.
     let torque = torque(&model, &mut Data::new(), &Load::none(), &forwards, &[], &[]).rigid[1];
     let loss = model.motors.as_ref().unwrap().loss_constant[1];
     assert!((with - loss * torque * torque).abs() < 1e-9 * with, "{with} W");
@@ -193,7 +193,7 @@ fn what_a_table_leaves_out_is_estimated() {
     let estimated = whole.brakes.as_ref().unwrap();
     let brakes = with("[brakes]\npower_released_w = 20\n").brakes.unwrap();
     assert_eq!(brakes, Brakes { power_released_w: 20.0, ..estimated.clone() });
-    // What is written without estimates is not a fact afterwards.
+    // Writing a model without estimates does not turn these into stated values.
     let text = "extends = \"IRB2600-20/1.65\"\n[brakes]\npower_released_w = 20\n";
     let written = to_toml(&from_toml("cell.toml", text).unwrap());
     let again = with_estimates(from_toml("again.toml", &written).unwrap()).unwrap();

@@ -1,9 +1,8 @@
-//! Streams played back from the emitted text by a reader, a spline and an arm of this file's own.
-//!
-//! The front end and the virtual controller have no part in it: the text is taken apart line by
-//! line, the points are interpolated as `docs/controller.md` says of a stream, and the tool is
-//! placed by trigonometry with the dimensions of the data sheet. Torques are those of the dynamics,
-//! which `tests/dynamics.rs` and `tests/pinocchio.rs` prove.
+//! Plays back the emitted streams with an independent reader, spline and arm model. It uses neither
+//! the front end nor the virtual controller: the text is parsed line by line, the points are
+//! interpolated as in `docs/controller.md`, and the tool position follows from trigonometry with
+//! the dimensions of the data sheet. `tests/dynamics.rs` and `tests/pinocchio.rs` verify the
+//! torques.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -17,34 +16,34 @@ use joulepath::arm::robot::{Model, Sharing, find};
 use serde_json::Value;
 
 const ROBOT: &str = "IRB1600-10/1.45";
-/// The same with known limits.
+/// The robot with known limits.
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Axis speeds of the data sheet, degrees/s.
 const SPEEDS: [f64; 6] = [180.0, 180.0, 185.0, 385.0, 400.0, 460.0];
 /// a1, c1, c2, c3, c4 of the data sheet, mm.
 const ARM: [f64; 5] = [150.0, 486.5, 700.0, 600.0, 65.0];
-/// Shares of a limit: what a controller and rounding may add.
+/// Largest ratio to a limit, with the tolerance of controller and rounding.
 const LIMIT: f64 = 1.001;
-/// Distances from the path that the documentation allows, mm.
+/// Documented largest distances from the path, mm.
 const OFF_LINE: f64 = 1.0;
 const OFF_JOINT_PATH: f64 = 5.0;
-/// The same for the polygon of the points this near a stop, mm.
+/// The same for the polygon of the points near a stop, mm.
 const OFF_NEAR_STOP: f64 = 0.5;
 const NEAR_STOP: f64 = 50.0;
-/// Distance of an end point, mm and degrees.
+/// Tolerance of an end point, mm and degrees.
 const END: f64 = 0.02;
-/// Change of the direction of the tool on a line, rad.
+/// Tolerance of the tool direction on a line, rad.
 const TURNED: f64 = 0.02;
-/// Difference of joules, relative.
+/// Relative tolerance of energies.
 const ENERGY: f64 = 0.005;
-/// Times are text of four decimals; the promised ones are those of the whole run, s.
+/// Tolerance of times: the text has four decimals, s.
 const TIME: f64 = 1e-6;
 /// Step of the samples, s.
 const STEP: f64 = 0.001;
 
 const START: &str = "[0,-12,14,0,60,0]";
 
-/// What each line of the program moves, by line number.
+/// The motion of each line of the program, by line number.
 fn program() -> String {
     let far = "[9E9,9E9,9E9,9E9,9E9,9E9]";
     format!(
@@ -66,7 +65,7 @@ fn program() -> String {
     )
 }
 
-/// Where a line's movement goes: joints in degrees, or a place in mm with the tool down.
+/// Target of a movement: joints in degrees, or a position in mm with the tool pointing down.
 enum Way {
     Joints([f64; 6]),
     JointsTo([f64; 3]),
@@ -87,7 +86,7 @@ fn ways() -> BTreeMap<u64, (Way, f64)> {
     ])
 }
 
-/// A stream as the text says it: degrees and seconds.
+/// A stream as in the text: degrees and seconds.
 #[derive(Debug, Default)]
 struct Stream {
     line: u64,
@@ -96,14 +95,14 @@ struct Stream {
     times: Vec<f64>,
 }
 
-/// The six numbers behind the first `[[`.
+/// The six numbers after the first `[[`.
 fn joints(text: &str) -> [f64; 6] {
     let inside = text.split("[[").nth(1).unwrap().split(']').next().unwrap();
     let numbers: Vec<f64> = inside.split(',').map(|x| x.trim().parse().unwrap()).collect();
     numbers.try_into().unwrap()
 }
 
-/// The number in the first braces.
+/// The number in the first pair of braces.
 fn index(text: &str) -> usize {
     text.split('{').nth(1).unwrap().split('}').next().unwrap().parse().unwrap()
 }
@@ -153,10 +152,10 @@ fn read(text: &str) -> Vec<Stream> {
     streams
 }
 
-/// Position, velocity and acceleration of the joints at a time; degrees and seconds.
+/// Time, and position, velocity and acceleration of the joints; degrees and seconds.
 type Sample = (f64, [f64; 6], [f64; 6], [f64; 6]);
 
-/// The quadratic spline of the points, as the documentation tells it.
+/// The quadratic spline of the points, as in the documentation.
 fn play(stream: &Stream) -> Vec<Sample> {
     let n = stream.points.len();
     let end = |i: usize| stream.times[..i].iter().sum::<f64>();
@@ -220,7 +219,7 @@ fn apart(a: Vector, b: Vector) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Where the flange is, mm, and where it points.
+/// Position of the flange, mm, and its direction.
 fn flange(q: &[f64; 6]) -> (Vector, Vector) {
     let [a1, c1, c2, c3, c4] = ARM;
     let hand = |v: Vector| about_y(about_x(about_y(v, q[4]), q[3]), q[1] + q[2]);
@@ -231,7 +230,7 @@ fn flange(q: &[f64; 6]) -> (Vector, Vector) {
     (about_z(at, q[0]), about_z(along, q[0]))
 }
 
-/// Distance of a place from the line between two, mm.
+/// Distance of a point from a line, mm.
 fn off_line(place: Vector, [from, to]: [Vector; 2]) -> f64 {
     let length = apart(from, to).powi(2);
     let along: f64 = (0..3).map(|k| (place[k] - from[k]) * (to[k] - from[k])).sum::<f64>() / length;
@@ -239,7 +238,7 @@ fn off_line(place: Vector, [from, to]: [Vector; 2]) -> f64 {
     apart(place, std::array::from_fn(|k| from[k] + along * (to[k] - from[k])))
 }
 
-/// Points of the original path of a joint movement: all axes in proportion.
+/// Points of the original path of a joint movement: all axes move in proportion.
 fn joint_path(from: &[f64; 6], to: &[f64; 6]) -> Vec<Vector> {
     const POINTS: usize = 4000;
     (0..=POINTS)
@@ -250,7 +249,7 @@ fn joint_path(from: &[f64; 6], to: &[f64; 6]) -> Vec<Vector> {
         .collect()
 }
 
-/// Power from the grid in a state, without base power, W.
+/// Grid power of a state without base power, W.
 fn power(model: &Model, tau: &[f64], rigid: &[f64], friction: &[f64], qd: &[f64; 6]) -> f64 {
     let motors = model.motors.as_ref().unwrap();
     let copper: f64 = (0..6).map(|j| motors.loss_constant[j] * tau[j] * tau[j]).sum();
@@ -263,7 +262,7 @@ fn power(model: &Model, tau: &[f64], rigid: &[f64], friction: &[f64], qd: &[f64;
     total + copper + lost * (1.0 - model.drive.regeneration)
 }
 
-/// Where corner zones fail the robot stops at every point and goes straight, in joints, to the next.
+/// Without corner zones the robot stops at every point, with straight joint lines between.
 fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
     const STEPS: usize = 40;
     let stops = [stream.start, *stream.points.last().unwrap()].map(|q| flange(&q).0);
@@ -285,7 +284,7 @@ fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
     }
 }
 
-/// Holds a stream against the limits, its path and what was promised of it.
+/// Checks a stream against the limits, its path and its predicted values.
 fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way, f64)) {
     let name = format!("line {}", stream.line);
     let samples = play(stream);
@@ -343,7 +342,7 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
     }
     let number = |key: &str| segment[key].as_f64().unwrap();
     let total: f64 = stream.times.iter().sum();
-    // The rest of the run is settling at the stop point, by as much as before.
+    // The remaining time is settling at the stop point, as in the original.
     let settling = number("time_after_s") - total;
     assert!((-TIME..0.2).contains(&settling), "{name}: {total} s of {segment}");
     let still = [0.0; 6];
@@ -396,7 +395,7 @@ fn emitted_points_hold_what_was_promised_of_them() {
             let of = |s: &&Value| s["line_first"] == stream.line && s["kind"] == "timing";
             let segment = segments.iter().find(of).unwrap();
             assert_eq!(segment["points"].as_u64().unwrap() as usize, stream.points.len());
-            // Each stream begins where the one before ended.
+            // Each stream starts at the end of the previous one.
             if let Some(stands) = stands {
                 let jump = (0..6).map(|j| (stands[j] - stream.start[j]).abs()).fold(0.0, f64::max);
                 assert!(jump <= END, "line {}: {jump} degrees from there", stream.line);
@@ -423,7 +422,7 @@ fn layouts_are_the_same_motion() {
     for (plain, array) in read(&plain).iter().zip(&read(&array)) {
         assert_eq!((&plain.points, &plain.times), (&array.points, &array.times));
     }
-    // Short streams are plain instructions by themselves.
+    // Short streams become plain instructions automatically.
     let (_, auto) = optimize(folder.path(), &[]);
     assert_eq!(auto, plain);
 }

@@ -1,4 +1,4 @@
-//! `predict` through the binary, and the logs that it reads.
+//! `predict` through the binary, and its logs.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::fs;
@@ -10,10 +10,10 @@ use joulepath::arm::robot::from_toml;
 use joulepath::learn::log::{Channel, ColumnMap, read_csv};
 use nalgebra::Vector3;
 
-/// What the gram that the program's tool0 weighs may change.
+/// Effect of the mass of tool0, one gram, in the program.
 const TOOL0_NM: f64 = 0.02;
 const TOOL0_W: f64 = 0.2;
-/// What torques of differentiated positions may miss.
+/// Tolerance of torques from differentiated positions.
 const DIFFERENTIATED_NM: f64 = 0.05;
 const SEVEN: &str = "fixtures/dynamics/seven.toml";
 
@@ -43,7 +43,7 @@ fn table(csv: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
     (lines.next().unwrap(), lines.collect())
 }
 
-/// A log of seven joints, `number` formatting its figures.
+/// A log of seven joints; `number` formats its values.
 fn log_of_seven(separator: &str, angle: &str, number: impl Fn(f64) -> String) -> String {
     let names: Vec<String> = ["q", "qd", "qdd"]
         .iter()
@@ -102,7 +102,7 @@ fn seven_joints_in_any_form_of_csv() {
     let excel = written(&folder, "excel.csv", &log_of_seven(";", "", comma));
     let tabs = log_of_seven("\t", "", |x| x.to_string()).replace('\n', "\r\n");
     let tabs = written(&folder, "tabs.txt", &format!("\u{feff}{tabs}"));
-    // The time is a number as the angles are; only they are degrees.
+    // Only angles have degrees; the time is unchanged.
     let turned = log_of_seven(",", "_deg", degrees);
     let turned: Vec<String> = turned
         .lines()
@@ -137,7 +137,7 @@ fn seven_joints_in_any_form_of_csv() {
     }
 }
 
-/// Positions alone, under other names and in degrees: rates and accelerations are worked out.
+/// Rates and accelerations are computed from positions with other names and in degrees.
 #[test]
 fn positions_are_enough() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,7 +179,7 @@ fn positions_are_enough() {
     }
 }
 
-/// A log differs from the robot where a diagnosis says so; powers do not.
+/// Diagnosed sensor effects apply to a log's torques; powers do not contain them.
 #[test]
 fn predictions_are_those_of_the_log() {
     let folder = tempfile::tempdir().unwrap();
@@ -205,7 +205,7 @@ fn predictions_are_those_of_the_log() {
     }
 }
 
-/// What looks like other units is said, and predicted all the same.
+/// Suspicious units cause a note, but not a refusal.
 #[test]
 fn doubtful_units_are_noted() {
     let folder = tempfile::tempdir().unwrap();
@@ -227,7 +227,7 @@ fn doubtful_units_are_noted() {
     assert!(degrees.contains("name the column q1_deg"), "{degrees}");
     let milliseconds = notes(&slow(1.0, 40.0), 12);
     assert!(milliseconds.contains("divide it by 1000"), "{milliseconds}");
-    // Rates that overflow have no prediction; the other rows have.
+    // Overflowing rates prevent a prediction in their row only.
     let mut lines: Vec<String> = good.lines().map(str::to_owned).collect();
     let mut cells: Vec<&str> = lines[5].split(',').collect();
     cells[8] = "1e200";
@@ -236,7 +236,7 @@ fn doubtful_units_are_noted() {
     assert!(beyond.contains("row 6 left out"), "{beyond}");
 }
 
-/// What is logged of some joints only is used for those.
+/// A channel that is logged for some joints is used for these.
 #[test]
 fn accelerations_of_some_joints_are_used() {
     let folder = tempfile::tempdir().unwrap();
@@ -281,7 +281,7 @@ fn bad_rows_are_named_and_left_out() {
 fn unusable_logs_are_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let good = log_of_seven(",", "", |x| x.to_string());
-    // Each interval is ten times the one before.
+    // Each interval is ten times the previous one.
     let mut sparse = "t,q1,q2,q3,q4,q5,q6,q7\n".to_owned();
     for i in 0..14 {
         sparse += &[10_i64.pow(i).to_string().as_str(), "0,0,0,0,0,0,0\n"].join(",");

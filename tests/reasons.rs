@@ -1,11 +1,11 @@
-//! Every reason is explained in `docs/reasons.md`, and nothing else is.
+//! `docs/reasons.md` explains exactly the existing reasons.
 
 use std::collections::BTreeSet;
 
 const SOURCE: &str = include_str!("../src/retime/optimize/reason.rs");
 const PAGE: &str = include_str!("../docs/reasons.md");
 
-/// What each section has, in this order.
+/// The parts of each section, in order.
 const PARTS: [&str; 3] = ["**Means.**", "**Example.**", "**What to do.**"];
 
 /// The strings that the function `code` returns.

@@ -1,5 +1,5 @@
-//! Recovery on ordinary programs: one token too few or too many is one error,
-//! and costs one statement at most.
+//! Error recovery in ordinary programs: a missing or surplus token causes one error and affects at
+//! most one statement.
 
 #![expect(clippy::unwrap_used, reason = "a missing fixture fails the test")]
 
@@ -10,7 +10,7 @@ use std::path::Path;
 use joulepath::rapid::syntax::{self, Parse};
 use support::token_ranges;
 
-/// The shipped programs, without those of the parser's own tests.
+/// The shipped programs, without the fixtures of the parser.
 fn programs() -> Vec<(String, Vec<u8>)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
     let mut programs: Vec<(String, Vec<u8>)> = ["hard", "paper", "pick_place"]

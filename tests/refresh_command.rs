@@ -1,4 +1,4 @@
-//! `refresh`: streams are made anew from the data of today.
+//! `refresh` computes streams again from the current data.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// With CRLF, a compact IF before a load, and two files.
+/// A program with CRLF, a compact IF before a load, and two files.
 const MAIN: &str = "MODULE Main\r\n\
     PERS loaddata lPart:=[2,[0,0,40],[1,0,0,0],0,0,0];\r\n\
     PERS bool bPart:=TRUE;\r\n\
@@ -46,7 +46,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     entries.map(|entry| (entry.file_name().into(), fs::read(entry.path()).unwrap())).collect()
 }
 
-/// A folder with the program, its data with `from` replaced.
+/// A folder with the program; in its data `from` is replaced.
 fn cell(folder: &Path, name: &str, from: &str, to: &str) -> PathBuf {
     let cell = folder.join(name);
     fs::create_dir(&cell).unwrap();
@@ -94,11 +94,11 @@ fn a_position_that_was_taught_anew_has_streams_again() {
     assert!(!difference.contains("CellData.mod"), "{difference}");
     done(&["refresh", "--in-place"], &refreshed);
     assert_eq!(files(&refreshed), files(&changed));
-    // Elsewhere it is the same.
+    // The output in another folder is the same.
     let out = folder.path().join("out");
     done(&["refresh", "--out", out.to_str().unwrap()], &refreshed);
     assert_eq!(files(&out), files(&changed));
-    // What is taken back is the program with the data of today.
+    // Undoing gives the program with the current data.
     done(&["optimize", "--undo"], &refreshed);
     assert_eq!(files(&refreshed), original);
 }
@@ -124,7 +124,7 @@ fn streams_that_no_longer_pay_are_taken_out() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
-    // From now on another task may write the target on the way.
+    // From here on another task may write the target of the movement.
     edit(&cell.join("CellData.mod"), "CONST robtarget", "PERS robtarget");
     edit(&cell.join("CellData.mod"), "CONST jointtarget", "PERS jointtarget");
     let trap = "TRAP tMove\r\n pNest.trans.z:=800; jHome.robax.rax_1:=1;\r\nENDTRAP\r\nENDMODULE";
@@ -154,7 +154,7 @@ fn what_has_no_streams_is_refused() {
         assert!(said.contains(says), "{arguments:?}: {said}");
     }
     assert_eq!(files(&cell), before);
-    // A program with streams is not given streams once more.
+    // A program with streams does not get streams again.
     done(&["optimize", "--in-place"], &cell);
     let said = done(&["optimize", "--format", "json"], &cell);
     assert!(said.contains("joulepath refresh"), "{said}");

@@ -1,4 +1,4 @@
-//! The regressor against the inverse dynamics, and the base parameters.
+//! The regressor compared with inverse dynamics, and the base parameters.
 
 mod arms;
 
@@ -23,13 +23,13 @@ fn rows(model: &Model, state: &[[f64; MAX_DOF]; 3]) -> DMatrix<f64> {
     rows
 }
 
-/// The base parameters of the rigid bodies alone.
+/// The base parameters of the rigid bodies.
 fn rigid_bodies(model: &Model) -> BaseParameters {
     let among: Vec<usize> = (0..RIGID * model.dof).collect();
     base_parameters_among(model, &among)
 }
 
-/// Without the laws that are not linear in four numbers a joint.
+/// Removes the friction laws that are not linear in four parameters per joint.
 fn linear(mut model: Model) -> Model {
     model.friction.coulomb_asymmetry = None;
     model.friction.viscous_asymmetry = None;
@@ -85,11 +85,11 @@ fn ranks_are_those_of_the_literature() {
     assert_eq!(ranks(&six), [36, 58]);
     assert_eq!(ranks(&rods)[0], 36);
     assert_eq!(ranks(&wrist), [36, 58]);
-    // Joint 1 tells zz, and mx and my where it is not upright.
+    // Joint 1 determines zz; mx and my only if its axis is not vertical.
     assert_eq!(ranks(&one), [3, 6]);
     assert_eq!(ranks(&skew)[0], 3 + 7 + 7);
     assert!(ranks(&seven)[0] <= 1 + 6 * 7);
-    // On a slope joint 1 feels gravity: its mx and my are told as well.
+    // On a slope gravity acts on joint 1: mx and my are determined, too.
     assert_eq!(ranks(&tilted), [38, 60]);
 }
 

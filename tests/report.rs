@@ -55,7 +55,7 @@ static CELL: LazyLock<Cell> = LazyLock::new(|| {
     Cell { files, model, retrofit, page }
 });
 
-/// A small program whose stream is written by hand, so that its report does not depend on the
+/// A small program with a manually written stream, so that its report does not depend on the
 /// optimiser.
 struct Small {
     files: Vec<Source>,
@@ -87,7 +87,7 @@ const ORIGINAL: &str = "        MoveAbsJ jAside,v1000,z50,tool0;
 const TAIL: &str = "    ENDPROC
 ENDMODULE
 ";
-/// Time between two points of the stream, s.
+/// Interval between two points of the stream, s.
 const SPACING: f64 = 0.1;
 
 fn run(model: &Model, text: &str) -> (Simulation, Account) {
@@ -211,7 +211,7 @@ fn small_page(path: &str) -> String {
     optimize_report(&small.retrofit, &small.files, &small.model, "main").unwrap()
 }
 
-/// The text of a page as a reader sees it, one cell or paragraph a line.
+/// The visible text of a page, one cell or paragraph per line.
 fn text_of(page: &str) -> String {
     let body = page.split("<body>").nth(1).unwrap();
     let mut out = String::new();
@@ -239,8 +239,8 @@ fn text_of(page: &str) -> String {
     lines.join("\n")
 }
 
-/// What is wrong with the markup: tags that are not closed in order, attributes without quotes,
-/// references that are none, identifiers that occur twice.
+/// Errors of the markup: unclosed or misordered tags, attributes without quotes, invalid
+/// references, repeated identifiers.
 fn malformed(page: &str) -> Option<String> {
     const VOID: [&str; 4] = ["meta", "input", "br", "link"];
     let mut open: Vec<&str> = Vec::new();
@@ -311,7 +311,7 @@ fn malformed(page: &str) -> Option<String> {
 #[test]
 fn text_of_a_small_report() {
     let text = text_of(&small_page("Cell.mod"));
-    // What is assumed of the robot is its file's matter.
+    // Assumptions about the robot are in its own section.
     let (page, robot) = text.split_once("About the robot").unwrap();
     assert!(robot.contains("friction.coulomb"));
     insta::assert_snapshot!(page);
@@ -321,7 +321,7 @@ fn text_of_a_small_report() {
 fn pages_are_well_formed() {
     assert_eq!(malformed(&CELL.page), None);
     assert_eq!(malformed(&small_page("Cell.mod")), None);
-    // The checker sees what it is there for.
+    // The checker detects errors.
     for (bad, what) in [
         ("<p><b></p>", "closes nothing"),
         ("<p>", "stay open"),
@@ -360,7 +360,7 @@ fn foreign_text_stays_text() {
     let page = optimize_report(&small.retrofit, &small.files, &small.model, "<em>main").unwrap();
     assert_eq!(malformed(&page), None);
     for tag in ["<script", "<img", "<b>", "<i>", "<u>", "<s>", "<em>"] {
-        // The style sheet's own <i> of the legend has no text in it.
+        // The `<i>` elements of the legend contain no text.
         let own = page.matches("<i></i>").count() * usize::from(tag == "<i>");
         assert_eq!(page.matches(tag).count(), own, "{tag}");
     }
@@ -374,7 +374,7 @@ fn foreign_text_stays_text() {
     }
 }
 
-/// The figures in the cells after a label.
+/// The values in the cells after a label.
 fn cells(page: &str, label: &str) -> Vec<f64> {
     let row = page.split(label).nth(1).unwrap().split("</tr>").next().unwrap();
     row.split("<td class=\"n\">")

@@ -1,4 +1,4 @@
-//! Robots by name and by file, and what the catalogue promises.
+//! Robots by name and by file, and the contract of the catalogue.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -95,7 +95,7 @@ fn axis_2_reaches_further_while_axis_1_looks_forward() {
     assert_snapshot!(at(95.1, 130.0).unwrap_err(), @"joint 2 would be at 130.000 deg, outside -90.000 to 120.000 deg");
 }
 
-/// Paes et al. 2014, table 3: holding power of joints 1 to 3, in poses of ours.
+/// Paes et al. 2014, table 3: holding power of joints 1 to 3, in assumed poses.
 #[test]
 fn holding_powers_of_the_paper() {
     let model = irb1600();
@@ -110,7 +110,7 @@ fn holding_powers_of_the_paper() {
     assert!((stretched[0] - 5.0).abs() < 0.1, "{stretched:?}");
     assert!((stretched[1] - 30.0).abs() < 1.0, "{stretched:?}");
     assert!(stretched[2] < 0.5, "{stretched:?}");
-    // Upper arm a little forward, forearm level: 7 + 2 + 4 W.
+    // Upper arm slightly forward, forearm horizontal: 7 + 2 + 4 W.
     let reaching = holding([0.0, 8.0, -8.0, 0.0, 0.0, 0.0]);
     assert!((reaching[1] - 2.0).abs() < 0.7 && (reaching[2] - 4.0).abs() < 0.5, "{reaching:?}");
     // Both up: 5 + 0 + 0 W.
@@ -149,7 +149,7 @@ fn base_arm_loads_and_effects() {
     let upright = irb1600();
     let (a, b) = (&hung.links[2], &upright.links[2]);
     assert_eq!(a.mass, b.mass + 4.0);
-    // Hanging, gravity pulls the other way: without the arm load it would be exactly so.
+    // For a hanging robot gravity is reversed; without the arm load this is exact.
     let q = [0.2, 0.4, -0.3, 0.1, 0.5, 0.0];
     let mut lighter = hung.clone();
     lighter.links.clone_from(&upright.links);
@@ -277,7 +277,7 @@ proptest::proptest! {
         failure_persistence: None, ..Default::default()
     })]
 
-    /// A damaged file is an error or a robot, never a panic.
+    /// Reading a damaged file gives an error or a robot, but never a panic.
     #[test]
     fn damaged_files_do_no_harm(
         cuts in proptest::collection::vec((0usize..700, 0usize..12, "[\\[\\]{}=\"a-z0-9.,\n-]{0,6}"), 1..4),

@@ -1,5 +1,4 @@
-//! Robots from URDF files, motion configurations and backups, and what is said of
-//! those that no robot can be made of.
+//! Robots from URDF files, motion configurations and backups, and the messages for invalid ones.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -35,7 +34,7 @@ fn turning(name: &str, links: [&str; 2], axis: &str) -> String {
     joint(name, "revolute", links, &rest)
 }
 
-/// A base, two turning joints, a part that is fixed to the last, and a flange.
+/// A base, two revolute joints, a part fixed to the last link, and a flange.
 fn arm() -> String {
     let reduction = |joint: &str, ratio: u32| {
         format!(
@@ -105,7 +104,7 @@ fn what_is_fixed_to_a_link_weighs_on_it() {
     let fore = &model.links[1];
     assert_eq!(fore.mass, 4.0);
     assert!((fore.com - Vector3::new(0.1, 0.0, 0.1)).norm() < 1e-12);
-    // Both moments about the common centre of mass, 0.1 m away from either.
+    // Both moments about the common centre of mass, 0.1 m from each.
     assert!((fore.inertia.m33 - (0.02 + 4.0 * 0.01)).abs() < 1e-12);
     let tau = gravity(&model, &mut Data::new(), &Load::none(), &[0.0, 0.0]);
     assert!((tau[1] + 4.0 * 9.81 * 0.1).abs() < 1e-12, "{tau:?}");
@@ -131,7 +130,7 @@ fn seven_joints_are_modelled() {
     assert_eq!((model.dof, model.links.len()), (7, 7));
 }
 
-/// An ABB arm as URDFs write it has the closed inverse and the same configurations.
+/// A URDF of an ABB arm has the closed inverse and the same configurations.
 #[test]
 fn an_arm_given_joint_by_joint_is_recognised() {
     let known = find("IRB1600-10/1.45").unwrap();
@@ -191,7 +190,7 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
             .map(|i| turning(&format!("j{i}"), [&format!("l{i}"), &format!("l{}", i + 1)], "0 0 1"))
             .collect::<String>();
     let texts = [
-        // Loops: a link with two parents, and no base at all.
+        // Loops: a link with two parents, and a missing base.
         changed("</robot>", &(turning("j3", ["valve", "fore"], "1 0 0") + "</robot>")),
         changed("</robot>", &(turning("j3", ["fore", "base"], "1 0 0") + "</robot>")),
         changed(&link("upper"), "<link name=\"upper\"/>\n"),
@@ -212,7 +211,7 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
         changed("name=\"valve\"", "name=\"fore\""),
         changed("<robot name=\"arm\">", "<robot name=\"arm\"><xacro:property name=\"a\"/>"),
         arm()[..900].to_owned(),
-        // Wrong attributes: not there, no numbers, in other units.
+        // Invalid attributes: missing, not a number, in other units.
         changed("<robot name=\"arm\">", "<robot>"),
         changed("<mass value=\"2\"/>", "<mass/>"),
         changed("value=\"2\"", "value=\"2,5 kg\""),
@@ -268,7 +267,7 @@ fn a_motion_configuration_is_an_overlay_of_its_robot() {
     assert!(model.limits.position_if.is_empty() && !plain.limits.position_if.is_empty());
     assert_eq!(model.limits.velocity, plain.limits.velocity);
     assert_eq!(model.controller.friction_level.as_ref().unwrap()[1], 0.22);
-    // The load of the upper arm weighs on link 3.
+    // The load of the upper arm belongs to link 3.
     assert!((model.links[2].mass - plain.links[2].mass - 4.5).abs() < 1e-12);
     let range = model.origins.iter().find(|origin| origin.table == "limits").unwrap();
     assert_eq!(range.source.as_deref(), Some("MOC.cfg, ROB1_1600_1.45_10"));
@@ -302,7 +301,7 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
         two.clone(),
         "EIO:CFG_1.0:6:0::\n".to_owned(),
         String::new(),
-        // Cut at the end of a line, between sections and inside one.
+        // Truncated at the end of a line, between sections and inside one.
         whole.replace(
             "MOTION_PLANNER:",
             "MOTION_SYSTEM:\r\n\r\n -name \"s\"\r\n#\r\nMOTION_PLANNER:",
@@ -319,13 +318,13 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
         .collect();
     assert_snapshot!(messages.join("\n"));
     assert!(import_moc("MOC.cfg", &two, Some("rob_1")).is_ok());
-    // Wherever it is cut inside a line, it is not taken for whole.
+    // Any truncation inside a line is detected.
     for end in (1..whole.len()).filter(|end| !whole[..*end].ends_with(['\n', '\r'])) {
         assert!(import_moc("MOC.cfg", &whole[..end], None).is_err(), "{end}");
     }
 }
 
-/// Every message has the line of the file, the key, and what it must be.
+/// Every message has the line of the file, the key, and the permitted values.
 #[test]
 fn figures_of_a_configuration_are_refused_where_they_stand() {
     let whole = configuration();
@@ -387,7 +386,7 @@ fn a_load_hangs_once_where_its_arm_refers_to_it() {
     assert_eq!(added(&moved), [0.0, 4.5, 0.0, 0.0, 0.0, 0.0]);
 }
 
-/// Units that no bound of a single figure tells are found by the check.
+/// The check detects wrong units that no bound of a single value reveals.
 #[test]
 fn the_check_doubts_figures_in_other_units() {
     let folder = tempfile::tempdir().unwrap();
@@ -458,7 +457,7 @@ fn every_known_robot_passes_the_check() {
     assert!(all.iter().all(|robot| robot["sound"] == true));
     let of = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
     assert_eq!(of("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
-    // What a file does not have is estimated; RAPID has six axes.
+    // Missing data are estimated; RAPID has six axes.
     assert_eq!(of("IRB52-7/1.2")["lacks"]["optimize"], serde_json::json!([]));
     let lacks = &of("IRB14000 left")["lacks"]["simulate"];
     assert!(!lacks.as_array().unwrap().is_empty(), "{lacks}");

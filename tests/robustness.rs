@@ -1,5 +1,5 @@
-//! The front end on broken, hostile and large input: it loses no byte, never
-//! panics, and its work grows with the length of the input only.
+//! The front end on damaged, hostile and large input: it loses no byte, never panics, and its work
+//! is linear in the length of the input.
 
 #![expect(clippy::unwrap_used, reason = "a missing fixture fails the test")]
 
@@ -53,7 +53,7 @@ fn every_truncation_is_read_without_loss() {
     let (_, bytes) = fixtures("ok").into_iter().find(|(n, _)| n == "control_flow.mod").unwrap();
     for length in 0..bytes.len() {
         let parse = check(&bytes[..length]);
-        // A word that is cut in two can be a mistake of its own.
+        // A truncated word may be an additional error.
         let inside = length > 0 && !bytes[length - 1].is_ascii_whitespace();
         let most = if inside { 2 } else { 1 };
         assert!(parse.errors.len() <= most, "cut at {length}: {:?}", parse.errors);
@@ -91,7 +91,7 @@ fn what_is_nested_too_deeply_is_one_error() {
         let start = &statements[..30];
         let parse = check(&program(statements));
         assert_eq!(parse.errors.len(), 1, "{start}: {:?}", parse.errors.get(..3));
-        // What follows is read again.
+        // The parser reads the following statements.
         let kept = parse.tree.nodes().any(|node| {
             syntax::ast::Call::cast(node)
                 .and_then(syntax::ast::Call::name)
@@ -99,7 +99,7 @@ fn what_is_nested_too_deeply_is_one_error() {
         });
         assert!(kept, "{start}");
     }
-    // Unclosed blocks swallow what follows; they only must not overflow.
+    // Unclosed blocks contain the rest of the text; they must not overflow the stack.
     for opener in
         ["IF a THEN ", "ELSE ", "WHILE a DO\n", "CASE 1: ", "TEST x CASE 1: ", "PROC a() "]
     {
@@ -120,8 +120,7 @@ fn nesting_up_to_the_limit_is_read() {
     assert_eq!(check(&program(&statements)).errors.len(), 1);
 }
 
-/// Steps per token must not grow with the length of inputs that tempt a parser
-/// to look ahead or back again and again.
+/// The number of steps per token must not grow with the length of inputs that require look-ahead.
 #[test]
 fn work_is_linear() {
     let pieces = [

@@ -1,5 +1,5 @@
-//! The inverse of arms that have no closed one: random joints are among the solutions of
-//! their pose, and every solution has the pose.
+//! Numerical inverse kinematics of arms without a closed solution: random joint angles are among
+//! the solutions of their pose, and every solution has the pose.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -9,9 +9,9 @@ use joulepath::arm::kinematics::{fk, ik_all, radical_inverse};
 use joulepath::arm::robot::{Model, find, from_toml};
 use nalgebra::Isometry3;
 
-/// Largest difference of angles that count as one \[rad\].
+/// Tolerance of angles \[rad\].
 const SAME_ANGLE: f64 = 1e-5;
-/// Largest difference of poses that count as one \[m\] and \[rad\].
+/// Tolerance of poses \[m\] and \[rad\].
 const SAME_POSE: f64 = 1e-8;
 const BASES: [u32; 6] = [2, 3, 5, 7, 11, 13];
 
@@ -37,7 +37,7 @@ fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     (a.translation.vector - b.translation.vector).norm().max(a.rotation.angle_to(&b.rotation))
 }
 
-/// The `n`-th joints of an even spread over the ranges.
+/// The `n`-th joint angles of an even distribution in the ranges.
 fn joints(model: &Model, n: u32) -> [f64; 6] {
     std::array::from_fn(|i| {
         let [low, high] = model.limits.position[i];
@@ -45,7 +45,7 @@ fn joints(model: &Model, n: u32) -> [f64; 6] {
     })
 }
 
-/// How many of `count` joints are not among the solutions of their pose.
+/// Number of joint angles that are not among the solutions of their pose.
 fn missed(model: &Model, count: u32) -> usize {
     let mut missed = 0;
     for n in 1..=count {

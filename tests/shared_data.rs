@@ -1,5 +1,5 @@
-//! Against targets and joints of real controllers. The measurements are not part
-//! of the crate; where they are absent these tests say so, in a CI run they fail.
+//! Comparison with targets and joints of real controllers. The measurements are not part of the
+//! crate; without them these tests print a note, and fail in CI.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 #![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
@@ -25,7 +25,7 @@ const REAL_MEDIAN: f64 = 0.15e-3;
 /// Largest difference of a logged joint from the inverse kinematics \[rad\].
 const JOINT: f64 = 1e-3;
 
-/// The file in the folder of measurements beside the crate, if it is there.
+/// The file in the folder of measurements next to the crate, if it exists.
 fn shared(path: &str) -> Option<String> {
     let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
     if let Ok(text) = fs::read_to_string(&full) {
@@ -80,7 +80,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 fn logged_joints_of_an_irb6640() {
     let Some(text) = shared("pairs/irb6640_180_255_controller_fine.csv") else { return };
     let model = find("IRB6640-180/2.55").unwrap();
-    // The tool of every logged program.
+    // The tool of all logged programs.
     let tool = pose([75.0, 0.0, 493.301_270_19], [0.965_925_8, 0.0, 0.258_819_0, 0.0]);
     let rows = rows(&text);
     assert!(rows.len() > 100);
@@ -127,7 +127,7 @@ fn robotstudio_targets_of_an_irb1600() {
         let miss = fk(&model, &q).translation.vector - goal.translation.vector;
         assert!(miss.norm() < 1e-6, "{}: {miss}", target["name"]);
         if target["name"] != "Home" {
-            // Home has joints at exactly 0, where either neighbour is right.
+            // The home position has joints at exactly 0: both quarters next to it are correct.
             assert_eq!(conf_of(&model, &q), conf, "{}", target["name"]);
         }
     }

@@ -1,4 +1,4 @@
-//! What the virtual controller does with movements, settings and the flow of a program.
+//! The virtual controller: movements, settings and control flow.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
@@ -14,7 +14,7 @@ use joulepath::retime::motion::{Options, Simulation, simulate};
 use joulepath::retime::path::PieceKind;
 use joulepath::tool::retrofit::{Source, read_program};
 
-/// A home and targets in front of an IRB1600, the tool pointing down.
+/// A home position and targets in front of an IRB1600, with the tool pointing down.
 const DATA: &str = "CONST jointtarget home:=[[0,0,0,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
 CONST robtarget a:=[[700,-150,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
 CONST robtarget b:=[[700,150,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
@@ -55,12 +55,12 @@ fn runs(simulation: &Simulation) -> Vec<&Run> {
         .collect()
 }
 
-/// The duration of the movements of a program, settling included, s.
+/// Total duration of the movements of a program including settling, s.
 fn duration(body: &str) -> f64 {
     runs(&simulated(body)).iter().map(|run| run.duration()).sum()
 }
 
-/// Where the first zone of the last run begins before its corner, m of the TCP's way.
+/// Distance from the corner at which the first zone of the last run begins, m of TCP path.
 fn zone_size(body: &str) -> f64 {
     let simulation = simulated(body);
     assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
@@ -70,20 +70,20 @@ fn zone_size(body: &str) -> f64 {
     path.leg_end(path.legs().start) - zone.s
 }
 
-/// Rounding of lengths.
+/// Tolerance of lengths.
 const LENGTH: f64 = 1e-9;
 
 #[test]
 fn the_smallest_relative_size_decides_about_a_zone() {
-    // The example of the manual: a zone of 9 degrees in a turn of 25 degrees takes 9/25 of the
-    // way, though 130 of 300 mm were allowed.
+    // Example of the manual: a zone of 9 degrees in a rotation of 25 degrees covers 9/25 of the
+    // path, although 130 of 300 mm are permitted.
     let zone = "[FALSE,130,130,130,9,130,9]";
     let body = format!(
         "MoveJ a,v1000,fine,tool0;\nMoveL b25,v300,{zone},tool0;\nMoveL d25,v300,fine,tool0;"
     );
     let size = zone_size(&body);
     assert!((size - 0.3 * 9.0 / 25.0).abs() < 1e-4, "{size}");
-    // Without the turn the size in mm holds.
+    // Without the rotation the size in mm applies.
     let body = format!(
         "MoveJ a,v1000,fine,tool0;\nMoveL b,v300,{zone},tool0;\nMoveL [[1000,150,700],[0,0,1,0],\
          [0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v300,fine,tool0;"
@@ -99,7 +99,7 @@ fn a_zone_takes_at_most_half_of_the_shorter_way() {
     assert!((zone_size(body) - 0.03).abs() < LENGTH);
 }
 
-/// What the bisection of a stated time leaves, s.
+/// Tolerance of the bisection of a stated duration, s.
 const TIMED: f64 = 1e-6;
 
 #[test]
@@ -126,7 +126,7 @@ fn less_acceleration_takes_longer() {
     };
     let times: Vec<f64> = [20, 30, 40, 50, 60, 70, 80, 90, 100].map(time).to_vec();
     assert!(times.windows(2).all(|pair| pair[0] > pair[1]), "{times:?}");
-    // Below 20 % the controller takes 20 %.
+    // Below 20 % the controller uses 20 %.
     assert_eq!(time(5), times[0]);
     let ramp = |settings: &str| {
         duration(&format!("MoveJ a,v1000,fine,tool0;\n{settings}\nMoveL b,v1000,fine,tool0;"))
@@ -135,7 +135,7 @@ fn less_acceleration_takes_longer() {
     assert!(ramp("AccSet 100,100\\FinePointRamp:=50;") > ramp("AccSet 100,100;"));
 }
 
-/// Largest acceleration of the TCP along and across its path in the last run, m/s².
+/// Largest acceleration of the TCP along and perpendicular to its path in the last run, m/s².
 fn accelerations(model: &Model, body: &str) -> [f64; 2] {
     const STEP: f64 = 1e-3;
     let simulation = run_with(model, body, &Options::default());
@@ -160,7 +160,7 @@ fn accelerations(model: &Model, body: &str) -> [f64; 2] {
     worst
 }
 
-/// What the ends of a motion may exceed a limit by, and what differences over time leave.
+/// Accepted ratio to a limit at the ends of a motion, with the errors of finite differences.
 const OVERSHOOT: f64 = 1.03;
 
 #[test]
@@ -174,19 +174,19 @@ fn limits_of_the_acceleration_are_obeyed() {
     let model = irb1600();
     let [free, _] = accelerations(&model, &body("", "fine"));
     assert!(free > 4.0, "the limits below would be none: {free}");
-    // Along a straight way: in a corner the average over time slows the TCP besides.
+    // On a straight path: in a corner the moving average also slows the TCP.
     let limited = "PathAccLim TRUE\\AccMax:=2,TRUE\\DecelMax:=2;";
     let [along, _] = accelerations(&model, &body(limited, "fine"));
     assert!(along < 2.0 * OVERSHOOT, "{along}");
     let [_, all] = accelerations(&model, &body("WorldAccLim\\On:=1.5;", "z30"));
     assert!(all < 1.5 * OVERSHOOT, "{all}");
-    // Lifted again.
+    // The limit is removed again.
     let lifted = body("PathAccLim TRUE\\AccMax:=2,FALSE;\nPathAccLim FALSE,FALSE;", "z30");
     assert_eq!(duration(&lifted), duration(&body("", "z30")));
 }
 
-/// Measured on an IRC5 with an IRB6640 in a line of 500 mm at vmax: peak of the acceleration
-/// (m/s²), time in which it builds up (s), and the tolerance of both.
+/// Measured on an IRC5 with an IRB6640 in a line of 500 mm at vmax: peak acceleration (m/s²), its
+/// rise time (s), and the tolerance of both.
 const LINE: (f64, f64, f64) = (12.5, 0.1, 0.15);
 
 #[test]
@@ -217,7 +217,7 @@ fn a_line_starts_as_measured() {
     let peak = values.iter().copied().fold(0.0, f64::max);
     let near = |x: f64, measured: f64| (x / measured - 1.0).abs() < LINE.2;
     assert!(near(peak, LINE.0), "{peak} m/s²");
-    // From the start to where it is within a tenth of the peak.
+    // From the start to 90 % of the peak.
     let ramp = values.iter().position(|a| *a > 0.9 * peak).unwrap() as f64 * STEP;
     assert!(near(ramp, LINE.1), "{ramp} s");
 }
@@ -232,7 +232,7 @@ const MOVEMENTS: [&str; 3] = [
     "MoveAbsJ home,v500,fine,tool0;\nMoveJ b25,v800,z20,tool0;\nMoveJ a,v800,z20,tool0;\n\
      MoveL c,v2000,z0,tool0;\nMoveL b,v2000,fine,tool0;",
 ];
-/// Tolerance of the balance, relative to the work that is done without regard to its sign.
+/// Tolerance of the energy balance, relative to the sum of absolute work.
 const BALANCE: f64 = 1e-6;
 
 #[test]
@@ -255,7 +255,7 @@ fn energy_is_balanced_in_every_move() {
                         + potential_energy(&model, &run.load, &state.q)
                 };
                 let gained = energy(to) - energy(from);
-                // The work of the joints by Simpson's rule on a fine grid.
+                // Work of the joints by Simpson's rule on a fine grid.
                 let mut data = Data::new();
                 let mut power = |t: f64| {
                     let s = run.at(t);
@@ -391,7 +391,7 @@ fn with_input(body: &str, seconds: f64) -> Simulation {
 
 /// Rounding of times, s.
 const TIME: f64 = 1e-9;
-/// Longer than any of the movements between a, b and c below, s.
+/// More than the duration of any movement between a, b and c below, s.
 const ONE_MOVE: f64 = 2.0;
 
 #[test]
@@ -444,7 +444,7 @@ fn handlers_take_what_times_out() {
              IF ERRNO=ERR_WAIT_MAXTIME THEN\n{handler}\nENDIF"
         )
     };
-    // Three tries of two seconds reach the five of the input.
+    // Three tries of two seconds reach the input at five seconds.
     assert_eq!(waits(&with_input(&program("RETRY;"), 5.0)), [2.0, 2.0, 1.0, 9.0]);
     assert_eq!(waits(&with_input(&program("TRYNEXT;"), 5.0)), [2.0, 9.0]);
     assert_eq!(waits(&with_input(&program("RETURN;"), 5.0)), [2.0]);
@@ -482,7 +482,7 @@ fn a_test_on_an_input_tells_its_other_ways() {
     let told = reasons(&zero).join("\n");
     assert!(told.contains("2 other branches (3 instructions)"), "{told}");
     assert!(told.contains("--assume giPart"), "{told}");
-    // Through a variable too.
+    // Also through a variable.
     let body_of = |value: &str| body.replace("TEST giPart", &format!("n:={value};\nTEST n"));
     let told = reasons(&simulated(&body_of("giPart+0"))).join("\n");
     assert!(told.contains("2 other branches") && told.contains("--assume giPart"), "{told}");
@@ -493,7 +493,7 @@ fn a_test_on_an_input_tells_its_other_ways() {
     assert!(reasons(&three).join("\n").contains("1 other branch (1 instruction)"));
 }
 
-/// Loops that only ask for an input; all go on once it is there.
+/// Loops that poll an input; all of them end when it is set.
 const POLLING: [&str; 8] = [
     "again:\nIF diPart=0 THEN\nWaitTime 0.1;\nGOTO again;\nENDIF",
     "again:\nIF diPart=0 GOTO again;",
@@ -516,7 +516,7 @@ fn loops_that_poll_an_input_are_waits_for_it() {
         assert!(told.iter().any(|r| r.contains("--input diPart=SECONDS")), "{poll}: {told:?}");
         let known = with_input(&body, 5.0);
         let sum: f64 = waits(&known).iter().sum();
-        // The pass in which the input is seen may take its time besides.
+        // The pass that detects the input may add its duration.
         assert!((5.0 - TIME..5.1 + TIME).contains(&sum), "{poll}: {:?}", waits(&known));
         assert_eq!(runs(&known).len(), 1, "{poll}");
         assert!(known.repeats_from.is_none(), "{poll}");
@@ -583,7 +583,7 @@ fn external_axes_have_speeds_of_their_own() {
 
 #[test]
 fn a_displacement_acts_in_the_frame_of_the_work_object() {
-    // The object lies a quarter turn to the left: its x is the world's y.
+    // The object is rotated by a quarter turn: its x axis is the y axis of the world.
     let object = "[FALSE,TRUE,\"\",[[700,0,700],[0.70710678,0,0,0.70710678]],[[0,0,0],[1,0,0,0]]]";
     let point = "[[0,0,0],[0,0.70710678,0.70710678,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]";
     let at = |settings: &str| {
@@ -603,7 +603,7 @@ fn logic_runs_during_concurrent_movements() {
             format!("MoveJ a,v1000,fine,tool0;\nMoveL {conc}b,v100,fine,tool0;\nWaitTime {wait};");
         simulated(&body).cycle_s
     };
-    // The movement of 0.3 m at 100 mm/s hides a wait of one second, and three of five.
+    // The movement of 0.3 m at 100 mm/s covers a wait of one second, and three of five.
     let moves = cycle("", "0");
     assert!((cycle("", "1") - moves - 1.0).abs() < TIME);
     assert!((cycle("\\Conc,", "1") - moves).abs() < TIME);
@@ -629,7 +629,7 @@ fn a_wait_for_several_inputs_ends_with_the_one_that_decides() {
     assert_eq!(ends("WHILE di3=0 AND di4=0 DO\nWaitTime 0.1;\nENDWHILE"), 4.0);
 }
 
-/// An array of which no memory holds the elements is told, not built.
+/// An array that exceeds any memory causes a message and is not allocated.
 #[test]
 fn arrays_beyond_all_memory_are_not_built() {
     let body = "VAR num all{10000,10000,10000};\nall{1,1,1}:=1;\nMoveJ a,v1000,fine,tool0;\n\

@@ -1,4 +1,4 @@
-//! `joulepath simulate` as a user calls it.
+//! `joulepath simulate` through the binary.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 

@@ -1,11 +1,11 @@
-//! `standstill` through the binary: the contract of its JSON and the paper's table.
+//! `standstill` through the binary: the contract of its JSON, and the table of the paper.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// Joints 2 and 3 of table 3 are printed in whole watts.
+/// Table 3 has joints 2 and 3 in whole watts.
 const PRINTED_W: f64 = 0.5;
 
 fn standstill(args: &[&str]) -> Output {
@@ -67,7 +67,7 @@ fn best_pose_is_cheaper_near_and_reachable() {
     let before = pose["holding_w"].as_f64().unwrap();
     let after = pose["best_nearby"]["holding_w"].as_f64().unwrap();
     assert!(after < 0.9 * before, "{after} {before}");
-    // A finer grid around the found pose finds nothing better.
+    // A finer grid around the pose has no better pose.
     let mut poses = vec!["--robot".to_owned(), "IRB1600-10/1.45".to_owned()];
     for (second, third) in (-10..=10).flat_map(|a| (-10..=10).map(move |b| (a, b))) {
         let list = format!("10,{},{},{},{},5", 90 + second, -30 + third, best[3], best[4]);
@@ -80,10 +80,10 @@ fn best_pose_is_cheaper_near_and_reachable() {
     }
 }
 
-/// Poses around which a descent from one start ends in a valley that is not the deepest.
+/// Starts from which a local descent does not reach the global minimum.
 #[test]
 fn the_deepest_of_several_valleys_is_found() {
-    /// What a pose may cost more than the best that is known \[W\].
+    /// Accepted excess over the best known pose \[W\].
     const MISSED_W: f64 = 0.05;
     for (pose, within, more, known_w) in [
         ("170.69,-71.86,-188.45,158.31,35.96,-283.17", "60", &["--load", "8,50,30,200"][..], 8.4),
@@ -93,7 +93,7 @@ fn the_deepest_of_several_valleys_is_found() {
         let result = json(&[&args[..], more].concat());
         let best = &result["poses"][0]["best_nearby"];
         assert!(best["holding_w"].as_f64().unwrap() < known_w + MISSED_W, "{pose}: {best}");
-        // It is a pose that the command takes.
+        // The command accepts the pose.
         let q: Vec<String> = numbers(&best["q_deg"]).iter().map(ToString::to_string).collect();
         let there = json(&[&["--robot", "IRB1600-10/1.45", "--pose", &q.join(",")], more].concat());
         let (a, b) = (&there["poses"][0]["holding_w"], &best["holding_w"]);
@@ -127,7 +127,7 @@ fn what_is_missing_is_said() {
     }
 }
 
-/// An arm of which nobody knows the bodies gets estimated ones.
+/// An arm with unknown bodies has estimated ones.
 #[test]
 fn an_unknown_arm_has_estimates() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! A tool that stands still while the robot moves the work.
+//! A stationary tool; the robot moves the work.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -10,12 +10,12 @@ use joulepath::arm::robot::{Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-/// Largest difference of poses that count as one \[m\] and \[rad\].
+/// Tolerance of poses \[m\] and \[rad\].
 const SAME_POSE: f64 = 1e-10;
-/// Largest distance of the TCP from the programmed line on the work \[m\]: the controller averages
-/// the joints over time, which leaves a curved path of theirs a little.
+/// Largest distance of the TCP from the line on the work \[m\]: the moving average of the joints
+/// bends the path slightly.
 const ON_LINE: f64 = 2e-5;
-/// Share by which the TCP's speed along the work may differ from the programmed one.
+/// Relative tolerance of the TCP speed along the work.
 const SPEED: f64 = 1e-3;
 
 fn stationary() -> Isometry3<f64> {
@@ -45,7 +45,7 @@ proptest! {
             let [linear, angular] = difference(&tcp.flange(&tcp.pose(&flange)), &flange);
             prop_assert!(linear.norm() < SAME_POSE && angular.norm() < SAME_POSE);
         }
-        // The work sees the tool where the base sees it.
+        // The tool has the same pose relative to work and base.
         let seen = flange * Tcp::Stationary(stationary()).pose(&flange);
         let [linear, angular] = difference(&seen, &stationary());
         prop_assert!(linear.norm() < SAME_POSE && angular.norm() < SAME_POSE);
@@ -77,7 +77,7 @@ proptest! {
     }
 }
 
-/// A glue gun beside the robot, which moves a plate under it along two lines.
+/// A stationary glue gun; the robot moves a plate under it along two lines.
 const GLUE: &str = "MODULE M\n\
     PERS tooldata tGlue:=[FALSE,[[900,100,700],[1,0,0,0]],[2,[0,0,50],[1,0,0,0],0,0,0]];\n\
     PERS wobjdata wPlate:=[TRUE,TRUE,\"\",[[0,0,120],[0.7071067812,0,-0.7071067812,0]],\
@@ -119,14 +119,14 @@ fn the_work_moves_along_the_line() {
     for line in text.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
-        // The first line of the program, before its zone.
+        // The first line of the program before its zone.
         if cells[column("line")] != "11" {
             continue;
         }
         let q: [f64; 6] = std::array::from_fn(|i| number(&format!("q{}", i + 1)));
         let seen = plate.inverse() * (fk(&model, &q).inverse() * tool);
         let t = seen.translation.vector;
-        // The average over time reaches a hundredth of a metre ahead into the zone.
+        // The moving average starts the zone 0.01 m early.
         if t.y < 0.119 {
             assert!(t.x.hypot(t.z) < ON_LINE && seen.rotation.angle() < ON_LINE, "{seen}");
             along += 1;

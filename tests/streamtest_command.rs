@@ -1,5 +1,5 @@
-//! `streamtest` through the binary: what it writes runs as predicted, and logs of controllers that
-//! do something else are told from it. The motions of those are worked out here, from the text.
+//! `streamtest` through the binary: its program runs as predicted, and it detects logs of
+//! controllers with another behaviour. These motions are computed independently from the text.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
 use std::f64::consts::TAU;
@@ -13,10 +13,10 @@ use tempfile::TempDir;
 
 const ROBOT: &str = "IRB1600-10/1.45";
 const TESTS: usize = 4;
-/// Interval of the logs [s], and the rest around each test.
+/// Interval of the logs [s], and the pause around each test.
 const STEP: f64 = 0.004;
 const REST: f64 = 0.2;
-/// Servo lag of a robot that follows well [s], and the noise of its positions [deg].
+/// Servo lag of an accurate robot [s], and the noise of its positions [deg].
 const LAG: f64 = 0.01;
 const NOISE: f64 = 0.02;
 
@@ -58,10 +58,10 @@ fn points(folder: &TempDir) -> Vec<Vec<Timed>> {
         .collect()
 }
 
-/// Positions over the time [deg].
+/// Positions as a function of time [deg].
 type Motion = Box<dyn Fn(f64) -> [f64; 6]>;
 
-/// A log of some motions, one for each test: positions over the time, which lasts so long.
+/// A log of motions, one for each test: positions as a function of time, and duration.
 fn log(motions: &[(Motion, f64)]) -> String {
     let mut csv = String::from("t,cmd,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n");
     let mut t = 0.0;
@@ -84,8 +84,8 @@ fn log(motions: &[(Motion, f64)]) -> String {
     csv
 }
 
-/// The emitted points with corners cut at half the distance, as quadratic B-spline: by the de Boor
-/// recursion on doubled end knots, which shares nothing with the program's closed form.
+/// The emitted points as control points of a quadratic B-spline, by the de Boor recursion on
+/// clamped knots, independent of the closed form of the program.
 fn b_spline(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use<> {
     let total: f64 = points.iter().map(|(_, d)| d).sum();
     let n = points.len();
@@ -103,7 +103,7 @@ fn b_spline(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use
         begin += d;
     }
     knots.extend([total; 3]);
-    // At rest at both ends: the end points are doubled.
+    // At rest at both ends: the end points are repeated.
     let mut control = vec![start; 2];
     control.extend(points.iter().map(|(q, _)| *q));
     control.push(points[n - 1].0);
@@ -122,7 +122,7 @@ fn b_spline(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use
     }
 }
 
-/// Each point is reached and stood at: corner zones fail.
+/// The robot stops at each point: corner zones have no effect.
 fn visiting(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use<> {
     let points = points.to_vec();
     move |t: f64| {
@@ -146,7 +146,7 @@ fn duration(points: &[Timed]) -> f64 {
     points.iter().map(|(_, d)| d).sum()
 }
 
-/// What the tool says of a log, with its exit code.
+/// The judgement of a log, with the exit code.
 fn judged(folder: &TempDir, log: &str) -> (Value, Option<i32>) {
     let path = folder.path().join("log.csv");
     fs::write(&path, log).unwrap();
@@ -255,7 +255,7 @@ fn unusable_input_is_refused_with_the_way_out() {
     told(&["--robot", ROBOT, "--log", log, "--start", "20,0,0,0,30,0"], "--start");
     told(&["--robot", ROBOT, "--out", "x", "--start", "0,0,0,0,300,0"], "--start");
     told(&["--robot", ROBOT, "--log", "nowhere.csv"], "nowhere.csv");
-    // A test too small to be seen in a log would pass on any controller.
+    // A test below the resolution of a log would pass with any controller.
     told(&["--robot", ROBOT, "--out", "x", "--start", "179.5,0,0,0,30,0"], "another --start");
     let text = fs::read_to_string(log).unwrap();
     let sparse: Vec<&str> = text.lines().step_by(10).collect();

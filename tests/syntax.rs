@@ -1,4 +1,4 @@
-//! The fixtures of the parser: each input beside what it is read as.
+//! The fixtures of the parser: each input with its expected tree.
 
 #![expect(clippy::unwrap_used, reason = "a fixture that cannot be read fails the test")]
 
@@ -11,7 +11,7 @@ use support::{check_tree, fixture_folder, fixtures};
 
 const ID: FileId = FileId(0);
 
-/// A fixture and what was read from it.
+/// A fixture and the tree that was read.
 struct Fixture {
     name: String,
     source: SourceFile,
@@ -82,8 +82,8 @@ fn each_mistake_is_one_error() {
     assert!(cascades.is_empty(), "not one error each:\n{}", cascades.join("\n"));
 }
 
-/// In the fixtures the statements that have nothing to do with the mistake call
-/// procedures whose names start with `Keep`.
+/// In the fixtures, the statements unrelated to the mistake call procedures with names that start
+/// with `Keep`.
 #[test]
 fn recovery_keeps_the_statements_around_a_mistake() {
     let mut lost = Vec::new();

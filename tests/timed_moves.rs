@@ -1,4 +1,4 @@
-//! Movements with `\T`, what sets the pace of a movement, and lines past singular places.
+//! Movements with `\T`, the limiting quantity of a movement, and lines near singularities.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
 use std::fmt::Write;
@@ -17,13 +17,13 @@ fn irb1600() -> Model {
     find("IRB1600-10/1.45").unwrap()
 }
 
-/// A line to a point in mm with the tool down.
+/// A line to a point in mm with the tool pointing down.
 fn line(point: [f64; 3], speed: &str, zone: &str) -> String {
     let [x, y, z] = point;
     format!("MoveL [[{x},{y},{z}],[0,0,1,0],[0,0,0,0],{NONE}],{speed},{zone},tool0;\n")
 }
 
-/// Starts over the table, without regard to configurations.
+/// Simulates a program that starts above the table, without configuration monitoring.
 fn run(body: &str) -> Simulation {
     let text = format!(
         "MODULE M\nPROC main()\nMoveAbsJ [[0,0,0,0,60,0],{NONE}],v1000,fine,tool0;\nConfL\\Off;\n\
@@ -42,7 +42,7 @@ fn runs(simulation: &Simulation) -> impl Iterator<Item = &Run> {
     })
 }
 
-/// Duration and pace of each movement but the first.
+/// Duration and limiting quantity of each movement except the first.
 fn moves(body: &str) -> Vec<(f64, &'static str)> {
     let simulation = run(body);
     assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
@@ -50,7 +50,7 @@ fn moves(body: &str) -> Vec<(f64, &'static str)> {
     all.map(|record| (record.duration, record.pace.name())).skip(1).collect()
 }
 
-/// What the search for a time leaves, share.
+/// Relative tolerance of the search for a duration.
 const IN_TIME: f64 = 1e-4;
 
 #[test]
@@ -99,7 +99,7 @@ fn the_limit_that_holds_for_the_longest_time_sets_the_pace() {
     assert_eq!(pace(joint), "joint-speed");
 }
 
-/// Excess over `PathAccLim` that the tightening leaves, and differences over time.
+/// Accepted ratio to `PathAccLim`, with the errors of finite differences.
 const OVERSHOOT: f64 = 1.01;
 
 #[test]
@@ -125,8 +125,8 @@ fn path_acceleration_is_limited_in_small_zones_too() {
     assert!(worst > 0.9, "nothing was limited: {worst} m/s²");
 }
 
-/// Where the TCP may be beside the programmed line, m: the joints are averaged over time, which
-/// bends a line a little.
+/// Largest distance of the TCP from the programmed line, m: the moving average of the joints bends
+/// the line slightly.
 const BESIDE: f64 = 5e-5;
 
 #[test]
@@ -155,7 +155,7 @@ fn wrist_interpolation_takes_a_line_past_the_singularity() {
 
 #[test]
 fn a_line_without_configuration_ends_where_it_arrives() {
-    // The nearest joints to those of the start are not those in which the line arrives.
+    // The solution nearest to the start differs from that at the end of the line.
     let turn = |angle: f64| {
         let half = (0.5 * angle).to_radians();
         format!("[0,{},{},0]", half.sin(), half.cos())
@@ -174,7 +174,7 @@ fn a_line_without_configuration_ends_where_it_arrives() {
 
 #[test]
 fn a_joint_that_stands_has_no_friction() {
-    // In the plane of the arm axes 1, 4 and 6 stand but for rounding.
+    // In the plane of the arm, axes 1, 4 and 6 are at rest except for rounding.
     let body = line([900., 0., 700.], "v500", "fine") + &line([1000., 0., 900.], "v500", "fine");
     let simulation = run(&body);
     let model = irb1600();
@@ -222,13 +222,13 @@ fn one_sided_path_acceleration_slows_no_more_than_both() {
     let both = time("PathAccLim TRUE\\AccMax:=0.1,TRUE\\DecelMax:=0.1;\n");
     let up = time("PathAccLim TRUE\\AccMax:=0.1,FALSE;\n");
     let down = time("PathAccLim FALSE,TRUE\\DecelMax:=0.1;\n");
-    // From rest to rest under a of one side alone: √(2 s / a), with the ramp of the average.
+    // From rest to rest with one acceleration limit a: √(2 s / a), plus the ramp of the average.
     assert!((2.0..2.2).contains(&up), "{up} s");
     assert!((2.0..2.2).contains(&down), "{down} s");
     assert!((2.8..3.0).contains(&both), "{both} s");
 }
 
-/// Accepted share of a joint's largest speed.
+/// Accepted ratio to a joint's speed limit.
 const JOINT_SPEED: f64 = 1.01;
 
 #[test]

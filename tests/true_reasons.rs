@@ -1,4 +1,4 @@
-//! Programs that need care: each movement becomes a stream or has a reason that is true.
+//! Difficult programs: each movement becomes a stream or has a true reason.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -12,7 +12,7 @@ use serde_json::Value;
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 
 const FAR: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
-/// Two computations of the same energy, J.
+/// Tolerance between two computations of the same energy, J.
 const ENERGY: f64 = 1e-6;
 
 fn optimize(input: &Path, out: &Path) -> Value {
@@ -33,7 +33,7 @@ fn optimize_with(input: &Path, out: &Path, args: &[&str]) -> Value {
     result
 }
 
-/// The segments of a program that is written down as module-level text and movements.
+/// The segments of a program with module-level text and movements.
 fn segments(declarations: &str, movements: &[String]) -> Vec<Value> {
     segments_with(declarations, movements, &[])
 }
@@ -70,19 +70,19 @@ fn reasons(segments: &[Value]) -> Vec<String> {
 
 #[test]
 fn names_of_rapid_that_the_program_has_otherwise_are_told() {
-    // The guard would be true wherever the robot stands.
+    // The guard would be true at any position of the robot.
     let abs = "FUNC num Abs(num x)\nRETURN 0;\nENDFUNC\n";
     let zone = "CONST zonedata z200:=[FALSE,1,1,1,1,1,1];\n";
     for own in [abs, zone] {
         let found = reasons(&segments(own, &there_and_back()));
         assert_eq!(found, ["first-movement", "own-name", "own-name"], "{own}");
     }
-    // What only its own module sees is no harm.
+    // Local data of another module have no effect.
     let local = segments(&format!("LOCAL {zone}"), &there_and_back());
     assert_eq!(reasons(&local), ["first-movement"], "{local:?}");
 }
 
-/// RAPID's names have no case.
+/// RAPID names are case-insensitive.
 #[test]
 fn a_tool_in_other_letters_is_the_same_tool() {
     let tool = "PERS tooldata tGun:=[TRUE,[[0,0,80],[1,0,0,0]],[2,[0,0,40],[1,0,0,0],0,0,0]];\n";
@@ -106,7 +106,7 @@ fn a_tool_in_other_letters_is_the_same_tool() {
 fn one_joint_that_turns_far_does_not_leave_its_path() {
     let turned = |angle: f64| joints([0.0, 0.0, 0.0, 0.0, 30.0, angle], "vmax,fine");
     let movements = [turned(300.0), turned(-300.0), turned(300.0)];
-    // Here its path is the question, not whether it saves in nearly every plausible robot.
+    // This tests the path, not whether it saves energy in nearly every plausible robot.
     let segments = segments_with("", &movements, &["--point-estimate"]);
     assert_eq!(reasons(&segments), ["first-movement"], "{segments:?}");
 }
@@ -163,7 +163,7 @@ fn what_was_left_stays_left() {
     assert!(!twice.join("Joulepath2.mod").exists());
 }
 
-/// A target with an offset in y that an expression gives.
+/// A target with an offset in y from an expression.
 fn shifted(offset: &str, rest: &str) -> String {
     format!("MoveL Offs(pHere,0,{offset},0),{rest},tool0;")
 }
@@ -175,11 +175,11 @@ fn what_changes_is_told_by_a_condition() {
     let ways = |offset: &str| vec![shifted(offset, "v500,fine"), start.clone()];
     let none: [&str; 1] = ["first-movement"];
     for (declared, first, offset) in [
-        // Of the routine, never assigned, or computed from others.
+        // Local data: never assigned, or computed from constants.
         ("", "VAR num h:=60;", "h"),
         ("", "VAR num h;\nh:=3*20;", "h"),
         ("", "VAR num h{2}:=[60,0];\nh{2}:=h{1};", "h{2}"),
-        // Of the module, and written by the program.
+        // Data of the module that the program writes.
         ("VAR num h:=10;\n", "h:=h+50;", "h"),
         ("VAR num h{2,2};\n", "h{1,2}:=60;", "h{1,2}"),
     ] {
@@ -197,7 +197,7 @@ fn what_changes_is_told_by_a_condition() {
     let all = ["p1:=Offs(pHere,0,20,0);", &start, "MoveL p1,v500,fine,tool0;", "go both;"];
     let found = segments(&targets, &all.map(str::to_owned));
     assert_eq!(reasons(&found), none, "{found:?}");
-    // What an input, a stored value or a function tells is compared as well.
+    // Values of inputs, stored data and functions are compared, too.
     for (declared, first) in [
         ("PERS num h:=60;\n", ""),
         ("PERS num g:=60;\n", "VAR num h;\nVAR num k;\nk:=g;\nh:=k;"),
@@ -214,7 +214,7 @@ fn what_changes_is_told_by_a_condition() {
     let all = [vec!["g:=g+1;".into(), start.clone()], ways("f()")].concat();
     let found = segments(&function("x:=g;"), &all);
     assert_eq!(reasons(&found), none, "{found:?}");
-    // A function that does more would do it twice.
+    // A function with side effects would run twice.
     let found = segments(&function("g:=g+1;\nx:=g;"), &all);
     assert_eq!(reasons(&found)[..2], ["first-movement", "not-constant"], "{found:?}");
 }
@@ -240,7 +240,7 @@ fn the_original_runs_where_a_variable_has_another_value() {
     let out = folder.path().join("out");
     let result = optimize(&path, &out);
     assert_eq!(reasons(result["segments"].as_array().unwrap()), ["first-movement"], "{result}");
-    // On the controller the variable holds another number.
+    // On the controller the variable has another value.
     let written = fs::read_to_string(out.join("m.mod")).unwrap();
     fs::write(out.join("m.mod"), written.replace("h:=60;", "h:=200;")).unwrap();
     fs::write(&path, program("200")).unwrap();
@@ -299,7 +299,7 @@ fn a_first_line_from_a_place_that_is_not_known_ends_where_it_is_told_to() {
     assert_eq!(reasons(&found), ["first-movement"], "{found:?}");
 }
 
-/// What an option stands for that the caller of a routine may leave out, no guard can compare.
+/// A guard cannot compare the value of an optional argument that a caller may omit.
 #[test]
 fn options_that_the_caller_may_leave_out_are_not_rewritten() {
     for (option, kind) in
@@ -322,7 +322,7 @@ fn options_that_the_caller_may_leave_out_are_not_rewritten() {
     }
 }
 
-/// Interrupt routines write through functions, too, and by names that are values.
+/// Interrupt routines also write through functions and late-bound names.
 #[test]
 fn what_interrupt_routines_do_by_functions_counts() {
     let cases = [
@@ -365,8 +365,8 @@ fn what_interrupt_routines_do_by_functions_counts() {
     }
 }
 
-/// A guard evaluates all arguments before the first movement: an error in one of them would come too
-/// early for who goes on after it.
+/// A guard evaluates all arguments before the first movement, and an error in one of them would
+/// occur too early for a caller that handles it.
 #[test]
 fn arguments_that_may_end_in_an_error_stay_where_somebody_handles_it() {
     let here = target(50.0);

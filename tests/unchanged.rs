@@ -1,8 +1,6 @@
-//! What is not a rewritten movement comes out byte for byte.
-//!
-//! The outputs are taken apart by another way than the one that made them: around the statements
-//! that the result calls rewritten there has to stand a guard, and every other byte has to be
-//! the original's.
+//! Everything except rewritten movements is unchanged to the byte. An independent parser takes the
+//! outputs apart: each statement that the result declares rewritten has a guard around it, and
+//! every other byte is that of the original.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -15,12 +13,12 @@ use joulepath::tool::retrofit::{OutputFile, OutputKind, Retrofit, Settings, Sour
 
 /// Extensions of RAPID modules in the fixtures.
 const EXTENSIONS: [&str; 2] = ["mod", "sys"];
-/// Marks a movement of `fixtures/hard` that can't be rewritten.
+/// Mark of a movement in `fixtures/hard` that can't be rewritten.
 const REFUSED: &str = "! Refused:";
-/// Beginnings of statements that move the robot.
+/// Prefixes of statements that move the robot.
 const MOVES: [&str; 6] = ["Move", "Trigg", "Search", "Arc", "Spot", "Disp"];
 
-/// A program with what became of it.
+/// A program and its retrofit.
 struct Case {
     name: String,
     files: Vec<Source>,
@@ -59,7 +57,7 @@ fn modules(folder: &str) -> Vec<PathBuf> {
 }
 
 impl Case {
-    /// Bytes of a file that the result calls rewritten, in order.
+    /// Byte ranges of a file that the result declares rewritten, in order.
     fn rewritten(&self, file: usize) -> Vec<Range<usize>> {
         let segments = self.result.segments.iter().filter(|segment| segment.rewritten);
         let mut spans: Vec<Range<usize>> = segments
@@ -70,7 +68,7 @@ impl Case {
         spans
     }
 
-    /// What is wrong with the outputs.
+    /// Checks the outputs.
     fn check(&self) -> Result<(), String> {
         let originals: Vec<&OutputFile> =
             self.result.outputs.iter().filter(|output| output.kind != OutputKind::New).collect();
@@ -91,7 +89,7 @@ impl Case {
         Ok(())
     }
 
-    /// Whether the movement of a line stayed, with a reason.
+    /// Checks that the movement of a line remains, with a reason.
     fn refusal(&self, line: u32) -> Result<(), String> {
         let file = &self.files[0].file;
         let covers = |span: Span| {
@@ -111,10 +109,10 @@ impl Case {
     }
 }
 
-/// What stands behind the ELSE of a guard.
+/// Comment after the ELSE of a guard.
 const REMARK: &str = " ! after an edit of these lines: joulepath refresh";
 
-/// Takes the guards out of an output; what is left has to be the original.
+/// Removes the guards from an output; the rest has to be the original.
 fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> Result<(), String> {
     let end_of_line = match original.iter().position(|b| *b == b'\n') {
         Some(i) if i > 0 && original[i - 1] == b'\r' => "\r\n",
@@ -153,7 +151,7 @@ fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> 
     if rest == &original[from..] { Ok(()) } else { Err("bytes after the last guard differ".into()) }
 }
 
-/// `IF … THEN` with a function of the streams, its arguments on any number of lines, and a call.
+/// `IF … THEN` with a function of the streams, its arguments on one or more lines, and a call.
 fn guard_is_plain(head: &[u8], line_break: &str) -> Result<(), String> {
     let head = String::from_utf8_lossy(head);
     let Some((condition, call)) = head.rsplit_once(line_break) else {
@@ -165,7 +163,7 @@ fn guard_is_plain(head: &[u8], line_break: &str) -> Result<(), String> {
     if asks && calls && one { Ok(()) } else { Err(format!("'{head}'")) }
 }
 
-/// A text without what writes loads and settings down behind the statements that change them.
+/// A text without the statements that record loads and settings.
 fn without_notes(text: &[u8]) -> Vec<u8> {
     let mut left = text.to_vec();
     while let Some(begin) = find_bytes(&left, b" jpLoad:=") {
@@ -226,7 +224,7 @@ fn hard_programs_keep_every_byte_and_every_refused_movement() {
     assert!(rewritten > 0 && refused > 0, "{rewritten} rewritten, {refused} refused");
 }
 
-/// The check finds what it is there for.
+/// The check detects changed bytes.
 #[test]
 fn changed_bytes_are_found() {
     let original = b"! a\n  MoveJ p,v,fine,t;\n! b\n";

@@ -1,4 +1,4 @@
-//! `joulepath optimize` where one run gives time to another, uses up a wait, or leaves its path.
+//! `joulepath optimize` with redistribution of time between runs, use of waits, and free paths.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -11,7 +11,7 @@ const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_li
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
 
-/// A quick way and a slow one, with a wait between.
+/// A quick and a slow movement, with a wait between.
 fn program(line: &str) -> String {
     format!(
         "MODULE M\n\
@@ -52,7 +52,7 @@ fn number(value: &Value, pointer: &str) -> f64 {
     value.pointer(pointer).and_then(Value::as_f64).unwrap()
 }
 
-/// Time of the run that starts at a line, before and after.
+/// Time of the run that starts at a line, in the original and in the retrofit.
 fn times(result: &Value, line: u64) -> [f64; 2] {
     let segments = result["segments"].as_array().unwrap();
     let run = segments.iter().find(|s| s["line_first"] == line && s["kind"] == "timing").unwrap();
@@ -66,13 +66,13 @@ fn a_wait_of_known_length_is_used_up() {
     let known = optimize(&text, &["--input", "diPart=3"]);
     let [before, after] = times(&known, 8);
     assert!(after > 1.5 * before, "{before} s, {after} s");
-    // A wait of unknown length gives nothing away: the run gets what the others can do without.
+    // A wait of unknown duration provides no time: the run uses the time saved by the others.
     assert!(after > 1.2 * times(&unknown, 8)[1], "{after} s, {} s", times(&unknown, 8)[1]);
     let saving = |result| number(result, "/motion_saving_percent");
     assert!(saving(&known) > saving(&unknown) + 5.0);
 }
 
-/// Where the cell has changed, a quick stream may not run, and a slow one still does.
+/// After a change of the cell a slow stream may run while a quick one does not.
 #[test]
 fn no_run_takes_longer_so_that_another_one_may_be_quicker() {
     let result = optimize(&program("MoveL pD,v500,fine,tool0;"), &[]);
@@ -93,7 +93,7 @@ fn what_is_free_leaves_its_path_and_is_never_worse() {
     assert!(deviation(&kept) <= 0.005);
     assert!(deviation(&free) > 0.005 && deviation(&free) <= 0.04, "{}", deviation(&free));
     assert!(energy(&free) < energy(&kept), "{} J, {} J", energy(&free), energy(&kept));
-    // Without the comment the line stays a line.
+    // Without the comment the line remains a line.
     assert!(energy(&free) < energy(&strict));
     for segment in free["segments"].as_array().unwrap() {
         if segment["rewritten"] == true {

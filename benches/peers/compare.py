@@ -18,7 +18,7 @@ import time
 from rapidchecker.check import check_format
 from rapidchecker.config import CONFIG
 
-# Of its checks only that of the grammar is compared.
+# Only its grammar check is compared.
 CONFIG.indentation_check = False
 CONFIG.require_uppercase_keywords = False
 

@@ -1,4 +1,4 @@
-//! Energies and savings of random programs: estimated against published dynamics.
+//! Energies and savings of random programs: estimated and published dynamics.
 
 use std::fmt::Write as _;
 
@@ -14,7 +14,7 @@ use super::torques::{CASES, pose};
 /// Movements of a program.
 const MOVES: usize = 6;
 
-/// Whether intervals hold the motion energy and the saving of random programs.
+/// Whether the intervals contain the motion energy and the saving of random programs.
 pub(crate) fn held(truth: &Model, unknown: &Model) -> (Vec<bool>, Vec<bool>) {
     let mut random = fastrand::Rng::with_seed(1601);
     let programs: Vec<String> = (0..CASES).map(|_| program(truth, &mut random)).collect();
@@ -41,7 +41,7 @@ pub(crate) fn held(truth: &Model, unknown: &Model) -> (Vec<bool>, Vec<bool>) {
     )
 }
 
-/// Joint movements between random poses.
+/// A program of joint movements between random poses.
 fn program(model: &Model, random: &mut fastrand::Rng) -> String {
     let mut text = String::from("MODULE Random\n");
     let mut moves = String::new();

@@ -1,8 +1,6 @@
-//! How often the 90 % intervals of estimated robots hold what is published of robots:
-//! `cargo run --release --example coverage > docs/coverage.md`.
-//!
-//! Of each robot only the geometry, the limits, the total mass and the payload are given to the
-//! estimate. Poses, motions and programs are drawn with a fixed seed.
+//! Coverage of the 90 % intervals of estimated robots: `cargo run --release --example coverage >
+//! docs/coverage.md`. The estimates use only geometry, limits, total mass and payload of each
+//! robot. Poses, motions and programs are drawn with a fixed seed.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
@@ -51,7 +49,7 @@ fn published_dynamics() {
         ("IRB1600-10/1.45", true, true),
         ("ur10", true, false),
         ("ur5e", false, false),
-        // Its friction is that beyond the torque sensors, without the gears.
+        // Its friction is that behind the torque sensors, without the gears.
         ("panda", false, false),
         ("tx40", true, false),
     ] {

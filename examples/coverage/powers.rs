@@ -1,4 +1,4 @@
-//! Powers that ABB publishes.
+//! Powers published by ABB.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,7 +13,7 @@ use joulepath::tool::retrofit::read_program;
 
 use super::{rate, source};
 
-/// Robot, motion, W.
+/// Robot, motion, power in W.
 type Published = (&'static str, Motion, f64);
 
 #[derive(Clone, Copy, PartialEq)]
@@ -22,11 +22,11 @@ enum Motion {
     Cube(&'static str),
     /// Rest with open brakes in the calibration position.
     Rest,
-    /// The same with engaged brakes.
+    /// Rest with engaged brakes.
     Engaged,
 }
 
-/// Of ABB's data sheets and product specifications that say what the robot does.
+/// From ABB data sheets and product specifications that state the motion.
 const STATED: [Published; 13] = [
     ("IRB120-3/0.58", Motion::Cube("vmax"), 240.0),
     ("IRB140-6/0.81", Motion::Cube("vmax"), 440.0),
@@ -42,7 +42,7 @@ const STATED: [Published; 13] = [
     ("IRB1600-6/1.45", Motion::Cube("vmax"), 580.0),
     ("IRB1600-8/1.45", Motion::Cube("vmax"), 580.0),
 ];
-/// Of those that give a power without a motion.
+/// From those that do not state a motion.
 const UNSTATED: [Published; 5] = [
     ("IRB1200-5/0.9", Motion::Cube("vmax"), 390.0),
     ("IRB1200-7/0.7", Motion::Cube("vmax"), 390.0),
@@ -50,26 +50,26 @@ const UNSTATED: [Published; 5] = [
     ("IRB6650S-200/3.0", Motion::Cube("vmax"), 2400.0),
     ("IRB6650S-90/3.9", Motion::Cube("vmax"), 2400.0),
 ];
-/// What the rule of the power at rest with open brakes follows from \[W\]; the first is from memory.
+/// Powers at rest with open brakes that determine the rule \[W\]; the first one is unverified.
 const AT_REST: [(&str, f64); 3] =
     [("IRB120-3/0.58", 173.0), ("IRB140-6/0.81", 335.0), ("IRB1520ID-4/1.5", 233.0)];
 
-/// What a sheet leaves open of a motion.
+/// Unstated properties of a motion.
 struct Open {
     /// Loads over the rated one.
     loads: &'static [f64],
-    /// Levels of the accelerations, in standard deviations.
+    /// Accelerations, in standard deviations.
     accelerations: &'static [f64],
-    /// Places of the cube that are tried until so many are reached.
+    /// Required number of reachable places of the cube.
     places: usize,
 }
 
 /// One motion for each figure.
 const ONE: Open = Open { loads: &[1.0], accelerations: &[0.0], places: 1 };
-/// With a spread; the levels are equally probable.
+/// With a spread of equally probable accelerations.
 const SPREAD: Open =
     Open { accelerations: &[-1.28, -0.52, 0.0, 0.52, 1.28], places: usize::MAX, ..ONE };
-/// The same where the load is not stated, either.
+/// With a spread of loads, too.
 const SPREAD_WITH_LOAD: Open = Open { loads: &[1.0, 0.5, 0.0], ..SPREAD };
 
 pub(crate) fn print() {
@@ -104,8 +104,8 @@ pub(crate) fn print() {
     }
 }
 
-/// Prints the figures, and says of each robot whether all of its own are held with one motion, and with
-/// a spread of them.
+/// Prints the figures. For each robot, the result states whether all of its figures are covered
+/// with one motion, and with a spread of motions.
 fn by_robot(figures: &[Published], spread: &Open) -> Vec<[bool; 2]> {
     let mut held: BTreeMap<&str, [bool; 2]> = BTreeMap::new();
     for figure in figures {
@@ -128,20 +128,20 @@ fn by_robot(figures: &[Published], spread: &Open) -> Vec<[bool; 2]> {
     held.into_values().collect()
 }
 
-/// Edge of the cube by the reach up to which it is used \[m\]: known of the IRB140 and the IRB1520ID, of the
-/// others the next of ISO 9283's sizes that fits.
+/// Edge of the cube by the largest reach \[m\]: published for IRB140 and IRB1520ID; otherwise the
+/// next suitable size of ISO 9283.
 const EDGES: [(f64, f64); 4] = [(0.85, 0.25), (1.6, 0.4), (2.2, 0.63), (f64::INFINITY, 1.0)];
-/// Distance of the cube's centre from axis 1 over the reach; heights over the reach and tilts of the flange
-/// (0 up, 180 down, degrees) that are tried in turn: data sheets do not say.
+/// Distance of the cube's centre from axis 1 over the reach; heights over the reach and tilts of
+/// the flange (0 up, 180 down, degrees) that are tried: data sheets do not state them.
 const FORWARDS: f64 = 0.57;
 const HEIGHTS: [f64; 4] = [0.45, 0.3, 0.15, 0.6];
 const TILTS: [f64; 4] = [90.0, 120.0, 150.0, 180.0];
-/// Share of the cube's edge from which the rectangle of ISO 9283 is.
+/// Size of the ISO 9283 rectangle over the cube's edge.
 const OF_EDGE: f64 = 0.8;
-/// The rule of the power at rest: W at 100 kg, and the power of the mass.
+/// Rule of the power at rest: W at 100 kg, and exponent of the mass.
 const REST: (f64, f64) = (240.0, 0.15);
 
-/// Level of that rule without a robot, over the one with it.
+/// Level of the rule fitted without a robot, over that with all robots.
 fn left_out(name: &str) -> f64 {
     if AT_REST.iter().all(|(of, _)| *of != name) {
         return 1.0;
@@ -158,11 +158,11 @@ fn table(name: &str, key: &str) -> f64 {
     tables[name][key].as_float().unwrap()
 }
 
-/// Standard deviation of the logarithm of an acceleration: of the largest torques of axes 1 to 3 over
-/// their rule (0.22, 0.17, 0.34) and of the share that is left to accelerate (0.18), in the mean squares.
+/// Standard deviation of the logarithm of an acceleration, in the mean squares: of the largest torques of
+/// axes 1 to 3 over their rule (0.22, 0.17, 0.34) and of the share left to accelerate (0.18).
 const ACCELERATION: f64 = 0.31;
 
-/// Mean powers of plausible robots in the motions that a figure may be of \[W\].
+/// Mean powers \[W\] of plausible robots in the motions possible for a figure.
 fn powers((name, motion, _): &Published, open: &Open) -> Vec<f64> {
     let mut model = with_estimates(find(name).unwrap()).unwrap();
     model.drive.base_w *= left_out(name);
@@ -188,7 +188,7 @@ fn powers((name, motion, _): &Published, open: &Open) -> Vec<f64> {
     }
 }
 
-/// The model with other accelerations.
+/// The model with scaled accelerations.
 fn accelerated(model: &Model, logarithm: f64) -> Model {
     let mut model = model.clone();
     let limits = [&mut model.limits.acceleration, &mut model.limits.jerk];
@@ -198,7 +198,7 @@ fn accelerated(model: &Model, logarithm: f64) -> Model {
     model
 }
 
-/// Mean powers of all plausible robots \[W\]; `None` where the robot does not reach all of a program.
+/// Mean powers of all plausible robots \[W\]; `None` if a target is out of reach.
 fn of_program(model: &Model, text: &str) -> Option<Vec<f64>> {
     let (program, entry) = read_program(&[source(text)], "main").unwrap();
     let simulation = simulate(&program, entry, model, &Options::default());
@@ -221,7 +221,7 @@ const REST_PROGRAM: &str = "MODULE Rest
 ENDMODULE
 ";
 
-/// The rectangle E1 to E4 of the cube at full speed, its first corner reached before.
+/// The rectangle E1 to E4 of the cube at full speed, after a move to its first corner.
 fn iso_cube(name: &str, speed: &str, (height, tilt): (f64, f64), load: f64) -> String {
     let [payload, reach] = ["payload", "reach"].map(|key| table(name, key));
     let payload = load * payload;
@@ -233,7 +233,7 @@ fn iso_cube(name: &str, speed: &str, (height, tilt): (f64, f64), load: f64) -> S
         "MODULE Cube\n  PERS tooldata tLoad:=[TRUE,[[0,0,0],[1,0,0,0]],[{payload},[0,0,100],[1,0,0,0],0,0,0]];\n"
     );
     let mut moves = String::new();
-    // A diagonal plane: x and z change together, y by itself.
+    // A diagonal plane: x and z change together, y independently.
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
     for (i, (along, y)) in corners.into_iter().enumerate() {
         let _ = writeln!(

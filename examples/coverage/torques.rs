@@ -1,4 +1,4 @@
-//! Torques of random poses and motions: estimated against published dynamics.
+//! Torques of random poses and motions: estimated and published dynamics.
 
 use joulepath::arm::dynamics::{Data, Load, friction, gravity, rigid_bodies};
 use joulepath::arm::effects::{drawn, with_estimates};
@@ -8,22 +8,21 @@ use joulepath::arm::robot::{Model, from_toml, to_toml};
 use joulepath::retime::energy::plausible::{DRAWS, Interval};
 use rayon::prelude::*;
 
-/// Poses and motions of a robot.
+/// Poses and motions per robot.
 pub(crate) const CASES: usize = 40;
-/// Torques below this share of the largest of the joint are not compared.
+/// Least compared torque over the largest one of the joint.
 pub(crate) const SMALL: f64 = 0.05;
-/// Speeds of motions over the robot's limits, at most, and the speeds of joints of which none is known
-/// \[rad/s\].
+/// Largest share of the robot's speed limits, and the default speed limit \[rad/s\].
 const LIVELY: f64 = 0.8;
 const USUAL_SPEED: f64 = 3.0;
-/// Rate at which a joint gets to its speed \[1/s\].
+/// Acceleration over speed \[1/s\].
 const RATE: f64 = 4.0;
 
-/// Tables of a robot file that are left out.
+/// Tables of the robot file that are removed.
 const DYNAMICS: [&str; 9] =
     ["link", "arm_load", "friction", "motors", "wrist", "drive", "brakes", "standstill", "effects"];
 
-/// The robot without its dynamics, estimated.
+/// The robot with estimated instead of published dynamics.
 pub(crate) fn unknown(model: &Model) -> Model {
     let mut table: toml::Table = toml::from_str(&to_toml(model)).unwrap();
     for key in DYNAMICS {
@@ -42,7 +41,7 @@ pub(crate) enum Kind {
     Friction,
 }
 
-/// Whether intervals hold the torques of random poses and motions.
+/// Whether each interval contains the true torque of a random pose or motion.
 pub(crate) fn held(truth: &Model, unknown: &Model, kind: Kind) -> Vec<bool> {
     let of = |model: &Model, [q, qd, qdd]: &[Vec<f64>; 3]| -> Vec<f64> {
         let (mut data, load) = (Data::new(), Load::none());

@@ -19,10 +19,10 @@ const SEVEN: &str = include_str!("../../fixtures/dynamics/seven.toml");
 const ONE: &str = "name = \"one\"\n[limits]\nposition = [[-3.0, 3.0]]\n\
     [[joint]]\norigin = [0.0, 0.0, 1.0]\naxis = [0.0, 1.0, 0.2]\n\
     [[link]]\nmass = 2.0\ncom = [0.3, 0.1, -0.4]\ninertia = [0.1, 0.2, 0.15, 0.01, 0.0, 0.0]\n";
-/// The robot of the catalogue with forearm rods.
+/// A robot of the catalogue with forearm rods.
 const RODS: &str = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
     [kinematics]\ncoupling = \"parallelogram\"\n";
-/// The robot of the catalogue with a coupled wrist and all laws of friction.
+/// A robot of the catalogue with a coupled wrist and all friction laws.
 const WRIST: &str = "extends = \"IRB1600-10/1.45\"\nname = \"wrist\"\n\
     [wrist]\ncoupling = 0.8\n\
     [friction]\ncoulomb_asymmetry = [1.0, -2.0, 0.5, 0.3, 0.2, 0.1]\n\
@@ -31,11 +31,11 @@ const WRIST: &str = "extends = \"IRB1600-10/1.45\"\nname = \"wrist\"\n\
     viscous_asymmetry = { asymmetry = [3.0, 2.0, -1.0, 0.2, 0.1, 0.1] }\n\
     load_friction = { mu = [0.05, 0.06, 0.07, 0.08, 0.09, 0.1] }\n";
 
-/// The robot of the catalogue on a slope: gravity has a part across the first axis.
+/// A robot of the catalogue on a slope: gravity has a component perpendicular to the first axis.
 const TILTED: &str = "extends = \"IRB1600-10/1.45\"\nname = \"tilted\"\n\
     [kinematics]\nbase = { origin = [0.1, 0.2, 0.3], rpy = [0.4, -0.7, 0.2] }\n";
 
-/// How many there are.
+/// Number of robots.
 pub(crate) const ROBOTS: usize = 7;
 
 /// All of them.
@@ -67,7 +67,7 @@ pub(crate) fn states() -> impl Strategy<Value = [[f64; MAX_DOF]; 3]> {
     (values(3.0), values(4.0), values(20.0)).prop_map(|(q, qd, qdd)| [q, qd, qdd])
 }
 
-/// The largest size of some numbers, at least 1.
+/// The largest absolute value, at least 1.
 pub(crate) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(1.0, |m: f64, x| m.max(x.abs()))
 }

@@ -1,5 +1,4 @@
-//! Changes of a cell: what an operator, another task, an input or a service technician can do to a
-//! program and its robot.
+//! Changes of a cell by an operator, another task, an input or a service technician.
 
 use std::collections::BTreeMap;
 
@@ -17,32 +16,32 @@ use crate::support::Random;
 /// A change.
 #[derive(Clone, Debug)]
 pub(crate) enum Change {
-    /// Data get another value: name, index of the number or truth value in it, and how it changes.
+    /// New value of data: name, index of the number or truth value in it, and kind of change.
     Datum { name: String, index: usize, how: How },
-    /// An input has this level.
+    /// Level of an input.
     Input { signal: String, level: f64 },
-    /// A statement runs at a marked place.
+    /// A statement at a mark.
     Statement { mark: usize, text: String },
-    /// The robot starts somewhere else, rad.
+    /// Another start of the robot, rad.
     Start([f64; 6]),
     /// Another robot.
     Robot(&'static str),
-    /// The base of the robot was moved along x, m.
+    /// The base of the robot moves along x, m.
     Base(f64),
-    /// So many passes of the loop that never ends.
+    /// Number of passes of the endless loop.
     Passes(u32),
     /// The operator's speed override, share.
     Override(f64),
 }
 
-/// How a number changes.
+/// Change of a number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum How {
-    /// By so much.
+    /// Adds a value.
     By(f64),
-    /// To so many times itself.
+    /// Multiplies by a factor.
     Times(f64),
-    /// A truth value turns.
+    /// Inverts a truth value.
     Turn,
 }
 
@@ -56,11 +55,11 @@ pub(crate) struct Slot {
     value: f64,
 }
 
-/// What can be changed in a program.
+/// The possible changes of a program.
 pub(crate) struct Cell {
     pub(crate) slots: Vec<Slot>,
     pub(crate) signals: Vec<String>,
-    /// Marks at which a statement runs in both programs alike.
+    /// Marks at which a statement has the same effect in both programs.
     pub(crate) outside: Vec<usize>,
     /// Marks at which another task may write.
     pub(crate) writes: Vec<usize>,
@@ -68,12 +67,12 @@ pub(crate) struct Cell {
     pub(crate) shared: Vec<(String, String)>,
 }
 
-/// Mark before a statement: a comment of its own line.
+/// Mark before a statement: a comment on its own line.
 pub(crate) fn mark(index: usize) -> String {
     format!("!@{index}@")
 }
 
-/// The program with a mark before each statement that begins a line, and how many there are.
+/// The program with a mark before each statement that begins a line, and the number of marks.
 pub(crate) fn marked(text: &str) -> (String, usize) {
     let parse = syntax::parse(text.as_bytes());
     let modules = lower(FileId(0), &parse, text.as_bytes());
@@ -104,12 +103,12 @@ fn statements(block: &Block, text: &str, places: &mut Vec<usize>) {
     }
 }
 
-/// Whether a mark stands in the branch that a stream replaces.
+/// Whether a mark is in the branch that a stream replaces.
 pub(crate) fn is_within(text: &str, index: usize) -> bool {
     text.find(&mark(index)).is_some_and(|at| guard_of(text, at).is_some())
 }
 
-/// Where the guard begins in whose other branch a place is.
+/// Start of the guard whose other branch contains a place.
 fn guard_of(text: &str, at: usize) -> Option<usize> {
     text[..at].rfind("IF jpFits").filter(|start| {
         let between = &text[*start..at];
@@ -149,7 +148,7 @@ impl Cell {
         Cell { slots, signals, outside, writes, shared }
     }
 
-    /// A change by chance.
+    /// A random change.
     pub(crate) fn draw(&self, random: &mut Random) -> Change {
         let robots = ["IRB1600-10/1.2", "IRB1600-6/1.45", "IRB2600-12/1.65"];
         match random.below(20) {
@@ -235,7 +234,7 @@ fn sign(random: &mut Random) -> f64 {
     if random.below(2) == 0 { -1.0 } else { 1.0 }
 }
 
-/// Evenly in the logarithm.
+/// Log-uniform.
 fn log(random: &mut Random, from: f64, to: f64) -> f64 {
     let share = random.below(1 << 20) as f64 / f64::from(1 << 20);
     from * (to / from).powf(share)
@@ -246,7 +245,7 @@ enum Leaf {
     Bool(bool),
 }
 
-/// The numbers and truth values of an initial value, with their text.
+/// The numbers and truth values in an initial value, with their spans.
 fn leaves(expr: &Expr) -> Vec<(Span, Leaf)> {
     match &expr.kind {
         ExprKind::Num(x) => vec![(expr.span, Leaf::Num(*x))],
@@ -266,14 +265,14 @@ fn declared(text: &str) -> Vec<Data> {
     modules.into_iter().flat_map(|module| module.data).collect()
 }
 
-/// A program and the conditions under which it runs, after some changes.
+/// A program and its conditions after some changes.
 pub(crate) struct Changed {
     pub(crate) files: Vec<SourceFile>,
     pub(crate) options: Options,
     pub(crate) model: Model,
 }
 
-/// Applies changes to a program: to the original and to what was emitted for it alike.
+/// Applies changes equally to an original or a retrofit.
 pub(crate) fn apply(files: &[String], model: &Model, changes: &[Change]) -> Changed {
     let mut texts = files.to_vec();
     let mut options = Options::default();
@@ -321,8 +320,8 @@ fn change_datum(text: &mut String, name: &str, index: usize, how: How) {
     text.replace_range(span.start as usize..span.end as usize, &new);
 }
 
-/// A statement at a mark. Where the mark stands in the branch that a stream replaces, the statement
-/// comes behind the stream, too: the other task writes whatever the robot runs.
+/// Inserts a statement at a mark. If a stream replaces the branch of the mark, the statement also
+/// follows the stream: the other task writes in any case.
 fn insert(text: &mut String, mark: &str, statement: &str) {
     let Some(at) = text.find(mark) else { return };
     let guard = guard_of(text, at);
@@ -333,7 +332,7 @@ fn insert(text: &mut String, mark: &str, statement: &str) {
     }
 }
 
-/// Counts by kind, for the report.
+/// Name of the kind of a change, for the report.
 pub(crate) fn kind(change: &Change) -> &'static str {
     match change {
         Change::Datum { .. } => "datum",
@@ -347,5 +346,5 @@ pub(crate) fn kind(change: &Change) -> &'static str {
     }
 }
 
-/// How many of each kind.
+/// Number of changes of each kind.
 pub(crate) type Counts = BTreeMap<&'static str, usize>;

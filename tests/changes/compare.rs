@@ -1,4 +1,4 @@
-//! What has to be the same in the original and in the retrofit.
+//! Comparison of the original with the retrofit.
 
 use joulepath::arm::kinematics::fk;
 use joulepath::arm::robot::Model;
@@ -6,28 +6,28 @@ use joulepath::retime::motion::Simulation;
 use joulepath::retime::motion::timed::TimedMotion;
 use joulepath::retime::motion::timeline::{Run, What};
 
-/// Distance of resting places, mm.
+/// Tolerance of stops, mm.
 const PLACE_MM: f64 = 0.2;
-/// Share by which the TCP may be faster than in the same movement of the original.
+/// Largest ratio of the TCP speed to that of the same original movement.
 const FASTER: f64 = 1.02;
-/// Share by which the cycle may be longer.
+/// Largest ratio of the cycle times.
 const LONGER: f64 = 1.005;
 /// Rounding of a time, s.
 const TIME: f64 = 1e-6;
 /// Step of samples, s.
 const STEP: f64 = 0.004;
-/// Distance within which a place of a stream may belong to a movement, m; a turn of the tool counts
+/// Largest distance between a point of a stream and its movement, m; a rotation of the tool counts
 /// as 0.1 m/rad.
 const NEAR: f64 = 0.02;
 
-/// Streams of a simulation.
+/// Number of streams in a simulation.
 pub(crate) fn streams(simulation: &Simulation) -> usize {
     let is_stream = |run: &Run| matches!(run.motions.as_slice(), [(_, TimedMotion::Stream(_))]);
     let events = simulation.events.iter();
     events.filter(|event| matches!(&event.what, What::Run(run) if is_stream(run))).count()
 }
 
-/// Compares a simulation of the original with one of the retrofit under the same conditions.
+/// Compares simulations of original and retrofit under the same conditions.
 pub(crate) fn compare(
     model: &Model,
     before: &Simulation,
@@ -69,7 +69,7 @@ fn same_rest(model: &Model, a: &Run, b: &Run) -> Result<(), String> {
     Ok(())
 }
 
-/// A place of the original motion.
+/// A point of the original motion.
 struct Place {
     at: nalgebra::Isometry3<f64>,
     movement: usize,

@@ -1,9 +1,7 @@
-//! A retrofit stays right when the cell changes: original and retrofit run under the same change
-//! and come to rest at the same places, in the same order of waits and outputs, no faster.
-//!
-//! Changes are drawn by chance: data are taught anew, tools, work objects, loads, speeds, inputs and
-//! settings change, other tasks write, the robot starts elsewhere, is another one, or passes more
-//! than once. `CHANGES=N` draws N of them.
+//! A retrofit remains correct when the cell changes: under the same changes, original and retrofit
+//! reach the same stops, with the same order of waits and outputs, and the retrofit is not faster.
+//! Random changes affect data, tools, work objects, loads, speeds, inputs, settings, other tasks,
+//! the start, the robot and the number of passes. `CHANGES=N` draws N of them.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -26,16 +24,16 @@ use rayon::prelude::*;
 use cell::{Cell, Change, Changed, Counts, apply, is_within, kind, marked};
 use support::Random;
 
-/// Changes where nothing else is asked for.
+/// Default number of changes.
 const CHANGES: usize = 10_000;
-/// Changes at once, at most.
+/// Largest number of simultaneous changes.
 const TOGETHER: usize = 3;
 /// A program with streams for joint movements and lines.
 const MIXED: &str = "pick_place";
-/// Times as long that runs may take where streams are asked for in every place.
+/// Largest relative duration of a run in the tests that request streams everywhere.
 const SLOWER: f64 = 1.2;
 
-/// A program, what was emitted for it, and what can be changed.
+/// A program, the emitted program, and the possible changes.
 struct Case {
     name: String,
     original: Vec<String>,
@@ -84,7 +82,7 @@ fn sources_of(files: Vec<SourceFile>) -> Vec<Source> {
     files.into_iter().map(|file| Source { relative: file.path.clone(), file }).collect()
 }
 
-/// Signals that a program names: what no module declares and no instruction sets.
+/// Signals of a program: names without declaration that no instruction sets.
 fn signals(texts: &[String]) -> Vec<String> {
     let mut found = BTreeSet::new();
     for text in texts {
@@ -101,7 +99,7 @@ fn signals(texts: &[String]) -> Vec<String> {
 struct Way {
     /// Whether it may take longer than the original.
     slower: bool,
-    /// Whether other tasks may write its `PERS` data at any moment, or only where no stream runs.
+    /// Whether other tasks may write its `PERS` data at any time, or only while no stream runs.
     elsewhere: bool,
 }
 
@@ -115,7 +113,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
     let mut marks = 0;
     let mut original = Vec::new();
     for text in &texts {
-        // Marks count on over the files.
+        // Marks are numbered across the files.
         let (marked, count) = marked(text);
         original.push(renumbered(&marked, count, marks));
         marks += count;
@@ -123,7 +121,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
     let settings = Settings {
         budget: if way.slower { Budget::Factor(SLOWER) } else { Budget::AsBefore },
         written_elsewhere: if way.elsewhere { shared(&original) } else { BTreeSet::new() },
-        // As many streams as there can be.
+        // As many streams as possible.
         point_estimate: true,
         inline_targets: true,
         ..Settings::default()
@@ -148,7 +146,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
     Some(Case { name, original, emitted, cell, slower: way.slower })
 }
 
-/// Without its streams a retrofit is the original again, to the byte.
+/// Removing the streams from a retrofit restores the original bytes.
 fn is_taken_out(name: &str, original: &[String], result: &Retrofit) {
     let prefix = result.outputs.iter().find_map(|output| prefix(&output.bytes)).unwrap();
     for output in result.outputs.iter().filter(|output| output.kind != OutputKind::New) {
@@ -158,7 +156,7 @@ fn is_taken_out(name: &str, original: &[String], result: &Retrofit) {
     }
 }
 
-/// PERS data of the programs: other tasks may write each of them.
+/// PERS data of the programs, which other tasks may write.
 fn shared(texts: &[String]) -> BTreeSet<String> {
     let cell = Cell::new(&texts.join("\n"), Vec::new(), Vec::new(), Vec::new());
     cell.shared.into_iter().map(|(name, _)| name.to_lowercase()).collect()
@@ -199,7 +197,7 @@ fn original_and_retrofit_agree_under_every_change() {
             let after = run(apply(&case.emitted, &model, &changes));
             let (before, robot, after) = match (before, after) {
                 (Some((before, robot)), Some((after, _))) => (before, robot, after),
-                // The change makes a program that can't be read, retrofitted or not.
+                // The change makes both programs unreadable.
                 (None, None) => return (None, kinds, false),
                 (before, _) => {
                     let which = if before.is_some() { "retrofit" } else { "original" };
@@ -227,14 +225,13 @@ fn original_and_retrofit_agree_under_every_change() {
         cases.iter().map(|case| &case.name).collect::<BTreeSet<_>>().len(),
         programs.len(),
     );
-    // A test that compared no streams would say nothing.
+    // The test requires enough streams to be meaningful.
     assert!(with_streams * 3 > count, "{summary}");
     let shown: Vec<&str> = faults.iter().take(20).map(|fault| fault.as_str()).collect();
     assert!(faults.is_empty(), "{} faults: {summary}\n{}", faults.len(), shown.join("\n"));
 }
 
-/// What the program is told later at a place where it is not told now must not meet a stream that
-/// knows nothing of it.
+/// Settings that are inserted later must not affect a stream that was computed without them.
 #[test]
 fn settings_that_are_added_later_stop_streams() {
     let model = find("IRB1600-10/1.45").unwrap();
@@ -259,7 +256,7 @@ fn settings_that_are_added_later_stop_streams() {
     ] {
         assert_eq!(streams(setting), 0, "{setting}");
     }
-    // What acts on arcs and lines only leaves the streams of joint movements.
+    // Settings of arcs and lines leave only the streams of joint movements.
     for setting in ["CirPathMode\\CirPointOri;", "SingArea\\Wrist;"] {
         assert!(streams(setting) < usual, "{setting}");
     }

@@ -1,4 +1,4 @@
-//! Diagnosis of simulated gaps, with effects in the library's own forms.
+//! Diagnosis of simulated gaps; the effects have the functional forms of the library.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
@@ -21,16 +21,16 @@ use nalgebra::{DMatrix, DVector};
 use excited::{irb1600, normal};
 use simulated::{Robot, spread};
 
-/// Deviations by which a parameter may be off.
+/// Largest deviation of a parameter, in standard deviations.
 const WITHIN: f64 = 4.0;
-/// Base parameters that a possible body may be off, of all.
+/// Relative tolerance of the base parameters of a physically possible body.
 const SAME_TORQUES: f64 = 1e-2;
-/// A row of a log \[s\], and how far a force may be off, of itself.
+/// Interval of the rows \[s\], and relative tolerance of a force.
 const ROW: f64 = 0.01;
 const OF_FORCE: f64 = 0.05;
-/// Error of a coupling.
+/// Tolerance of a coupling.
 const OF_COUPLING: f64 = 0.005;
-/// Part of the gap that a found effect takes off.
+/// Least reduction of the gap by an effect that is found.
 const SHRINKS: f64 = 0.5;
 
 /// Mass, first and second moments of a load at the flange \[kg, kg m, kg m²\].
@@ -52,7 +52,7 @@ fn trusting(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosi
     diagnose(nominal, records(&[0, 1]), &records(&[2]), settings)
 }
 
-/// Names with their joints, from 1.
+/// Names of the effects with their joints, from 1.
 fn named(found: &Diagnosis) -> Vec<(&'static str, Vec<usize>)> {
     let joints = |joints: &[usize]| joints.iter().map(|joint| joint + 1).collect();
     found.effects.iter().map(|said| (said.effect.id, joints(&said.joints))).collect()
@@ -65,11 +65,11 @@ fn healthy_robots_have_no_effect() {
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &[], noise: 0.005 });
     assert!(named(&found).is_empty(), "{:?}", named(&found));
     assert!(matches!(found.verdict, Verdict::ParametersOnly | Verdict::NoGap));
-    // The parameters were off, and are so no more.
+    // The improved model contains corrected parameters.
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
 }
 
-/// What is not the model's is no change where a baseline has it; what was not there is.
+/// Effects that the baseline already contains are no changes; new effects are.
 #[test]
 fn of_a_baseline_only_changes_are_told() {
     let nominal = irb1600();
@@ -86,7 +86,7 @@ fn of_a_baseline_only_changes_are_told() {
         assert_eq!(named(&found), told);
         let known: Vec<&str> = found.before.iter().flatten().map(|of| of.effect.id).collect();
         assert_eq!(known, ["payload"]);
-        // The model has both.
+        // The model contains both effects.
         assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
         let held = &Record::all(&nominal, &now[2])[0];
         let said = predicted(held, &found.improved.applied);
@@ -112,15 +112,15 @@ fn offsets_are_found_with_their_size() {
     let samples = robot.samples(1);
     let record = Record::all(&nominal, &samples);
     let of = &found.effects[0].parameters[0];
-    // What the nominal model has as its own offset is believed to this share of the torque.
+    // Assumed standard deviation of the nominal model's own offset, as a share of the torque.
     let believed = 0.002 * record[0].motion.scale(4).torque[1];
     assert!((of.value - expected).abs() < WITHIN * of.sd.hypot(believed), "{of:?} {expected}");
-    // No evidence makes the library complete.
+    // The library may be incomplete, which limits the probability.
     assert!((0.5..=0.95).contains(&found.effects[0].probability));
     assert!(found.shrink.by_effect.value > SHRINKS, "{:?}", found.shrink);
 }
 
-/// What all take away together is what the models miss less, and the effect has its own joint's part.
+/// The shares add up to the reduction of the residuals, and the effect has that of its joint.
 #[test]
 fn shares_of_the_gap_add_up() {
     let nominal = irb1600();
@@ -134,7 +134,7 @@ fn shares_of_the_gap_add_up() {
     let records = Record::all(&nominal, &samples);
     let shared = attribution(&records, &nominal, [&found.refit, &found.improved], &ids);
     assert_eq!(shared.players, ["stribeck", PARAMETERS]);
-    // Squares of both models, joint by joint, where the joint moves.
+    // Squared residuals of both models by joint, while the joint moves.
     let squares = |model: &Model| -> Vec<f64> {
         let said = predicted(&records[0], model);
         let of = |joint: usize| {
@@ -187,7 +187,7 @@ fn flipped_currents_are_told() {
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
 }
 
-/// Windows are off the grid of those that are tried first, whose best one leads elsewhere.
+/// The windows are off the coarse grid, whose best window leads to another optimum.
 #[test]
 fn contacts_are_found_with_their_windows() {
     let nominal = irb1600();
@@ -209,7 +209,7 @@ fn contacts_are_found_with_their_windows() {
     }
 }
 
-/// Gears go by the load that is there, not by that of a model whose masses are wrong.
+/// Backlash depends on the actual load, not on that of a model with wrong masses.
 #[test]
 fn backlash_is_told_of_models_that_are_far_off() {
     let nominal = irb1600();
@@ -224,7 +224,7 @@ fn backlash_is_told_of_models_that_are_far_off() {
     assert_eq!(named(&found), [("backlash", vec![3])], "{:?}", found.reasons);
 }
 
-/// Where motor 6 turns back each row is known so well that only the right coupling explains it.
+/// At reversals of motor 6 the rows are so accurate that only the right coupling explains them.
 #[test]
 fn couplings_of_wrists_are_found_to_the_row() {
     let nominal = irb1600();
@@ -236,7 +236,7 @@ fn couplings_of_wrists_are_found_to_the_row() {
     assert!((coupling + 0.254).abs() < OF_COUPLING, "{coupling}");
 }
 
-/// A load on the other side of axis 5 than the flange turns the torques of that round, too.
+/// A load on the opposite side of axis 5 also reverses the sign of its torques.
 #[test]
 fn heavy_loads_are_no_other_sign() {
     let mut nominal = irb1600();
@@ -253,7 +253,7 @@ fn heavy_loads_are_no_other_sign() {
     assert!((mass.value - load[0]).abs() < WITHIN * mass.sd, "{mass:?}");
 }
 
-/// What hangs on the flange leans with the base.
+/// A load at the flange tilts with the base.
 #[test]
 fn a_leaning_base_is_told_under_a_heavy_load() {
     let nominal = irb1600();
@@ -267,7 +267,7 @@ fn a_leaning_base_is_told_under_a_heavy_load() {
     assert_eq!(named, [("base_tilt", vec![]), ("payload", vec![])], "{:?}", found.reasons);
 }
 
-/// A motor's curve may bend sooner than with the cube of its torque.
+/// Saturation may grow with a lower power than the cube of the torque.
 #[test]
 fn saturation_is_told_from_friction_of_the_load() {
     let nominal = irb1600();
@@ -280,7 +280,7 @@ fn saturation_is_told_from_friction_of_the_load() {
     assert!((exponent.value - 1.0).abs() < WITHIN * exponent.sd, "{exponent:?}");
 }
 
-/// Each joint's friction has some step at breakaway.
+/// Each joint has a small breakaway step of its friction.
 #[test]
 fn little_friction_at_breakaway_is_not_named() {
     let nominal = irb1600();
@@ -309,7 +309,7 @@ fn two_effects_are_told() {
     assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
 }
 
-/// A body has no other form that a weak effect could be; one at another joint is none of that.
+/// A strong load, or a strong friction of another joint, does not hide a weak effect.
 #[test]
 fn weak_effects_beside_strong_ones_are_told() {
     let nominal = irb1600();
@@ -325,7 +325,7 @@ fn weak_effects_beside_strong_ones_are_told() {
     }
 }
 
-/// A brake that drags all the time is Coulomb friction.
+/// A permanently dragging brake is Coulomb friction.
 #[test]
 fn a_brake_that_never_lets_go_is_friction() {
     let nominal = irb1600();
@@ -340,7 +340,7 @@ fn a_brake_that_never_lets_go_is_friction() {
     assert_eq!(found.effects[0].class, ["brake_drag", "friction_level"]);
 }
 
-/// Brakes do not let go too late at four joints at once.
+/// Late release of the brakes at four joints at once is implausible.
 #[test]
 fn brakes_at_most_joints_are_none() {
     let nominal = irb1600();
@@ -356,7 +356,7 @@ fn brakes_at_most_joints_are_none() {
     assert_eq!(named(&found), [("brake_drag", vec![1])]);
 }
 
-/// A load may be so heavy that torques have little to do with those of the bare robot.
+/// With a heavy load the torques hardly resemble those of the robot without it.
 #[test]
 fn heavy_loads_are_no_other_robot() {
     let nominal = irb1600();
@@ -378,7 +378,7 @@ fn heavy_loads_are_no_other_robot() {
     assert_eq!(named(&found), [("payload", vec![])], "{:?}", found.reasons);
 }
 
-/// Of friction and of a rotor no more can be gone than there is; the coupling stays.
+/// Friction and rotor inertia can decrease at most to zero; the coupling remains.
 #[test]
 fn a_wrist_loses_no_more_than_it_has() {
     let nominal = irb1600();
@@ -398,7 +398,7 @@ fn a_wrist_loses_no_more_than_it_has() {
     assert!(improved.motors.unwrap().rotor_inertia[5].abs() < 1e-12);
 }
 
-/// Masses and first moments of what hangs on the flange add up, centres do not.
+/// Masses and first moments of loads at the flange add up; centres of mass do not.
 #[test]
 fn a_load_comes_on_top_of_the_one_that_is_listed() {
     let payload = effect("payload").unwrap();
@@ -422,7 +422,7 @@ fn a_load_comes_on_top_of_the_one_that_is_listed() {
     }
 }
 
-/// Motors do not all differ: other masses do, or another unit.
+/// If most joints differ, the cause is wrong masses or another unit, not the motors.
 #[test]
 fn torque_constants_of_most_joints_are_none() {
     let nominal = irb1600();
@@ -437,7 +437,7 @@ fn torque_constants_of_most_joints_are_none() {
     assert_eq!(named(&found), [("torque_constant", vec![2])]);
 }
 
-/// What a force's form leaves has a window too.
+/// The residual of a force's form has a window, too.
 #[test]
 fn a_force_beside_friction_is_no_brake() {
     let nominal = irb1600();
@@ -462,7 +462,7 @@ fn bodies_that_cannot_be_keep_their_torques() {
     }
     let mixing =
         DMatrix::from_diagonal(&DVector::from_fn(count, |k, _| 0.1 * wanted[k].abs() + 1e-3));
-    // A moment of link 5 falls below nothing, as far as its neighbours can make up for it.
+    // A moment of link 5 becomes negative, as far as its neighbours can compensate it.
     let at = RIGID * 4 + 4;
     let mut parameters = DVector::zeros(count);
     parameters[at] = -1.2 * wanted[at] / mixing[(at, at)];
@@ -481,7 +481,7 @@ fn bodies_that_cannot_be_keep_their_torques() {
     assert!(off < SAME_TORQUES * size, "{off} of {size}");
 }
 
-/// Torques that belong to other joints, and joints that rest: nothing is asserted.
+/// For torques of other joints and for resting joints no effect is asserted.
 #[test]
 fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
     let nominal = irb1600();
@@ -505,7 +505,7 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
         }
     });
     assert_eq!((other.verdict, named(&other)), (Verdict::Unknown, Vec::new()));
-    // Torques without any motion in them have smooth parts, but not those of a robot.
+    // Torques without relation to the motion have smooth parts, but not those of a robot.
     let noise = diagnosed(&|samples| {
         let mut random = fastrand::Rng::with_seed(9);
         let noise: Vec<f64> = (0..1000).map(|_| 20.0 * normal(&mut random)).collect();
@@ -516,7 +516,7 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
         }
     });
     assert_eq!((noise.verdict, named(&noise)), (Verdict::Unknown, Vec::new()));
-    // What is missed is shown where nothing is known of it.
+    // Unexplained residuals are still located.
     let push = diagnosed(&|samples| {
         for block in &mut samples.blocks {
             for (tau, q) in block.tau[1].iter_mut().zip(&block.q[4]) {

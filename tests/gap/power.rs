@@ -7,11 +7,11 @@ use crate::excited::{irb1600, normal};
 
 /// Rows of a log.
 const ROWS: usize = 800;
-/// Deviations by which a value may be off.
+/// Largest deviation of a value, in standard deviations.
 const WITHIN: f64 = 4.0;
 
-/// Power of a motion: base, mechanical power and losses by joint, with a share of what is given back,
-/// some noise, and what else there is by row.
+/// Power of a motion: base, mechanical power and losses by joint, with partial regeneration, noise,
+/// and the additional term `more` by row.
 fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
     let mut random = fastrand::Rng::with_seed(seed);
     let wave = |size: f64, random: &mut fastrand::Rng| -> Vec<f64> {
@@ -47,7 +47,7 @@ fn robot() -> Model {
     model
 }
 
-/// What is said where a robot takes more power than before.
+/// The diagnosis of a robot with additional power.
 fn found(more: &dyn Fn(&Powers, usize, f64) -> f64) -> PowerFound {
     let before = [log(1, &|_, _, _| 0.0), log(2, &|_, _, _| 0.0)];
     let after = [log(3, more), log(4, more)];
@@ -75,7 +75,7 @@ fn losses_are_found_with_their_size() {
     assert!(found.gap[2] < 0.1 * found.gap[1], "{:?}", found.gap);
 }
 
-/// An inverter has some resistance.
+/// An inverter with resistance.
 #[test]
 fn of_a_joints_losses_one_is_told() {
     let more = |log: &Powers, row: usize, share: f64| {
@@ -93,7 +93,7 @@ fn two_losses_are_told() {
     assert_eq!(told, [("base_load", None), ("iron_loss", Some(2))]);
 }
 
-/// What hangs on the link of the drives takes a part of what joints give back.
+/// A load on the DC link consumes a part of the regenerated energy.
 #[test]
 fn a_load_on_the_link_of_the_drives_is_a_base_load() {
     let found = found(&|_, _, share| 60.0 * share);
@@ -103,14 +103,14 @@ fn a_load_on_the_link_of_the_drives_is_a_base_load() {
     assert!((of.value - 60.0).abs() < WITHIN * of.sd, "{of:?}");
 }
 
-/// A reference of two kinds of losses is no better than half a percent.
+/// With two kinds of losses the reference is accurate to half a percent only.
 #[test]
 fn little_power_is_not_named() {
     let found = found(&|log, row, share| share * 2e-5 * log.tau[1][row].powi(2));
     assert!(named(&found).is_empty() && !found.is_unknown, "{:?}", found.gap);
 }
 
-/// What no loss explains is not named.
+/// Power that no loss explains has no name.
 #[test]
 fn other_power_is_unknown() {
     let more = |_: &Powers, row: usize, _: f64| if row % 200 < 60 { 80.0 } else { 0.0 };

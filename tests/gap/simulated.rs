@@ -7,7 +7,7 @@ use joulepath::learn::log::{Channel, Log};
 
 use crate::excited::{normal, series};
 
-/// The robot with parameters that are off by about what identification leaves.
+/// The robot with parameter errors as after an identification.
 pub(crate) fn spread(model: &Model, seed: u64) -> Model {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut other = model.clone();
@@ -25,12 +25,12 @@ pub(crate) fn spread(model: &Model, seed: u64) -> Model {
     other
 }
 
-/// A robot and what its logs are like.
+/// A robot and the properties of its logs.
 pub(crate) struct Robot<'a> {
     pub(crate) model: &'a Model,
-    /// Effects, at joints from 0, with their coordinates.
+    /// Effects with their joints, from 0, and their coordinates.
     pub(crate) effects: &'a [(&'static Effect, usize, &'a [f64])],
-    /// Noise of the torque, of its largest value.
+    /// Noise of the torque, relative to its largest value.
     pub(crate) noise: f64,
 }
 

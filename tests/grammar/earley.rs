@@ -1,6 +1,5 @@
-//! A recogniser for any context-free grammar (Earley 1970, with the treatment
-//! of empty rules of Aycock and Horspool 2002): slow, general, and nothing in
-//! common with the parser that it checks.
+//! A recogniser for any context-free grammar (Earley 1970, with the treatment of empty rules by
+//! Aycock and Horspool 2002), slow and independent of the parser.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +14,7 @@ enum Symbol {
     Rules(usize),
 }
 
-/// A grammar in plain rules, made from EBNF.
+/// A grammar in plain rules, converted from EBNF.
 pub(crate) struct Grammar {
     /// Literals, words and classes that match one unit of input.
     terminals: Vec<Ebnf>,
@@ -29,7 +28,7 @@ pub(crate) struct Grammar {
 type Match = (usize, usize, usize);
 
 impl Grammar {
-    /// Productions that are not given are terminals.
+    /// Productions without a definition are terminals.
     pub(crate) fn new(productions: &BTreeMap<String, Ebnf>) -> Grammar {
         let mut grammar = Grammar {
             terminals: Vec::new(),
@@ -107,8 +106,8 @@ impl Grammar {
         }
     }
 
-    /// Whether `start` derives the input, unit `i` of which matches a terminal
-    /// if `matches` says so; and if it does, the productions of one derivation.
+    /// Whether `start` derives the input, and the productions of one derivation; `matches` decides
+    /// whether unit `i` matches a terminal.
     pub(crate) fn recognise(
         &self,
         start: &str,
@@ -143,14 +142,14 @@ impl Grammar {
         Some(used)
     }
 
-    /// All matches, or none if `start` does not match the whole input.
+    /// All matches; `None` if `start` does not match the whole input.
     fn chart(
         &self,
         start: usize,
         length: usize,
         matches: &impl Fn(&Ebnf, usize) -> bool,
     ) -> Option<BTreeSet<Match>> {
-        // An item: rule set, alternative, symbols done, where it began.
+        // An item: rule set, alternative, number of completed symbols, start.
         type Item = (usize, usize, usize, usize);
         let mut completed = BTreeSet::new();
         let mut columns: Vec<Vec<Item>> = vec![Vec::new(); length + 1];
@@ -203,7 +202,7 @@ impl Grammar {
     }
 }
 
-/// A way to match `symbols` with the input between two places.
+/// A partition of the input between two places among `symbols`.
 fn split(
     symbols: &[Symbol],
     from: usize,

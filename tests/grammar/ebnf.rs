@@ -1,4 +1,4 @@
-//! Reading the EBNF of `grammar/`.
+//! Reads the EBNF of `grammar/`.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub(crate) enum Ebnf {
 }
 
 impl Ebnf {
-    /// The productions it names.
+    /// Names of the productions in it.
     pub(crate) fn names(&self) -> Vec<&str> {
         match self {
             Ebnf::Name(name) => vec![name],

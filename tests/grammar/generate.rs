@@ -1,26 +1,24 @@
-//! Programs made from the written grammar.
-//!
-//! A tape of bytes decides at each choice, so that a failing program shrinks
-//! with its tape; where the tape ends, the shortest way out is taken.
+//! Generates programs from the written grammar. Each choice consumes a byte of a tape, so that a
+//! failing program shrinks with its tape; after the end of the tape, the shortest alternative is
+//! used.
 
 use std::collections::BTreeMap;
 
 use crate::ebnf::Ebnf;
 
-/// Most productions inside each other before only the shortest way out is
-/// taken.
+/// Nesting depth of productions beyond which the shortest alternative is used.
 const DEEPEST: usize = 40;
-/// Names that programs use; none is a keyword.
+/// Names in the programs; none is a keyword.
 const NAMES: [&str; 6] = ["a", "reg1", "MoveL", "p_10", "tool0", "Año"];
 const NUMBERS: [&str; 9] = ["0", "12", "1.5", ".5", "5.", "1E+3", "9e9", "0xFf", "0b101"];
 const STRINGS: [&str; 5] =
     ["\"\"", "\"text\"", "\"a\"\"b\"", "\"C:\\\\x\\0A\"", "\"! no comment\""];
 const PLACEHOLDERS: [&str; 5] = ["<SMT>", "<EXP>", "<ID>", "<VAR>", "<TDN>"];
 
-/// Makes programs.
+/// Generates programs.
 pub(crate) struct Generator<'g> {
     productions: &'g BTreeMap<String, Ebnf>,
-    /// Least number of productions below each.
+    /// Least depth of each production.
     heights: BTreeMap<&'g str, usize>,
 }
 
@@ -57,7 +55,7 @@ impl<'g> Generator<'g> {
         }
     }
 
-    /// The tokens of what a production derives.
+    /// The tokens of a derivation of a production.
     pub(crate) fn tokens(&self, production: &str, tape: &[u8]) -> Vec<String> {
         let mut out = Vec::new();
         let mut tape = tape.iter().copied();
@@ -118,8 +116,8 @@ impl<'g> Generator<'g> {
     }
 }
 
-/// Tokens with white space and comments between them, chosen by a tape. A line
-/// within a statement is indented more than the ones before.
+/// Tokens separated by white space and comments that a tape selects. Continuation lines of a
+/// statement have a larger indentation.
 pub(crate) fn spaced(tokens: &[String], tape: &[u8]) -> Vec<u8> {
     let mut text = Vec::new();
     let mut indentation = 0;

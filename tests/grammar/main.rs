@@ -1,8 +1,6 @@
-//! The grammar in `grammar/` and the parser say the same.
-//!
-//! A general recogniser reads programs by the written grammar. It and the
-//! parser have to agree on what is a program, on the fixtures and on mutations
-//! of them; what the parser tolerates the grammar must not have.
+//! The grammar in `grammar/` and the parser are equivalent: a general recogniser reads programs
+//! with the written grammar. It and the parser have to accept the same programs, for the fixtures
+//! and their mutations; the grammar must not contain what the parser merely tolerates.
 
 #![expect(clippy::unwrap_used, reason = "a fixture that cannot be read fails the test")]
 
@@ -22,15 +20,15 @@ use joulepath::rapid::syntax::{self, KEYWORDS, NodeKind, Parse, TokenKind, Toler
 use proptest::prelude::*;
 use support::{Random, check_tree, fixtures};
 
-/// The parts of the grammar of programs; the lexical part is apart.
+/// The parts of the program grammar; the lexical part is separate.
 const PARTS: [&str; 6] = ["modules", "data", "routines", "statements", "arguments", "expressions"];
-/// Kinds of nodes that the levels of operators make.
+/// Node kinds of the operator precedence levels.
 const BY_LEVELS: [NodeKind; 2] = [NodeKind::BinaryExpression, NodeKind::UnaryExpression];
-/// What the grammar states in words only.
+/// Rules that the grammar states in words only.
 const IN_WORDS: [Tolerance; 1] = [Tolerance::AttributeOrder];
 /// Mutations of each fixture.
 const MUTATIONS: usize = 500;
-/// What mutations insert beside single tokens.
+/// Pieces that mutations insert in addition to single tokens.
 const PIECES: [&str; 18] = [
     "+ 1",
     "- ( a )",
@@ -51,7 +49,7 @@ const PIECES: [&str; 18] = [
     "a :",
     "( 1 , a )",
 ];
-/// Longest fixture that is mutated, in tokens: the recogniser is slow.
+/// Length in tokens of the longest mutated fixture: the recogniser is slow.
 const LONGEST: usize = 400;
 
 fn part(name: &str) -> BTreeMap<String, Ebnf> {
@@ -64,7 +62,7 @@ fn productions() -> BTreeMap<String, Ebnf> {
     PARTS.iter().flat_map(|name| part(name)).collect()
 }
 
-/// Kinds and texts of the tokens that are no trivia.
+/// Kinds and texts of the tokens without trivia.
 fn significant(bytes: &[u8]) -> Vec<(TokenKind, String)> {
     let parse = syntax::parse(bytes);
     let tokens = parse.tree.root().all_tokens().filter(|token| !token.kind().is_trivia());
@@ -173,15 +171,15 @@ fn mistakes_are_no_programs() {
     let grammar = Grammar::new(&productions());
     for (name, bytes) in fixtures("err") {
         let tokens = significant(&bytes);
-        // Some mistakes are only seen by their lines: the text would be a
-        // program if it stood on fewer of them.
+        // The parser detects some mistakes by line breaks only: on one line the text could be a
+        // program.
         let joined = on_one_line(&tokens);
         let expected = strict(&syntax::parse(&joined));
         assert_eq!(recognised(&grammar, &tokens).is_some(), expected, "{name}");
     }
 }
 
-/// The tokens on one line: the parser then has nothing to guess from.
+/// The tokens on one line, so that the parser cannot use line breaks.
 fn on_one_line(tokens: &[(TokenKind, String)]) -> Vec<u8> {
     let mut line = Vec::new();
     for (_, text) in tokens {
@@ -206,7 +204,7 @@ fn parser_and_grammar_agree_on_mutations() {
     let all = sources.len() * MUTATIONS;
     for source in sources.iter().flat_map(|source| std::iter::repeat_n(source, MUTATIONS)) {
         let line = on_one_line(&mutated(source, &pool, &mut random));
-        // Neighbours may have become another token.
+        // Adjacent tokens may have merged.
         let tokens = significant(&line);
         let parse = syntax::parse(&line);
         let program = recognised(&grammar, &tokens).is_some();
@@ -218,11 +216,11 @@ fn parser_and_grammar_agree_on_mutations() {
         }
     }
     assert!(disagreements.is_empty(), "{}", disagreements.join("\n"));
-    // Both sides of the comparison have been met often.
+    // Both results occur often.
     assert!(accepted > all / 10 && accepted < all * 9 / 10, "{accepted} of {all} are programs");
 }
 
-/// A copy with one change, of a kind that keeps about every fourth program one.
+/// A copy with one change; about a quarter of the results are programs.
 fn mutated(
     source: &[(TokenKind, String)],
     pool: &[(TokenKind, String)],
@@ -297,8 +295,7 @@ fn tokens_are_those_of_the_lexical_grammar() {
     assert!(unused.is_empty(), "no fixture derives {unused:?}");
 }
 
-/// The literals of the lexical grammar are longer than a character where no
-/// shorter one would do: a text is cut into these.
+/// Cuts a text into the literals of the lexical grammar; the longest literal has priority.
 fn units(text: &[u8]) -> Vec<Vec<u8>> {
     let long: [&[u8]; 5] = [b"%%%", b"\"\"", b"\\\\", b"0x", b"0X"];
     let based: [&[u8]; 4] = [b"0b", b"0B", b"0o", b"0O"];
@@ -379,14 +376,13 @@ proptest! {
             .map(|token| String::from_utf8_lossy(token.text(&source)).into_owned())
             .collect();
         prop_assert_eq!(&read, &tokens);
-        // Printed with other gaps it is the same tree.
+        // Different white space gives the same tree.
         let printed = read.join(" ").into_bytes();
         prop_assert_eq!(shape(&syntax::parse(&printed)), shape(&parse));
     }
 }
 
-/// The tree without its gaps: each node with the number of tokens and of nodes
-/// in it.
+/// The tree without white space: each node with its numbers of tokens and nodes.
 fn shape(parse: &Parse) -> Vec<(NodeKind, usize, usize)> {
     let significant = |node: syntax::Node<'_>| {
         node.all_tokens().filter(|token| !token.kind().is_trivia()).count()

@@ -1,4 +1,4 @@
-//! Paths of a fixed seed, easy and hard, as runs of small programs on two robots.
+//! Easy and hard paths from a fixed seed, as runs of small programs on two robots.
 
 use std::fmt::Write;
 
@@ -15,30 +15,30 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 use crate::support::Random;
 
 const NONE: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
-/// The geometry of another arm of the catalogue with the bodies of the IRB1600 made longer and
-/// heavier: the catalogue has no dynamics for a second robot.
+/// The geometry of another arm with enlarged and heavier bodies of the IRB1600: the catalogue has
+/// dynamics for one robot only.
 const LARGE: &str = include_str!("large.toml");
-/// Torque that is left over the weight and dry friction of the path, where torque is tight.
+/// Torque limit over the weight and dry friction on the path, for tight torques.
 const TIGHT: f64 = 1.12;
-/// Draws of one path before the seed counts as broken.
+/// Largest number of draws for a path.
 const DRAWS: usize = 200;
 
-/// What makes a path hard.
+/// Kind of difficulty of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A line that passes next to the wrist's singularity.
+    /// A line near the wrist singularity.
     NearSingular,
     /// Short movements with corner zones.
     Blended,
-    /// Way points given twice, exactly or nearly.
+    /// Exactly or nearly repeated way points.
     Doubled,
-    /// One or two joints move, and back.
+    /// One or two joints move forth and back.
     Blocked,
-    /// Little torque beyond what holds the arm.
+    /// Little torque beyond the holding torque.
     TightTorque,
     /// One joint movement.
     EasyJoint,
-    /// One line away from singularities.
+    /// One line far from singularities.
     EasyLine,
     /// Two joint movements with a wide zone.
     EasyBlend,
@@ -57,7 +57,7 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    /// The run that is looked at: the last.
+    /// The last run of the program.
     pub(crate) fn run(&self) -> &Run {
         let mut events = self.simulation.events.iter().rev();
         let run = events.find_map(|event| match &event.what {
@@ -67,7 +67,7 @@ impl Case {
         run.unwrap()
     }
 
-    /// Its path, where the robot does not stop on the way.
+    /// Its path, if the robot does not stop on it.
     pub(crate) fn path(&self) -> Option<&JointPath> {
         match self.run().motions.as_slice() {
             [(_, joulepath::retime::motion::timed::TimedMotion::Path(path, _))] => Some(path),
@@ -80,7 +80,7 @@ pub(crate) fn robots() -> [Model; 2] {
     [find("IRB1600-10/1.45").unwrap(), from_toml("large.toml", LARGE).unwrap()]
 }
 
-/// `count` paths of the kinds in turn, on the robots in turn.
+/// `count` paths with alternating kinds and robots.
 pub(crate) fn cases(kinds: &[Kind], count: usize) -> Vec<Case> {
     let robots = robots();
     let mut random = Random(7);
@@ -99,7 +99,7 @@ fn uniform(random: &mut Random, lo: f64, hi: f64) -> f64 {
     lo + (hi - lo) * random.below(1 << 30) as f64 / f64::from(1 << 30)
 }
 
-/// Joints in the middle of their ranges.
+/// Joint angles in the middle of the ranges.
 fn joints(random: &mut Random, model: &Model) -> Joints {
     let mut q = std::array::from_fn(|j| {
         let [lo, hi] = model.limits.position[j];
@@ -230,7 +230,7 @@ fn draw(random: &mut Random, kind: Kind, model: &Model, name: &str) -> Option<Ca
     Some(Case { model, ..case })
 }
 
-/// Leaves little more torque than the weight and the dry friction on the path take.
+/// Reduces the torque limits to slightly more than weight and dry friction on the path.
 fn tighten(model: &mut Model, path: &JointPath, run: &Run) {
     let mut data = Data::new();
     let mut most = [0.0_f64; DOF];

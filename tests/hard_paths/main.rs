@@ -1,7 +1,6 @@
-//! Streams on paths that are hard for optimisers: near singularities, blended, with doubled way
-//! points, with joints that rest, with little torque to spare; and on as many easy paths.
-//!
-//! Limits are checked densely, on an independent evaluation of the spline.
+//! Streams on difficult paths: near singularities, blended, with repeated way points, with resting
+//! joints, with tight torques; and on as many easy paths. An independent evaluation of the spline
+//! checks the limits densely.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
@@ -18,9 +17,9 @@ use joulepath::retime::optimize::reason::Reason;
 use joulepath::retime::optimize::retime::{Goal, Task, retime};
 use rayon::prelude::*;
 
-/// Paths of each sort.
+/// Number of paths of each sort.
 const COUNT: usize = 160;
-/// Accepted excess over a limit between the points of a stream.
+/// Accepted ratio to a limit between the points of a stream.
 const EXCESS: f64 = 1.001;
 
 fn is_true(case: &Case, reason: &Reason) -> bool {

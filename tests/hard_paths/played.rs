@@ -1,4 +1,4 @@
-//! A stream played back from its points and times alone.
+//! Plays back a stream from its points and times alone.
 
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::retime::motion::stream::Stream;
@@ -8,10 +8,11 @@ use crate::cases::Case;
 
 /// Step of the samples, s.
 const STEP: f64 = 5e-4;
-/// A speed that is none, rad/s.
+/// Speed that counts as zero, rad/s.
 const STILL: f64 = 1e-9;
 
-/// Knots: the middles of the intervals, in the first and the last one two thirds from the rest.
+/// Knots: the midpoints of the intervals; in the first and the last one at two thirds of the
+/// interval from rest.
 fn knots(d: &[f64]) -> Vec<f64> {
     let n = d.len();
     let mut ends = vec![0.0];
@@ -28,7 +29,7 @@ fn knots(d: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(inner).chain([total]).collect()
 }
 
-/// The largest share of a limit of the joints, and of which.
+/// The largest ratio to a limit, and the name of that limit.
 pub(crate) fn worst(case: &Case, stream: &Stream) -> (f64, &'static str) {
     let (model, load) = (&case.model, &case.run().load);
     let t = knots(stream.intervals());
@@ -57,7 +58,7 @@ pub(crate) fn worst(case: &Case, stream: &Stream) -> (f64, &'static str) {
         let steps = (h / STEP).ceil() as usize;
         for k in 0..=steps {
             let tau = h * k as f64 / steps as f64;
-            // At rest the spline leaves a rounding of a speed, which has no direction.
+            // At rest the spline has a rounding error of the speed, without a direction.
             let qd: Joints = std::array::from_fn(|j| {
                 let speed = from[j] + tau * qdd[j];
                 if speed.abs() < STILL { 0.0 } else { speed }

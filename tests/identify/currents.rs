@@ -1,4 +1,4 @@
-//! Phase currents in every way in which they are wired and scaled.
+//! Phase currents with all wirings and scales.
 
 use std::f64::consts::TAU;
 
@@ -14,10 +14,10 @@ use crate::simulated::{With, log};
 
 /// Share of a torque that is noise.
 const NOISE: f64 = 0.01;
-/// How well sign and scale give the torque back, relative.
+/// Relative tolerance of the recovered torque.
 const RIGHT: f64 = 0.05;
 
-/// The currents that a recorder would have, instead of the torques.
+/// The currents of a recorder instead of the torques.
 fn phases(model: &Model, log: &Log, scale: f64, random: &mut fastrand::Rng) -> Log {
     let motors = model.motors.as_ref().unwrap();
     let constants = motors.torque_constant.as_ref().unwrap();
@@ -53,7 +53,7 @@ fn phases(model: &Model, log: &Log, scale: f64, random: &mut fastrand::Rng) -> L
     wired
 }
 
-/// The paper's chain: seven periods of phase currents, to the parameters of its table 2.
+/// The chain of the paper: from seven periods of phase currents to the parameters of table 2.
 #[test]
 fn parameters_come_back_from_phase_currents() {
     let model = irb1600();
@@ -66,7 +66,7 @@ fn parameters_come_back_from_phase_currents() {
     let settings =
         Settings { free: Free::All, weighting: Weighting::Joint, source: "a test".into() };
     let found = identify(&model, &samples, &[], &settings).unwrap();
-    // One repetition has the noise of one, the fit that of the mean of six or seven.
+    // The cross-validation error is that of one repetition, the fit's that of a mean.
     assert!(found.fit.over_repetitions);
     for (one, mean) in found.fit.cross_rms.iter().zip(&found.fit.rms) {
         assert!((1.8..3.6).contains(&(one / mean)), "{one} {mean}");
@@ -85,7 +85,7 @@ fn parameters_come_back_from_phase_currents() {
         })
         .collect();
     assert_eq!(deviations.len(), 58);
-    // One in 370 lies further away than three deviations.
+    // One in 370 values exceeds three standard deviations.
     let far = deviations.iter().filter(|d| **d > 3.0).count();
     let largest = deviations.iter().fold(0.0, |m: f64, d| m.max(*d));
     eprintln!("58 parameters from phase currents: the furthest is {largest:.2} sd away");
@@ -122,7 +122,7 @@ fn sign_and_scale_are_right_in_two_hundred_random_cases() {
     assert!(wrong.is_empty(), "{} of 1,200 joints: {}", wrong.len(), wrong.join("\n"));
 }
 
-/// A logger's marks are late by half an interval; the field of the motors tells it.
+/// The marks of a logger are late by half an interval; the motor field determines the shift.
 #[test]
 fn clocks_are_brought_together_by_the_field() {
     const LATE: f64 = 0.002;
@@ -131,7 +131,7 @@ fn clocks_are_brought_together_by_the_field() {
     let mut random = fastrand::Rng::with_seed(15);
     let truth = log(&model, &series(15), [20.0, 0.001], With::Positions, [0.0, 0.0], &mut random);
     let both = phases(&model, &truth, 1.0, &mut random);
-    // The positions of this clock are those of two milliseconds before.
+    // The positions lag by two milliseconds.
     let mut late = both.clone();
     for (channel, values) in late.channels.iter().zip(&mut late.values) {
         if matches!(channel, Channel::Position(_)) {

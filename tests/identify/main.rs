@@ -1,4 +1,4 @@
-//! Identification against what is known: simulated robots, other solvers, statistics.
+//! Identification compared with simulated robots, other solvers and statistics.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 #![expect(clippy::print_stderr, reason = "tests report figures")]
@@ -23,11 +23,11 @@ use nalgebra::{DMatrix, DVector};
 use excited::{irb1600, series};
 use simulated::{With, log};
 
-/// Relative, of data without noise and of two solvers.
+/// Relative tolerance for noiseless data and for two solvers.
 const EXACT: f64 = 1e-8;
-/// Standard deviations that none of 58 estimates is off by, but for one time in 5,000.
+/// Standard deviations that one of 58 estimates exceeds with a probability of 1/5,000.
 const SD_OF_ALL: f64 = 4.5;
-/// Share of the 95 % intervals that have to hold the truth.
+/// Accepted coverage of the 95 % intervals.
 const COVERED: std::ops::RangeInclusive<f64> = 0.93..=0.97;
 
 fn samples(log: &Log, model: &Model) -> Samples {
@@ -61,7 +61,7 @@ fn data_without_noise_give_the_robot_back() {
     }
 }
 
-/// Ordinary least squares of all rows at once, by a singular value decomposition.
+/// Ordinary least squares of all rows, by a singular value decomposition.
 #[test]
 fn ordinary_least_squares_are_those_of_a_dense_solver() {
     let model = irb1600();
@@ -99,7 +99,7 @@ impl AtLeastOne for f64 {
     }
 }
 
-/// Share of the intervals that hold the truth over many simulated runs.
+/// Coverage of the intervals in many simulated runs.
 fn coverage(runs: u64, simulate: impl Fn(&mut fastrand::Rng) -> Samples) -> (f64, f64) {
     let model = irb1600();
     let base = base_parameters(&model);
@@ -155,7 +155,7 @@ fn intervals_hold_the_truth_with_coloured_noise_of_one_run() {
     assert!(COVERED.contains(&mean), "{mean}");
 }
 
-/// What the model predicts does not change where it is written and read.
+/// The predictions of a model do not change when it is written and read.
 #[test]
 fn an_identified_model_is_written_and_read() {
     let model = irb1600();
@@ -183,7 +183,7 @@ fn a_joint_that_rests_is_not_determined() {
     }
     let mut random = fastrand::Rng::with_seed(7);
     let mut log = log(&model, &motion, [10.0, 0.02], With::Rates, [1.0, 0.0], &mut random);
-    // An encoder's noise is no motion.
+    // Encoder noise is not a motion.
     for value in &mut log.values[4] {
         *value += 1e-5 * crate::excited::normal(&mut random);
     }
@@ -195,13 +195,13 @@ fn a_joint_that_rests_is_not_determined() {
     for name in ["fv4", "fc4", "offset4"] {
         assert!(names.contains(&name.to_owned()), "{names:?}");
     }
-    // What is not known stays as it was.
+    // Unidentified values do not change.
     assert_eq!(found.model.friction.viscous[3], model.friction.viscous[3]);
     assert_eq!(found.model.friction.coulomb[3], model.friction.coulomb[3]);
 }
 
-/// With the arm at rest, inertias and rotors of the wrist are not told apart: values are of sums, and
-/// their names say so.
+/// With the arm at rest, wrist inertias and rotors cannot be separated: the values are sums, and
+/// their names state it.
 #[test]
 fn a_value_is_of_what_its_name_says() {
     let model = irb1600();
@@ -281,7 +281,7 @@ fn a_coupled_wrist_is_found_and_a_plain_one_is_not() {
     }
 }
 
-/// What a drive at its limit records is the limit: with it the estimate is biased.
+/// A saturated drive records its limit, which biases the estimate.
 #[test]
 fn torques_at_a_limit_are_left_out() {
     let model = irb1600();

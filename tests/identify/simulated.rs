@@ -1,4 +1,4 @@
-//! Logs of a robot that is known.
+//! Logs of a known robot.
 
 use joulepath::arm::dynamics::{Data, Load, torque};
 use joulepath::arm::robot::Model;
@@ -7,14 +7,14 @@ use joulepath::learn::log::{Channel, Log};
 
 use crate::excited::normal;
 
-/// What a log has.
+/// Content of a log.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum With {
     Rates,
     Positions,
 }
 
-/// A log of `duration` s every `step` s; `noise` \[Nm\] with the memory `memory`.
+/// A log of `duration` s with the interval `step` s; `noise` \[Nm\] with the correlation `memory`.
 pub(crate) fn log(
     model: &Model,
     series: &Series,

@@ -1,14 +1,13 @@
-//! Circles of files: sets of files each of which imports, directly or through others, all others.
+//! Import cycles: sets of files each of which imports all others, directly or indirectly.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{module, named};
 use crate::rust_source::SourceFile;
 
-/// The circles among the files, largest first; each in the order of the files.
-///
-/// A file imports the file in which a path that it names ends. Its `mod` lines import nothing, so a
-/// `mod.rs` may name its children if none of them names it.
+/// The cycles, largest first; each in the order of the files. A file imports the file in which a
+/// path that it names ends. `mod` lines import nothing, so a `mod.rs` may name its children if none
+/// of them names it.
 pub(crate) fn circles(sources: &[SourceFile]) -> Vec<Vec<&str>> {
     let by_module: BTreeMap<Vec<String>, usize> = sources
         .iter()
@@ -29,14 +28,14 @@ pub(crate) fn circles(sources: &[SourceFile]) -> Vec<Vec<&str>> {
     found
 }
 
-/// For each file the files that it imports.
+/// For each file, the files that it imports.
 fn edges(sources: &[SourceFile], by_module: &BTreeMap<Vec<String>, usize>) -> Vec<BTreeSet<usize>> {
     let imports = |file: &SourceFile| {
         let own = module(&file.path, &[]);
         let target = |path: Vec<String>| {
             let absolute = match path.first().map(String::as_str) {
                 Some("crate") => path[1..].to_vec(),
-                // A child module, or a name from elsewhere: then the file itself is found.
+                // A child module, or a name from elsewhere, which resolves to the file itself.
                 _ => own.iter().cloned().chain(path).collect(),
             };
             (0..=absolute.len()).rev().find_map(|n| by_module.get(&absolute[..n]).copied())
@@ -50,7 +49,7 @@ fn edges(sources: &[SourceFile], by_module: &BTreeMap<Vec<String>, usize>) -> Ve
     sources.iter().map(imports).collect()
 }
 
-/// For each file all files that can be reached from it, and itself.
+/// For each file, the file itself and all files reachable from it.
 fn reached(edges: &[BTreeSet<usize>]) -> Vec<BTreeSet<usize>> {
     let from = |start: usize| {
         let mut seen = BTreeSet::from([start]);

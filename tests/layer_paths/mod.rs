@@ -1,22 +1,22 @@
-//! The paths that a source names, from the crate's root on.
+//! The paths in a source, relative to the crate's root.
 
 pub(crate) mod circles;
 
 use crate::rust_source::tokens::{Token, tokens};
 
-/// A path with `use` groups written out and `self` and `super` resolved.
+/// A path with expanded `use` groups and resolved `self` and `super`.
 pub(crate) struct Named {
     /// From 1.
     pub(crate) line: usize,
-    /// `crate`, `std` or a crate's name first; a `*` last for glob imports.
+    /// `crate`, `std` or a crate's name first; for glob imports `*` last.
     pub(crate) path: Vec<String>,
 }
 
-/// The paths of at least two names, and the crates that `use` names alone.
+/// The paths of at least two names, and crates that `use` names alone.
 pub(crate) fn named(file: &str, source: &str) -> Vec<Named> {
     let tokens = tokens(source);
     let mut found = Vec::new();
-    // Inline modules that are open, each with the depth of braces outside it.
+    // Open inline modules, each with the brace depth outside it.
     let mut inline: Vec<(String, usize)> = Vec::new();
     let mut depth = 0;
     let mut i = 0;
@@ -52,19 +52,19 @@ pub(crate) fn named(file: &str, source: &str) -> Vec<Named> {
     found
 }
 
-/// True of keywords too.
+/// Also true for keywords.
 fn is_name(token: Token<'_>) -> bool {
     token.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The module of a place, below the crate's root.
+/// The module of a place, relative to the crate's root.
 fn module(file: &str, inline: &[(String, usize)]) -> Vec<String> {
     let inner = file.trim_start_matches("src/").trim_end_matches(".rs");
     let parts = inner.split('/').filter(|part| !matches!(*part, "mod" | "lib" | "main"));
     parts.map(str::to_owned).chain(inline.iter().map(|(name, _)| name.clone())).collect()
 }
 
-/// Reads a path or a group of paths that starts at `i`; returns where it ends.
+/// Reads a path or a group of paths that starts at `i`; returns its end.
 fn tree(
     tokens: &[Token<'_>],
     mut i: usize,
@@ -92,17 +92,17 @@ fn tree(
                 continue;
             }
         }
-        // `{self, …}` names the group's own path.
+        // `{self, …}` names the path of the group.
         if path.len() > 1 && path.last().is_some_and(|name| name == "self") {
             path.pop();
         }
         found.push((line, path));
-        // The name behind `as` is no path.
+        // The name after `as` is not a path.
         return if text_at(i) == "as" { i + 2 } else { i };
     }
 }
 
-/// A path from the root on; `None` for names that lead nowhere else.
+/// A path relative to the root; `None` for names that stay in the module.
 fn resolve(module: &[String], path: Vec<String>) -> Option<Vec<String>> {
     let ups = path.iter().take_while(|name| *name == "super").count();
     let from = match path.first()?.as_str() {
@@ -113,6 +113,6 @@ fn resolve(module: &[String], path: Vec<String>) -> Option<Vec<String>> {
     let skipped = ups.max(1);
     let root = std::iter::once("crate".to_owned());
     let absolute: Vec<String> = root.chain(from).chain(path.into_iter().skip(skipped)).collect();
-    // `use super::{self}` and the like name the module itself.
+    // `use super::{self}` and similar imports name the module itself.
     (absolute.len() > 1).then_some(absolute)
 }

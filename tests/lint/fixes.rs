@@ -1,4 +1,4 @@
-//! Fixes: applied once and for all, and nothing else of a file is touched.
+//! Fixes are idempotent and change nothing else in a file.
 
 use joulepath::rapid::text::SourceFile;
 use joulepath::retime::motion::timeline::What;
@@ -10,7 +10,7 @@ use crate::{Fixture, fixtures};
 
 const UNNEEDED_STOP: &str = "EW101_unneeded_stop_point.mod";
 
-/// What a cycle takes (J) and does, and where it ends (rad).
+/// Energy (J), actions and end position (rad) of a cycle.
 fn cycle(fixture: &Fixture) -> (f64, Vec<String>, Option<[f64; 6]>) {
     let cycles = cycles(&fixture.job());
     let cycle = cycles[0].as_ref().unwrap();
@@ -35,8 +35,8 @@ fn programs() -> impl Iterator<Item = Fixture> {
     fixtures().into_iter().filter(|fixture| fixture.model.is_some()).chain(planted)
 }
 
-/// Twice is the same as once, the cycle takes no more, does the same in the same order, and ends
-/// at the same place.
+/// Fixing twice equals fixing once; the cycle takes no more energy, has the same actions in the
+/// same order, and the same end.
 #[test]
 fn fixes_are_final_and_save() {
     for most in [Applicability::Safe, Applicability::Unsafe] {
@@ -65,7 +65,7 @@ fn fixes_are_final_and_save() {
     }
 }
 
-/// Ends of lines, tabs and bytes of another encoding are those that were there.
+/// Line ends, tabs and bytes of another encoding do not change.
 #[test]
 fn bytes_that_mean_nothing_stay() {
     let other = |text: &[u8]| -> Vec<u8> {
@@ -86,7 +86,7 @@ fn bytes_that_mean_nothing_stay() {
     }
 }
 
-/// A fix of a stop point changes the zone and no other byte.
+/// The fix of a stop point changes only the bytes of the zone.
 #[test]
 fn every_other_byte_stays() {
     let all = fixtures();

@@ -1,4 +1,4 @@
-//! Output in the forms that other programs read.
+//! Output formats for other programs.
 
 use std::fs;
 use std::path::Path;
@@ -45,7 +45,7 @@ fn json_has_the_fields_of_the_contract() {
     }
 }
 
-/// The others name every finding.
+/// The other formats contain every finding.
 #[test]
 fn all_forms_name_all_findings() {
     for fixture in fixtures() {
@@ -68,14 +68,14 @@ fn all_forms_name_all_findings() {
     }
 }
 
-/// The official schema of SARIF 2.1.0, as the package of its types has it among its sources: so it
-/// is neither copied here nor fetched.
+/// The official schema of SARIF 2.1.0 from the sources of the crate `serde_sarif`, so that it is
+/// neither copied nor downloaded.
 fn schema_of_sarif() -> Value {
     let cargo = |args: &[&str]| {
         let folder = env!("CARGO_MANIFEST_DIR");
         Command::new(env!("CARGO")).args(args).current_dir(folder).output().unwrap()
     };
-    // Packages of other platforms may not be here.
+    // Packages of other platforms may be missing.
     let about = String::from_utf8(cargo(&["-vV"]).stdout).unwrap();
     let host = about.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
     let form = ["metadata", "--format-version", "1", "--offline", "--locked"];
@@ -98,13 +98,13 @@ fn sarif_is_valid_by_the_official_schema() {
     for fixture in fixtures() {
         let value = sarif::sarif(&fixture.report(), &fixture.files);
         assert_eq!(errors(&schema, &value), [""; 0], "{:?}", fixture.path);
-        // Types that are made of the schema read it without loss.
+        // Types generated from the schema read it without loss.
         let read: serde_sarif::sarif::Sarif = serde_json::from_value(value.clone()).unwrap();
         assert_eq!(serde_json::to_value(&read).unwrap(), value);
         results += value["runs"][0]["results"].as_array().unwrap().len();
     }
     assert!(results > 30, "{results}");
-    // What is wrong is seen.
+    // The check detects errors.
     let all = fixtures();
     let mut value = sarif::sarif(&all[0].report(), &all[0].files);
     value["runs"][0]["results"][0]["level"] = "waste".into();
@@ -112,7 +112,7 @@ fn sarif_is_valid_by_the_official_schema() {
     assert_eq!(errors(&schema, &value).len(), 2);
 }
 
-/// The fields that GitLab documents for a Code Quality report, with their types and values.
+/// The fields of a GitLab Code Quality report, with their types and values.
 #[test]
 fn gitlab_is_a_code_quality_report() {
     let text = json!({ "type": "string", "minLength": 1 });
@@ -145,7 +145,7 @@ fn gitlab_is_a_code_quality_report() {
     }
 }
 
-/// The elements and attributes that readers of `JUnit`'s reports ask for, and counts that agree.
+/// The elements and attributes required by readers of `JUnit` reports, and consistent counts.
 #[test]
 fn junit_is_a_test_report() {
     for fixture in fixtures() {

@@ -1,4 +1,4 @@
-//! Programs that nobody would write: broken anywhere, nested deeply, looping without an end.
+//! Extreme programs: damaged, deeply nested, with endless loops.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use crate::Fixture;
 use crate::plants::plants;
 
-/// Far more than any of these takes, far less than what grows with the square of the steps.
+/// Far above the expected time, far below that of a quadratic algorithm.
 const LONGEST: Duration = Duration::from_secs(40);
 
-/// Cut off, with bytes that are not meant to be there, and with halves exchanged.
+/// Truncated, with invalid bytes, and with exchanged halves.
 #[test]
 fn broken_programs_are_survived() {
     let mut random = 12_345_u64;

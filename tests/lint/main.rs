@@ -1,4 +1,4 @@
-//! Lints: what fires, what does not, what a saving is worth, what fixes leave behind.
+//! Lint rules: true and false positives, savings, results of fixes.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -21,7 +21,7 @@ use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::Options;
 use joulepath::tool::lint::{ALL, Finding, Group, Job, Needs, Report, Settings, lint};
 
-/// A program with what its first comments say of it.
+/// A program with the settings in its first comments.
 pub(crate) struct Fixture {
     pub(crate) path: PathBuf,
     pub(crate) files: Vec<SourceFile>,
@@ -31,12 +31,12 @@ pub(crate) struct Fixture {
 }
 
 impl Fixture {
-    /// Of a file's name and text: `! robot: NAME`, `! inputs: diA=1 diB=2`.
+    /// From the name and text of a file: `! robot: NAME`, `! inputs: diA=1 diB=2`.
     pub(crate) fn new(path: PathBuf, text: &str) -> Fixture {
         Fixture::of(path, &[text.to_owned()])
     }
 
-    /// Of the texts of several files, of which the first has the name.
+    /// From the texts of several files; the name is that of the first one.
     pub(crate) fn of(path: PathBuf, texts: &[String]) -> Fixture {
         let said = |key: &str| {
             let mut lines = texts.iter().flat_map(|text| text.lines());
@@ -57,7 +57,7 @@ impl Fixture {
         Fixture { path, files, model, options, settings: Settings::default() }
     }
 
-    /// The same with another text of its first file.
+    /// The fixture with another text of its first file.
     pub(crate) fn with_text(&self, text: String) -> Fixture {
         let others = self.files[1..].iter();
         let others = others.map(|file| String::from_utf8(file.bytes.clone()).unwrap());
@@ -84,7 +84,7 @@ impl Fixture {
         lint(&self.job())
     }
 
-    /// The lines of its first file that are marked with a rule, and in which the rule fires.
+    /// The lines of its first file that are marked with a rule, and those with its findings.
     pub(crate) fn marked_and_found(&self, code: &str) -> (BTreeSet<u32>, BTreeSet<u32>) {
         let mark = format!("!~ {code}");
         let text = self.text();
@@ -109,7 +109,7 @@ pub(crate) fn fixtures() -> Vec<Fixture> {
     paths.into_iter().map(read).collect()
 }
 
-/// Each rule has a program in which it fires on the lines with `!~ CODE` and on no other.
+/// Each rule has a program with findings on the lines with `!~ CODE` and on no other line.
 #[test]
 fn rules_fire_where_marked_and_nowhere_else() {
     let fixtures = fixtures();
@@ -127,7 +127,7 @@ fn rules_fire_where_marked_and_nowhere_else() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A marked line of a rule that is not registered would never be found.
+/// A mark with an unknown rule would never be checked.
 #[test]
 fn marks_name_rules() {
     for fixture in fixtures() {
@@ -137,7 +137,7 @@ fn marks_name_rules() {
     }
 }
 
-/// What is told without a robot has no joules, and no rule that needs one speaks.
+/// Findings without a robot have no joules, and rules that need a robot are silent.
 #[test]
 fn without_a_robot_nothing_is_weighed() {
     for mut fixture in fixtures() {
@@ -149,7 +149,7 @@ fn without_a_robot_nothing_is_weighed() {
     }
 }
 
-/// With a robot nothing is told whose saving is below the threshold.
+/// With a robot, savings below the threshold are not reported.
 #[test]
 fn small_savings_are_not_told() {
     for mut fixture in fixtures() {
@@ -160,7 +160,7 @@ fn small_savings_are_not_told() {
     }
 }
 
-/// A comment about something that only a robot shows is no waste without one.
+/// Without a robot, a comment that refers to a rule for robots is not reported as unnecessary.
 #[test]
 fn comments_are_judged_with_what_the_rules_need() {
     let all = fixtures();
@@ -176,7 +176,7 @@ fn comments_are_judged_with_what_the_rules_need() {
     assert_eq!(told, ["there is no rule EW999: joulepath rule lists them"]);
 }
 
-/// A program that does nothing but move has no movement that is for nothing.
+/// A program that only moves has no unnecessary movement.
 #[test]
 fn movements_alone_are_a_purpose() {
     let program = |wait: &str| {
@@ -209,8 +209,7 @@ fn movements_alone_are_a_purpose() {
     assert!(codes(&program("")).is_empty());
 }
 
-/// A pose to which the program comes back is home only if it also ends there, and what it passes
-/// is a point on the way.
+/// A repeated pose is a home pose only if the program also ends there; a pose on the way is not.
 #[test]
 fn home_is_where_a_program_begins_and_ends() {
     let program = |zone: &str, end: &str| {
@@ -243,7 +242,7 @@ fn home_is_where_a_program_begins_and_ends() {
     assert_eq!(homes("fine", "p3"), 0);
 }
 
-/// Where the robot stands before its first movement is assumed: nothing rests on it.
+/// The position before the first movement is assumed, so that the first movement has no findings.
 #[test]
 fn first_movements_are_not_judged() {
     let text = "MODULE M

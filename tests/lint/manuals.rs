@@ -1,4 +1,4 @@
-//! Each rule's doc comment is its manual, and the page is made of them.
+//! The doc comment of each rule is its manual, and the page consists of the manuals.
 
 use std::fs;
 use std::path::Path;

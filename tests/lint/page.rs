@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use joulepath::tool::lint::{ALL, Needs};
 
-/// What the page begins with.
+/// Beginning of the page.
 const HEAD: &str = "# Lints
 
 What `joulepath lint` finds, from the rules' own files (`src/tool/lint/rules`); `joulepath rule CODE`
@@ -68,7 +68,7 @@ pub(crate) fn page() -> String {
             );
         }
         for rule in rules {
-            // Chapters of a manual stand two levels below the family.
+            // Headings of a manual are two levels below the family.
             let manual = rule.manual().replace("\n## ", "\n#### ");
             let _ = write!(out, "\n### {} {}\n\n{manual}", rule.code, rule.name);
         }

@@ -1,4 +1,4 @@
-//! Planted programs: for each rule three in which it fires and three near misses.
+//! Planted programs: for each rule three with a finding and three near misses.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use joulepath::tool::lint::{ALL, Needs, find};
 
 use crate::Fixture;
 
-/// How many of each kind a rule has.
+/// Number of each kind for a rule.
 const EACH: usize = 3;
 
 /// A module of a file of `fixtures/lint/plants`, with the data that all of them share.
@@ -23,8 +23,8 @@ impl Plant {
     }
 }
 
-/// All of them. A file has a module for each, with a `main` of its own; the lines of the others
-/// are left empty.
+/// All plants. A file has a module with its own `main` for each; the lines of the other modules are
+/// empty.
 pub(crate) fn plants() -> Vec<Plant> {
     let folder = "fixtures/lint/plants";
     let shared = fs::read_to_string(format!("{folder}/Shared.mod")).unwrap();
@@ -67,8 +67,8 @@ fn plants_are_found_and_near_misses_are_not() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A rule that is taken out, or added without plants, fails here; what only a backup shows is
-/// planted in `tests/lint_command.rs`.
+/// Fails for a removed rule, or a new one without plants; `tests/lint_command.rs` has the plants of
+/// rules for backups.
 #[test]
 fn each_rule_has_plants_and_near_misses() {
     let mut counts: BTreeMap<(String, bool), usize> = BTreeMap::new();

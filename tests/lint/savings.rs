@@ -1,4 +1,4 @@
-//! What a finding says it saves is what two simulations of the whole program say.
+//! The saving in a finding agrees with two simulations of the whole program.
 
 use joulepath::rapid::text::{Edit, Span, apply};
 use joulepath::tool::lint::engine::cycles;
@@ -7,7 +7,7 @@ use joulepath::tool::lint::{Applicability, Finding};
 use crate::plants::plants;
 use crate::{Fixture, fixtures};
 
-/// Largest difference: a share of the saving, or J.
+/// Largest difference: as a share of the saving, or in J.
 const SHARE: f64 = 0.05;
 const JOULES: f64 = 1.0;
 /// Largest difference of times, s.
@@ -28,7 +28,7 @@ fn with(fixture: &Fixture, finding: &Finding) -> Fixture {
     fixture.with_text(String::from_utf8(bytes).unwrap())
 }
 
-/// The change that the message names, made as a reader would make it.
+/// The change that the message proposes, as a reader would make it.
 fn by_hand(fixture: &Fixture, finding: &Finding) -> Edit {
     let file = &fixture.files[0];
     let span = finding.span;
@@ -84,7 +84,7 @@ fn savings_are_those_of_two_simulations() {
             compared.insert(finding.rule.code);
         }
     }
-    // Every rule with joules was compared at least once.
+    // At least one comparison for every rule with joules.
     for code in ["EW101", "EW102", "EW103", "EW201", "EW202", "EW203", "EW205", "EW304", "EW402"] {
         assert!(compared.contains(code), "{code} was not compared");
     }
@@ -96,7 +96,7 @@ fn savings_are_those_of_two_simulations() {
     }
 }
 
-/// A comment is all that is changed without somebody who looks at it.
+/// Only changes of comments are safe without review.
 #[test]
 fn only_a_comment_is_fixed_safely() {
     let all = fixtures();
@@ -107,7 +107,7 @@ fn only_a_comment_is_fixed_safely() {
     }
 }
 
-/// The lift behind a grip looks like a trip home, and a drilled hole like a line with a stop.
+/// The lift after a grip looks like a trip home, and a drilled hole like a line with a stop.
 #[test]
 fn what_may_be_the_process_has_no_fix() {
     let planted = plants().into_iter().map(|plant| plant.fixture);
@@ -124,8 +124,8 @@ fn what_may_be_the_process_has_no_fix() {
     assert_eq!(found.len(), 4, "{found:?}");
 }
 
-/// What the robot holds while it waits is what the movement before had it hold, also where that
-/// movement is outside of the part of the cycle that is laid out again.
+/// The load during a wait is that of the movement before, even if that movement is outside the
+/// recomputed part of the cycle.
 #[test]
 fn waits_behind_a_movement_that_is_left_out_cost_the_same() {
     let text = "MODULE M

@@ -1,12 +1,12 @@
-//! A check by a JSON schema of draft 7, as far as the schema of SARIF goes: a keyword that is not
-//! known here is an error, so that nothing passes unseen.
+//! Validation with a JSON schema of draft 7, as far as the SARIF schema needs it. An unknown
+//! keyword is an error.
 
 use serde_json::Value;
 
-/// Keywords that say nothing about a value.
+/// Keywords without a constraint.
 const NOTES: [&str; 6] = ["$schema", "$id", "title", "description", "default", "definitions"];
 
-/// What is wrong with a value, each with its place.
+/// The errors of a value with their places.
 pub(crate) fn errors(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     look(schema, schema, value, "", &mut found);
@@ -25,7 +25,7 @@ fn look(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<S
     }
 }
 
-/// Whether a value is what one keyword asks for; what is inside of it is looked at on its own.
+/// Whether a value satisfies one keyword; nested values are checked separately.
 fn holds(
     root: &Value,
     schema: &Value,
@@ -96,7 +96,7 @@ fn holds(
     }
 }
 
-/// No keyword of a schema is passed over because it is not known.
+/// Checks that a schema has no unknown keyword.
 pub(crate) fn assert_known(schema: &Value) {
     const KNOWN: [&str; 18] = [
         "$ref",
@@ -155,7 +155,7 @@ fn is_scheme(text: &str) -> bool {
         && text.chars().all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))
 }
 
-/// Characters that RFC 3986 has, with whole escapes.
+/// Characters of RFC 3986, with complete escapes.
 fn is_uri(text: &str) -> bool {
     let held = |c: char| c.is_ascii_alphanumeric() || "-._~:/?#[]@!$&'()*+,;=%".contains(c);
     let escapes = text.split('%').skip(1);

@@ -1,4 +1,4 @@
-//! Paths whose best profiles are known in closed form: one joint moves along q = s.
+//! Paths with closed-form optimal profiles: one joint moves along q = s.
 
 use joulepath::retime::motion::stream::DOF;
 use joulepath::retime::motion::timing::grid::{PathGrid, PathPoint};

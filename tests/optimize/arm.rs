@@ -1,7 +1,6 @@
-//! A synthetic arm whose dynamics are consistent by construction, and random paths for it.
-//!
-//! Point masses mᵢ ride on a chain of six revolute joints, rotors turn with the joints:
-//! τ = Σ mᵢ Jᵢᵀ (p̈ᵢ − γ) + I q̈, which needs positions and their derivatives along the path only.
+//! A synthetic arm with consistent dynamics, and random paths. Point masses mᵢ at the links of six
+//! revolute joints, and rotors at the joints: τ = Σ mᵢ Jᵢᵀ (p̈ᵢ − γ) + I q̈, which needs only
+//! positions and their derivatives along the path.
 
 use joulepath::retime::motion::stream::{DOF, Joints};
 use joulepath::retime::motion::timing::grid::{PathGrid, PathPoint};
@@ -76,7 +75,7 @@ fn jacobians(q: &Joints) -> [[Vec3; DOF]; DOF] {
     out
 }
 
-/// A smooth joint path q(s), s ∈ [0, length], as sums of cosines that do not repeat.
+/// A smooth joint path q(s), s ∈ [0, length], as sums of incommensurate cosines.
 #[derive(Clone, Debug)]
 pub(crate) struct Path {
     pub(crate) length: f64,
@@ -84,7 +83,7 @@ pub(crate) struct Path {
     waves: Vec<(Joints, f64, f64)>,
 }
 
-/// A small linear congruential generator: the tests need no more.
+/// A linear congruential generator.
 pub(crate) struct Random(u64);
 
 impl Random {
@@ -130,7 +129,7 @@ impl Path {
     }
 }
 
-/// The arm as streams see it.
+/// The arm as a model for streams.
 pub(crate) struct SyntheticArm;
 
 impl Plant for SyntheticArm {
@@ -183,20 +182,21 @@ pub(crate) fn point(path: &Path, s: f64, friction: f64) -> PathPoint {
     }
 }
 
-/// n + 1 nodes on [0, length], denser toward the ends: s = L (3x² − 2x³). The speed of a motion
-/// from rest grows as √s, so that equal intervals waste time at both ends: on random paths with
-/// N = 100 the time over that of a fine grid falls by half.
+/// n + 1 nodes on [0, length], denser towards the ends: s = L (3x² − 2x³). From rest the speed
+/// grows as √s, so that equal intervals are inefficient at the ends: for random paths with N = 100
+/// these nodes halve the excess time over a fine grid.
 pub(crate) fn rest_to_rest_nodes(length: f64, n: usize) -> Vec<f64> {
     let share = |k: usize| k as f64 / n as f64;
     (0..=n).map(|k| length * share(k).powi(2) * (3.0 - 2.0 * share(k))).collect()
 }
 
-/// The path on n intervals, denser toward the ends, and nodes where a joint turns, seen from inside each interval.
+/// The path on n intervals, denser towards the ends, with nodes at reversals of a joint; values
+/// from inside each interval.
 pub(crate) fn grid(path: &Path, n: usize, friction: f64) -> PathGrid {
     with_turns(path, rest_to_rest_nodes(path.length, n), friction)
 }
 
-/// The path on the given nodes and nodes where a joint turns.
+/// The path on the given nodes and at reversals of a joint.
 pub(crate) fn with_turns(path: &Path, mut s: Vec<f64>, friction: f64) -> PathGrid {
     let n = s.len() - 1;
     for k in 0..n {
@@ -229,7 +229,7 @@ pub(crate) fn with_turns(path: &Path, mut s: Vec<f64>, friction: f64) -> PathGri
     PathGrid::new(s, ends).unwrap()
 }
 
-/// The profile of least energy that takes at most `duration` (s), with its own lower bound.
+/// The profile of least energy within `duration` (s), with its lower bound.
 pub(crate) fn least_energy(
     grid: &PathGrid,
     limits: &PathLimits,
@@ -241,7 +241,7 @@ pub(crate) fn least_energy(
     minimize_energy(grid, limits, model, fastest, duration, bound.as_ref())
 }
 
-/// b of a profile on nodes `s`, linear between the nodes of the grid that it belongs to.
+/// b of a profile at nodes `s`, by linear interpolation on its own nodes.
 pub(crate) fn resample(nodes: &[f64], b: &[f64], s: &[f64]) -> Vec<f64> {
     let mut k = 0;
     s.iter()

@@ -1,4 +1,4 @@
-//! Grids, limits, profiles and references as plain data; scales and degenerate paths.
+//! Grids, limits, profiles and references as plain data; scaling and degenerate paths.
 
 use joulepath::retime::motion::stream::DOF;
 use joulepath::retime::motion::timing::grid::{GridError, PathGrid, PathPoint};
@@ -148,7 +148,7 @@ fn the_unit_of_the_path_does_not_matter() {
 
 #[test]
 fn unlimited_time_ends_where_slowness_costs() {
-    // Holding the arm up costs copper losses, so that there is a best time.
+    // Copper losses of holding give an optimal duration.
     let grid = arm::grid(&arm::Path::random(2), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
     let of = |time: f64| {

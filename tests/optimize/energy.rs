@@ -12,7 +12,7 @@ use crate::analytic::single_joint;
 use crate::arm;
 
 const FREE: Joints = [f64::INFINITY; DOF];
-/// Discretisation of the analytic cases at 200 intervals.
+/// Discretisation error of the analytic cases with 200 intervals.
 const DISCRETISATION: f64 = 2e-3;
 
 fn first_joint(loss: f64) -> EnergyModel {
@@ -94,7 +94,7 @@ fn viscous_friction_alone_gives_constant_speed() {
 
 #[test]
 fn base_power_alone_gives_the_fastest_profile() {
-    // Where inertia vanishes a greedy step is not the best one on a finite grid.
+    // Without inertia a greedy step is not optimal on a finite grid.
     const ZIGZAG: f64 = 5e-4;
     for seed in 0..5 {
         let grid = arm::grid(&arm::Path::random(seed), 60, 0.0);
@@ -106,7 +106,7 @@ fn base_power_alone_gives_the_fastest_profile() {
     }
 }
 
-/// The electrical models that a robot can have.
+/// The electrical models of robots.
 fn models() -> [EnergyModel; 3] {
     let loss = arm::LOSS;
     [
@@ -166,7 +166,7 @@ fn random_paths_save_more_than_uniform_slowing_within_all_limits() {
 
 #[test]
 fn random_changes_of_the_profile_are_not_better() {
-    // The programs against blind search: bumps of b that keep limits and time.
+    // Comparison with blind search: perturbations of b within limits and duration.
     const QUADRATURE: f64 = 3e-3;
     let limits = arm::limits();
     let mut tried = 0;
@@ -204,7 +204,7 @@ fn the_bound_of_a_coarse_grid_holds_for_a_fine_one() {
             let bound = converged(&coarse, &limits, &model, |_| time).lower_bound;
             let fine = converged(&arm::grid(&path, 240, 1.0), &limits, &model, |_| time);
             assert!(bound < fine.energy.total(), "seed {seed}: {bound} {:?}", fine.energy);
-            // And the coarse profile is nearly as good.
+            // The coarse profile is nearly as good.
             let own = converged(&coarse, &limits, &model, |_| time).energy.total();
             assert!(own < 1.025 * fine.energy.total(), "seed {seed}: {own}");
         }
@@ -279,7 +279,7 @@ fn every_profile_in_the_time_lies_in_the_range_of_speeds() {
                     assert!((lo - ROUNDING..=hi + ROUNDING).contains(b), "{seed}: {lo} {b} {hi}");
                 }
             }
-            // A profile that is slow at one place and else as fast as can be.
+            // A profile that is slow at one place and otherwise as fast as possible.
             let middle = grid.intervals() / 2;
             let slow = range[middle].0.sqrt();
             let dip = grid.capped(|k| if k == middle { 0.98 * slow.max(1e-6) } else { f64::MAX });

@@ -1,4 +1,4 @@
-//! The numerical core of the optimiser against analytic cases and a synthetic arm.
+//! The numerical core of the optimiser with analytic cases and a synthetic arm.
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 

@@ -9,7 +9,7 @@ use joulepath::retime::motion::timing::reachability::{Reachability, time_optimal
 use crate::analytic::single_joint;
 use crate::arm;
 
-/// The slack of the stages, over a hundred intervals.
+/// Tolerance of the stages, for a hundred intervals.
 const ROUNDING: f64 = 1e-7;
 const FREE: [f64; DOF] = [f64::INFINITY; DOF];
 
@@ -42,8 +42,8 @@ fn trapezoid_of_a_double_integrator() {
 
 #[test]
 fn viscous_friction_slows_as_the_differential_equation_says() {
-    // m v̇ = L − f v while driving and −L − f v while braking; the speeds meet at v*.
-    // Rows at both ends cost half a step of friction on each interval.
+    // m v̇ = L − f v while driving and −L − f v while braking; the speeds meet at v*. Constraints
+    // at both ends cost half a step of friction on each interval.
     const TOLERANCE: f64 = 1e-3;
     let (m, f, limit, length) = (3.0f64, 2.0, 6.0, 1.8);
     let travelled = |v: f64, sign: f64| {
@@ -93,7 +93,7 @@ fn random_paths_keep_limits_at_nodes_and_between() {
 
 #[test]
 fn no_small_change_is_faster() {
-    // Lifting b anywhere breaks a limit: the profile is on the edge of what is reachable.
+    // Any increase of b violates a limit: the profile is on the boundary of the reachable set.
     for seed in 0..10 {
         let grid = arm::grid(&arm::Path::random(seed), 60, 1.0);
         let limits = arm::limits();

@@ -30,7 +30,7 @@ fn fitted(fit: StreamFit) -> FittedStream {
     }
 }
 
-/// The motion along a path by a profile.
+/// The motion along a path with a profile.
 fn motion(path: &arm::Path, profile: &Profile) -> Reference {
     Reference::sample(profile.duration(), 2000, |t| {
         let (s, speed, _) = profile.at(t);
@@ -40,7 +40,7 @@ fn motion(path: &arm::Path, profile: &Profile) -> Reference {
     .unwrap()
 }
 
-/// A smooth motion from rest to rest in which joints 0…2 move, joint 3 rests.
+/// A smooth motion from rest to rest of joints 0…2; joint 3 rests.
 fn smooth(duration: f64) -> Reference {
     Reference::sample(duration, 4000, |t| {
         // q = A (x³ (10 − 15 x + 6 x²)), x = t/T.
@@ -111,13 +111,13 @@ fn limits_are_kept_or_the_time_is_refused() {
         acceleration: free.max_acceleration().map(|a| a.max(1e-3) * share),
         jerk: free.max_jerk().map(|j| j.max(1e-3) * share),
     };
-    // Somewhat less than the free fit uses is possible with another timing.
+    // Slightly lower limits are possible with another timing.
     let tight = of(0.97);
     assert!(tight.worst_ratio(&free) > 1.02);
     let fit = fitted(fit_stream(&reference, intervals(), &tight, &LEVER).unwrap());
     assert!(tight.worst_ratio(&fit.stream) <= 1.0);
     assert!(fit.lag > 1e-3 && fit.deviation < 0.3 * fit.lag, "{} {}", fit.lag, fit.deviation);
-    // Half is not, but in the time that the stretch says.
+    // Half of the limits is possible only with the computed stretch.
     let impossible = of(0.5);
     let refused = fit_stream(&reference, intervals(), &impossible, &LEVER).unwrap();
     let StreamFit::TooFast { stretch } = refused else { panic!("{refused:?}") };
@@ -133,14 +133,14 @@ fn a_single_point_that_breaks_a_limit_is_refused() {
     let limits = StreamLimits { velocity: [0.1; DOF], ..FREE };
     let refused = fit_stream(&smooth(1.0), vec![1.0], &limits, &LEVER).unwrap();
     let StreamFit::TooFast { stretch } = refused else { panic!("{refused:?}") };
-    // Up and down in equal halves: twice the mean speed of 1 rad/s.
+    // Equal acceleration and deceleration: twice the mean speed of 1 rad/s.
     assert!((stretch - 20.0).abs() < 1e-9);
 }
 
 #[test]
 fn intervals_follow_the_third_derivative() {
     let spacing = Spacing { shortest: 0.02, tolerance: 1e-4, ..Spacing::default() };
-    // At rest but for a quick move in the middle third.
+    // At rest except for a quick move in the middle third.
     let quick = smooth(1.0);
     let still = |q: &Joints| (*q, [0.0; DOF]);
     let reference = Reference::sample(3.0, 6000, |t| match t {
@@ -186,7 +186,7 @@ fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
 
 #[test]
 fn the_polygon_of_the_points_is_as_near_as_the_spacing_was_asked_for() {
-    // Two joints on a quarter of a circle: the polygon goes outside of it.
+    // Two joints on a quarter circle: the polygon lies outside it.
     let circle = |t: f64| {
         let (angle, speed) = (t - (TAU * t).sin() / TAU, 1.0 - (TAU * t).cos());
         let (q, qd) = (angle * FRAC_PI_2, speed * FRAC_PI_2);
@@ -214,7 +214,7 @@ fn the_polygon_of_the_points_is_as_near_as_the_spacing_was_asked_for() {
     }
 }
 
-/// The limits of the arm's streams, with a jerk that builds full acceleration up in 50 ms.
+/// Limits of the arm's streams; the jerk limit permits full acceleration after 50 ms.
 fn arm_limits() -> StreamLimits {
     StreamLimits {
         velocity: arm::VELOCITY,
@@ -223,8 +223,8 @@ fn arm_limits() -> StreamLimits {
     }
 }
 
-/// The whole way for a random path: what the fastest profile spends, what the best one promises,
-/// the reference and the fitted stream.
+/// The whole chain for a random path: the energies of the fastest and the best profile, the
+/// reference and the fitted stream.
 fn pipeline(seed: u64, factor: f64, model: &EnergyModel) -> (f64, f64, Reference, Stream) {
     let limits = arm::limits();
     let path = arm::Path::random(seed);
@@ -299,7 +299,7 @@ fn a_free_path_costs_less() {
     }
 }
 
-/// One joint with inertia only, and a ceiling on its speed.
+/// One joint with inertia only, and an upper speed limit.
 struct Flywheel {
     inertia: f64,
     ceiling: f64,
@@ -325,10 +325,10 @@ impl Plant for Flywheel {
 
 #[test]
 fn copper_alone_gives_the_parabola_of_speed_in_the_points() {
-    // The spline has n speeds to choose: 12 k m² L²/T³ is missed by O(1/n²).
+    // The spline has n free speeds: its error of 12 k m² L²/T³ is O(1/n²).
     const SPLINE: f64 = 0.01;
     let (length, time, m, k) = (1.7, 1.3, 3.0, 0.02);
-    // The start is a bad one: a third to speed up, a third at it, a third to stop.
+    // A poor start: a third of acceleration, of constant speed and of deceleration.
     let reference = Reference::sample(time, 3000, |t| {
         let x = 3.0 * t / time;
         let ramp = |x: f64| 0.5 * x * x;
@@ -370,7 +370,7 @@ fn copper_alone_gives_the_parabola_of_speed_in_the_points() {
         free.realised.energy.total()
     );
     assert!(free.stream.max_velocity()[0] > 1.4 * length / time);
-    // A ceiling on the speed is kept and costs energy.
+    // An upper speed limit is kept and costs energy.
     let ceiling = 1.35 * length / time;
     let slow = polish(ceiling);
     assert!(slow.stream.max_velocity()[0] <= ceiling);

@@ -1,4 +1,4 @@
-//! Rust sources as tokens: enough to ask which paths and macros they name.
+//! Rust sources as tokens, to find the paths and macros that they name.
 
 pub(crate) mod tokens;
 

@@ -1,4 +1,4 @@
-//! Names and punctuation; comments, strings and characters are left out.
+//! Names and punctuation without comments, strings and characters.
 
 /// A name, `::` or another sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ fn blank(rest: &str, first: char) -> Option<usize> {
     None
 }
 
-/// Length up to and with the closing quote.
+/// Length including the closing quote.
 fn quoted(inner: &str, quote: char) -> usize {
     let mut escaped = false;
     for (i, c) in inner.char_indices() {
@@ -78,7 +78,7 @@ fn quoted(inner: &str, quote: char) -> usize {
     inner.len()
 }
 
-/// Length of a comment that may hold others.
+/// Length of a comment with nested comments.
 fn block_comment(rest: &str) -> usize {
     let mut depth = 0;
     let mut i = 0;

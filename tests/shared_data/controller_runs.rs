@@ -1,4 +1,4 @@
-//! The virtual controller against logged runs of an IRC5: durations, joint paths, corners.
+//! The virtual controller compared with logged runs of an IRC5: durations, joint paths, corners.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -18,20 +18,20 @@ use serde_json::Value;
 
 use super::shared;
 
-/// The virtual controller's log clock ticks at 4 ms for periods of 4.032 ms.
+/// The virtual controller logs ticks of 4 ms for periods of 4.032 ms.
 const VIRTUAL_CLOCK: f64 = 1.008;
-/// A joint that is slower than this stands, rad/s: the threshold of the published durations.
+/// Rate in rad/s below which a joint counts as at rest, as in the published durations.
 const STANDS: f64 = 0.3_f64 / 180.0 * std::f64::consts::PI;
-/// Pause in the log that tells the approach from the run, s.
+/// Pause between the approach and the run in a log, s.
 const PAUSE: f64 = 0.09;
-/// Period at which simulated motions are compared, s.
+/// Sampling interval of the comparison, s.
 const PERIOD: f64 = 0.004;
-/// A corner is one where the directions before and after differ by more than this.
+/// Least difference of the directions before and after a corner.
 const CORNER: f64 = 0.1;
-/// Corners: relative and absolute tolerance of the closest approach.
+/// Relative and absolute tolerance of the closest approach to a corner.
 const APPROACH: (f64, f64) = (0.1, 0.5e-3);
 
-/// What the errors of the durations (%) and the share of missed corners may be.
+/// Limits of the errors of the durations (%) and of the share of missed corners.
 struct Limits {
     median: f64,
     p90: f64,
@@ -39,7 +39,7 @@ struct Limits {
     corners: f64,
 }
 const VIRTUAL: Limits = Limits { median: 1.0, p90: 3.0, worst: 8.0, corners: 0.15 };
-/// The logs of two real runs end in the middle of them.
+/// The logs of two real runs are incomplete.
 const REAL: Limits = Limits { median: 2.0, p90: 5.0, worst: 15.0, corners: 0.25 };
 /// Median over the runs of the joints' RMS, rad.
 const JOINTS: f64 = 5e-3;
@@ -50,14 +50,14 @@ struct Logged {
     program: String,
     speed: String,
     zone: String,
-    /// Published duration with the clock put right, s.
+    /// Published duration with corrected clock, s.
     duration: f64,
     /// Time (s) and joints (rad) from the start of the motion to its end.
     motion: Vec<(f64, [f64; 6])>,
 }
 
 impl Logged {
-    /// A third of the programs and settings, kept out of every fit (FNV-1a of the name).
+    /// A third of the programs and settings, excluded from every fit (FNV-1a of the name).
     fn held_out(&self) -> bool {
         let name = format!("{}/{}_{}", self.program, self.speed, self.zone);
         let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
@@ -67,7 +67,7 @@ impl Logged {
     }
 }
 
-/// What a simulation makes of a run.
+/// A run and its simulation.
 struct Compared {
     logged: Logged,
     duration: f64,
@@ -130,7 +130,7 @@ fn rapid(program: &[Value], speed: &str, zone: &str) -> String {
     text
 }
 
-/// The rows of a log from the start of the programmed motion to its end.
+/// The rows of a log during the programmed motion.
 fn motion(text: &str, clock: f64) -> Vec<(f64, [f64; 6])> {
     let mut rows: Vec<(f64, [f64; 6])> = Vec::new();
     for line in text.lines() {
@@ -141,7 +141,7 @@ fn motion(text: &str, clock: f64) -> Vec<(f64, [f64; 6])> {
             rows.push((t * clock, std::array::from_fn(|j| joints[j].to_radians())));
         }
     }
-    // Time stamps jitter by a millisecond, the samples do not.
+    // Time stamps jitter by a millisecond, the sampling does not.
     let (first, last) = (rows[0].0, rows[rows.len() - 1].0);
     let step = (last - first) / (rows.len() - 1) as f64;
     for (i, row) in rows.iter_mut().enumerate() {
@@ -205,7 +205,7 @@ fn at(rows: &[(f64, [f64; 6])], t: f64) -> [f64; 6] {
     std::array::from_fn(|j| a.1[j] + share * (b.1[j] - a.1[j]))
 }
 
-/// Least distance of a polyline from a point.
+/// Least distance between a polyline and a point.
 fn approach(points: &[Vector3<f64>], corner: &Vector3<f64>) -> f64 {
     points
         .windows(2)

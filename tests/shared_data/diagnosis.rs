@@ -1,15 +1,15 @@
-//! Effects of real robots, withheld from the model that is believed.
+//! Effects of real robots that are removed from the nominal model.
 
 use joulepath::gap::{Diagnosis, JointGap, Trust};
 
 use super::real_logs::{PANDA, RealRobot, TX40, UR10, diagnosed, named};
 
-/// Torques that the TX40's joints 5 and 6 may miss at most, held-out \[Nm\].
+/// Largest held-out residuals of joints 5 and 6 of the TX40 \[Nm\].
 const MISSED: [f64; 2] = [1.4, 1.0];
-/// Share of its error that the UR10's first joint may keep, once the law of its friction is there.
+/// Largest remaining share of the residual of the UR10's first joint with its friction law.
 const HALVED: f64 = 0.5;
 
-/// The diagnosis of a robot whose files are there.
+/// The diagnosis of a robot, if its files exist.
 fn of(robot: &RealRobot) -> Option<Diagnosis> {
     let (urdf, csv) = (super::shared(robot.urdf)?, super::shared(robot.csv)?);
     let found = diagnosed(robot, &urdf, &csv, Trust::Commissioned);

@@ -1,4 +1,4 @@
-//! Cases of the examination as records: what tests, examples and benches have in common.
+//! Cases of the examination as records, for tests, examples and benches.
 
 #![allow(
     dead_code,
@@ -13,7 +13,7 @@ use joulepath::gap::{Record, Trust};
 use joulepath::learn::identify::{Block, Hints, Samples, Source, prepare};
 use joulepath::learn::log::{Channel, ColumnMap, read_csv};
 
-/// A case that was read.
+/// A case after reading.
 pub(crate) struct Examined {
     pub(crate) nominal: Model,
     pub(crate) train: Vec<Samples>,
@@ -21,7 +21,7 @@ pub(crate) struct Examined {
     pub(crate) trust: Trust,
 }
 
-/// The text of a file of a case.
+/// The text of a file in a case.
 pub(crate) fn file<'a>(case: &'a Case, name: &str) -> &'a str {
     &case.files.iter().find(|(other, _)| other == name).unwrap().1
 }
@@ -47,7 +47,7 @@ pub(crate) fn records<'a>(model: &'a Model, logs: &[Samples]) -> Vec<Record<'a>>
     logs.iter().flat_map(|log| Record::all(model, log)).collect()
 }
 
-/// Motions that no file has, as if they had been logged without noise.
+/// Motions outside the files, as noiseless logs.
 pub(crate) fn noiseless(motions: &[Unlogged], settings: &Settings) -> Vec<Samples> {
     let samples = |of: &Unlogged| {
         let n = of.q.len();

@@ -1,4 +1,4 @@
-//! What several tests need.
+//! Functions for several tests.
 
 #![allow(
     dead_code,
@@ -13,7 +13,7 @@ use joulepath::rapid::syntax::{self, Element, Parse};
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::tool::retrofit::Source;
 
-/// Most looks at a token per token: constant, whatever the input.
+/// Largest number of inspections of a token, per token: constant for any input.
 const STEPS_PER_TOKEN: u64 = 8;
 
 /// The inputs of a folder of `fixtures/syntax`: file names and bytes, sorted.
@@ -52,8 +52,8 @@ pub(crate) fn fixture_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/syntax").join(name)
 }
 
-/// Joined tokens are the source, children lie in their parents in order, and
-/// the walk over elements meets each token once.
+/// Joined tokens are the source, children are inside their parents in order, and the walk over
+/// elements meets each token once.
 pub(crate) fn check_tree(parse: &Parse, bytes: &[u8]) {
     let root = parse.tree.root();
     let mut joined = 0;
@@ -86,14 +86,13 @@ pub(crate) fn check_tree(parse: &Parse, bytes: &[u8]) {
     }
 }
 
-/// The work of the parser grows with the number of tokens only.
+/// The work of the parser is proportional to the number of tokens.
 pub(crate) fn check_work(parse: &Parse) {
     let tokens = parse.tree.tokens().count() as u64;
     assert!(parse.steps <= STEPS_PER_TOKEN * (tokens + 1), "{} for {tokens}", parse.steps);
 }
 
-/// Splitmix64 (Steele, Lea, Flood 2014): repeatable, and good enough to choose
-/// mutations.
+/// Splitmix64 (Steele, Lea, Flood 2014): repeatable random choices of mutations.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -107,14 +106,14 @@ impl Random {
     }
 }
 
-/// The ranges of the tokens of some bytes.
+/// The ranges of the tokens in a text.
 pub(crate) fn token_ranges(bytes: &[u8]) -> Vec<Range<usize>> {
     let parse = syntax::parse(bytes);
     let range = |token: syntax::Token<'_>| token.range().start as usize..token.range().end as usize;
     parse.tree.root().all_tokens().map(range).collect()
 }
 
-/// Deletes, doubles or swaps tokens of the original, or damages bytes.
+/// Deletes, duplicates or swaps tokens of the original, or damages bytes.
 pub(crate) fn mutate(bytes: &mut Vec<u8>, tokens: &[Range<usize>], random: &mut Random) {
     let clip = |range: &Range<usize>, length: usize| range.start.min(length)..range.end.min(length);
     let mut token = || match tokens.len() {

@@ -1,4 +1,4 @@
-//! Public logs of real robots: what is fitted, what grades, and the model without the effect.
+//! Public logs of real robots: training part, held-out part, and the model without the effect.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -11,9 +11,9 @@ use joulepath::learn::identify::{
 };
 use joulepath::learn::log::{ColumnMap, Log, read_csv};
 
-/// Part of the log that is fitted; the rest grades.
+/// Share of the log for training; the rest is held out.
 const TRAINED: f64 = 0.7;
-/// A coupling that counts as stated, so that none is looked for.
+/// A coupling that counts as stated and disables the search.
 const STATED: f64 = 1e-12;
 
 /// A robot of the shared data: its files, and whether rates are logged.
@@ -23,27 +23,27 @@ pub(crate) struct RealRobot {
     pub(crate) has_rates: bool,
 }
 
-/// Coupled wrist, torques of the motors.
+/// Coupled wrist, motor torques.
 pub(crate) const TX40: RealRobot = RealRobot {
     urdf: "tx40/tx40_mdh_modified.urdf",
     csv: "tx40/tx40_joint_space.csv",
     has_rates: false,
 };
-/// Friction that is not Coulomb and viscous, torques by currents.
+/// Friction beyond Coulomb and viscous, torques from currents.
 pub(crate) const UR10: RealRobot = RealRobot {
     urdf: "ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf",
     csv: "ur10_unisa/ur10_exciting_trajectory.csv",
     has_rates: true,
 };
-/// Torques measured behind the gears.
+/// Torques measured at the joint side of the gears.
 pub(crate) const PANDA: RealRobot = RealRobot {
     urdf: "ur10_unisa/panda_mdh_dummy_inertia.urdf",
     csv: "ur10_unisa/panda_exciting_trajectory.csv",
     has_rates: true,
 };
 
-/// The model that the first part of a robot's log tells, and what is missing in it, graded by the
-/// other part. The texts are those of its files.
+/// Identifies a model from the first part of a robot's log and diagnoses it with the other part.
+/// The texts are those of its files.
 pub(crate) fn diagnosed(robot: &RealRobot, urdf: &str, csv: &str, trust: Trust) -> Diagnosis {
     let text = import_urdf(robot.urdf, urdf).unwrap();
     let bare = from_toml(robot.urdf, &text).unwrap();
@@ -54,12 +54,12 @@ pub(crate) fn diagnosed(robot: &RealRobot, urdf: &str, csv: &str, trust: Trust) 
     diagnose(&nominal, Record::all(&nominal, &first), &held, &settings)
 }
 
-/// Ids of what is asserted.
+/// Ids of the asserted effects.
 pub(crate) fn named(found: &Diagnosis) -> Vec<&'static str> {
     found.effects.iter().map(|said| said.effect.id).collect()
 }
 
-/// Both parts of a log: what is fitted, what grades.
+/// Both parts of a log: training and held-out.
 fn parts(model: &Model, csv: &str, robot: &RealRobot) -> [Samples; 2] {
     let mut map = String::from("t=t_s");
     for joint in 1..=model.dof {
@@ -86,7 +86,7 @@ fn parts(model: &Model, csv: &str, robot: &RealRobot) -> [Samples; 2] {
     [first, last]
 }
 
-/// The model that the first part tells, without a coupling of the wrist.
+/// The model identified from the first part, without a wrist coupling.
 fn nominal(bare: &Model, samples: &Samples) -> Model {
     let mut stated = bare.clone();
     stated.wrist.coupling = STATED;

@@ -50,7 +50,7 @@ def peers(programs):
 
 def main():
     programs = [Path(p) for p in sys.argv[1:]]
-    # Before and after, so that a machine that slows down is noticed.
+    # Before and after, to detect a change of the machine's speed.
     before, own, after = peers(programs), ours(), peers(programs)
     print(f"{'':18}{'joulepath':>12}{'pinocchio':>20}{'ratio':>8}")
     for name in BENCHES:

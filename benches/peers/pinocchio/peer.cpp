@@ -1,6 +1,6 @@
 // Time per call of Pinocchio's algorithms in nanoseconds, as JSON. The robot comes on
-// standard input: the number of joints, then of each its rotation, translation, axis,
-// mass, centre of mass, inertia, armature; then one state.
+// standard input: number of joints; for each joint its rotation, translation, axis, mass,
+// centre of mass, inertia and armature; then one state.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -57,7 +57,7 @@ int main() {
     armature(i) = read<1, 1>()(0, 0);
     const pinocchio::SE3 place(rotation, translation);
     const std::string name = "j" + std::to_string(i);
-    // The joints that Pinocchio is fastest with.
+    // The joint types with the fastest algorithms in Pinocchio.
     if (axis == Eigen::Vector3d::UnitX())
       parent = model.addJoint(parent, pinocchio::JointModelRX(), place, name);
     else if (axis == Eigen::Vector3d::UnitY())

@@ -9,12 +9,12 @@ import time
 import casadi as ca
 import numpy as np
 
-# Speed (rad/s) and power (W) about which dry friction and braking are rounded.
+# Widths of the smoothing of dry friction (rad/s) and of braking (W).
 ROUND_SPEED = 1e-3
 ROUND_POWER = 5.0
 SIMPSON = [(0.0, 1 / 6), (0.5, 4 / 6), (1.0, 1 / 6)]
 DENSE = 8
-# Paths: IPOPT takes up to minutes for one.
+# Number of paths: IPOPT needs up to minutes for one.
 PATHS = 6
 
 

@@ -12,7 +12,7 @@ from free_path import inverse_dynamics
 from scipy.interpolate import make_interp_spline
 
 STEPS = 160
-# Moves that are shorter are not compared, s.
+# Least duration of a compared move, s.
 SHORTEST = 0.2
 
 
@@ -35,7 +35,7 @@ def least_time(path, robot, tau):
     orders = [function(f"q{n + 1}", first.derivative(n) if n else first) for n in range(3)]
     bound = np.log(np.array(path["v_max"]) / length)
     speed = function("v", make_interp_spline(nodes, bound, k=1))
-    # The state at each step: place, speed, acceleration along the path; then its jerk.
+    # State at each step: position, speed, acceleration along the path; then its jerk.
     time = ca.MX.sym("T")
     state = ca.MX.sym("x", 3, STEPS + 1)
     jerk = ca.MX.sym("u", 1, STEPS)
@@ -52,7 +52,7 @@ def least_time(path, robot, tau):
     qd, qdd = d1 * v, d2 * v**2 + d1 * a
     torque = tau(place(s), qd, qdd)
     limits = {k: ca.DM(robot[k]) for k in ("acceleration", "torque", "jerk", "coulomb")}
-    # Dry friction works against the motion, which never turns round on a path.
+    # Dry friction has a constant direction: a motion along a path never reverses.
     dry = limits["coulomb"] * ca.tanh(d1 / 1e-3)
     rows = ca.vertcat(
         v / ca.exp(speed(s)),
@@ -74,7 +74,7 @@ def least_time(path, robot, tau):
     count = constraints.shape[0]
     lower = np.r_[np.zeros(equal), -np.ones(count - equal)]
     upper = np.r_[np.zeros(equal), np.ones(count - equal)]
-    # A smooth start that is slow enough.
+    # A smooth, slow initial solution.
     t = np.linspace(0, 1, STEPS + 1)
     guess = 2 * path["stream_s"]
     places = 35 * t**4 - 84 * t**5 + 70 * t**6 - 20 * t**7

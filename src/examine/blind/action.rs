@@ -1,24 +1,24 @@
-//! Where and how a disturbance acts on the simulated robot.
+//! Points of action of a disturbance on the simulated robot.
 
 use super::compliance::Compliance;
 use super::mechanics::Joints;
 use super::plant::Plant;
 
-/// A moment of the simulated robot.
+/// State of the simulated robot at one instant.
 pub(super) struct Moment {
-    /// Since the first log began \[s\].
+    /// Time since the start of the first log \[s\].
     pub(super) t: f64,
-    /// Since the period began \[s\].
+    /// Time since the start of the period \[s\].
     pub(super) in_period: f64,
-    /// Time since the last moment \[s\].
+    /// Time since the previous instant \[s\].
     pub(super) dt: f64,
-    /// Joints \[rad\], with rates and accelerations.
+    /// Joint angles \[rad\] and rates.
     pub(super) q: Joints,
     pub(super) qd: Joints,
     /// Rates and accelerations of the motors, divided by the gear ratios.
     pub(super) rate: Joints,
     pub(super) acceleration: Joints,
-    /// Direction of dry friction: the sign of `rate`, and a part of the last one at rest.
+    /// Direction of dry friction: the sign of `rate`; at rest, a part of the last one.
     pub(super) sign: Joints,
     /// Torque through the gears \[Nm\].
     pub(super) load: Joints,
@@ -27,17 +27,17 @@ pub(super) struct Moment {
     pub(super) viscous: Joints,
 }
 
-/// Changes a value for each joint as time goes by.
+/// Changes a value of each joint as a function of time.
 pub(super) type Change = Box<dyn FnMut(&Moment, &mut Joints)>;
-/// Begins a change at the start of a log.
+/// Creates a change at the start of a log.
 pub(super) type Begin = Box<dyn Fn() -> Change + Send + Sync>;
-/// Changes the power \[W\] of a moment, knowing the torques.
+/// Changes the power \[W\] at an instant with known torques.
 pub(super) type PowerChange = Box<dyn FnMut(&Moment, &Joints, f64) -> f64>;
 pub(super) type BeginPower = Box<dyn Fn() -> PowerChange + Send + Sync>;
 
-/// Where a disturbance acts.
+/// Point of action of a disturbance.
 pub(super) enum Action {
-    /// On what the robot is.
+    /// Parameters of the robot.
     Plant(Box<dyn Fn(&mut Plant) + Send + Sync>),
     /// Adds torques at the motors.
     Gears(Begin),
@@ -47,8 +47,8 @@ pub(super) enum Action {
     Torques(Begin),
     /// Changes the logged positions.
     Positions(Begin),
-    /// Between motor and link.
+    /// Elasticity between motor and link.
     Compliance(Compliance),
-    /// On the electrical power.
+    /// Electrical power.
     Power(BeginPower),
 }

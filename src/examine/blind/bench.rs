@@ -1,4 +1,4 @@
-//! A healthy robot with its sensors, and the faults of a case.
+//! A healthy robot with sensors, and the faults of a case.
 
 use super::disturbance;
 use super::fault::Disturbance;
@@ -23,31 +23,31 @@ use crate::arm::robot::{MAX_DOF, Model};
 const PAUSE_S: [f64; 2] = [5.0, 60.0];
 /// Relative change of friction from period to period.
 const VARIATION: [f64; 2] = [0.001, 0.006];
-/// Share of the cases that are runs of a program.
+/// Share of the cases with program runs.
 const PROGRAMS: f64 = 0.12;
-/// Largest number of draws until the two effects of a pair differ.
+/// Largest number of draws for two different effects.
 const DRAWS: usize = 32;
 
-/// What is generated: seed and lengths of the logs.
+/// Settings of the generation: seed and lengths of the logs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The same seed gives the same bytes.
+    /// Seed; the output depends on the settings only.
     pub seed: u64,
-    /// Periods in each log.
+    /// Number of periods in each log.
     pub cycles: usize,
-    /// Length of a period \[s\].
+    /// Duration of a period \[s\].
     pub period_s: f64,
 }
 
 impl Settings {
-    /// Two motions of 7 periods of 10 s.
+    /// Seven periods of 10 s.
     #[must_use]
     pub fn new(seed: u64) -> Settings {
         Settings { seed, cycles: 7, period_s: 10.0 }
     }
 }
 
-/// A healthy robot with its sensors.
+/// A healthy robot with sensors.
 pub(super) struct Bench<'a> {
     pub(super) settings: &'a Settings,
     pub(super) number: usize,
@@ -55,13 +55,13 @@ pub(super) struct Bench<'a> {
     pub(super) nominal: Plant,
     pub(super) workspace: Workspace,
     pub(super) trust: Trust,
-    /// Drawn before the faults, so that no file hints at them.
+    /// Drawn before the faults, so that the files do not depend on them.
     pub(super) with_program: bool,
     pub(super) with_baseline: bool,
     #[cfg(feature = "internals")]
     pub(super) heldout_works: bool,
     pub(super) variation: f64,
-    /// Two to learn from, one held out, one from before.
+    /// Two motions for training, one held out, one baseline.
     pub(super) motions: [Motion; 4],
     sizes: Sizes,
     ratio: Joints,
@@ -146,7 +146,7 @@ impl<'a> Bench<'a> {
         Random::new(self.settings.seed, self.number as u64, purpose)
     }
 
-    /// The faults of a robot whose torques or power are logged.
+    /// The faults of a robot with logged torques or power.
     pub(super) fn wrong(&self) -> (Kind, Vec<Disturbance>) {
         let scale = Scale {
             nominal: &self.nominal,
@@ -164,7 +164,7 @@ impl<'a> Bench<'a> {
         wrong(&scale, self.with_baseline, &mut self.stream("truth"))
     }
 
-    /// When three logs begin \[s\]: two to learn from, one to grade by.
+    /// Start times of three logs \[s\]: two for training, one held out.
     pub(super) fn clocks(&self) -> [f64; 3] {
         let lasts = self.settings.cycles as f64 * self.settings.period_s;
         clocks(lasts, &mut self.stream("clock"))
@@ -176,7 +176,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Times at which three logs begin, each of this length \[s\].
+/// Start times of three logs of the duration `lasts` \[s\].
 pub(super) fn clocks(lasts: f64, random: &mut Random) -> [f64; 3] {
     let mut clocks = [0.0; 3];
     for i in 1..clocks.len() {
@@ -185,7 +185,7 @@ pub(super) fn clocks(lasts: f64, random: &mut Random) -> [f64; 3] {
     clocks
 }
 
-/// A robot; in half of the cases its drive regenerates.
+/// A robot model; half of the drives regenerate.
 fn nominal(random: &mut Random) -> Option<Model> {
     let mut model = robots::robot(random)?;
     if random.chance(0.5) {
@@ -218,7 +218,7 @@ fn wrong(scale: &Scale<'_>, with_baseline: bool, random: &mut Random) -> (Kind, 
     }
 }
 
-/// The electrical side of a model, and the gear ratios.
+/// The electrical parameters of a model, and the gear ratios.
 fn supply(model: &Model) -> (Supply, Joints) {
     let (mut loss, mut ratio) = ([0.0; MAX_DOF], [1.0; MAX_DOF]);
     if let Some(motors) = &model.motors {

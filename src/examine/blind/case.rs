@@ -1,4 +1,4 @@
-//! One case: the logs of a robot and the truth about it.
+//! A case: the logs of a robot and its true faults.
 
 use super::bench::{Bench, Settings, clocks};
 use super::conduct;
@@ -13,25 +13,25 @@ use super::program::{Conduct, Program};
 use super::simulate::{Robot, Row, simulate};
 use crate::arm::robot::{MAX_DOF, to_toml};
 
-/// A case with its files and its truth.
+/// A case with its files and its true faults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Such as `case-0001`.
+    /// Name, such as `case-0001`.
     pub name: String,
-    /// Names in the case's folder, and contents.
+    /// Names in the folder of the case, and contents.
     pub files: Vec<(String, String)>,
-    /// The truth.
+    /// The true faults.
     pub label: Label,
-    /// Sealed with the truth.
+    /// Salt of the seal.
     pub salt: String,
 }
 
-/// Samples of a joint slower than this do not count \[rad/s\].
+/// Rate below which a joint counts as at rest \[rad/s\].
 const RESTS: f64 = 0.02;
-/// Share of the runs of a program in which nothing is wrong.
+/// Share of the program runs without a fault.
 const HEALTHY_PROGRAMS: f64 = 0.4;
 
-/// The case with a number, from 1. `None` where the catalogue has none of the robots.
+/// The case with a number, from 1; `None` if the catalogue contains none of the robots.
 #[must_use]
 pub fn case(settings: &Settings, number: usize) -> Option<Case> {
     let bench = Bench::drawn(settings, number)?;
@@ -66,7 +66,7 @@ impl Bench<'_> {
     }
 }
 
-/// A case of torques or power.
+/// A case with torques or power.
 fn torque_case(bench: &Bench<'_>) -> Case {
     let Bench { settings, nominal, plant, noise, trust, .. } = bench;
     let (kind, disturbances) = bench.wrong();
@@ -90,7 +90,7 @@ fn torque_case(bench: &Bench<'_>) -> Case {
         files.push(logged("baseline-1.csv", before, 0.0, &[]));
     }
 
-    // Detectability of each fault beside the others.
+    // Detectability of each fault in addition to the others.
     let steady = vec![[1.0; MAX_DOF]; settings.cycles];
     let train = [(first, clocks[0]), (second, clocks[1])];
     let run = |of: &[&Disturbance]| -> Vec<Vec<Row>> {
@@ -128,7 +128,7 @@ fn torque_case(bench: &Bench<'_>) -> Case {
     })
 }
 
-/// A case of a program's run.
+/// A case with runs of a program.
 fn program_case(bench: &Bench<'_>) -> Case {
     let Bench { settings, workspace, plant, noise, .. } = bench;
     let program = Program::drawn(workspace, &mut bench.stream("program"));
@@ -182,7 +182,7 @@ fn truth(disturbance: &Disturbance, nats: f64) -> Truth {
     }
 }
 
-/// The joint, from 1, whose torques change most for their size, and its share.
+/// The joint, from 1, with the largest relative change of its torques, and its share.
 fn largest_share(
     dof: usize,
     with: &[Vec<Row>],
@@ -205,7 +205,7 @@ fn largest_share(
     }
 }
 
-/// Rms figures of the held-out motion, of its first period.
+/// Rms values of the first period of the held-out motion.
 fn held_out(
     nominal: &Plant,
     motion: &Motion,

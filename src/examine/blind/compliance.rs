@@ -1,28 +1,28 @@
 //! Compliance between motor and link: elasticity and backlash.
 //!
-//! The encoder is at the motor. With δ the angle by which the link stays behind, linear about
-//! the motor's motion, and a spring f and a damper d in the gear:
+//! The encoder is at the motor. With δ the lag of the link, linearised about the motor's motion,
+//! and a spring f and a damper d in the gear:
 //!
 //! ```text
 //! M_jj δ̈ + d δ̇ + f(δ) = τ_L
 //! ```
 
-/// Largest product of eigenfrequency and step of the integration.
+/// Largest product of eigenfrequency and integration step.
 const FINEST: f64 = 0.15;
-/// Steps of the integration in one of the simulation, at most.
+/// Largest number of integration steps in a simulation step.
 const MOST_STEPS: usize = 400;
-/// Samples to each side over which a deflection without dynamics is smoothed.
+/// Number of samples to each side in the smoothing of a quasi-static deflection.
 const REACH: usize = 5;
 
 /// The gear's spring.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Spring {
     Linear,
-    /// Soft at first, twice as stiff above this torque \[Nm\].
+    /// Twice the stiffness above this torque \[Nm\].
     Hardening(f64),
-    /// Nothing within half the gap \[rad\] to both sides, then the spring.
+    /// Zero torque within half the gap \[rad\] to both sides, then linear.
     Gap(f64),
-    /// The same with a cubic transition.
+    /// A gap with a cubic transition.
     SoftGap(f64),
 }
 
@@ -30,10 +30,10 @@ pub(super) enum Spring {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Compliance {
     pub(super) joint: usize,
-    /// \[Nm/rad\].
+    /// Stiffness \[Nm/rad\].
     pub(super) stiffness: f64,
     pub(super) spring: Spring,
-    /// Share of critical damping; `None`: the deflection follows at once.
+    /// Damping ratio; `None` for a quasi-static deflection.
     pub(super) damping: Option<f64>,
 }
 
@@ -56,7 +56,7 @@ impl Compliance {
         }
     }
 
-    /// The deflection under a torque that does not change.
+    /// The deflection under a constant torque.
     fn at_rest(&self, torque: f64) -> f64 {
         let (mut low, mut high) = (-1.0_f64, 1.0_f64);
         for _ in 0..50 {
@@ -66,8 +66,8 @@ impl Compliance {
         f64::midpoint(low, high)
     }
 
-    /// Deflections \[rad\] over one period of the torque `load` \[Nm\] of the rigid link with
-    /// the inertias `inertia` \[kg m²\].
+    /// Deflections \[rad\] over a period with the torque `load` \[Nm\] of the rigid link and its
+    /// inertias `inertia` \[kg m²\].
     pub(super) fn deflections(&self, load: &[f64], inertia: &[f64], step_s: f64) -> Vec<f64> {
         let count = load.len();
         let mut delta: Vec<f64> = load.iter().map(|tau| self.at_rest(*tau)).collect();
@@ -75,11 +75,11 @@ impl Compliance {
             let lightest = inertia.iter().copied().fold(f64::INFINITY, f64::min).max(1e-6);
             let fastest = (2.0 * self.stiffness / lightest).sqrt();
             let steps = ((fastest * step_s / FINEST).ceil() as usize).clamp(1, MOST_STEPS);
-            // What would move faster than the finest step is moved as if it were heavier.
+            // The mass is increased where the finest step does not resolve the eigenfrequency.
             let heaviest_needed = 2.0 * self.stiffness * (step_s / (steps as f64 * 0.5)).powi(2);
             let h = step_s / steps as f64;
             let (mut x, mut v) = (delta.first().copied().unwrap_or(0.0), 0.0);
-            // The second period has no transient left.
+            // The transient has decayed in the second period.
             for i in 0..2 * count {
                 let (now, next) = (i % count, (i + 1) % count);
                 delta[now] = x;
@@ -88,7 +88,7 @@ impl Compliance {
                 for k in 0..steps {
                     let share = k as f64 / steps as f64;
                     let pull = load[now] + (load[next] - load[now]) * share;
-                    // Damping implicitly: it may be stiff.
+                    // Implicit damping, because it may be stiff.
                     v = (v + h * (pull - self.torque(x)) / mass) / (1.0 + h * d / mass);
                     x += h * v;
                 }
@@ -103,7 +103,7 @@ impl Compliance {
     }
 }
 
-/// The mean over some samples to both sides: no link jumps through its gap.
+/// The moving average over neighbouring samples: a link crosses its gap in a finite time.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let count = values.len();
     let mean = |i: usize| {
@@ -135,8 +135,8 @@ mod tests {
         values.iter().fold(0.0, |most, x| x.abs().max(most))
     }
 
-    /// Slowly, an oscillator is a spring; near its resonance it gives way as far as the steady
-    /// state of a damped oscillator does.
+    /// At low frequency an oscillator is a spring; near its resonance the amplitude is that of the
+    /// steady state of a damped oscillator.
     #[test]
     fn oscillators_have_their_resonance() {
         let still = largest(&deflections(Spring::Linear, None, 0.1));

@@ -5,18 +5,18 @@ use super::program::{Conduct, JITTER_S, Program};
 use super::random::Random;
 use super::workspace::Workspace;
 
-/// Something wrong with a run.
+/// A fault of a run.
 pub(super) struct Misconduct {
     pub(super) conduct: Conduct,
-    /// Its `nats` are to be filled in.
+    /// The truth; `nats` is set later.
     pub(super) truth: Truth,
-    /// Lines that say where it is.
+    /// Lines at which it appears.
     pub(super) lines: Vec<usize>,
     /// Expected log-likelihood ratio of one run of the program \[nats\].
     pub(super) nats_per_cycle: f64,
 }
 
-/// One of them.
+/// A random fault of the motion.
 pub(super) fn motion_effect(
     program: &Program,
     workspace: &Workspace,
@@ -47,7 +47,7 @@ pub(super) fn motion_effect(
         _ => {
             let wait = random.log_between(0.03, 1.0);
             let after = 1 + random.below(program.moves().saturating_sub(1));
-            // The move, what follows it, or the next one: all say where.
+            // The move, the following wait, or the next move: all of these are correct.
             lines = (program.line(after)..=program.line(after + 1)).collect();
             let kind = random.below(3);
             let form = ["constant", "jittering", "irregular"][kind];

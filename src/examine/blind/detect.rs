@@ -1,15 +1,15 @@
 //! Detectability of a fault in the logs.
 //!
-//! The expected log-likelihood ratio in nats for known shape and size, with the nominal parameters and
-//! smooth model errors as nuisances:
+//! The expected log-likelihood ratio in nats for known shape and size, with nominal parameters and
+//! smooth model errors as nuisance parameters:
 //!
 //! ```text
 //! ½ Δᵀ (Σ + B Bᵀ)⁻¹ Δ
 //! ```
 //!
-//! with Δ what it adds to the period's mean, Σ the noise of that mean, and a column of B for
-//! each nuisance times its standard deviation. What differs from period to period comes on top,
-//! against the noise of a period and the usual variation of friction.
+//! Δ is the change of the period's mean, Σ the noise covariance of that mean, and each column of B
+//! a nuisance times its standard deviation. Changes from period to period are added, with the noise
+//! of a period and the usual variation of friction.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -22,14 +22,14 @@ use super::simulate::Row;
 use super::trust::Trust;
 use crate::arm::robot::MAX_DOF;
 
-/// Numbers of a rigid body.
+/// Parameters of a rigid body.
 const OF_BODY: usize = 10;
-/// Coulomb, viscous, rotor.
+/// Coulomb friction, viscous friction, rotor inertia.
 const OF_JOINT: usize = 3;
-/// Smooth functions for the model error of a joint.
+/// Number of smooth functions for a joint's model error.
 const SMOOTH: usize = 8;
 
-/// What is known of the logs beforehand.
+/// Prior knowledge of the logs.
 pub(super) struct Setting<'a> {
     pub(super) nominal: &'a Plant,
     pub(super) trust: Trust,
@@ -39,14 +39,14 @@ pub(super) struct Setting<'a> {
     pub(super) variation: f64,
 }
 
-/// Rows of a motion's log with a disturbance, and without.
+/// Rows of a motion's log with and without a disturbance.
 pub(super) struct Pair<'a> {
     pub(super) motion: &'a Motion,
     pub(super) with: &'a [Row],
     pub(super) without: &'a [Row],
 }
 
-/// Nats of the torques of all pairs together.
+/// Nats of the torques of all pairs.
 pub(super) fn torque_nats(setting: &Setting<'_>, pairs: &[Pair<'_>]) -> f64 {
     let n = setting.nominal.dof;
     let columns = OF_BODY * n + OF_JOINT * n + SMOOTH * n;
@@ -88,8 +88,8 @@ pub(super) fn torque_nats(setting: &Setting<'_>, pairs: &[Pair<'_>]) -> f64 {
             squares += between_periods(setting, &deltas, &mean, &samples, joint);
         }
     }
-    // Δᵀ(Σ + BBᵀ)⁻¹Δ is the least of ‖Δ − B x‖² + ‖x‖², where a small error of x does not count; a
-    // difference of the large sums would lose its digits.
+    // Δᵀ(Σ + BBᵀ)⁻¹Δ is the minimum of ‖Δ − B x‖² + ‖x‖² and insensitive to small errors of x; the
+    // difference of the large sums would lose accuracy.
     let Some(factor) = gram.cholesky() else { return 0.0 };
     let x = factor.solve(&projected);
     let left: f64 = rows.iter().map(|(block, delta)| (delta - block * &x).norm_squared()).sum();
@@ -109,8 +109,8 @@ pub(super) fn power_nats(noise: &Noise, pairs: &[Pair<'_>]) -> f64 {
     0.5 * sum
 }
 
-/// What each row's torques differ by, beside what the nominal model expects at the positions
-/// that are logged.
+/// Torque changes of each row, less the change that the nominal model predicts from the logged
+/// positions.
 fn deltas(setting: &Setting<'_>, pair: &Pair<'_>, samples: &[Sample]) -> Vec<Joints> {
     let rows = pair.with.iter().zip(pair.without).enumerate();
     let mut expected: Vec<Option<Joints>> = vec![None; samples.len()];
@@ -133,8 +133,8 @@ fn deltas(setting: &Setting<'_>, pair: &Pair<'_>, samples: &[Sample]) -> Vec<Joi
     .collect()
 }
 
-/// Whitened squares of what differs from the mean, with the friction of each period free within
-/// its usual variation.
+/// Whitened squares of the deviations from the mean; the friction of each period is free within its
+/// usual variation.
 fn between_periods(
     setting: &Setting<'_>,
     deltas: &[Joints],
@@ -171,7 +171,7 @@ fn between_periods(
         .sum()
 }
 
-/// Torques of one standard deviation of each nuisance: a row for each joint.
+/// Torques of each nuisance at one standard deviation, a row for each joint.
 fn columns_at(setting: &Setting<'_>, sample: &Sample, columns: usize) -> DMatrix<f64> {
     let (nominal, trust) = (setting.nominal, setting.trust);
     let n = nominal.dof;
@@ -219,7 +219,7 @@ fn columns_at(setting: &Setting<'_>, sample: &Sample, columns: usize) -> DMatrix
     matrix
 }
 
-/// The body with each of its numbers a standard deviation larger.
+/// The body with each of its parameters increased by a standard deviation.
 fn varied(body: &Body, trust: Trust) -> [Body; OF_BODY] {
     let moment = trust.inertia() * body.inertia.trace() / 3.0;
     std::array::from_fn(|number| {
@@ -248,8 +248,8 @@ mod tests {
     use super::super::workspace::Workspace;
     use super::*;
 
-    /// A change of one nuisance by one standard deviation is worth half a nat at most, an offset
-    /// of the same size far more.
+    /// A nuisance changed by one standard deviation contributes at most half a nat, an offset of
+    /// the same size much more.
     #[test]
     fn nuisances_are_not_detectable() {
         let mut random = Random::new(4, 1, "test");
@@ -259,7 +259,7 @@ mod tests {
         let samples: Vec<Sample> = motion.samples.iter().step_by(PER_ROW).copied().collect();
         let row = |plant: &Plant, sample: &Sample, offset: f64| {
             let mut tau = plant.torque(&sample.q, &sample.qd, &sample.qdd);
-            // The first axis stands upright: no weight can make an offset there.
+            // The first axis is vertical: no weight causes an offset.
             tau[0] += offset;
             Row { q: sample.q, tau, power: 0.0 }
         };

@@ -1,4 +1,4 @@
-//! A simulated fault, with the truth about it.
+//! A simulated fault and its true parameters.
 
 use super::action::Action;
 
@@ -14,15 +14,15 @@ pub(super) struct Parameter {
 
 /// A fault of a robot or its log.
 pub(super) struct Disturbance {
-    /// Effect id; `outside` for a fault that no effect of the library describes.
+    /// Effect id; `outside` for a fault without a corresponding effect.
     pub(super) id: &'static str,
     pub(super) form: &'static str,
-    /// Joints, from 0; empty where it is of the whole arm.
+    /// Joints, from 0; empty for a fault of the whole arm.
     pub(super) joints: Vec<usize>,
     pub(super) parameters: Vec<Parameter>,
-    /// Within the period \[s\].
+    /// Interval within the period \[s\].
     pub(super) window: Option<[f64; 2]>,
-    /// Effects whose torques are exactly the same here.
+    /// Effects with exactly the same torques in this case.
     pub(super) equivalents: &'static [&'static str],
     pub(super) actions: Vec<Action>,
 }
@@ -44,12 +44,12 @@ impl Disturbance {
         Disturbance::new(id, form, vec![joint])
     }
 
-    /// With a parameter whose value does not depend on the law's form.
+    /// Adds a parameter whose meaning is independent of the law's form.
     pub(super) fn graded(self, name: &'static str, value: f64) -> Disturbance {
         self.parameter(name, value, true)
     }
 
-    /// With a parameter of this form.
+    /// Adds a parameter specific to this form.
     pub(super) fn with(self, name: &'static str, value: f64) -> Disturbance {
         self.parameter(name, value, false)
     }

@@ -1,7 +1,7 @@
-//! Exciting motions: random Fourier series, scaled to the limits.
+//! Excitation motions: random Fourier series, scaled to the limits.
 //!
-//! The form is that of J. Swevers et al., "Optimal robot excitation and identification",
-//! IEEE Transactions on Robotics and Automation 13, 1997; the coefficients are random.
+//! The form is that of J. Swevers et al., "Optimal robot excitation and identification", IEEE T-RA
+//! 13, 1997; the coefficients are random.
 
 use std::f64::consts::TAU;
 
@@ -10,12 +10,12 @@ use super::random::Random;
 use super::workspace::Workspace;
 use crate::arm::robot::MAX_DOF;
 
-/// Harmonics of a joint.
+/// Number of harmonics of a joint.
 const HARMONICS: usize = 5;
-/// Share of each limit that a motion may use, at most.
+/// Largest share of each limit that a motion uses.
 const LARGEST_SHARE: f64 = 0.85;
 
-/// A motion of `period_s` within the workspace.
+/// A motion with the period `period_s` within the workspace.
 pub(super) fn fourier(workspace: &Workspace, period_s: f64, random: &mut Random) -> Motion {
     let count = (period_s / STEP_S).round() as usize;
     let blank = Sample { q: [0.0; MAX_DOF], qd: [0.0; MAX_DOF], qdd: [0.0; MAX_DOF] };

@@ -1,29 +1,29 @@
-//! The truth of a case, as it is sealed.
+//! Label of a case: its sealed true faults.
 
 use serde::{Deserialize, Serialize};
 
-/// What kind of case it is.
+/// Kind of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// The robot differs from its model by the usual spread.
+    /// The robot differs from its model within the usual spread.
     Healthy,
-    /// Bodies or friction differ, which is a matter of parameters.
+    /// Bodies or friction differ: a change of parameters only.
     ParametersOnly,
-    /// One effect.
+    /// One torque effect.
     One,
-    /// Two effects.
+    /// Two torque effects.
     Two,
-    /// Something that no library has.
+    /// A fault without a corresponding effect in the library.
     Outside,
-    /// One effect of the power.
+    /// One power effect.
     Power,
-    /// One effect of the motion.
+    /// One motion effect.
     Motion,
 }
 
 impl Kind {
-    /// As JSON and tables name it.
+    /// The name in JSON and tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -38,72 +38,72 @@ impl Kind {
     }
 }
 
-/// The truth of a case.
+/// Label of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Label {
     /// Name of the case.
     pub case: String,
     /// Kind of the case.
     pub kind: Kind,
-    /// How much the nominal model is believed, as options name it.
+    /// Confidence in the nominal model, as an option value.
     pub trust: String,
-    /// What is wrong; for [`Kind::Outside`] the thing that has no id.
+    /// The faults; for [`Kind::Outside`] the fault without an effect id.
     pub effects: Vec<Truth>,
-    /// The joint, from 1, with the largest share of the gap that the effects make; `None` where
-    /// there is none or the channel has no joints.
+    /// The joint, from 1, with the largest share of the gap due to the faults; `None` without such
+    /// a joint.
     pub place: Option<usize>,
     /// That share.
     pub share: Option<f64>,
-    /// RAPID lines that say where the effect is; empty where it is at none.
+    /// RAPID lines at which the fault appears; may be empty.
     pub lines: Vec<usize>,
-    /// The held-out log: the gap that the nominal model leaves, joint by joint.
+    /// The gap of the nominal model on the held-out log, by joint.
     pub heldout: Vec<HeldOut>,
 }
 
-/// One thing that is wrong.
+/// A fault.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// Effect id; `outside` for what no library has.
+    /// Effect id; `outside` for a fault without an effect.
     pub id: String,
-    /// The form of its law.
+    /// Functional form of its law.
     pub form: String,
-    /// Joints from 1; empty where it is of the whole arm.
+    /// Joints, from 1; empty for a fault of the whole arm.
     pub joints: Vec<usize>,
     /// Its parameters.
     pub parameters: Vec<TrueParameter>,
-    /// When it acts within each period \[s\].
+    /// Interval within each period in which it acts \[s\].
     pub window: Option<[f64; 2]>,
-    /// Effects whose torques are exactly the same here.
+    /// Effects with exactly the same torques in this case.
     pub equivalents: Vec<String>,
-    /// Expected log-likelihood ratio \[nats\] of the logs against those without it, the nominal
-    /// parameters and smooth model errors being free within their spread.
+    /// Expected log-likelihood ratio \[nats\] with and without the fault; nominal parameters and
+    /// smooth model errors are free within their spread.
     pub nats: f64,
 }
 
-/// A parameter of the truth.
+/// A parameter of a fault.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrueParameter {
-    /// As a diagnosis names it.
+    /// Name as in a diagnosis.
     pub name: String,
-    /// The joint, from 1.
+    /// Joint, from 1.
     pub joint: Option<usize>,
-    /// Its value, SI.
+    /// Value in SI units.
     pub value: f64,
-    /// Whether it means the same in every form of the law.
+    /// Whether it has the same meaning in every form of the law.
     pub graded: bool,
 }
 
 /// Rms torques of the held-out log without noise \[Nm\].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldOut {
-    /// The joint, from 1.
+    /// Joint, from 1.
     pub joint: usize,
-    /// Of the torque itself.
+    /// Torque.
     pub torque: f64,
-    /// What the nominal model misses.
+    /// Residual of the nominal model.
     pub model: f64,
-    /// What the effects add.
+    /// Contribution of the faults.
     pub effects: f64,
-    /// What no diagnosis can know: the model error.
+    /// The model error, which no diagnosis can identify.
     pub left: f64,
 }

@@ -1,30 +1,30 @@
-//! Inverse dynamics by virtual work, all in the base frame.
+//! Inverse dynamics by the principle of virtual work, in the base frame.
 //!
-//! With `J = z_i × (c − o_i)` the Jacobian of a body's centre of mass c about the axes
-//! `z_i` through `o_i`, and `L = I ω` its spin, the bodies' inertial and gravity forces do
-//! the same virtual work as the joints:
+//! With the Jacobian `J = z_i × (c − o_i)` of a body's centre of mass c for the axes `z_i` through
+//! `o_i`, and its angular momentum `L = I ω`, inertial and gravity forces do the same virtual work
+//! as the joint torques:
 //!
 //! ```text
 //! τ_i = Σ_bodies J_i · m (J q̈ + J̇ q̇ + g) + z_i · d(I ω)/dt
 //! ```
 //!
-//! There is no recursion over links and no link frame (T. R. Kane, D. A. Levinson,
-//! "Dynamics: Theory and Applications", 1985).
+//! It needs neither a recursion over links nor link frames (T. R. Kane, D. A. Levinson, "Dynamics:
+//! Theory and Applications", 1985).
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::arm::robot::{Geometry, MAX_DOF};
 
-/// A number for each joint; those beyond the robot's are 0.
+/// A number for each joint; surplus entries are 0.
 pub(super) type Joints = [f64; MAX_DOF];
 
-/// Free fall \[m/s²\].
+/// Gravitational acceleration \[m/s²\].
 pub(super) const GRAVITY: f64 = 9.81;
 
-/// A rigid body that moves with a joint, in that joint's frame.
+/// A rigid body in the frame of the joint that it moves with.
 #[derive(Clone, Debug)]
 pub(super) struct Body {
-    /// The joint, from 0.
+    /// Index of the joint, from 0.
     pub(super) joint: usize,
     /// Mass \[kg\].
     pub(super) mass: f64,
@@ -42,16 +42,16 @@ pub(super) struct Axes {
     rotations: [Matrix3<f64>; MAX_DOF],
     qd: Joints,
     qdd: Joints,
-    /// Rates of change of `origins` and `directions`.
+    /// Time derivatives of `origins` and `directions`.
     origin_rates: [Vector3<f64>; MAX_DOF],
     direction_rates: [Vector3<f64>; MAX_DOF],
-    /// Angular velocity and acceleration of what each joint carries.
+    /// Angular velocity and acceleration of the link after each joint.
     spin: [Vector3<f64>; MAX_DOF],
     spin_rate: [Vector3<f64>; MAX_DOF],
 }
 
 impl Axes {
-    /// The axes at the angles `q` \[rad\] with rates and accelerations, of the serial chain.
+    /// The axes of the serial chain at the angles `q` \[rad\] with rates and accelerations.
     pub(super) fn at(geometry: &Geometry, q: &Joints, qd: &Joints, qdd: &Joints) -> Axes {
         let zero = [Vector3::zeros(); MAX_DOF];
         let mut axes = Axes {
@@ -87,17 +87,17 @@ impl Axes {
         axes
     }
 
-    /// Velocity of a point that the joints before `count` carry.
+    /// Velocity of a point that moves with the joints before `count`.
     fn velocity(&self, count: usize, point: &Vector3<f64>) -> Vector3<f64> {
         (0..count).map(|k| self.directions[k].cross(&(point - self.origins[k])) * self.qd[k]).sum()
     }
 
-    /// The point of a joint's frame, in the base frame.
+    /// Transforms a point from a joint's frame to the base frame.
     pub(super) fn point(&self, joint: usize, local: &Vector3<f64>) -> Vector3<f64> {
         self.origins[joint] + self.rotations[joint] * local
     }
 
-    /// Adds the torques that a body asks for; `up` is gravity's opposite \[m/s²\].
+    /// Adds the torques that move a body; `up` is the acceleration opposite to gravity \[m/s²\].
     pub(super) fn add_body(&self, body: &Body, up: &Vector3<f64>, tau: &mut Joints) {
         let k = body.joint;
         let centre = self.point(k, &body.com);
@@ -121,8 +121,8 @@ impl Axes {
         }
     }
 
-    /// Adds the torques that hold against a force on a point of a joint's frame, both in the
-    /// base frame \[N, m\].
+    /// Adds the torques that balance a force on a point of a joint's frame, both in the base frame
+    /// \[N, m\].
     pub(super) fn add_force(
         &self,
         joint: usize,

@@ -1,5 +1,5 @@
-//! Model errors of healthy robots: small smooth torques of position and speed, ripple below the noise,
-//! slightly more friction at low speed.
+//! Model errors of healthy robots: small smooth torques of position and speed, ripple below the
+//! noise, slightly increased friction at low speed.
 
 use std::f64::consts::TAU;
 
@@ -8,13 +8,13 @@ use super::mechanics::Joints;
 use super::random::Random;
 use crate::arm::robot::MAX_DOF;
 
-/// Waves over position and over speed, for each joint.
+/// Number of waves over position and over speed, for each joint.
 const WAVES: usize = 3;
-/// Share of the torque's rms: the model error of a joint.
+/// Model error of a joint over its torque's rms.
 const SHARE: [f64; 2] = [0.001, 0.006];
-/// Ripple over the standard deviation of the noise.
+/// Ripple over the noise's standard deviation.
 const RIPPLE: f64 = 0.15;
-/// Friction at low speed over Coulomb friction, and where it is gone \[rad/s\].
+/// Stiction over Coulomb friction, and the speed at which it has vanished \[rad/s\].
 const STICTION: f64 = 0.02;
 const SLOW: f64 = 0.08;
 
@@ -26,7 +26,7 @@ pub(super) struct ModelError {
 
 #[derive(Clone, Debug)]
 struct JointError {
-    /// Rms of the smooth part, about \[Nm\].
+    /// Approximate rms of the smooth part \[Nm\].
     size: f64,
     fastest: f64,
     waves: [[f64; 6]; WAVES],
@@ -36,8 +36,8 @@ struct JointError {
 }
 
 impl ModelError {
-    /// For torques of the sizes `rms` \[Nm\], rates up to `fastest` \[rad/s\] and noise of the
-    /// standard deviations `noise` \[Nm\].
+    /// Random model errors for torques with the rms `rms` \[Nm\], rates up to `fastest` \[rad/s\]
+    /// and noise with the standard deviations `noise` \[Nm\].
     pub(super) fn drawn(
         dof: usize,
         rms: &Joints,
@@ -86,8 +86,8 @@ impl ModelError {
         }
     }
 
-    /// Smooth functions of a joint's position and speed, of rms 1 about: what a diagnosis has to
-    /// allow for.
+    /// Smooth functions of a joint's position and speed with an rms of about 1: nuisance terms for
+    /// a diagnosis.
     pub(super) fn basis(&self, joint: usize, q: &Joints, qd: &Joints) -> [f64; 8] {
         let Some(error) = self.joints.get(joint) else { return [0.0; 8] };
         let x = qd[joint] / error.fastest;
@@ -100,7 +100,7 @@ impl ModelError {
     }
 }
 
-/// Friction that changes a little from period to period: factors for each.
+/// Friction factors of each period: a small variation from period to period.
 pub(super) fn variation(cycles: usize, size: f64, random: &mut Random) -> Vec<Joints> {
     let mut drift = [0.0; MAX_DOF];
     (0..cycles)

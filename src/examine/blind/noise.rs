@@ -1,4 +1,4 @@
-//! Noise and rounding of a log.
+//! Noise and quantisation of a log.
 
 use std::fmt::Write as _;
 
@@ -8,17 +8,17 @@ use super::random::Random;
 use super::simulate::Row;
 use crate::arm::robot::MAX_DOF;
 
-/// Time between two rows \[s\].
+/// Interval of the rows \[s\].
 pub(super) const ROW_S: f64 = STEP_S * PER_ROW as f64;
 
-/// Noise of the sensors.
+/// Sensor noise.
 #[derive(Clone, Debug)]
 pub(super) struct Noise {
     /// Standard deviation of the torques \[Nm\].
     pub(super) torque: Joints,
-    /// Correlation of a row's noise with the one before.
+    /// Correlation of the noise of successive rows.
     pub(super) memory: f64,
-    /// Step of the logged torques \[Nm\] and positions \[rad\].
+    /// Quantisation step of the logged torques \[Nm\] and positions \[rad\].
     torque_step: Joints,
     position_step: f64,
     /// Standard deviation of the power \[W\].
@@ -26,7 +26,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// For torques of the sizes `rms` \[Nm\] and a power of the size `watts`.
+    /// Random noise for torques with the rms `rms` \[Nm\] and a power of the size `watts`.
     pub(super) fn drawn(rms: &Joints, peak: &Joints, watts: f64, random: &mut Random) -> Noise {
         let bits = 2_f64.powf(random.between(11.0, 14.0));
         let level = random.log_between(0.003, 0.02);
@@ -39,15 +39,15 @@ impl Noise {
         }
     }
 
-    /// Standard deviation of what the noise adds anew in each row, for a joint.
+    /// Standard deviation of the noise innovation in each row of a joint.
     pub(super) fn innovation(&self, joint: usize) -> f64 {
         let step = self.torque_step[joint];
         let white = self.torque[joint] * (1.0 - self.memory * self.memory).sqrt();
         (white * white + step * step / 12.0).sqrt()
     }
 
-    /// The log of some rows from the time `clock` \[s\], as CSV; with `marks`, the repetition and
-    /// the movement of each row.
+    /// The log of rows from the time `clock` \[s\] as CSV; with `marks`, the repetition and the
+    /// movement of each row.
     pub(super) fn log(
         &self,
         rows: &[Row],

@@ -1,4 +1,4 @@
-//! A pick-and-place cycle: moves between poses with stops, and waits.
+//! A pick-and-place cycle: moves between stops, and waits.
 
 use super::mechanics::Joints;
 use super::motion::{Motion, STEP_S, Sample};
@@ -6,16 +6,16 @@ use super::random::Random;
 use super::workspace::Workspace;
 use crate::arm::robot::MAX_DOF;
 
-/// Poses of a cycle.
+/// Number of poses in a cycle.
 const POSES: usize = 6;
-/// Shares of a cycle that moves may take; the rest is waiting.
+/// Bounds of the share of a cycle in which the robot moves; otherwise it waits.
 const SHORTEST_MOVING: f64 = 0.55;
 const LONGEST_MOVING: f64 = 0.85;
 
-/// How a move runs from 0 to 1 over its time from 0 to 1.
+/// Time profile of a move, normalised to distance 1 and duration 1.
 #[derive(Clone, Copy)]
 enum Profile {
-    /// Speed rises, stays and falls; the share of time for each ramp.
+    /// Trapezoidal speed with the share of time of each ramp.
     Trapezoid(f64),
     Quintic,
     /// Half a cosine wave.
@@ -23,7 +23,7 @@ enum Profile {
 }
 
 impl Profile {
-    /// Position, rate and acceleration at the time `x` of the move.
+    /// Position, rate and acceleration at the normalised time `x`.
     fn at(self, x: f64) -> [f64; 3] {
         match self {
             Profile::Quintic => [
@@ -51,7 +51,7 @@ impl Profile {
         }
     }
 
-    /// Largest rate and acceleration of a move by 1 in a time of 1.
+    /// Largest rate and acceleration of the normalised move.
     fn peaks(self) -> [f64; 2] {
         match self {
             Profile::Quintic => [1.875, 5.7736],
@@ -79,7 +79,7 @@ pub(super) fn pick_place(workspace: &Workspace, period_s: f64, random: &mut Rand
         let pairs = (0..POSES).map(|i| (&poses[i], &poses[(i + 1) % POSES], profiles[i]));
         pairs.map(|(from, to, profile)| shortest(workspace, from, to, profile)).collect()
     };
-    // Poses draw together until the moves fit into their time.
+    // Poses are contracted until the moves fit into the available time.
     let total: f64 = needed(&poses).iter().sum();
     let factor = (moving_s / total.max(1e-9)).min(1.0).powi(2);
     let centre = poses[0];
@@ -127,7 +127,7 @@ fn pose(workspace: &Workspace, random: &mut Random) -> Joints {
     q
 }
 
-/// The least time of a move within the limits \[s\].
+/// Least duration of a move within the limits \[s\].
 fn shortest(workspace: &Workspace, from: &Joints, to: &Joints, profile: Profile) -> f64 {
     let [rate, push] = profile.peaks();
     (0..workspace.dof)

@@ -1,4 +1,4 @@
-//! The robot that the simulator moves: bodies, rotors, friction.
+//! The simulated robot: bodies, rotors, friction.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -8,27 +8,27 @@ use crate::arm::robot::{Geometry, Link, MAX_DOF, Model};
 /// Axes 5 and 6, from 0.
 const WRIST: [usize; 2] = [4, 5];
 
-/// What decides about the torques of a robot without disturbances.
+/// Parameters that determine the torques of a robot without disturbances.
 #[derive(Clone, Debug)]
 pub(super) struct Plant {
     pub(super) dof: usize,
     pub(super) geometry: Geometry,
-    /// One for each link, then loads.
+    /// One body for each link, then the loads.
     pub(super) bodies: Vec<Body>,
-    /// Against gravity, in the base frame \[m/s²\].
+    /// Acceleration opposite to gravity, in the base frame \[m/s²\].
     pub(super) up: Vector3<f64>,
     /// Inertia of the rotors at the joints \[kg m²\].
     pub(super) rotor: Joints,
-    /// \[Nm\].
+    /// Coulomb friction \[Nm\].
     pub(super) coulomb: Joints,
-    /// \[Nm s/rad\].
+    /// Viscous friction \[Nm s/rad\].
     pub(super) viscous: Joints,
     /// Turns of motor 6 for one of axis 5.
     pub(super) coupling: f64,
 }
 
 impl Plant {
-    /// The robot of a model.
+    /// The plant of a robot model.
     pub(super) fn new(model: &Model) -> Plant {
         let per_joint = |values: &[f64]| {
             let mut joints = [0.0; MAX_DOF];
@@ -61,26 +61,26 @@ impl Plant {
         }
     }
 
-    /// Rates of the motors, divided by the gear ratios, of those of the joints.
+    /// Motor rates, divided by the gear ratios, from joint rates.
     pub(super) fn motor(&self, joint: &Joints) -> Joints {
         let mut rates = *joint;
         rates[WRIST[1]] += self.coupling * rates[WRIST[0]];
         rates
     }
 
-    /// Torques at the joints of those at the motors (times the gear ratios).
+    /// Joint torques from motor torques times the gear ratios.
     pub(super) fn at_joints(&self, mut tau: Joints) -> Joints {
         tau[WRIST[0]] += self.coupling * tau[WRIST[1]];
         tau
     }
 
-    /// Torques through the gears of those at the joints.
+    /// Torques through the gears from joint torques.
     pub(super) fn through_gears(&self, mut tau: Joints) -> Joints {
         tau[WRIST[0]] -= self.coupling * tau[WRIST[1]];
         tau
     }
 
-    /// The moving axes.
+    /// The axes in motion.
     pub(super) fn axes(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Axes {
         let serial = |x: &Joints| self.geometry.to_serial(x);
         Axes::at(&self.geometry, &serial(q), &serial(qd), &serial(qdd))
@@ -91,7 +91,7 @@ impl Plant {
         self.bodies_alone(q, qd, qdd, &self.up)
     }
 
-    /// The column of the mass matrix that belongs to a joint's acceleration, without rotors.
+    /// Column of the mass matrix for a joint's acceleration, without rotors.
     pub(super) fn inertia_column(&self, q: &Joints, joint: usize) -> Joints {
         let still = [0.0; MAX_DOF];
         let mut unit = still;
@@ -125,7 +125,7 @@ impl Plant {
         tau
     }
 
-    /// A body of the flange's frame, as one of the last joint's.
+    /// A body given in the flange frame, in the frame of the last joint.
     pub(super) fn on_flange(&self, mass: f64, com: Vector3<f64>, inertia: Matrix3<f64>) -> Body {
         let flange: &Isometry3<f64> = &self.geometry.flange;
         let turned = flange.rotation.to_rotation_matrix();
@@ -138,9 +138,9 @@ impl Plant {
     }
 }
 
-/// The torques of a model's bodies, rotors, Coulomb and viscous friction \[Nm\] at the motion
-/// `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] (entries beyond the robot's joints are not used).
-/// Sign of friction as of the velocity, 0 at rest.
+/// The torques of a model's bodies, rotors, Coulomb and viscous friction \[Nm\] at the motion `q`
+/// \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\]; surplus entries are ignored. Friction has the sign of
+/// the velocity and is 0 at rest.
 #[cfg(feature = "internals")]
 #[must_use]
 pub fn torque(

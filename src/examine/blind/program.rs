@@ -1,7 +1,7 @@
-//! A RAPID program, and how a robot runs it.
+//! A RAPID program and its execution by a robot.
 //!
-//! Each move states its duration (`\T`), so that the motion of a healthy controller is known without a
-//! model of one; the simulated robot is a few milliseconds early or late.
+//! Each move states its duration (`\T`), so that the healthy motion needs no controller model; the
+//! simulated robot is a few milliseconds early or late.
 
 use std::fmt::Write as _;
 
@@ -11,25 +11,25 @@ use super::random::Random;
 use super::workspace::Workspace;
 use crate::arm::robot::MAX_DOF;
 
-/// Moves of a cycle, the one back to its start included.
+/// Moves of a cycle, including the one back to the start.
 const MOVES: usize = 6;
-/// Share of the moves after which the program waits.
+/// Share of the moves that are followed by a wait.
 const WAITING: f64 = 0.4;
-/// By how much a move's time may be longer than the limits ask for.
+/// Factor of a move's duration over the least one within the limits.
 const SPARE: [f64; 2] = [1.03, 1.6];
-/// Line of the file, from 1, on which the first instruction of the cycle stands: the move home.
+/// Line of the first instruction of the cycle, from 1: the move to the start.
 const FIRST_LINE: usize = 3;
-/// Standard deviation of when a move starts \[s\].
+/// Standard deviation of the start of a move \[s\].
 pub(super) const JITTER_S: f64 = 0.003;
-/// Largest rate and acceleration of a quintic from 0 to 1 in a time of 1.
+/// Largest rate and acceleration of a quintic with distance 1 and duration 1.
 const PEAKS: [f64; 2] = [1.875, 5.7736];
 
-/// A cycle of moves and waits that ends where it began.
+/// A cycle of moves and waits that ends at its start.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
-    /// Where each move goes, the first target being the start \[rad\].
+    /// Target of each move \[rad\]; the first target is the start.
     targets: Vec<Joints>,
-    /// How long each move takes \[s\], the move to the start taking none.
+    /// Duration of each move \[s\]; 0 for the move to the start.
     times: Vec<f64>,
     /// Wait after each move \[s\]; 0: no instruction.
     waits: Vec<f64>,
@@ -38,13 +38,12 @@ pub(super) struct Program {
 /// Deviations of the controller from the program.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conduct {
-    /// Shares of the limits of speed and acceleration that it keeps; 1 as usual.
+    /// Factors of the limits of speed and acceleration; 1 without a deviation.
     pub(super) speed: f64,
     pub(super) acceleration: f64,
-    /// A wait that is in no program: after which move, how long \[s\], and the part of it that is
-    /// random.
+    /// An additional pause: the move before it, its duration \[s\], and its random share.
     pub(super) pause: Option<(usize, f64, f64)>,
-    /// How late the joints are \[s\], and by how many poles.
+    /// Lag of the joints \[s\], and number of its poles.
     pub(super) lag: f64,
     pub(super) poles: usize,
 }
@@ -56,11 +55,11 @@ impl Conduct {
     }
 }
 
-/// A log's motion, and the marks of its rows.
+/// The motion of a log, and the marks of its rows.
 pub(super) struct Course {
     /// The whole log as one period.
     pub(super) motion: Motion,
-    /// For each sample: repetition from 1, movement from 1 or 0 while waiting.
+    /// For each sample, the repetition from 1, and the movement from 1 or 0 during a wait.
     pub(super) marks: Vec<[usize; 2]>,
 }
 
@@ -84,12 +83,12 @@ impl Program {
         program
     }
 
-    /// Number of moves, the one to the start included.
+    /// Number of moves, including the one to the start.
     pub(super) fn moves(&self) -> usize {
         self.targets.len()
     }
 
-    /// The module.
+    /// The text of the module.
     pub(super) fn text(&self) -> String {
         let mut text = String::from("MODULE MainModule\n  PROC main()\n");
         for (i, target) in self.targets.iter().enumerate() {
@@ -114,7 +113,7 @@ impl Program {
         FIRST_LINE + number + waits
     }
 
-    /// How long each move takes \[s\].
+    /// Duration of each move \[s\].
     pub(super) fn durations(&self, workspace: &Workspace, conduct: &Conduct) -> Vec<f64> {
         let mut durations = vec![0.0];
         for i in 1..self.targets.len() {
@@ -124,7 +123,7 @@ impl Program {
         durations
     }
 
-    /// The program, so many times.
+    /// The motion of several repetitions of the program.
     pub(super) fn run(
         &self,
         workspace: &Workspace,
@@ -171,13 +170,13 @@ fn pose(workspace: &Workspace, random: &mut Random) -> Joints {
     for (joint, [from, to]) in workspace.range.iter().enumerate().take(workspace.dof) {
         let middle = f64::midpoint(*from, *to);
         let degrees = (middle + 0.6 * (random.between(*from, *to) - middle)).to_degrees();
-        // As the program has it.
+        // Rounded as in the program text.
         q[joint] = ((degrees * 1e4).round() / 1e4).to_radians();
     }
     q
 }
 
-/// The time that a move needs within the limits \[s\].
+/// The least duration of a move within the limits \[s\].
 fn least_time(workspace: &Workspace, from: &Joints, to: &Joints, conduct: &Conduct) -> f64 {
     (0..workspace.dof)
         .map(|joint| {
@@ -189,7 +188,7 @@ fn least_time(workspace: &Workspace, from: &Joints, to: &Joints, conduct: &Condu
         .fold(0.2, f64::max)
 }
 
-/// A quintic's state at the share `x` of its time.
+/// The state of a quintic at the normalised time `x`.
 fn between(from: &Joints, to: &Joints, x: f64, lasts: f64) -> Sample {
     let s = x.powi(3) * (10.0 + x * (6.0 * x - 15.0));
     let sd = 30.0 * (x * (1.0 - x)).powi(2) / lasts;
@@ -204,7 +203,7 @@ fn between(from: &Joints, to: &Joints, x: f64, lasts: f64) -> Sample {
     sample
 }
 
-/// A pole behind the motion; positions, rates and accelerations pass through the same one.
+/// A first-order lag of the motion; positions, rates and accelerations pass the same filter.
 fn lagging(samples: &mut [Sample], lag: f64) {
     let Some(first) = samples.first().copied().filter(|_| lag > 0.0) else { return };
     let kept = lag / (lag + STEP_S);

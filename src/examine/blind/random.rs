@@ -1,4 +1,4 @@
-//! Random numbers that stay the same in every version of every crate.
+//! Random numbers that do not depend on the version of a crate.
 //!
 //! Splitmix64: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
 //! generators", OOPSLA 2014.
@@ -14,7 +14,7 @@ pub(super) struct Random {
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Random {
-    /// The stream of a purpose in a case: what one purpose draws does not shift another.
+    /// The stream of a purpose in a case; streams of different purposes are independent.
     pub(super) fn new(seed: u64, case: u64, purpose: &str) -> Random {
         let mut state = seed;
         for word in [case, purpose.len() as u64].into_iter().chain(purpose.bytes().map(u64::from)) {
@@ -38,7 +38,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Between two positive numbers, uniform in the logarithm.
+    /// Log-uniform between two positive numbers.
     pub(super) fn log_between(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -52,7 +52,7 @@ impl Random {
         self.unit() < probability
     }
 
-    /// One of 0 … count − 1; 0 of none.
+    /// Uniform in 0 … count − 1; 0 for `count` = 0.
     pub(super) fn below(&mut self, count: usize) -> usize {
         if count == 0 { 0 } else { (self.unit() * count as f64) as usize }
     }
@@ -63,7 +63,7 @@ impl Random {
         radius * (TAU * self.unit()).cos()
     }
 
-    /// Standard normal, but never beyond `limit`: such draws are drawn again.
+    /// Standard normal, truncated to ± `limit` by rejection.
     pub(super) fn normal_within(&mut self, limit: f64) -> f64 {
         for _ in 0..64 {
             let x = self.normal();

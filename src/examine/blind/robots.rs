@@ -1,5 +1,5 @@
-//! The robots of the examination: arms of the catalogue, with generated dynamics where the catalogue
-//! has none or incomplete ones.
+//! Robots of the examination: arms of the catalogue, with generated dynamics where these are
+//! missing or incomplete.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -9,7 +9,7 @@ use super::random::Random;
 use super::workspace::Workspace;
 use crate::arm::robot::{self, Link, MAX_DOF, Model, Motors, Wrist};
 
-/// Robots of which cases are made: serial arms of six joints and different size.
+/// Robots of the cases: serial arms with six joints of different size.
 const ARMS: [&str; 10] = [
     "IRB1600-10/1.45",
     "IRB1600-6/1.2",
@@ -23,16 +23,16 @@ const ARMS: [&str; 10] = [
     "IRB6640-180/2.55",
 ];
 
-/// Moving mass per squared reach \[kg/m²\], and the links' shares of it.
+/// Moving mass over squared reach \[kg/m²\], and shares of the links.
 const MASS_PER_REACH: [f64; 2] = [55.0, 110.0];
 const SHARES: [f64; 6] = [0.36, 0.28, 0.22, 0.09, 0.035, 0.015];
-/// Least mass of a link: bearings and gears of a wrist move with it \[kg\].
+/// Least mass of a link, with bearings and gears \[kg\].
 const LIGHTEST: f64 = 0.25;
 
-/// Least rated torque of a motor at its joint \[Nm\].
+/// Least rated torque of a motor, at the joint \[Nm\].
 const LEAST_TORQUE: f64 = 8.0;
 
-/// A robot with dynamics. `None` where the catalogue has none of the arms.
+/// A robot with dynamics; `None` if the catalogue contains none of the arms.
 pub(super) fn robot(random: &mut Random) -> Option<Model> {
     let first = random.below(ARMS.len());
     let mut found = (0..ARMS.len()).filter_map(|i| {
@@ -45,7 +45,7 @@ pub(super) fn robot(random: &mut Random) -> Option<Model> {
     model.effects.clear();
     model.limits.position_if.clear();
     model.limits.acceleration_by_pose = None;
-    // The paper's arm is used as it is in some cases, the rest get bodies of their own.
+    // In half of the cases an arm keeps its published bodies.
     if model.links.len() != model.dof || random.chance(0.5) {
         model.links = links(&model, random);
     }
@@ -55,7 +55,7 @@ pub(super) fn robot(random: &mut Random) -> Option<Model> {
     Some(model)
 }
 
-/// Bodies along the arm: boxes from each joint to the next, somewhat off the line.
+/// Boxes from each joint to the next, slightly off the line.
 fn links(model: &Model, random: &mut Random) -> Vec<Link> {
     let joints = &model.kinematics.joints;
     let reach: f64 = joints.iter().skip(1).map(|joint| joint.translation.norm()).sum();
@@ -68,7 +68,7 @@ fn links(model: &Model, random: &mut Random) -> Vec<Link> {
             };
             let share = SHARES.get(i).copied().unwrap_or(LIGHTEST);
             let mass = (share * total * random.between(0.8, 1.25)).max(LIGHTEST);
-            // As heavy as a box of three times the density of water.
+            // Volume of a box with three times the density of water.
             let width = (mass / 3000.0).cbrt() * random.between(0.8, 1.3);
             let off = Vector3::from_fn(|_, _| 0.2 * width * random.normal_within(2.0));
             let com = next * random.between(0.3, 0.6) + off;
@@ -84,7 +84,7 @@ fn links(model: &Model, random: &mut Random) -> Vec<Link> {
         .collect()
 }
 
-/// Gears, rotors, friction and losses that suit the bodies.
+/// Gears, rotors, friction and losses in proportion to the bodies.
 fn drives(model: &mut Model, random: &mut Random) {
     let n = model.dof;
     model.motors = None;
@@ -136,7 +136,7 @@ fn drives(model: &mut Model, random: &mut Random) {
         })
         .collect();
     let torque: Vec<f64> = (0..n).map(|joint| 2.5 * largest[joint].max(LEAST_TORQUE)).collect();
-    // A motor that gives its largest torque loses some kilowatts per megawatt of squared torque.
+    // Typical copper loss at the largest torque: some hundred watts.
     let loss_constant: Vec<f64> =
         torque.iter().map(|tau| random.log_between(300.0, 900.0) / (tau * tau)).collect();
     model.motors = Some(Motors {

@@ -1,4 +1,4 @@
-//! What the sizes of disturbances are drawn from.
+//! Quantities that scale the sizes of disturbances.
 
 use super::fault::Disturbance;
 use super::mechanics::Joints;
@@ -7,9 +7,9 @@ use super::random::Random;
 use super::trust::Trust;
 use super::workspace::Workspace;
 
-/// What the sizes of disturbances are drawn from.
+/// Quantities that scale the sizes of disturbances.
 pub(super) struct Scale<'a> {
-    /// What the robot is said to be, and what it is when nothing is wrong.
+    /// The nominal robot, and the true robot without faults.
     pub(super) nominal: &'a Plant,
     pub(super) plant: &'a Plant,
     pub(super) workspace: &'a Workspace,
@@ -17,13 +17,13 @@ pub(super) struct Scale<'a> {
     pub(super) period_s: f64,
     /// Gear ratios.
     pub(super) ratio: Joints,
-    /// Of the motion, for each joint: rms and largest torque, largest rate, rms torque through
-    /// the gear.
+    /// For each joint of the motion: rms and largest torque, largest rate, rms torque through the
+    /// gear.
     pub(super) rms: Joints,
     pub(super) peak: Joints,
     pub(super) fastest: Joints,
     pub(super) load: Joints,
-    /// Rms power \[W\], without the base.
+    /// Rms of the motion-dependent power \[W\].
     pub(super) power: f64,
 }
 
@@ -32,7 +32,7 @@ impl Scale<'_> {
         random.below(self.plant.dof)
     }
 
-    /// A joint among some.
+    /// One of the given joints.
     pub(super) fn one_of(&self, joints: &[usize], random: &mut Random) -> usize {
         joints.get(random.below(joints.len())).copied().unwrap_or(0).min(self.plant.dof - 1)
     }

@@ -1,4 +1,4 @@
-//! Seals: a public hash of each label; the labels themselves are in a key file.
+//! Seals: public hashes of the labels; a key file contains the labels.
 
 use std::fmt::Write as _;
 
@@ -8,27 +8,27 @@ use thiserror::Error;
 
 use super::label::Label;
 
-/// The open file and the key.
+/// Name of the public file with the hashes.
 pub const SEALS: &str = "seals.csv";
-/// The labels with their salts.
+/// Name of the file with labels and salts.
 pub const KEY: &str = "labels.key";
 
 /// Sealed labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sealed {
-    /// `case,sha256`, a row for each case.
+    /// CSV `case,sha256` with a row for each case.
     pub seals: String,
-    /// JSON with the labels.
+    /// JSON with labels and salts.
     pub key: String,
 }
 
-/// A key that does not open the seals.
+/// A key that does not match the seals.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SealError {
-    /// The key is no JSON of the right shape.
+    /// The key is not valid JSON.
     #[error("labels.key can't be read ({reason}): take the one that was written with the cases")]
     Key {
-        /// Why.
+        /// Cause.
         reason: String,
     },
     /// A row of the seals without a hash.
@@ -36,7 +36,7 @@ pub enum SealError {
         "seals.csv, row {row}: expected CASE,SHA256; take the file that was written with the cases"
     )]
     Row {
-        /// Row of the file, the header is 1.
+        /// Row of the file; the header is row 1.
         row: usize,
     },
     /// A case in only one of the two files.
@@ -47,7 +47,7 @@ pub enum SealError {
         /// The case.
         case: String,
     },
-    /// The label is not the one that was sealed.
+    /// The label differs from the sealed one.
     #[error(
         "the seal of {case} is broken: its label is not the one that was sealed; grade with the labels.key that was written with the cases"
     )]
@@ -66,14 +66,14 @@ struct Key {
 struct Entry {
     case: String,
     salt: String,
-    /// JSON in a string: its bytes are what was hashed.
+    /// Label as JSON text: the hash is of these bytes.
     label: String,
 }
 
-/// Seals labels, each with its salt.
+/// Seals labels, each with a salt.
 ///
 /// # Errors
-/// A label that is not JSON, such as one with a number that is not finite.
+/// A label cannot be written as JSON, for example because of a number that is not finite.
 pub fn seal(labels: &[(Label, String)]) -> Result<Sealed, SealError> {
     let unreadable = |error: serde_json::Error| SealError::Key { reason: error.to_string() };
     let mut seals = String::from("case,sha256\n");
@@ -87,10 +87,10 @@ pub fn seal(labels: &[(Label, String)]) -> Result<Sealed, SealError> {
     Ok(Sealed { seals, key })
 }
 
-/// Opens sealed labels, after all hashes have been checked.
+/// Opens sealed labels after checking all hashes.
 ///
 /// # Errors
-/// The key does not belong to the seals or was changed.
+/// The key does not match the seals.
 pub fn open(sealed: &Sealed) -> Result<Vec<Label>, SealError> {
     let key: Key = serde_json::from_str(&sealed.key)
         .map_err(|error| SealError::Key { reason: error.to_string() })?;

@@ -1,4 +1,4 @@
-//! Simulation of a robot with its disturbances, logged without noise.
+//! Simulation of a robot with disturbances, logged without noise.
 
 use super::action::{Action, Change, Moment, PowerChange};
 use super::compliance::Compliance;
@@ -9,19 +9,19 @@ use super::motion::{Motion, PER_ROW, STEP_S, Sample};
 use super::plant::Plant;
 use crate::arm::robot::MAX_DOF;
 
-/// A motor slower than this rests \[rad/s\].
+/// Motor rate below which a joint counts as at rest \[rad/s\].
 const RESTS: f64 = 1e-6;
-/// Share of dry friction that stays in a gear at rest.
+/// Share of dry friction that remains in a gear at rest.
 const LEFT_AT_REST: f64 = 0.3;
 
 /// The electrical supply of the drives.
 #[derive(Clone, Debug)]
 pub(super) struct Supply {
-    /// \[W\].
+    /// Base power \[W\].
     pub(super) base: f64,
-    /// \[W/(Nm)²\].
+    /// Loss coefficient \[W/(Nm)²\].
     pub(super) loss: Joints,
-    /// Share of braking power that is given back.
+    /// Share of the braking power that is regenerated.
     pub(super) regeneration: f64,
 }
 
@@ -41,8 +41,8 @@ pub(super) struct Row {
     pub(super) power: f64,
 }
 
-/// Runs periods of a motion from the time `clock` \[s\]; `variation` has factors of the friction
-/// for each of them. Rows come at a fifth of the simulation's rate.
+/// Simulates periods of a motion from the time `clock` \[s\]; `variation` contains friction factors
+/// for each period. Rows have a fifth of the simulation's rate.
 pub(super) fn simulate(
     robot: &Robot<'_>,
     motion: &Motion,
@@ -89,7 +89,7 @@ pub(super) fn simulate(
     rows
 }
 
-/// What disturbances change as time goes by.
+/// Time-dependent changes by disturbances.
 #[derive(Default)]
 struct Changes {
     gears: Vec<Change>,
@@ -99,7 +99,7 @@ struct Changes {
     powers: Vec<PowerChange>,
 }
 
-/// Begins the changes of a log, and makes those of the plant.
+/// Starts the changes of a log, and applies those of the plant.
 fn begun(disturbances: &[&Disturbance], plant: &mut Plant) -> (Changes, Vec<Compliance>) {
     let mut changes = Changes::default();
     let mut compliances = Vec::new();
@@ -118,8 +118,8 @@ fn begun(disturbances: &[&Disturbance], plant: &mut Plant) -> (Changes, Vec<Comp
 }
 
 impl Changes {
-    /// The row of a moment with true positions, the torques `rigid` of the bodies \[Nm\] and
-    /// `factors` of the friction.
+    /// The row of an instant, with true positions, the torques `rigid` of the bodies \[Nm\] and the
+    /// friction factors `factors`.
     fn row(
         &mut self,
         robot: &Robot<'_>,
@@ -160,7 +160,7 @@ fn apply(changes: &mut [Change], moment: &Moment, values: &mut Joints) {
     }
 }
 
-/// Directions of dry friction; a gear at rest keeps a part of its last one, which `held` has.
+/// Directions of dry friction; a gear at rest keeps a part of the last one, stored in `held`.
 fn dry_friction_signs(rate: &Joints, held: &mut Joints, dof: usize) -> Joints {
     let mut sign = [0.0; MAX_DOF];
     for joint in 0..dof {
@@ -174,7 +174,7 @@ fn dry_friction_signs(rate: &Joints, held: &mut Joints, dof: usize) -> Joints {
     sign
 }
 
-/// How the links move when a gear gives way.
+/// Motion of the links with an elastic gear.
 fn deflected(plant: &Plant, motion: &[Sample], compliance: &Compliance) -> Vec<Sample> {
     let joint = compliance.joint;
     let load = |sample: &Sample| {

@@ -1,4 +1,4 @@
-//! Sizes of the torques and the power of some motions.
+//! Magnitudes of the torques and the power of motions.
 
 use super::mechanics::Joints;
 use super::motion::Motion;
@@ -6,10 +6,10 @@ use super::plant::Plant;
 use super::simulate::Supply;
 use crate::arm::robot::MAX_DOF;
 
-/// Every so many samples of the simulation count.
+/// Only one of this many samples is evaluated.
 const LOOK: usize = 10;
 
-/// Sizes of the torques of some motions.
+/// Magnitudes of the torques of motions.
 pub(super) struct Sizes {
     pub(super) rms: Joints,
     pub(super) peak: Joints,
@@ -44,7 +44,7 @@ pub(super) fn sizes(plant: &Plant, motions: &[Motion]) -> Sizes {
     sizes
 }
 
-/// Rms of the power that changes with the motion \[W\].
+/// Rms of the motion-dependent power \[W\].
 pub(super) fn rms_power(plant: &Plant, supply: &Supply, motions: &[Motion]) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0);
     for sample in motions.iter().flat_map(|motion| motion.samples.iter().step_by(LOOK)) {

@@ -9,7 +9,7 @@ use super::random::Random;
 /// Largest distance of a parameter from its nominal value \[standard deviations\].
 const FARTHEST: f64 = 2.5;
 
-/// Where a nominal model is from.
+/// Source of a nominal model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Trust {
     /// Identified when the robot was new.
@@ -19,7 +19,7 @@ pub(super) enum Trust {
 }
 
 impl Trust {
-    /// As options name it.
+    /// Name of the option value.
     pub(super) fn name(self) -> &'static str {
         match self {
             Trust::Commissioned => "commissioned",
@@ -35,7 +35,7 @@ impl Trust {
         }
     }
 
-    /// Of a coordinate of a centre of mass \[m\].
+    /// Standard deviation of the coordinates of a centre of mass \[m\].
     pub(super) fn com(self) -> f64 {
         match self {
             Trust::Commissioned => 0.003,
@@ -43,7 +43,7 @@ impl Trust {
         }
     }
 
-    /// Of moments of inertia and rotors \[1\].
+    /// Standard deviation of moments of inertia and rotors \[1\].
     pub(super) fn inertia(self) -> f64 {
         match self {
             Trust::Commissioned => 0.03,
@@ -51,7 +51,7 @@ impl Trust {
         }
     }
 
-    /// Of Coulomb and viscous friction, and of losses \[1\].
+    /// Standard deviation of Coulomb and viscous friction and of losses \[1\].
     pub(super) fn friction(self) -> f64 {
         match self {
             Trust::Commissioned => 0.05,
@@ -59,7 +59,7 @@ impl Trust {
         }
     }
 
-    /// A robot of which `nominal` is the model.
+    /// A random true robot for the model `nominal`.
     pub(super) fn real(self, nominal: &Plant, random: &mut Random) -> Plant {
         let mut plant = nominal.clone();
         for body in &mut plant.bodies {
@@ -81,7 +81,7 @@ impl Trust {
         let heavier = 1.0 + self.mass() * random.normal_within(FARTHEST);
         body.mass *= heavier;
         body.com += Vector3::from_fn(|_, _| self.com() * random.normal_within(FARTHEST));
-        // A body stretched along its axes stays a body: its second moments are a covariance.
+        // Stretched along its axes, a body stays physical: its second moments are a covariance.
         let half_trace = 0.5 * body.inertia.trace();
         let moments = Matrix3::from_diagonal_element(half_trace) - body.inertia;
         let stretch = Matrix3::from_diagonal(&Vector3::from_fn(|_, _| {

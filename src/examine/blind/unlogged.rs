@@ -1,4 +1,4 @@
-//! Noiseless motions of a case's robot that are not in its files, as ground truth for claims.
+//! Noiseless motions of a case's robot outside its files, as ground truth for claims.
 
 use super::bench::{Bench, Settings};
 use super::fourier::fourier;
@@ -8,15 +8,15 @@ use super::pick_place::pick_place;
 use super::simulate::{Row, simulate};
 use crate::arm::robot::MAX_DOF;
 
-/// Periods until the robot's states have settled.
+/// Number of periods until the states of the robot have settled.
 const ROUNDS: usize = 2;
 
 /// One period of a motion, by joint and row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unlogged {
-    /// Times by the clock of the case's logs \[s\].
+    /// Times on the clock of the case's logs \[s\].
     pub t: Vec<f64>,
-    /// Positions as a log has them \[rad\].
+    /// Logged positions \[rad\].
     pub q: Vec<Vec<f64>>,
     /// Rates \[rad/s\].
     pub qd: Vec<Vec<f64>>,
@@ -28,8 +28,8 @@ pub struct Unlogged {
     pub power: Vec<f64>,
 }
 
-/// `count` other motions of the robot of a case, of the kind of its held-out log and at the same
-/// time. `None` for runs of a program, or if the catalogue lacks the robot.
+/// `count` further motions of a case's robot, of the same kind and at the same time as the held-out
+/// log. `None` for program runs, or if the catalogue lacks the robot.
 #[must_use]
 pub fn unlogged(settings: &Settings, number: usize, count: usize) -> Option<Vec<Unlogged>> {
     let bench = Bench::drawn(settings, number).filter(|bench| !bench.with_program)?;

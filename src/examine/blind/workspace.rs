@@ -1,15 +1,15 @@
-//! The ranges in which motions are drawn.
+//! Ranges of the drawn motions.
 
 use super::mechanics::Joints;
 use crate::arm::robot::{MAX_DOF, Model};
 
-/// Share of a joint's range, and the widest range \[rad\], that motions use.
+/// Used share of a joint's range, and widest used range \[rad\].
 const OF_RANGE: f64 = 0.8;
 const WIDEST_RANGE: f64 = 4.0;
-/// Shares of the limits of speed and acceleration.
+/// Used shares of the limits of speed and acceleration.
 const OF_VELOCITY: f64 = 0.8;
 const OF_ACCELERATION: f64 = 0.7;
-/// Where a robot's limits are not known \[rad/s, rad/s²\].
+/// Default limits \[rad/s, rad/s²\].
 const USUAL_VELOCITY: f64 = 3.0;
 const USUAL_ACCELERATION: f64 = 12.0;
 
@@ -46,7 +46,7 @@ impl Workspace {
                 }
             }
         }
-        // The forearm of a parallelogram moves with the upper arm: a narrower range keeps both.
+        // The forearm of a parallelogram moves with the upper arm: half a range suits both.
         if let Some([low, high]) = model.limits.coupled {
             let half = 0.25 * (high - low).min(2.0);
             for joint in [1, 2] {

@@ -1,4 +1,4 @@
-//! Where the cycles of a log are.
+//! Location of the simulated cycles in a log.
 
 use std::ops::Range;
 
@@ -6,22 +6,22 @@ use super::cycle::Cycle;
 use super::refusal::Refusal;
 use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step};
 
-/// Correlation of a pass with the simulated one, at least.
+/// Least correlation of a pass with the simulated cycle.
 const LEAST: f64 = 0.6;
-/// How much longer or shorter a cycle may be than simulated, as a share, and steps of the search.
+/// Largest relative deviation of a cycle's duration, and steps of its search.
 const PACE: f64 = 0.05;
 const PACES: usize = 10;
-/// Power of one cycle over that of another from which on they are not of one unit.
+/// Largest ratio of the power of two cycles: above it, the unit changes within the log.
 const UNLIKE: f64 = 3.0;
-/// Cycles of a log that are searched for, at most.
+/// Largest number of cycles that the search covers.
 const CYCLES: f64 = 200.0;
 /// Points of a cycle in the search, and in the refinement.
 const COARSE: f64 = 400.0;
 const FINE: usize = 3000;
-/// Steps of the golden section.
+/// Steps of the golden section search.
 const SECTIONS: usize = 24;
 
-/// Where the simulated cycle is in a log.
+/// The passes of the simulated cycle in a log.
 pub(super) struct Aligned {
     pub(super) passes: Vec<Pass>,
     /// Whether the power is in kW.
@@ -33,18 +33,18 @@ pub(super) struct Pass {
     pub(super) segments: Vec<Segment>,
 }
 
-/// A part of a pass in which both clocks go alike.
+/// A part of a pass in which the clocks of log and simulation differ by a constant factor.
 pub(super) struct Segment {
-    /// s in the log.
+    /// Time in the log \[s\].
     pub(super) log: Range<f64>,
     /// Where it begins in the simulated cycle \[s\].
     pub(super) begin: f64,
-    /// Duration in the log over that of the simulated one.
+    /// Duration in the log over the simulated duration.
     pub(super) pace: f64,
 }
 
 impl Aligned {
-    /// Duration of the passes over the simulated one.
+    /// Total duration of the passes over the simulated one.
     pub(super) fn pace(&self) -> f64 {
         let segments = self.passes.iter().flat_map(|pass| &pass.segments);
         let [log, simulated] = segments.fold([0.0, 0.0], |[log, simulated], segment| {
@@ -55,10 +55,7 @@ impl Aligned {
     }
 }
 
-/// Finds the passes: by `cmd`, by `cycle`, or by the power alone.
-///
-/// # Errors
-/// There are none.
+/// Finds the passes from `cmd`, from `cycle`, or from the power alone; refuses a log without any.
 pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
     let power = log.column(Channel::Power).unwrap_or_default();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
@@ -92,11 +89,8 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
     Ok(Aligned { passes, kilowatts })
 }
 
-/// Cycles of one program and one unit take about the same power, over that of the simulated cycle at the
-/// same places: a log may begin and end anywhere.
-///
-/// # Errors
-/// They do not.
+/// Refuses passes whose power, relative to the simulated power at the same places, differs by more
+/// than [`UNLIKE`]. The ratio is used because a log may begin and end anywhere in a cycle.
 pub(super) fn check_alike(cycle: &Cycle<'_>, log: &Log, passes: &[Pass]) -> Result<(), Refusal> {
     let (t, power) = (log.time(), log.column(Channel::Power).unwrap_or_default());
     let place = |at: f64| t.partition_point(|t| *t < at);
@@ -125,9 +119,9 @@ pub(super) fn check_alike(cycle: &Cycle<'_>, log: &Log, passes: &[Pass]) -> Resu
     }
 }
 
-/// Passes by the number of the movement that runs: movements and waits by themselves.
+/// Passes from the movement number in `cmd`: each movement and each wait is one segment.
 fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass>, Refusal> {
-    // Stretches of the same number.
+    // Runs of rows with the same number, and their start times.
     let mut stretches: Vec<(usize, f64)> = Vec::new();
     for (t, number) in t.iter().zip(commands) {
         let number = number.max(0.0) as usize;
@@ -143,7 +137,7 @@ fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass
     let mut last = usize::MAX;
     for pair in stretches.windows(2) {
         let [(number, from), (_, to)] = [pair[0], pair[1]];
-        // The first and the last movement of a log may be parts.
+        // The first and the last movement of a log may be incomplete.
         let simulated = match number.checked_sub(1) {
             Some(index) => (last != usize::MAX).then(|| cycle.moves[index]),
             None => last.checked_sub(1).and_then(|before| cycle.wait_behind(before)),
@@ -159,7 +153,7 @@ fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass
         let segment = if (pace - 1.0).abs() <= PACE {
             Segment { log: from..to, begin, pace }
         } else if number == 0 {
-            // A wait may take another time: at rest the power is the same.
+            // A wait may last longer or shorter: at rest the power is constant.
             Segment { log: from..to.min(from + lasts), begin, pace: 1.0 }
         } else {
             continue;
@@ -176,7 +170,7 @@ fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass
     Ok(passes)
 }
 
-/// Begin and pace of whole passes by the number of the repetition.
+/// Start and pace of whole cycles from the cycle number.
 fn by_number(cycle: &Cycle<'_>, t: &[f64], numbers: &[f64]) -> Result<Vec<(f64, f64)>, Refusal> {
     let mut begins: Vec<(f64, f64)> = Vec::new();
     for (t, number) in t.iter().zip(numbers) {
@@ -202,7 +196,7 @@ fn by_number(cycle: &Cycle<'_>, t: &[f64], numbers: &[f64]) -> Result<Vec<(f64, 
     Ok(whole)
 }
 
-/// The power of a log beside the simulated one.
+/// The logged power and the simulated cycle.
 struct Curve<'a> {
     cycle: &'a Cycle<'a>,
     t: &'a [f64],
@@ -210,7 +204,7 @@ struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// Begin and pace of the passes, by where the power goes like the simulated one.
+    /// Start and pace of the passes with the best correlation with the simulated power.
     fn search(&self) -> Result<Vec<(f64, f64)>, Refusal> {
         let (first, last) = (self.t[0], self.t[self.t.len() - 1]);
         let step = self.cycle.duration / COARSE;
@@ -233,7 +227,7 @@ impl Curve<'_> {
         if fits.is_empty() {
             return Err(Refusal::Short { log_s: last - first, cycle_s: self.cycle.duration });
         }
-        // What the coarse search finds is refined: the bound is for what comes of it.
+        // The bound is lower here: the refinement raises the correlation.
         let least = (LEAST * 0.9).min(most);
         let points = (COARSE * pace).round() as usize;
         let mut passes = Vec::new();
@@ -250,7 +244,7 @@ impl Curve<'_> {
         Ok(passes)
     }
 
-    /// Means of the log over steps from `first` on; where a step has no row, what lies between.
+    /// Means of the log over steps from `first` on; interpolated values where a step has no row.
     fn means(&self, first: f64, step: f64, count: usize) -> Vec<f64> {
         let mut sums = vec![(0.0, 0.0); count];
         for (t, w) in self.t.iter().zip(self.power) {
@@ -265,7 +259,7 @@ impl Curve<'_> {
         means.map(|((sum, rows), x)| if rows > 0.0 { sum / rows } else { x }).collect()
     }
 
-    /// A pass with begin and pace that fit best, and its correlation.
+    /// The pass with the best start and pace near the given ones, and its correlation.
     fn refined(&self, begin: f64, pace: f64) -> (Segment, f64) {
         let duration = self.cycle.duration;
         let rows = self.rows(begin, pace);
@@ -282,7 +276,7 @@ impl Curve<'_> {
             let reach = if round == 0 { 1.5 * step } else { 0.5 * step };
             begin = golden_section([begin - reach, begin + reach], SECTIONS, |x| -fit(x, pace));
             let reach = PACE / PACES as f64;
-            // Begin and end may change by themselves: the middle stays.
+            // Changing the pace about the middle of the pass keeps both nearly independent.
             let middle = begin + 0.5 * duration * pace;
             let from_middle = |x: f64| -fit(middle - 0.5 * duration * x, x);
             pace = golden_section([pace - reach, pace + reach], SECTIONS, from_middle);
@@ -299,7 +293,7 @@ impl Curve<'_> {
     }
 }
 
-/// Correlation of two series; 0 where one does not change.
+/// Correlation of two series; 0 where one is constant.
 pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len()) as f64;
     let (mut sa, mut sb, mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0, 0.0, 0.0);

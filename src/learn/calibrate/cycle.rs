@@ -10,29 +10,26 @@ use crate::retime::energy::power::{power_at, supply_w};
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Event, What};
 
-/// Longest step of the power's table \[s\], and most entries.
+/// Longest step of the power table \[s\], and its largest number of entries.
 const STEP: f64 = 0.004;
 const MOST: f64 = 30_000.0;
 
-/// One pass of what the program repeats.
+/// One pass of the repeated part of the program.
 pub(super) struct Cycle<'a> {
-    /// Those that last, in order.
+    /// Events with a duration above 0, in order.
     events: Vec<&'a Event>,
     start: f64,
-    /// s.
+    /// Duration \[s\].
     pub(super) duration: f64,
-    /// Power of the model from step to step \[W\].
+    /// Power of the model at equal steps \[W\].
     power: Vec<f64>,
     step: f64,
-    /// Begin and duration of each movement, s from the start of the pass.
+    /// Start and duration of each movement \[s\], from the start of the pass.
     pub(super) moves: Vec<(f64, f64)>,
 }
 
 impl<'a> Cycle<'a> {
-    /// Of a simulation.
-    ///
-    /// # Errors
-    /// It takes no time, or never ends.
+    /// The cycle of a simulation; refuses one without duration or without end.
     pub(super) fn new(model: &Model, simulation: &'a Simulation) -> Result<Cycle<'a>, Refusal> {
         let first = simulation.repeats_from.unwrap_or(0);
         let events = simulation.events.get(first..).unwrap_or_default();
@@ -64,7 +61,7 @@ impl<'a> Cycle<'a> {
         Ok(cycle)
     }
 
-    /// The robot at `t`, s from the start of the pass.
+    /// Load and state of the robot at time `t` \[s\] from the start of the pass.
     pub(super) fn at(&self, t: f64) -> Instant {
         let t = t + self.start;
         let after = self.events.partition_point(|event| event.t_start <= t);
@@ -87,14 +84,14 @@ impl<'a> Cycle<'a> {
         self.power[i] + rest * (next - self.power[i])
     }
 
-    /// Begin and duration of what lies between a movement and the next one, s.
+    /// Start and duration \[s\] of the wait after a movement.
     pub(super) fn wait_behind(&self, movement: usize) -> Option<(f64, f64)> {
         let (begin, lasts) = self.moves.get(movement)?;
         let next = self.moves.get(movement + 1).map_or(self.duration, |(begin, _)| *begin);
         Some((begin + lasts, next - begin - lasts))
     }
 
-    /// From when to when each event lasts, s from the start of the pass.
+    /// Start and end of each event \[s\], from the start of the pass.
     pub(super) fn pieces(&self) -> impl Iterator<Item = Range<f64>> {
         self.events.iter().map(|event| {
             let begin = event.t_start - self.start;

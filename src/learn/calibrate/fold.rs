@@ -6,39 +6,39 @@ use super::aligned::Aligned;
 use super::cycle::Cycle;
 use crate::learn::log::{Channel, Log, median_step};
 
-/// Instants of a cycle, and windows, at most about.
+/// Approximate largest numbers of instants and of windows in a cycle.
 const INSTANTS: f64 = 2000.0;
 const WINDOWS: f64 = 100.0;
-/// Robust standard deviation over the median of absolute values.
+/// Ratio of the standard deviation to the median absolute value, for normal noise.
 const OF_MEDIAN: f64 = 1.4826;
-/// Second differences of independent noise have so many times its variance.
+/// Ratio of the variance of second differences to that of independent noise.
 const OF_DIFFERENCES: f64 = 6.0;
 
 /// Means of a log over windows of the cycle.
 pub(super) struct Windows {
-    /// Instants, s from the start of the cycle.
+    /// Instants \[s\], from the start of the cycle.
     pub(super) times: Vec<f64>,
-    /// Instants of each window.
+    /// Indices of the instants of each window.
     pub(super) ranges: Vec<Range<usize>>,
-    /// Mean of each window, and the standard deviation that noise gives it \[W\].
+    /// Mean of each window, and its standard deviation from noise \[W\].
     pub(super) power: Vec<f64>,
     pub(super) power_sd: Vec<f64>,
-    /// The same of torques by joint \[Nm\]; empty where there are none.
+    /// The same for the torque of each joint \[Nm\]; empty without torques.
     pub(super) torque: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
-/// Rows at one instant.
+/// Sums over the rows at one instant.
 #[derive(Clone)]
 struct Bin {
     rows: f64,
     t: f64,
     power: f64,
-    /// Power of the cycle's robot at the same instants.
+    /// Simulated power at the same times.
     expected: f64,
     torque: Vec<f64>,
 }
 
-/// Folds the passes of a log.
+/// Averages the passes of a log in bins and windows of the cycle.
 pub(super) fn fold(
     cycle: &Cycle<'_>,
     log: &Log,
@@ -75,8 +75,8 @@ pub(super) fn fold(
     bins.retain(|bin| bin.rows > 0.0);
     for bin in &mut bins {
         bin.t = (bin.t / bin.rows).min(cycle.duration);
-        // The mean over the rows of a bin is not the power at their mean time: where the power bends,
-        // both differ by as much for the cycle's robot.
+        // The mean power of a bin differs from the power at its mean time where the power curve
+        // bends. The simulated power gives the difference.
         let bent = bin.expected / bin.rows - cycle.power(bin.t);
         bin.power = bin.power / bin.rows - bent;
         bin.torque.iter_mut().for_each(|sum| *sum /= bin.rows);
@@ -106,7 +106,7 @@ pub(super) fn fold(
     windows
 }
 
-/// Windows of the instants: none reaches over the end of a movement or a wait.
+/// Windows of the instants; no window crosses the end of a movement or of a wait.
 fn ranges(cycle: &Cycle<'_>, bins: &[Bin]) -> Vec<Range<usize>> {
     let longest = cycle.duration / WINDOWS;
     let mut ranges = Vec::new();
@@ -125,14 +125,14 @@ fn ranges(cycle: &Cycle<'_>, bins: &[Bin]) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Variance of the noise of a row: a constant part, and one that goes with the value.
+/// Variance of a row's noise: a constant part, and a part proportional to the squared value.
 struct Noise {
     constant: f64,
     relative: f64,
 }
 
 impl Noise {
-    /// Of a series, from its second differences where it is small and where it is large.
+    /// Estimate from the second differences of small and of large values.
     fn estimated(values: &[f64]) -> Noise {
         let mut sorted: Vec<f64> = values.iter().map(|x| x.abs()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -154,10 +154,10 @@ impl Noise {
     }
 }
 
-/// No measurement is better than this share of its value, squared.
+/// Least relative variance of the noise.
 const QUIET: f64 = 1e-6;
 
-/// Variance of the noise by second differences of the values that are meant.
+/// Variance of the noise from second differences of the values that `meant` selects.
 fn differences(values: &[f64], meant: impl Fn(f64) -> bool) -> f64 {
     let triples = values.windows(3).filter(|triple| triple.iter().all(|x| meant(*x)));
     let mut all: Vec<f64> =

@@ -1,10 +1,8 @@
-//! Calibration of a robot by the measured power of a running program.
-//!
-//! Plausible robots ([`Spread`]) differ in the power that they take in a
-//! program. The cycles of a log of the cabinet's power are found, folded onto the simulated cycle and
-//! averaged in windows. Then each plausible robot is moved to one that fits the log (randomised
-//! maximum likelihood, D. Oliver, N. He, A. Reynolds, "Conditioning permeability fields to pressure
-//! data", ECMOR 1996): for a linear model these are exact draws of the posterior.
+//! Calibration of a robot with the measured power of a running program. Plausible robots
+//! ([`Spread`]) differ in their power. The cycles of a power log are located, folded onto the
+//! simulated cycle and averaged in windows. Then each plausible robot is fitted to the log
+//! (randomised maximum likelihood, D. Oliver, N. He, A. Reynolds, "Conditioning permeability fields
+//! to pressure data", ECMOR 1996): for a linear model this gives exact draws of the posterior.
 
 mod aligned;
 mod cycle;
@@ -32,18 +30,18 @@ use posterior::{Data, Fit};
 
 pub use refusal::Refusal;
 
-/// Robots that are moved to the log.
+/// Number of plausible robots that are fitted to the log.
 const ROBOTS: usize = 128;
 /// Least number of windows with rows.
 const LEAST_WINDOWS: usize = 10;
-/// Share of the variance of the power over the cycle that the fitted robot has to explain.
+/// Least share of the power's variance over the cycle that the fitted robot has to explain.
 const EXPLAINS: f64 = 0.75;
-/// Correlation of the power in windows with the model's from which on it is the program's.
+/// Least correlation of measured and simulated window means for a log of this program.
 const ALIKE: f64 = 0.8;
-/// Correlation without means of a torque with the model's below which its sign is wrong: friction and
-/// gravity decide the sign, and no plausible robot turns both.
+/// Uncentred correlation of measured and simulated torque below which the sign is wrong: friction
+/// and gravity determine the sign for every plausible robot.
 const AGAINST: f64 = -0.3;
-/// Deviations from the plausible robots' mean beyond which a log belongs to none of them.
+/// Largest distance of a log from the mean of the plausible robots, in standard deviations.
 const FAR: f64 = 4.0;
 
 /// A calibrated robot.
@@ -51,36 +49,36 @@ const FAR: f64 = 4.0;
 pub struct Calibrated {
     /// The robot, with its draws.
     pub model: Model,
-    /// How well its energies in the program were known.
+    /// Uncertainty of its energies in the program before.
     pub before: Plausibility,
-    /// How well they are now.
+    /// Uncertainty after.
     pub after: Plausibility,
-    /// Robots that were moved to the log.
+    /// Number of robots that were fitted to the log.
     pub robots: usize,
-    /// What was found in the log.
+    /// Properties of the log.
     pub found: Found,
-    /// Groups that are known better now: name, standard deviation left of one.
+    /// Groups of parameters with less uncertainty: name, remaining share of the deviation.
     pub narrowed: Vec<(String, f64)>,
 }
 
-/// What was found in the log.
+/// Properties of the log.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// Whether the power was in kW.
     pub kilowatts: bool,
     /// Cycles that were used.
     pub cycles: usize,
-    /// Duration of the cycles over the simulated one.
+    /// Duration of the cycles over the simulated duration.
     pub pace: f64,
     /// Share of the variance of the power that the fitted robot explains.
     pub explained: f64,
-    /// What the fitted robot leaves unexplained over the noise of the log.
+    /// Residual variance of the fitted robot over the variance of the noise.
     pub misfit: f64,
     /// Whether the torques of the joints were used.
     pub torques: bool,
 }
 
-/// A log on a cycle.
+/// A log folded onto a cycle.
 struct Folded<'a> {
     aligned: Aligned,
     windows: Windows,
@@ -106,10 +104,10 @@ impl<'a> Folded<'a> {
     }
 }
 
-/// Moves plausible robots to the log of a program.
+/// Fits plausible robots to the log of a program.
 ///
 /// # Errors
-/// The log is not of the program, or not of the robot.
+/// The log is of another program or of another robot.
 pub fn calibrate(
     model: &Model,
     simulation: &Simulation,
@@ -137,7 +135,7 @@ pub fn calibrate(
     if explained < EXPLAINS {
         return Err(Refusal::Program { explained, least: EXPLAINS });
     }
-    // Once more, with the cycle of a robot that is near the log.
+    // The second pass uses the cycle of a robot that is near the log.
     let near = spread.robot(model, |k| likely.z[k]);
     let near = drawn(model, &near).map_err(|error| Refusal::Model { reason: error.to_string() })?;
     let cycle = Cycle::new(&near, simulation)?;
@@ -174,7 +172,7 @@ pub fn calibrate(
     })
 }
 
-/// Torques of the model and of the log go the same way, however large they are.
+/// Refuses measured torques of the opposite sign.
 fn check_torques(rough: &Folded<'_>, own: &Changes) -> Result<(), Refusal> {
     let expected = rough.along.means(own).torque;
     for (j, ((measured, _), expected)) in rough.windows.torque.iter().zip(&expected).enumerate() {
@@ -188,7 +186,7 @@ fn check_torques(rough: &Folded<'_>, own: &Changes) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A log whose power is far from that of all plausible robots belongs to another one.
+/// Refuses a log whose power is far from that of all plausible robots.
 fn check_size(
     model: &Model,
     spread: &Spread,
@@ -211,7 +209,7 @@ fn check_size(
         let sd = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / logs.len() as f64;
         let sd = sd.sqrt().max(f64::MIN_POSITIVE);
         let off = (measured[i].ln() - mean).abs();
-        // A power below 0 has no logarithm: it is refused, too.
+        // A negative power has no logarithm and is refused, too.
         if off.is_nan() || off > FAR * sd {
             let [low, high] = [-2.0, 2.0].map(|k: f64| (mean + k * sd).exp());
             return Err(Refusal::Robot {
@@ -226,8 +224,9 @@ fn check_size(
     Ok(())
 }
 
-/// The most likely robot, and the draws from there. Means of the latent numbers are no robot that fits
-/// the log: where two powers are known by their sum alone, the sum at their means is a smaller one.
+/// The most likely robot, and the draws relative to it. The means of the latent parameters do not
+/// give a robot that fits the log: if the log determines only the sum of two powers, the sum at the
+/// means is too small.
 fn centred(
     model: &Model,
     spread: &Spread,
@@ -244,15 +243,15 @@ fn centred(
         draws: names.map(|(k, latent)| (latent.name.clone(), of(k))).collect(),
         place: String::new(),
     });
-    // The rounded values of the file are used.
+    // The model is read back, because the file rounds its values.
     let read = from_toml("the calibrated robot", &to_toml(&new)).and_then(with_estimates);
     read.map_err(|error| Refusal::Model { reason: error.to_string() })
 }
 
-/// Draws are written with so many steps in a standard deviation.
+/// Draws are rounded to this number of steps per standard deviation.
 const ROUND: f64 = 1e4;
 
-/// Standard deviation that is left of each group, the smallest first.
+/// Remaining share of the standard deviation of each group, ascending.
 fn narrowed(spread: &Spread, draws: &[Vec<f64>]) -> Vec<(String, f64)> {
     let count = draws.len() as f64;
     let variance = |k: usize| {

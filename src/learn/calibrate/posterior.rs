@@ -12,30 +12,30 @@ use crate::retime::energy::change::Changes;
 
 /// Seed of the draws.
 const SEED: u64 = 113;
-/// Steps of the search for a fit, and the gain below which it ends.
+/// Largest number of steps of a fit, and the relative gain below which it ends.
 const STEPS: usize = 30;
 const GAIN: f64 = 1e-4;
-/// Damping at first, its factor after a step that helps or does not, and where it ends.
+/// Initial damping, its factors after a successful and a failed step, and its upper limit.
 const DAMPING: f64 = 1e-2;
 const LESS: f64 = 0.2;
 const MORE: f64 = 5.0;
 const MOST: f64 = 1e8;
-/// A draw fits if its misfit is within so many deviations of what is expected.
+/// Largest distance of a draw's misfit from its expected value, in standard deviations.
 const WITHIN: f64 = 4.0;
 
 /// Measured window means with the standard deviations of their noise.
 pub(super) struct Data {
     power: DVector<f64>,
     power_sd: DVector<f64>,
-    /// By joint; windows in which it rests count nothing.
+    /// Torque of each joint; windows in which it rests have an infinite standard deviation.
     torque: Vec<(DVector<f64>, DVector<f64>)>,
 }
 
 impl Data {
-    /// Of the windows of a log.
+    /// The means of a log's windows.
     pub(super) fn new(along: &Along<'_>, windows: &Windows) -> Data {
         let vector = |values: &Vec<f64>| DVector::from_column_slice(values);
-        // Friction holds a joint at rest: its torque tells nothing.
+        // At rest, static friction makes the torque indeterminate.
         let moving = |(w, sd): (usize, &f64)| if along.moves(w) { *sd } else { f64::INFINITY };
         let torque = windows.torque.iter().map(|(tau, sd)| {
             let sd = sd.iter().enumerate().map(moving).collect::<Vec<f64>>();
@@ -48,7 +48,7 @@ impl Data {
         }
     }
 
-    /// With noise whose variance is `factor` times as large.
+    /// The same data with the variance of the noise multiplied by `factor`.
     pub(super) fn with_noise(&self, factor: f64) -> Data {
         let scale = factor.sqrt();
         let torque = self.torque.iter().map(|(tau, sd)| (tau.clone(), sd * scale));
@@ -59,19 +59,19 @@ impl Data {
         }
     }
 
-    /// Share of the variance of the power that a robot explains.
+    /// Share of the power's variance that a robot explains.
     pub(super) fn explained(&self, means: &Means) -> f64 {
         let mean = self.power.mean();
         let all: f64 = self.power.iter().map(|w| (w - mean).powi(2)).sum();
         1.0 - (&self.power - &means.power).norm_squared() / all.max(f64::MIN_POSITIVE)
     }
 
-    /// Correlation of the power with that of a robot.
+    /// Correlation of the measured power with that of a robot.
     pub(super) fn likeness(&self, means: &Means) -> f64 {
         correlation(self.power.as_slice(), means.power.as_slice())
     }
 
-    /// Which of the residuals count.
+    /// Which residuals have a finite standard deviation.
     fn counted(&self) -> Vec<bool> {
         let all = std::iter::once(&self.power_sd).chain(self.torque.iter().map(|(_, sd)| sd));
         all.flat_map(|sd| sd.iter().map(|sd| sd.is_finite())).collect()
@@ -81,7 +81,7 @@ impl Data {
         self.counted().iter().filter(|counts| **counts).count()
     }
 
-    /// Differences over their noise, one list after the other.
+    /// Residuals over their standard deviations: power, then each torque.
     fn residuals(&self, means: &Means) -> DVector<f64> {
         let power = (&self.power - &means.power).component_div(&self.power_sd);
         let torque = self.torque.iter().zip(&means.torque);
@@ -93,16 +93,16 @@ impl Data {
     }
 }
 
-/// A robot near the log.
+/// A robot fitted to the log.
 pub(super) struct Fitted {
     pub(super) z: Vec<f64>,
     pub(super) means: Means,
     misfit: f64,
-    /// Latent numbers that the log decides.
+    /// Number of latent parameters that the log determines.
     decided: f64,
 }
 
-/// What is fitted.
+/// A fit of the latent parameters to data.
 pub(super) struct Fit<'a> {
     pub(super) model: &'a Model,
     pub(super) spread: &'a Spread,
@@ -118,18 +118,18 @@ impl Fit<'_> {
         self.nearest(&zero, &zero, &none)
     }
 
-    /// What the most likely robot leaves over what noise leaves, as a factor of variance.
+    /// Residual variance of the most likely robot over the variance of the noise.
     pub(super) fn misfit_over_noise(&self, likely: &Fitted) -> f64 {
         likely.misfit / (self.data.count() as f64 - likely.decided).max(1.0)
     }
 
-    /// Plausible robots, each moved to the log with noise of its own.
+    /// Plausible robots, each fitted to the log with its own noise added.
     pub(super) fn draws(&self, likely: &[f64], robots: usize) -> Vec<Vec<f64>> {
         let count = self.spread.latents.len();
         let counted = self.data.counted();
         let noise_count = counted.len();
         let normals = standard_normals(count + noise_count, robots, SEED);
-        // Its own noise and that of the log: twice the variance.
+        // The residuals contain the added noise and that of the log: twice the variance.
         let m = self.data.count() as f64;
         let bound = 2.0 * (m + WITHIN * (2.0 * m).sqrt());
         let draw = |i: usize| {
@@ -151,8 +151,8 @@ impl Fit<'_> {
         Changes::of_one(self.model, &self.spread.robot(self.model, |k| z[k]))
     }
 
-    /// The robot that is nearest to `prior` and to the log with more `noise`, from `start` on
-    /// (Levenberg and Marquardt).
+    /// The robot that minimises the squared distance from `prior` and from the log with added
+    /// `noise`, from `start` on (Levenberg–Marquardt).
     fn nearest(&self, start: &[f64], prior: &[f64], noise: &DVector<f64>) -> Fitted {
         let prior = DVector::from_column_slice(prior);
         let mut z = DVector::from_column_slice(start);
@@ -197,7 +197,7 @@ impl Fit<'_> {
         Fitted { z: z.as_slice().to_vec(), means, misfit: residuals.norm_squared(), decided }
     }
 
-    /// `JᵀJ` and `Jᵀr` for residuals over their noise.
+    /// `JᵀJ` and `Jᵀr` of the residuals over their standard deviations.
     fn normal_equations(
         &self,
         z: &DVector<f64>,

@@ -1,11 +1,11 @@
-//! Why a log does not calibrate a robot.
+//! Reasons to refuse a log for calibration.
 
 use thiserror::Error;
 
-/// Why a log does not calibrate a robot.
+/// Reason to refuse a log for calibration.
 #[derive(Clone, Debug, Error)]
 pub enum Refusal {
-    /// There is nothing to learn.
+    /// All parameters are known.
     #[error(
         "nothing of {name} is estimated: there is nothing to calibrate; run the program with --robot as it is"
     )]
@@ -13,7 +13,7 @@ pub enum Refusal {
         /// The robot.
         name: String,
     },
-    /// A calibrated robot.
+    /// The robot is already calibrated.
     #[error(
         "{name} is calibrated already: give the robot that its file was made from, with a log over more cycles"
     )]
@@ -21,42 +21,42 @@ pub enum Refusal {
         /// The robot.
         name: String,
     },
-    /// No time passes, or it never ends.
+    /// The simulated cycle has no duration or no end.
     #[error(
         "the simulated cycle takes no time or never ends: there is nothing to compare the log with; see joulepath simulate"
     )]
     Nothing,
-    /// Too few rows.
+    /// Too few rows in the log.
     #[error(
         "the log has rows in only {windows} of about 100 parts of the cycle, at least {least} are asked for: log the power more often"
     )]
     Sparse {
-        /// Parts with rows.
+        /// Windows with rows.
         windows: usize,
-        /// What is asked for.
+        /// Required number.
         least: usize,
     },
-    /// Too short.
+    /// The log is shorter than a cycle.
     #[error(
         "the log holds {log_s:.1} s and no whole cycle of {cycle_s:.1} s: log the power over several cycles, or say when inputs come (--input)"
     )]
     Short {
-        /// s.
+        /// Duration of the log \[s\].
         log_s: f64,
-        /// s.
+        /// Duration of the cycle \[s\].
         cycle_s: f64,
     },
-    /// Cycles of another length.
+    /// The cycles have another duration.
     #[error(
         "the log is of another program: its cycles take {measured_s:.1} s, the simulated one {cycle_s:.1} s (5 % may differ); say when inputs come (--input) if waits are longer, and --speed-override if the cell ran with one"
     )]
     Length {
-        /// s.
+        /// Duration in the log \[s\].
         measured_s: f64,
-        /// s.
+        /// Simulated duration \[s\].
         cycle_s: f64,
     },
-    /// Commands that do not fit.
+    /// The number of movements differs.
     #[error(
         "the log is of another program: the column `cmd` counts {measured} movements a cycle, the simulated cycle has {simulated}"
     )]
@@ -66,91 +66,91 @@ pub enum Refusal {
         /// Movements of the program.
         simulated: usize,
     },
-    /// Nothing is drawn.
+    /// The mean power is not positive.
     #[error("the power is {mean_w:.0} W in the mean: is its sign turned, or is it another column?")]
     Negative {
-        /// W.
+        /// Mean power \[W\].
         mean_w: f64,
     },
-    /// Nothing changes.
+    /// The power is constant.
     #[error(
         "the power is {power_w:.0} W all the time: it has no cycle; log it while the program runs"
     )]
     Constant {
-        /// W.
+        /// The power \[W\].
         power_w: f64,
     },
-    /// Cycles that differ.
+    /// The power differs between cycles.
     #[error(
         "the power of the cycle at {begin_s:.1} s is {factor:.0} times that of another one: does its unit change within the log?"
     )]
     Unlike {
-        /// s.
+        /// Start of the cycle in the log \[s\].
         begin_s: f64,
         /// Largest mean power over the smallest.
         factor: f64,
     },
-    /// A torque goes another way.
+    /// A torque has the opposite sign.
     #[error(
         "the torque of joint {joint} goes against what plausible robots need (correlation {correlation:.2}): is its sign turned, or are columns exchanged? Leave the torques out with --map, or turn it"
     )]
     Torque {
-        /// From 1.
+        /// Joint number, from 1.
         joint: usize,
-        /// With that of the model.
+        /// Correlation with the simulated torque.
         correlation: f64,
     },
-    /// The power goes another way.
+    /// The power does not correlate with the simulated power.
     #[error(
         "the log does not fit this program: nowhere does its power go like the simulated cycle's (correlation {correlation:.2}, at least {least:.2}); check the program, the columns and the unit of `t` (s), say when inputs come (--input) if waits differ, or log `cmd`"
     )]
     Shape {
-        /// The best one.
+        /// Largest correlation found.
         correlation: f64,
-        /// What is asked for.
+        /// Required correlation.
         least: f64,
     },
-    /// No plausible robot has that power over the cycle.
+    /// No plausible robot explains the change of the power over the cycle.
     #[error(
         "the log is of another program: the robot that fits it best explains {:.0} % of how the power changes over the cycle, at least {:.0} % are asked for",
         100.0 * explained.max(0.0), 100.0 * least
     )]
     Program {
-        /// Share of the variance.
+        /// Explained share of the variance.
         explained: f64,
-        /// What is asked for.
+        /// Required share.
         least: f64,
     },
-    /// The power is of another size.
+    /// The size of the power is implausible.
     #[error(
         "the log is of another robot, or its unit is not W or kW: the {what} is {measured:.0} W, plausible {name} robots have {low:.0} to {high:.0} W in this program"
     )]
     Robot {
         /// The robot.
         name: String,
-        /// What differs.
+        /// The quantity that differs.
         what: &'static str,
-        /// W.
+        /// Measured value \[W\].
         measured: f64,
-        /// W.
+        /// Lower plausible value \[W\].
         low: f64,
-        /// W.
+        /// Upper plausible value \[W\].
         high: f64,
     },
-    /// Too few draws fit.
+    /// Too few draws fit the log.
     #[error(
         "no plausible robot of this type draws this power in this program ({fitted} of {robots} can be moved to it): check program, robot, unit and waits (--input)"
     )]
     Fit {
-        /// Those that fit.
+        /// Number of draws that fit.
         fitted: usize,
-        /// All.
+        /// Number of all draws.
         robots: usize,
     },
-    /// The result is no robot.
+    /// The calibrated model is invalid.
     #[error("the calibrated robot can't be used: {reason}")]
     Model {
-        /// Why.
+        /// The cause.
         reason: String,
     },
 }

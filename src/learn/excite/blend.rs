@@ -1,4 +1,4 @@
-//! From rest into a periodic motion and out of it.
+//! Blends from rest into a periodic motion and back to rest.
 
 use crate::arm::robot::{MAX_DOF, Model};
 
@@ -6,11 +6,11 @@ use super::series::{Series, State};
 
 /// Shortest and longest blend \[s\].
 const DURATIONS: [f64; 2] = [0.5, 15.0];
-/// How much longer the next one is.
+/// Factor between successive durations that are tried.
 const LONGER: f64 = 1.15;
-/// Places of the period that are looked at …
+/// Times of the period whose speed is compared …
 const PLACES: usize = 100;
-/// … of which the slowest are tried.
+/// … and number of the slowest ones that are tried.
 const TRIED: usize = 15;
 
 /// A motion between rest and the beginning of a period.
@@ -18,7 +18,7 @@ const TRIED: usize = 15;
 pub struct Blend {
     /// Duration \[s\].
     pub duration: f64,
-    /// Of each joint, the coefficients of the polynomial in time, constant first.
+    /// For each joint, the coefficients of the polynomial in time, constant term first.
     coefficients: Vec<[f64; 6]>,
 }
 
@@ -42,7 +42,7 @@ impl Blend {
         state
     }
 
-    /// The states every `step` \[s\], from the beginning on.
+    /// The states at intervals of about `step` \[s\].
     #[must_use]
     pub fn sampled(&self, step: f64) -> Vec<State> {
         let count = (self.duration / step).round() as usize;
@@ -50,8 +50,8 @@ impl Blend {
     }
 }
 
-/// The shortest blends at start and end that `fits` accepts, and the motion from where they
-/// meet it on: a slow place of the period that has them.
+/// The shortest blends at both ends that `fits` accepts, and the series shifted to begin where they
+/// join: at a slow time of the period.
 #[must_use]
 pub fn blends(
     model: &Model,
@@ -100,14 +100,14 @@ fn at_the_edge(
     Some([shortest(1.0)?, shortest(-1.0)?])
 }
 
-/// Quintic: rest at the one end, the edge of the period at the other. `sense` −1 runs out.
+/// Quintic between rest and the state `edge`; `sense` 1 starts at rest, −1 ends at rest.
 fn blend(model: &Model, edge: &State, duration: f64, sense: f64) -> Blend {
-    // Multiples of 10 ms, so that streams of points meet the edge.
+    // Multiples of 10 ms, so that the points of a stream include the end of the blend.
     let duration = (duration * 100.0).round() / 100.0;
     let coefficients = (0..model.dof)
         .map(|joint| {
             let [q, v, a] = [edge[0][joint], edge[1][joint], edge[2][joint]];
-            // Rest lies behind, so that the joint need not turn back.
+            // The rest position lies behind the motion, so that the joint need not reverse.
             let [low, high] = model.limits.position[joint];
             let rest = (q - sense * 0.5 * v * duration).clamp(low.min(q), high.max(q));
             let inside = 0.5 * (rest + q);

@@ -1,10 +1,9 @@
-//! Fourier series with the most information (D-optimal) within all limits (J. Swevers, C. Ganseman,
-//! D. Tükel, J. De Schutter, H. Van Brussel, "Optimal robot excitation and
-//! identification", IEEE T-RA 13, 1997).
+//! D-optimal Fourier series within all limits (J. Swevers, C. Ganseman, D. Tükel, J. De Schutter,
+//! H. Van Brussel, "Optimal robot excitation and identification", IEEE T-RA 13, 1997).
 //!
-//! The variables are shapes: whatever they are, amplitudes are scaled and offsets moved so
-//! that the limits of position, speed and acceleration hold. Torque and room are held by a
-//! penalty, and at last by a smaller motion.
+//! The variables are unbounded: amplitudes are scaled and offsets moved so that the limits of
+//! position, speed and acceleration hold. A penalty and finally a smaller amplitude enforce the
+//! limits of torque and clearance.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
@@ -22,67 +21,67 @@ use super::plateaus::pose;
 use super::search::maximise;
 use super::series::{Series, State};
 
-/// States of a period in the search, for each period of its fastest harmonic.
+/// Sampled states for each period of the fastest harmonic.
 const STATES: usize = 10;
-/// States for each of them where limits are looked at more strictly.
+/// Factor of the number of states in the strict check.
 const FINER: usize = 4;
-/// Random motions from which the starts are chosen.
+/// Random motions from which the best starts are chosen.
 const TRIED: usize = 300;
-/// Motions that are improved.
+/// Motions that are optimised.
 const STARTS: usize = 4;
-/// Sizes of a random motion that are tried until it keeps all limits.
+/// Relative sizes that are tried until a random motion keeps all limits.
 const SIZES: [f64; 6] = [1.0, 0.7, 0.5, 0.35, 0.2, 0.1];
-/// Rounds of improvement.
+/// Iterations of the optimisation.
 const ROUNDS: usize = 70;
-/// Weights of broken limits, one after another as long as some are broken.
+/// Weights of limit violations, increased while some remain.
 const PENALTIES: [f64; 3] = [200.0, 2000.0, 20000.0];
-/// Weight of a poor condition.
+/// Weight of the logarithm of the condition number above [`GOOD`].
 const CONDITION: f64 = 20.0;
-/// Scaled condition that is good enough.
+/// Scaled condition number without penalty.
 const GOOD: f64 = 12.0;
-/// Room that is kept beside what is asked for \[m\].
+/// Additional clearance \[m\].
 const ROOM: f64 = 0.01;
 /// Interval of the final check \[s\].
 const FINE: f64 = 0.001;
 #[cfg(feature = "internals")]
-/// States that one stands for, in the comparison with random motions.
+/// Milliseconds that one state represents, in the comparison with random motions.
 const EVERY: f64 = 10.0;
-/// Share by which a motion that breaks a limit between the states is made smaller.
+/// Factor by which a motion that breaks a limit between the states is reduced.
 const SMALLER: f64 = 0.985;
-/// How often, at most.
+/// Largest number of such reductions.
 const REPAIRS: usize = 80;
-/// Share of the range of a joint, its acceleration and its torque that is used.
+/// Shares of a joint's range, its acceleration and its torque that are used.
 const USED: [f64; 3] = [0.95, 0.95, 0.9];
 
-/// What the motion is for.
+/// Parameters that the motion excites.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Focus {
     /// All base parameters.
     All,
-    /// Weights and Coulomb friction: slow motion, each pose from both sides.
+    /// Gravity parameters and Coulomb friction: slow motion, each pose in both directions.
     Gravity,
-    /// What the flange carries.
+    /// The load at the flange.
     Payload,
 }
 
-/// A design's settings.
+/// Settings of a design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// What the motion is for.
+    /// Parameters that the motion excites.
     pub focus: Focus,
     /// Base frequency \[Hz\].
     pub base_frequency: f64,
-    /// Multiples of it that are used.
+    /// Harmonics that are used, as multiples of the base frequency.
     pub harmonics: Vec<usize>,
-    /// Share of the joints' speeds that is used.
+    /// Share of the joints' speed limits that is used.
     pub speed_share: f64,
-    /// What arm and tool keep clear of.
+    /// Obstacles that arm and tool avoid.
     pub obstacles: Vec<Obstacle>,
     /// Tool centre point in tool0 \[m\].
     pub tool: Vector3<f64>,
-    /// What the flange carries.
+    /// The load at the flange.
     pub load: Load,
-    /// For the random starts.
+    /// Seed of the random starts.
     pub seed: u64,
 }
 
@@ -93,7 +92,7 @@ pub struct Designed {
     pub series: Series,
     /// Its information on the base parameters.
     pub information: Information,
-    /// Its extremes, every millisecond.
+    /// Its extremes, sampled every millisecond.
     pub checked: Checked,
 }
 
@@ -108,7 +107,7 @@ struct Problem<'a> {
     states: usize,
 }
 
-/// The best motion found; `progress` is called with the number of rounds done and in all.
+/// The best motion found; `progress` receives the number of completed rounds and the total.
 ///
 /// # Errors
 /// The robot lacks limits, or no motion keeps them.
@@ -118,7 +117,7 @@ pub fn design(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Designed, ExciteError> {
     let problem = Problem::new(model, settings)?;
-    // Without a pose that keeps clear there is no motion; the search would take long to find that out.
+    // Without a collision-free pose there is no motion; the search would take long to fail.
     pose(model, &problem.body())?;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     let tried: Vec<DVector<f64>> = (0..TRIED).map(|_| problem.random(&mut random)).collect();
@@ -154,8 +153,7 @@ pub fn design(
             found
         })
         .collect();
-    // Where an improved motion has to become too small to keep all limits, the one that it
-    // came from may be better.
+    // A reduced motion may carry less information than the start of its optimisation.
     let all: Vec<&DVector<f64>> = found.iter().chain(rated.iter().map(|(_, x)| x)).collect();
     let kept: Vec<Option<Designed>> =
         all.into_par_iter().map(|x| problem.repaired(&problem.series(x))).collect();
@@ -186,7 +184,7 @@ pub fn random_feasible(model: &Model, settings: &Design, count: usize) -> Result
         if checked.excess(&problem.shares) > 0.0 {
             continue;
         }
-        // As if there were one state a millisecond, as a design is judged.
+        // Scaled to one state per millisecond, as in a design.
         let states = series.sampled((series.period() / (EVERY * FINE)).round() as usize);
         let value = log_det(&(work.normal.matrix(&states) * EVERY)).unwrap_or(f64::NEG_INFINITY);
         best = Some(best.map_or(value, |best: f64| best.max(value)));
@@ -224,8 +222,8 @@ impl<'a> Problem<'a> {
                 base_parameters_among(model, &last)
             }
             Focus::Gravity => {
-                // First moments, masses, Coulomb friction, offsets: what weight and the sense of
-                // friction tell. Inertia has no part in so slow a motion.
+                // First moments, masses, Coulomb friction, offsets: slow motion determines these;
+                // inertia has no effect.
                 let weights = (0..RIGID * n).filter(|index| index % RIGID < 4);
                 let joints = (0..n).flat_map(|joint| {
                     let first = RIGID * n + crate::arm::dynamics::JOINT * joint;
@@ -262,8 +260,8 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The motion of some variables: of each joint the place of its middle, then sine and
-    /// cosine of each harmonic, as shares of what its limits let that harmonic do alone.
+    /// The motion of the variables `x`: for each joint the position of its middle, then the sine
+    /// and cosine of each harmonic relative to the largest amplitude of that harmonic alone.
     fn series(&self, x: &DVector<f64>) -> Series {
         let n = self.model.dof;
         let harmonics = &self.settings.harmonics;
@@ -290,17 +288,17 @@ impl<'a> Problem<'a> {
             let (reach, fast, hard) = extremes(&pairs, harmonics, w0, self.states);
             let over = (reach[1] - reach[0]) * 0.5 / half;
             let over = over.max(fast / v).max(hard / a).max(1.0);
-            // Between the states of the grid it may be a little more.
+            // Between the sampled states the value may be slightly larger.
             let share = 0.99 / over;
             pairs.iter_mut().flatten().for_each(|value| *value *= share);
             let [bottom, top] = reach.map(|reach| reach * share);
             let middle = 0.5 * (low + high);
             let room = self.shares.position * 0.5 * (high - low);
-            // Where the middle may lie, so that both ends stay inside.
+            // Interval of the middle within which both ends stay in the joint range.
             let (first, last) = (middle - room - bottom, middle + room - top);
             let place = 0.5 + 0.5 * (1.2 * of[0]).tanh();
             let centre = first + (last - first) * place;
-            // A joint that may turn for ever stays near its middle.
+            // A joint with a wide range stays near its middle.
             offset.push(if high - low > MOST { middle + 0.5 * of[0] } else { centre });
             amplitude.push(pairs);
         }
@@ -312,7 +310,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// By how much a motion violates limits.
+    /// Size of the limit violations of a motion.
     fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>) -> f64 {
         self.excess_of(work, &self.series(x).sampled(FINER * self.states))
     }
@@ -324,19 +322,19 @@ impl<'a> Problem<'a> {
         checked.excess(&self.shares)
     }
 
-    /// log det without a poor condition, less what breaks limits at the states.
+    /// Objective: log det, less penalties of poor condition and of limit violations at the states.
     fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
         let states = self.series(x).sampled(self.states);
         told(work, x, &states) - penalty * self.excess_of(work, &states)
     }
 
-    /// The same with what breaks limits between them.
+    /// The objective with limit violations between the states.
     fn strict_value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
         let states = self.series(x).sampled(self.states);
         told(work, x, &states) - penalty * self.excess(work, x)
     }
 
-    /// A motion of the same shape that is small enough to keep all limits, where one is.
+    /// A motion of the same shape, reduced until it keeps all limits, if possible.
     fn shrunk(&self, work: &mut Work<'_>, x: DVector<f64>) -> DVector<f64> {
         let count = self.per_joint();
         SIZES
@@ -348,7 +346,7 @@ impl<'a> Problem<'a> {
             .unwrap_or(x)
     }
 
-    /// The motion, smaller until it keeps every limit at every millisecond.
+    /// The motion, reduced until it keeps all limits at every millisecond.
     fn repaired(&self, series: &Series) -> Option<Designed> {
         let mut work = Work::new(self);
         let mut series = series.clone();
@@ -366,20 +364,20 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// log det without a poor condition.
+/// log det less the penalty of a poor condition.
 fn told(work: &mut Work<'_>, x: &DVector<f64>, states: &[State]) -> f64 {
     let normal = work.normal.matrix(states);
     let told = log_det(&normal).unwrap_or(-1e4);
     let poor = (condition(&normal) / GOOD).ln().max(0.0);
-    // Very large shapes are the same motion as smaller ones.
+    // Very large variables give the same motion as smaller ones.
     let idle = 1e-3 * x.norm_squared();
     told - CONDITION * poor - idle
 }
 
-/// A joint that turns further than this need not use all of it \[rad\].
+/// A joint with a wider range need not use all of it \[rad\].
 const MOST: f64 = 6.0;
 
-/// Least and largest value, largest rate and acceleration of one joint's series.
+/// Least and largest value, largest rate and acceleration of a joint's series.
 fn extremes(
     pairs: &[[f64; 2]],
     harmonics: &[usize],
@@ -404,7 +402,7 @@ fn extremes(
     (reach, fast, hard)
 }
 
-/// The scaled condition of W, from `WᵀW`.
+/// The condition number of W with columns of one length, from `WᵀW`.
 fn condition(normal: &DMatrix<f64>) -> f64 {
     let lengths: Vec<f64> = normal.diagonal().iter().map(|x| x.sqrt().max(1e-150)).collect();
     let scaled = DMatrix::from_fn(normal.nrows(), normal.ncols(), |a, b| {

@@ -1,8 +1,8 @@
-//! Why there is no excitation.
+//! Errors of the design of excitation motions.
 
 use thiserror::Error;
 
-/// Input that no excitation can be designed for.
+/// Error of the design of an excitation motion.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ExciteError {
     /// The robot lacks a limit.
@@ -18,7 +18,7 @@ pub enum ExciteError {
         "no motion was found that keeps all limits and clear of itself, of planes and boxes: move these, or give a smaller --speed-share or --load"
     )]
     Nowhere,
-    /// No room for a test at its pose.
+    /// No room for a stream test at its pose.
     #[error(
         "no test of at least 1.7 degrees keeps joint ranges, half of the speed and acceleration limits, clear of the floor and of the arm around this pose: give another --start"
     )]

@@ -1,4 +1,4 @@
-//! Whether a motion stays within all limits, and by how much.
+//! Check of a motion against all limits.
 
 use crate::arm::dynamics::{Data, Load, torque};
 use crate::arm::kinematics::Body;
@@ -9,43 +9,42 @@ use super::series::State;
 /// The share of each limit that a motion may use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shares {
-    /// Of the range of a joint.
+    /// Share of a joint's range.
     pub position: f64,
-    /// Of its speed.
+    /// Share of its speed.
     pub velocity: f64,
-    /// Of its acceleration.
+    /// Share of its acceleration.
     pub acceleration: f64,
-    /// Of its torque.
+    /// Share of its torque.
     pub torque: f64,
 }
 
-/// Largest ratios of a motion to the limits.
+/// Largest ratios of a motion's values to the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ratios {
     /// Distance from the middle over half the range of a joint.
     pub position: f64,
-    /// Of the speeds.
+    /// Speed over its limit.
     pub velocity: f64,
-    /// Of the accelerations.
+    /// Acceleration over its limit.
     pub acceleration: f64,
-    /// Of the torques; 0 where they are not known.
+    /// Torque over its limit; 0 without limits.
     pub torque: f64,
 }
 
-/// A motion against its limits.
+/// Extremes of a motion relative to the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checked {
     /// Largest ratios.
     pub ratios: Ratios,
-    /// Least room to the obstacles \[m\], infinite without any.
+    /// Least distance to the obstacles \[m\]; infinite without obstacles.
     pub to_obstacles: f64,
-    /// Least room of the arm to itself \[m\].
+    /// Least distance between parts of the arm \[m\].
     pub to_itself: f64,
 }
 
 impl Checked {
-    /// By how much limits are broken, in shares of them and in lengths of an arm; 0 where none
-    /// is.
+    /// Sum of the limit violations, as shares of the limits and lengths; 0 if all limits hold.
     #[must_use]
     pub fn excess(&self, shares: &Shares) -> f64 {
         let over = |ratio: f64, share: f64| (ratio / share - 1.0).max(0.0);
@@ -59,7 +58,7 @@ impl Checked {
     }
 }
 
-/// The extremes of some states with `load` at the flange.
+/// The extremes of states with `load` at the flange.
 #[must_use]
 pub fn check(model: &Model, body: &Body<'_>, load: &Load, states: &[State]) -> Checked {
     let n = model.dof;

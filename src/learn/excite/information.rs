@@ -7,7 +7,7 @@ use crate::arm::robot::{MAX_DOF, Model};
 
 use super::series::State;
 
-/// Condition from which on some parameter counts as not excited.
+/// Condition number above which some parameter counts as not excited.
 const BLIND: f64 = 1e12;
 
 /// Information of a motion on the base parameters.
@@ -28,14 +28,14 @@ pub struct Information {
 pub(super) struct Normal<'a> {
     model: &'a Model,
     base: &'a BaseParameters,
-    /// Of each joint, the base parameters in its equation.
+    /// For each joint, the base parameters in its equation.
     columns: Vec<Vec<usize>>,
     scratch: Regressor,
     shares: [[f64; MAX_DOF]; MAX_DOF],
 }
 
 impl<'a> Normal<'a> {
-    /// For the base parameters `base` of a robot.
+    /// Empty sums for the base parameters `base` of a robot.
     #[must_use]
     pub(super) fn new(model: &'a Model, base: &'a BaseParameters) -> Normal<'a> {
         let n = model.dof;
@@ -112,14 +112,14 @@ impl<'a> Normal<'a> {
     }
 }
 
-/// log det of a positive definite matrix; `None` where it is not.
+/// log det of a positive definite matrix, else `None`.
 #[must_use]
 pub(super) fn log_det(normal: &DMatrix<f64>) -> Option<f64> {
     let factor = normal.clone().cholesky()?;
     Some(2.0 * factor.l_dirty().diagonal().map(f64::ln).sum())
 }
 
-/// What a motion tells.
+/// Information of a motion with the sums `normal`.
 #[must_use]
 pub fn information(normal: &DMatrix<f64>) -> Information {
     let lengths: Vec<f64> = normal.diagonal().iter().map(|x| x.sqrt()).collect();

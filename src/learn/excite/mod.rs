@@ -1,7 +1,7 @@
 //! Motions that excite a robot's dynamic parameters.
 //!
-//! [`design()`] optimises Fourier series for the information that they give, within all
-//! limits; the friction plateaus and the settings of [`Design`] make the smaller experiments.
+//! [`design()`] optimises Fourier series for their information within all limits. Friction plateaus
+//! and the settings of [`Design`] give smaller experiments.
 
 mod blend;
 mod design;

@@ -1,4 +1,4 @@
-//! Joints at constant speeds, forward and back: friction over speed.
+//! Constant joint speeds in both directions: friction as a function of speed.
 
 use crate::arm::kinematics::Body;
 use crate::arm::robot::{MAX_DOF, Model};
@@ -6,41 +6,41 @@ use crate::arm::robot::{MAX_DOF, Model};
 use super::error::ExciteError;
 use super::series::State;
 
-/// Speeds of each joint, as shares of the one that is allowed: evenly by their logarithm.
+/// Number of speeds for each joint, equally spaced in their logarithm.
 const SPEEDS: usize = 6;
-/// The slowest one over the fastest.
+/// Slowest speed over the fastest.
 const SLOWEST: f64 = 0.02;
 /// Share of the acceleration limit that is used.
 const ACCELERATION: f64 = 0.5;
-/// Share of a joint's range that is travelled, before room is looked at.
+/// Initial share of a joint's range that is travelled.
 const TRAVEL: f64 = 0.8;
 /// Longest travel \[rad\] and longest time at one speed \[s\].
 const MOST: [f64; 2] = [2.0, 15.0];
-/// The travel becomes smaller by this until there is room.
+/// Factor by which the travel is reduced until there is room.
 const SMALLER: f64 = 0.8;
-/// Rest between two moves \[s\].
+/// Pause between two moves \[s\].
 const PAUSE: f64 = 0.3;
 
-/// A motion of straight moves of some joints.
+/// A motion of straight joint moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plateaus {
-    /// Where it begins \[rad\].
+    /// Joint angles at the start \[rad\].
     pub start: Vec<f64>,
-    /// Moves one after another.
+    /// The moves in order.
     moves: Vec<Move>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 struct Move {
-    /// Change of each joint over the whole move \[rad\].
+    /// Change of each joint over the move \[rad\].
     change: Vec<f64>,
-    /// Duration of the move \[s\], and of speeding up.
+    /// Duration of the move and of its acceleration phase \[s\].
     duration: f64,
     ramp: f64,
 }
 
 impl Plateaus {
-    /// Duration with the pauses \[s\].
+    /// Total duration with the pauses \[s\].
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.moves.iter().map(|m| m.duration + PAUSE).sum()
@@ -70,7 +70,7 @@ impl Move {
         let mut state = [[0.0; MAX_DOF]; 3];
         let (r, d) = (self.ramp, self.duration);
         let speed = 1.0 / (d - r);
-        // Share of the way, its rate and acceleration: up, even, down.
+        // Share of the path, its rate and acceleration: speeding up, constant speed, slowing down.
         let (s, v, a) = if t < r {
             (0.5 * speed * t * t / r, speed * t / r, speed / r)
         } else if t < d - r {
@@ -89,10 +89,10 @@ impl Move {
     }
 }
 
-/// Each joint alone at six speeds both ways, from the middle of a pose with room.
+/// Each joint alone at six speeds in both directions, around a pose with room.
 ///
 /// # Errors
-/// Limits that are missing, or no room to move.
+/// A limit is missing, or there is no room to move.
 pub fn friction_plateaus(
     model: &Model,
     body: &Body<'_>,
@@ -102,10 +102,10 @@ pub fn friction_plateaus(
     plateaus(model, body, speed_share, &sets)
 }
 
-/// Axis 5 alone, then axes 5 and 6 so that the motor of axis 6 stands still, then axis 6.
+/// Axis 5 alone, then axes 5 and 6 with the motor of axis 6 at rest, then axis 6.
 ///
 /// # Errors
-/// Limits that are missing, or no room to move.
+/// A limit is missing, or there is no room to move.
 pub fn wrist_plateaus(
     model: &Model,
     body: &Body<'_>,
@@ -166,7 +166,7 @@ fn plateaus(
             }
         }
         let mut add = |length: f64, speed: f64| {
-            // A short way has no room for the ramp of a fast speed.
+            // A short path has no room to accelerate to a fast speed.
             let speed = speed.min((0.5 * length.abs() * hardest).sqrt());
             let ramp = speed / hardest;
             moves.push(Move {
@@ -179,7 +179,7 @@ fn plateaus(
         for k in 0..SPEEDS {
             let speed = fastest * SLOWEST.powf(1.0 - k as f64 / (SPEEDS - 1) as f64);
             let way = travel.min(speed * MOST[1]);
-            // Both ways over the same middle.
+            // Slow moves are shorter; both directions are centred in the travel.
             let aside = 0.5 * (travel - way);
             if aside > 1e-3 {
                 add(aside, 0.2 * fastest);
@@ -195,10 +195,10 @@ fn plateaus(
     Ok(Plateaus { start, moves })
 }
 
-/// A pose with room: the middle of the ranges, or another one nearby.
+/// A collision-free pose: the middle of the ranges, or another one nearby.
 ///
 /// # Errors
-/// No pose keeps clear.
+/// No pose is collision-free.
 pub(super) fn pose(model: &Model, body: &Body<'_>) -> Result<Vec<f64>, ExciteError> {
     let mut random = fastrand::Rng::with_seed(1);
     let mut best: Option<(f64, Vec<f64>)> = None;

@@ -1,23 +1,22 @@
-//! Maximising a function of some variables that is smooth nearly everywhere: BFGS with
-//! gradients by differences and a step that has to gain (J. Nocedal, S. Wright, "Numerical
-//! optimization", 2006, chapter 6; on kinks A. Lewis, M. Overton, "Nonsmooth optimization
-//! via quasi-Newton methods", Math. Prog. 141, 2013).
+//! Maximisation of a function that is smooth nearly everywhere: BFGS with finite-difference
+//! gradients and backtracking (J. Nocedal, S. Wright, "Numerical optimization", 2006, chapter 6; on
+//! kinks A. Lewis, M. Overton, "Nonsmooth optimization via quasi-Newton methods", Math. Prog. 141,
+//! 2013).
 
 use nalgebra::{DMatrix, DVector};
 
-/// Step of the differences.
+/// Step of the finite differences.
 const DIFFERENCE: f64 = 1e-5;
-/// Share of the predicted gain that a step has to bring.
+/// Least gain of a step, as a share of the predicted gain.
 const GAIN: f64 = 1e-4;
-/// Halvings of a step at most.
+/// Largest number of halvings of a step.
 const HALVINGS: usize = 25;
-/// A gain below this ends the search.
+/// A gain below this counts as small.
 const SETTLED: f64 = 1e-4;
-/// So many small gains in a row end it.
+/// Number of consecutive small gains that ends the search.
 const PATIENCE: usize = 4;
 
-/// The best point found within `rounds` rounds from `start`, and its value; `progress` is
-/// called after each round.
+/// The best point within `rounds` rounds from `start`, and its value; each round calls `progress`.
 pub(super) fn maximise(
     start: DVector<f64>,
     rounds: usize,
@@ -36,7 +35,7 @@ pub(super) fn maximise(
             inverse = DMatrix::identity(n, n);
             direction.clone_from(&slope);
         }
-        // The first step has no scale yet.
+        // The first direction has no scale yet.
         let longest = 0.5 / direction.amax().max(f64::MIN_POSITIVE);
         let mut length = longest.min(1.0);
         let mut next = None;

@@ -13,16 +13,16 @@ use crate::arm::robot::MAX_DOF;
 /// Position, rate and acceleration of all joints.
 pub type State = [[f64; MAX_DOF]; 3];
 
-/// The motion of all joints on one base frequency.
+/// The motion of all joints with a common base frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     /// Base frequency \[Hz\].
     pub base_frequency: f64,
-    /// Multiples of it, ascending.
+    /// Harmonics as multiples of it, ascending.
     pub harmonics: Vec<usize>,
-    /// Of each joint: the offset \[rad\].
+    /// Offset of each joint \[rad\].
     pub offset: Vec<f64>,
-    /// Of each joint, of each harmonic: sine and cosine amplitude \[rad\].
+    /// Sine and cosine amplitude of each harmonic, by joint \[rad\].
     pub amplitude: Vec<Vec<[f64; 2]>>,
 }
 
@@ -65,7 +65,7 @@ impl Series {
         (0..count).map(|i| self.at(step * i as f64)).collect()
     }
 
-    /// The same motion, `shift` \[s\] further on.
+    /// The same motion with its start moved later by `shift` \[s\].
     #[must_use]
     pub fn later(&self, shift: f64) -> Series {
         let mut later = self.clone();
@@ -78,7 +78,7 @@ impl Series {
         later
     }
 
-    /// The same with all amplitudes times `share`.
+    /// The same offsets with all amplitudes times `share`.
     #[must_use]
     pub fn scaled(&self, share: f64) -> Series {
         let mut scaled = self.clone();

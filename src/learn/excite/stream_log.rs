@@ -1,65 +1,66 @@
-//! How the controller realises streams, by a log of the tests.
+//! Comparison of logged stream tests with the predicted motion (the law).
 
 use super::stream_test::StreamTest;
 use crate::retime::motion::stream::{Joints, Stream};
 
-/// Largest distance from the law that passes \[rad\]: at a reach of 1 m it moves the tool by 5 mm, as
-/// far as a stream may lie off a joint movement.
+/// Largest accepted distance from the law \[rad\]: at a reach of 1 m it moves the tool by 5 mm,
+/// which is the tolerance of a stream for a joint movement.
 const DEVIATION: f64 = 5e-3;
-/// A test lasts as stated within this share, and two rows of the log.
+/// Accepted relative deviation of the duration, in addition to two rows of the log.
 const LATE: f64 = 0.02;
-/// Corners nearer to their points than this are not resolved \[rad\]: a log has errors of this size.
+/// Corners nearer to their points than this are below the errors of a log \[rad\].
 const CORNER: f64 = 2e-3;
-/// Share of the law's distance from the points that passes, and below which points are visited.
+/// Accepted ratios of measured to predicted distance from the points; below `VISITED` the robot
+/// visits them.
 const PASSES: [f64; 2] = [0.75, 1.25];
 const VISITED: f64 = 0.25;
 /// Distance from the start or the end beyond which the robot moves \[rad\].
 const MOVED: f64 = 1e-3;
-/// Largest distance of a log's first position from the start of its test \[rad\].
+/// Largest distance of the first logged position from the start of the test \[rad\].
 const START: f64 = 0.02;
-/// Largest mean interval of rows \[s\]: a longer one does not resolve corners and times.
+/// Largest mean interval of the rows \[s\]: longer ones do not resolve corners and times.
 const COARSEST: f64 = 0.02;
 /// Interval at which the law is compared \[s\].
 const STEP: f64 = 0.002;
-/// Halvings of the interval in which the offset of the clocks lies.
+/// Steps of the search of the clock offset.
 const HALVINGS: usize = 40;
 
 /// Rows of a log: times \[s\] and positions \[rad\].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
-    /// In order.
+    /// Times, ascending.
     pub t: Vec<f64>,
-    /// One for each time.
+    /// Positions, one for each time.
     pub q: Vec<Joints>,
 }
 
-/// What the controller does.
+/// Behaviour of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finding {
     /// As the law predicts.
     Law,
-    /// It goes to the points themselves: corner zones fail.
+    /// It visits the points: corner zones have no effect.
     Visits,
-    /// Something else.
+    /// Another behaviour.
     Other,
 }
 
-/// A test and its log.
+/// Result of a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Largest distance of a joint from the law, the clocks being aligned \[rad\].
+    /// Largest distance of a joint from the law with aligned clocks \[rad\].
     pub deviation: f64,
-    /// Time from leaving the start to reaching the end, as measured and by the law \[s\].
+    /// Measured and predicted time between leaving the start and reaching the end \[s\].
     pub time: [f64; 2],
-    /// How far the points are passed, as a share of what the law says; none where they are hardly
-    /// missed by the law.
+    /// Measured over predicted distance from the points; none if the predicted distance is too
+    /// small.
     pub corners: Option<f64>,
     /// The finding.
     pub finding: Finding,
 }
 
-/// Compares a test with the rows that were logged during it; none where they do not begin at its
-/// start, have no motion, or are farther apart than 0.02 s in the mean.
+/// Compares a test with its logged rows; none if they begin away from its start, contain no motion,
+/// or have a mean interval above 0.02 s.
 pub fn measured(test: &StreamTest, rows: &Rows) -> Option<Measured> {
     let stream = &test.stream;
     let first = rows.q.first()?;
@@ -102,7 +103,7 @@ fn moving(rows: &Rows) -> Option<f64> {
     Some(rows.t[reached] - rows.t[left])
 }
 
-/// The largest distance from the law at the offset of the clocks where the sum of squares is least.
+/// The largest distance from the law, at the clock offset with the least sum of squares.
 fn deviation(stream: &Stream, rows: &Rows) -> f64 {
     let squares = |offset: f64| -> f64 {
         let of_row = |(t, q): (&f64, &Joints)| {
@@ -128,7 +129,7 @@ fn deviation(stream: &Stream, rows: &Rows) -> f64 {
     rows.t.iter().zip(&rows.q).map(of_row).fold(0.0, f64::max)
 }
 
-/// How far a motion passes the inner points of a stream, as the best multiple of the law's distances.
+/// Distance of a motion from the inner points, as the least-squares multiple of the law's.
 fn corners(stream: &Stream, rows: &Rows, law: &Rows) -> Option<f64> {
     let points = stream.points();
     let pairs: Vec<[f64; 2]> = points[..points.len() - 1]
@@ -141,7 +142,7 @@ fn corners(stream: &Stream, rows: &Rows, law: &Rows) -> Option<f64> {
     (largest > CORNER).then(|| product / square)
 }
 
-/// The least distance of a point from the lines between rows, all joints together \[rad\].
+/// The least distance of a point from the polyline of the rows, in joint space \[rad\].
 fn passed(point: &Joints, rows: &Rows) -> f64 {
     let from_line = |pair: &[Joints]| {
         let along: Joints = std::array::from_fn(|j| pair[1][j] - pair[0][j]);

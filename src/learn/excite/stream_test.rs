@@ -1,4 +1,4 @@
-//! Streams that show how a controller realises streams: short motions around one pose.
+//! Short test streams around one pose that show how a controller realises streams.
 
 use std::f64::consts::TAU;
 
@@ -12,37 +12,37 @@ use crate::retime::motion::stream::{DOF, Joints, Stream};
 
 /// Largest distance of a point from the start \[rad\].
 const REACH: f64 = 0.2;
-/// Share of the speed and acceleration limits that a test may use: a controller whose limits are lower than assumed has to
-/// be able to follow.
+/// Share of the speed and acceleration limits that a test may use: the limits of the controller may
+/// be lower than assumed.
 const SHARE: f64 = 0.5;
 /// Interval at which limits are checked \[s\].
 const STEP: f64 = 0.002;
-/// The least such distance of the farthest point \[rad\]: a smaller test shows nothing in a log.
+/// Least reach of a test \[rad\]: the log does not resolve smaller ones.
 const LEAST_REACH: f64 = 0.03;
-/// Factor from one size that is tried to the next.
+/// Factor between successive sizes that are tried.
 const SMALLER: f64 = 0.9;
 
 /// One test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreamTest {
-    /// What it shows.
+    /// Description.
     pub what: &'static str,
     /// Starts and ends at the same pose.
     pub stream: Stream,
 }
 
-/// A test before its size is known: points as shares of it, and the `\T` of each \[s\].
+/// A test of unknown size: points relative to it, and the time `\T` of each \[s\].
 struct Pattern {
     what: &'static str,
     points: Vec<Joints>,
     intervals: Vec<f64>,
 }
 
-/// The tests around `start` \[rad\] for a robot with six joints, each as large as keeps half of the
-/// speed and acceleration limits and all of the others, clear of obstacles and of the arm itself.
+/// The tests around `start` \[rad\] for a robot with six joints, as large as half of the speed and
+/// acceleration limits, the other limits, the obstacles and the arm itself allow.
 ///
 /// # Errors
-/// No limits of speed or acceleration, or no room to move at this pose.
+/// Limits of speed or acceleration are missing, or there is no room to move at this pose.
 pub fn stream_tests(
     model: &Model,
     body: &Body<'_>,
@@ -119,7 +119,7 @@ fn fits(model: &Model, body: &Body<'_>, stream: &Stream) -> bool {
         let (q, qd, qdd) = stream.eval(STEP * k as f64);
         [padded(&q), padded(&qd), padded(&qdd)]
     };
-    // Points may lie outside of the motion, and where zones fail the robot visits them.
+    // Points may lie outside the predicted motion; without corner zones the robot visits them.
     let visited =
         stream.points().iter().map(|point| [padded(point), [0.0; MAX_DOF], [0.0; MAX_DOF]]);
     let states: Vec<State> = (0..=steps).map(at).chain(visited).collect();

@@ -1,4 +1,4 @@
-//! Removal of rows that cannot be measurements of a robot.
+//! Removal of implausible rows.
 
 use crate::learn::log::{Channel, Log, Rejected};
 
@@ -6,14 +6,14 @@ use crate::learn::log::{Channel, Log, Rejected};
 const LARGEST: [f64; 5] = [1e3, 1e3, 1e5, 1e6, 1e4];
 /// Least distance of a spike from the line between its neighbours \[rad\] …
 const SPIKE: f64 = 0.1;
-/// … and least ratio of that distance to the usual one.
+/// … and its least ratio to the median distance.
 const UNUSUAL: f64 = 30.0;
 /// Least ratio of a torque spike to the largest usual torque.
 const TORQUE: f64 = 5.0;
-/// Share of the torques that counts as usual.
+/// Quantile of the torques that counts as the largest usual one.
 const USUAL: f64 = 0.99;
 
-/// The log without implausible rows, and these.
+/// The log without implausible rows, and the rejected rows.
 #[must_use]
 pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
     let n = log.rows.len();
@@ -56,7 +56,7 @@ pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
     (log.of_rows(&kept), rejected)
 }
 
-/// Rows of single angles far off their neighbours.
+/// Marks single angles far from their neighbours.
 fn spikes(q: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
     let off = |w: &[usize]| (q[w[1]] - 0.5 * (q[w[0]] + q[w[2]])).abs();
     let mut all: Vec<f64> = good.windows(3).map(off).collect();
@@ -64,7 +64,7 @@ fn spikes(q: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
     let usual = all.get(all.len() / 2).copied().unwrap_or(0.0);
     for w in good.windows(3) {
         let here = off(w);
-        // The neighbours of a spike seem to be off by half of it.
+        // The neighbours of a spike deviate by half of it.
         let between = (q[w[2]] - q[w[0]]).abs();
         if here > SPIKE && here > UNUSUAL * usual && between < 0.5 * here {
             let value = q[w[1]];

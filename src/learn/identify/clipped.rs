@@ -1,21 +1,21 @@
-//! Clipped torques: constant at a limit of the drive or of the recorder while the speed of the joint
-//! goes on changing.
+//! Detection of clipped torques: constant at a limit of the drive or the recorder while the joint
+//! speed changes.
 
-/// Least number of nearby rows at the limit …
+/// Least number of rows at the limit in a run …
 const ROWS: usize = 4;
-/// … and their largest distance, as noise brings some below it.
+/// … and largest distance of these rows, because noise moves some below the limit.
 const CLOSE: usize = 4;
-/// Least ratio of rows at the limit to rows at the value next to it: a limit collects all that is
-/// beyond it, a coarse resolution does not.
+/// Least ratio of rows at the limit to rows at the next value: clipping collects all larger values,
+/// a coarse resolution does not.
 const PILED: usize = 5;
-/// Least change of the rate over such rows, over the largest rate: at constant speed a torque may
+/// Least change of the joint rate in a run, over the largest rate: at constant speed a torque may
 /// be constant without clipping.
 const CHANGES: f64 = 0.02;
 
-/// Spans of time in which each joint's torque is a limit: first and last time \[s\].
+/// For each joint, the spans of time with clipped torque: first and last time \[s\].
 pub(super) type Spans = Vec<Vec<[f64; 2]>>;
 
-/// Of each joint, where its torque stands at its largest or smallest value.
+/// For each joint, the spans with its torque at the largest or smallest value.
 #[must_use]
 pub(super) fn clipped(t: &[f64], q: &[Vec<f64>], tau: &[Vec<f64>]) -> Spans {
     q.iter()
@@ -36,13 +36,13 @@ pub(super) fn folded(spans: &Spans, start: f64, period: f64) -> Spans {
     let fold = |[a, b]: &[f64; 2]| {
         let first = start + (a - start).rem_euclid(period);
         let last = first + (b - a).min(period);
-        // A span that goes beyond the end continues at the beginning.
+        // A span beyond the end of the period continues at its beginning.
         [[first, last], [first - period, last - period]]
     };
     spans.iter().map(|of| of.iter().flat_map(fold).collect()).collect()
 }
 
-/// Whether a time is within `reach` \[s\] of one of a joint's spans.
+/// Whether a time is within `reach` \[s\] of a span.
 #[must_use]
 pub(super) fn is_clipped(spans: &[[f64; 2]], t: f64, reach: f64) -> bool {
     spans.iter().any(|[first, last]| first - reach <= t && t <= last + reach)
@@ -91,7 +91,7 @@ mod tests {
         let limited: Vec<f64> = tau.iter().map(|x| x.clamp(-8.0, 8.0)).collect();
         let found = clipped(&t, &q, &[limited]);
         for (t, x) in t.iter().zip(&tau) {
-            // A crest that stays within the limit for less than four rows may be missed.
+            // A crest with less than four rows beyond the limit may be missed.
             if x.abs() > 8.05 {
                 assert!(is_clipped(&found[0], *t, 0.0), "{t} {x}");
             } else if x.abs() < 7.95 {

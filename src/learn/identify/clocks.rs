@@ -1,8 +1,8 @@
 //! Fine synchronisation of two recorders, beyond the resolution of their marks.
 //!
-//! A logger sets its output after it has sampled, so that all marks may be late by the same part of a
-//! sample interval. The motor currents give the rest: seen from the rotor, the current vector keeps
-//! its direction only at the right time shift.
+//! A logger sets its output after sampling, so all marks may be late by the same part of a sample
+//! interval. The motor currents give the remaining shift: in rotor coordinates the direction of the
+//! current vector is constant only at the right shift.
 
 use crate::arm::robot::Model;
 use crate::learn::log::{
@@ -11,19 +11,19 @@ use crate::learn::log::{
 
 use super::torque::motor_angle;
 
-/// Sample intervals of the slower recorder that are searched to each side, and steps in each.
+/// Search range in intervals of the slower recorder, and steps in each interval.
 const REACH: i32 = 2;
 const STEPS: i32 = 8;
-/// Rows that are evaluated in the search, and in each piece of the time.
+/// Rows that the search evaluates, in total and in each piece of the log.
 const ROWS: usize = 2000;
-/// Pieces of the time with a shift each, from which the drift of the clocks follows.
+/// Number of pieces with a shift of their own; the clock drift follows from these.
 const PIECES: usize = 6;
-/// Steps to each side in a piece, each a sixteenth of a step of the search.
+/// Steps to each side in a piece; each is a sixteenth of a coarse step.
 const FINE: i32 = 32;
 /// Least mean coherence of the current vectors with the rotors.
 const TELLS: f64 = 0.6;
 
-/// The log with positions shifted to the times of the currents, and a sentence on how well.
+/// The log with positions shifted to the times of the currents, and a sentence on the accuracy.
 #[must_use]
 pub fn synchronised(model: &Model, aligned: Aligned) -> (Log, String) {
     let Aligned { log, marks, worst, step } = aligned;
@@ -57,7 +57,7 @@ pub fn synchronised(model: &Model, aligned: Aligned) -> (Log, String) {
     (shifted(&log, &|t| line.at(t)), told)
 }
 
-/// The vectors of all motors and the angles of their rotors.
+/// The current vectors of all motors and the angles of their rotors.
 struct Motors {
     t: Vec<f64>,
     vectors: Vec<Vectors>,
@@ -92,7 +92,7 @@ impl Motors {
         (sum / self.vectors.len().max(1) as f64, found)
     }
 
-    /// Time of a piece and its best shift \[s\].
+    /// Mean time and best shift of a piece \[s\].
     fn of_piece(&self, piece: usize, middle: f64, fine: f64, pairs: &[i32]) -> Option<[f64; 2]> {
         let count = self.t.len() / PIECES;
         let every = count.div_ceil(ROWS).max(1);
@@ -104,7 +104,7 @@ impl Motors {
     }
 }
 
-/// A shift that is linear in time.
+/// A shift linear in time.
 struct Line {
     at_middle: f64,
     middle: f64,
@@ -133,7 +133,7 @@ impl Line {
     }
 }
 
-/// The log with the motion taken from `shift` later, a function of the time \[s\].
+/// The log with the motion taken `shift` \[s\] later, a function of time.
 fn shifted(log: &Log, shift: &dyn Fn(f64) -> f64) -> Log {
     let t = log.time();
     let [first, last] = [t.first(), t.last()].map(|t| t.copied().unwrap_or_default());

@@ -13,38 +13,38 @@
 //! rotor and friction from its prior s₀. It is convex, and the divergence keeps every P
 //! positive definite, so that Newton's method finds the only minimum.
 //!
-//! `gap::possible` has no data but parameters of a fit, which it moves as little as it must.
+//! `gap::possible` has no data and moves the parameters of a fit as little as necessary.
 
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 
 use crate::arm::dynamics::{RIGID, body_parameters, pseudo_inertia};
 
-/// Weights λ of the divergence, in the order of use: from one with which Newton's method converges
-/// from anywhere to one with which the data decide all that they determine.
+/// Weights λ of the divergence, in descending order: Newton's method converges from any start with
+/// the first; with the last the data determine all that they can.
 const WEIGHTS: [f64; 13] =
     [1e4, 1e3, 1e2, 1e1, 1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 /// Largest number of Newton steps for one weight.
 const STEPS: usize = 60;
-/// Newton decrement that ends them.
+/// Newton decrement at which the steps end.
 const SETTLED: f64 = 1e-9;
-/// Largest ratio of the residuals' root mean square to the least of a consistent model.
+/// Largest ratio of the residuals' root mean square to its least value among consistent models.
 const GROWTH: f64 = 1.003;
-/// Largest increase of the sum of squares, in units of the noise, for each parameter: with more the
-/// estimate would lie outside its own confidence intervals.
+/// Largest increase of the sum of squares for each parameter, in units of the noise: beyond it the
+/// estimate would leave its own confidence intervals.
 const ALLOWED: f64 = 1.0;
 
 /// Least [`margin`] of a body: below it, the body is numerically flat or a point.
 pub(super) const BODY: f64 = 1e-9;
 
-/// A free parameter or body, with its prior.
+/// A free parameter or body and its prior.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Piece {
     /// Ten parameters of a rigid body, in the order of
     /// [`link_parameters`](crate::arm::dynamics::link_parameters).
     Body(Matrix4<f64>),
-    /// One positive number.
+    /// A positive number.
     Positive(f64),
-    /// One number of any sign, and its size.
+    /// A number of any sign, with its typical size.
     Any(f64),
 }
 
@@ -76,7 +76,7 @@ impl Target<'_> {
     }
 }
 
-/// The parameters, piece after piece; `None` for a prior that is not positive definite.
+/// The parameters of all pieces in order; `None` for a prior that is not positive definite.
 #[must_use]
 pub(crate) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVector<f64>> {
     let through = target.factor * target.combination;
@@ -91,8 +91,8 @@ pub(crate) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVecto
         let more = (&through * &point - &goal).norm_squared();
         found.push((target.least + more, point.clone()));
     }
-    // The reference is the least sum of squares of a consistent model, not of the unconstrained fit.
-    // Without the prior, parameters that the data hardly determine would be arbitrary.
+    // The reference is the best consistent model, not the unconstrained fit. Without the prior,
+    // parameters that the data hardly determine would be arbitrary.
     let least = found.iter().map(|(squares, _)| *squares).fold(f64::INFINITY, f64::min);
     let allowed = (GROWTH * GROWTH * least).min(least + ALLOWED * target.beta.len() as f64);
     found.into_iter().find(|(squares, _)| *squares <= allowed).map(|(_, point)| point)
@@ -118,7 +118,7 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// The value of the function; `None` outside its domain.
+    /// The value of the objective; `None` outside its domain.
     fn value(&self, point: &DVector<f64>) -> Option<f64> {
         let mut sum = 0.0;
         let mut at = 0;
@@ -187,7 +187,7 @@ impl Problem<'_> {
         let Some(mut value) = self.value(&point) else { return point };
         for _ in 0..STEPS {
             let (gradient, mut hessian) = self.slope(&point);
-            // Columns are scaled to one size: units differ by orders of magnitude.
+            // Columns are scaled, because units differ by orders of magnitude.
             let size: Vec<f64> =
                 hessian.diagonal().iter().map(|d| d.max(f64::MIN_POSITIVE).sqrt()).collect();
             for a in 0..size.len() {
@@ -248,7 +248,7 @@ fn direction(k: usize) -> Matrix4<f64> {
     e
 }
 
-/// The least eigenvalue of a body's pseudo-inertia, over the largest.
+/// Least over largest eigenvalue of a body's pseudo-inertia.
 #[must_use]
 pub(super) fn margin(parameters: &[f64]) -> f64 {
     let values = SymmetricEigen::new(pseudo_inertia(parameters)).eigenvalues;
@@ -278,8 +278,8 @@ mod tests {
         assert!(margin(&there) > 0.0);
     }
 
-    /// The data ask for moments of inertia that no body has. The result is the best body: a grid
-    /// search finds none with less residuals.
+    /// The data require impossible moments of inertia. The result is the best body: a grid search
+    /// finds none with smaller residuals.
     #[test]
     fn impossible_moments_give_the_nearest_body() {
         let prior = pseudo_inertia(&link_parameters(&body(2.0, [0.0; 3], [0.02, 0.02, 0.02])));

@@ -1,14 +1,14 @@
-//! The fit of the paper, for comparison: masses, centres of mass, moments of inertia and
-//! friction by descent from a first guess.
+//! The fit of Paes et al. 2014, for comparison: masses, centres of mass, moments of inertia and
+//! friction by descent from an initial guess.
 //!
 //! ```text
 //! F = sqrt(1/6N Σ Σ (τ − τ_est)²)
 //! ```
 //!
-//! Paes et al. 2014, equation 6, with the products of inertia zero as there. F is not convex
-//! in these parameters, and some of them are not determined: what is found depends on the
-//! guess. The steps are those of K. Levenberg, "A method for the solution of certain
-//! non-linear problems in least squares", Q. Appl. Math. 2, 1944.
+//! Equation 6 of Paes et al. 2014, without products of inertia. F is not convex, and some of the
+//! parameters are not determined: the result depends on the guess. The steps are those of K.
+//! Levenberg, "A method for the solution of certain non-linear problems in least squares", Q. Appl.
+//! Math. 2, 1944.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -19,19 +19,19 @@ use super::fit::root_mean;
 use super::guess::first_guess;
 use super::identified::Identified;
 
-/// Numbers of a link: mass, centre of mass, moments about it.
+/// Parameters of a link: mass, centre of mass, moments of inertia about it.
 const LINK: usize = 7;
-/// Steps at most.
+/// Largest number of steps.
 const STEPS: usize = 200;
-/// Relative gain that ends them.
+/// Relative gain at which the descent ends.
 const SETTLED: f64 = 1e-9;
-/// Damping at first, its change with each step, and where no step helps any more.
+/// Initial damping, its factor, and its upper limit.
 const DAMPING: [f64; 3] = [1e-3, 10.0, 1e12];
 
 /// The result of the descent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descent {
-    /// Links with their axes as principal ones.
+    /// Links with principal axes parallel to their frames.
     pub links: Vec<Link>,
     /// Rotor inertia, viscous and Coulomb friction and offset of each joint.
     pub joints: Vec<f64>,
@@ -39,12 +39,12 @@ pub struct Descent {
     pub misses: [f64; 2],
     /// Root mean square of each joint's residuals \[Nm\].
     pub rms: Vec<f64>,
-    /// Steps that were taken.
+    /// Number of steps.
     pub steps: usize,
 }
 
-/// Descends from the links and joints of `guess`, of which the geometry is that of the
-/// identification `found`; `None` where not all parameters were free.
+/// Descends from the links and joints of `guess`, with the geometry of the identification `found`;
+/// `None` if not all parameters were free.
 #[must_use]
 pub fn by_descent(guess: &Model, found: &Identified) -> Option<Descent> {
     let n = guess.dof;
@@ -96,7 +96,7 @@ impl Equations {
         &self.through * linear(x, links) - &self.goal
     }
 
-    /// Where the descent from `x` ends, F before and after, and the steps.
+    /// The end of the descent from `x`, F before and after, and the number of steps.
     fn descended(&self, mut x: DVector<f64>, links: usize) -> (DVector<f64>, [f64; 2], usize) {
         let miss = |e: &DVector<f64>| (e.norm_squared() / self.count.max(1) as f64).sqrt();
         let mut here = self.residuals(&x, links);
@@ -160,7 +160,7 @@ fn linear(x: &DVector<f64>, links: usize) -> DVector<f64> {
     DVector::from_vec(all)
 }
 
-/// Their derivatives.
+/// Derivatives of all linear parameters with respect to `x`.
 fn slopes(x: &DVector<f64>, links: usize) -> DMatrix<f64> {
     let joints = x.len() - LINK * links;
     let mut slopes = DMatrix::zeros(RIGID * links + joints, x.len());
@@ -197,7 +197,7 @@ fn slopes(x: &DVector<f64>, links: usize) -> DMatrix<f64> {
 mod tests {
     use super::*;
 
-    /// Of a derivative by central differences.
+    /// Step of the central differences.
     const STEP: f64 = 1e-5;
 
     #[test]

@@ -1,10 +1,9 @@
 //! The equations of motion at the instants of a log, row by row.
 //!
-//! τ = Y(q, q̇, q̈) π for each joint, in the base parameters that are free; the torque of
-//! the known ones goes to the left side. Where the motion was filtered, torque and
-//! regressor pass the same filter (M. Gautier, "Dynamic identification of robots with
-//! power model", ICRA 1997: parallel filtering) and are thinned out to what is left of
-//! their band.
+//! τ = Y(q, q̇, q̈) π for each joint, in the free base parameters; the torque of the known
+//! parameters moves to the left side. For filtered motion, torque and regressor pass the same
+//! filter (M. Gautier, "Dynamic identification of robots with power model", ICRA 1997: parallel
+//! filtering) and are decimated to the remaining bandwidth.
 
 use crate::arm::dynamics::{
     BaseParameters, Data, JOINT, Load, RIGID, Regressor, motor_rates, regressor, rnea, torque,
@@ -15,13 +14,13 @@ use crate::learn::log::LowPass;
 use super::clipped::is_clipped;
 use super::samples::{Block, Samples, Source};
 
-/// Instants that are kept for each period of the filter's cut-off frequency.
+/// Instants that are kept per period of the filter's cut-off frequency.
 const KEPT_PER_PERIOD: f64 = 2.5;
 
-/// Which columns the equation of each joint has.
+/// The columns of each joint's equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Of each joint, the base parameters whose coefficient is not always 0, ascending.
+    /// For each joint, the base parameters whose coefficient is not always 0, ascending.
     pub columns: Vec<Vec<usize>>,
 }
 
@@ -35,9 +34,9 @@ impl Layout {
 
 /// The equations of all joints at one instant.
 pub struct Instant<'a> {
-    /// Piece of the log, from 0.
+    /// Index of the block, from 0.
     pub block: usize,
-    /// Number of the instant in its piece, from 0.
+    /// Index of the instant in its block, from 0.
     pub index: usize,
     /// Time \[s\].
     pub t: f64,
@@ -55,22 +54,22 @@ pub struct Instant<'a> {
 
 /// The equations of motion of a robot, linear in its base parameters.
 pub struct Equations<'a> {
-    /// The robot; of its numbers only the geometry and the wrist's coupling are used.
+    /// The robot; only its geometry, the wrist coupling and the known parameters are used.
     pub model: &'a Model,
     /// The free parameters.
     pub base: &'a BaseParameters,
-    /// What is not free.
+    /// The parameters that are not free.
     pub known: Known,
 }
 
-/// The part of the torque that is taken as the model has it.
+/// The parameters that keep the values of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
     /// Nothing.
     Nothing,
     /// Rigid bodies and rotors.
     Rigid,
-    /// Friction too.
+    /// Rigid bodies, rotors and friction.
     All,
 }
 
@@ -94,7 +93,7 @@ impl Equations<'_> {
         Layout { columns }
     }
 
-    /// Calls `visit` for each instant of `samples`, in the order of time.
+    /// Calls `visit` for each instant of `samples`, in order of time.
     pub fn each(&self, samples: &Samples, layout: &Layout, visit: &mut dyn FnMut(&Instant<'_>)) {
         let n = self.model.dof;
         let mut rows = Rows::new(self);
@@ -137,7 +136,7 @@ impl Equations<'_> {
         let every = thinning(samples.step, cutoff);
         let span = layout.width() + 2 * n;
         let mut rows = Rows::new(self);
-        // The last `width` instants, in a ring.
+        // Ring buffer of the last `width` instants.
         let mut ring = vec![0.0; width * span];
         let mut sum = vec![0.0; span];
         let weights = filter.weights(0);
@@ -175,7 +174,7 @@ impl Equations<'_> {
         }
     }
 
-    /// Writes the coefficients, the torques less the known ones, and the torques into `row`.
+    /// Writes coefficients, torques without the known ones, and torques into `row`.
     fn instant(
         &self,
         rows: &mut Rows<'_>,
@@ -216,9 +215,9 @@ impl Equations<'_> {
         }
     }
 
-    /// A joint at rest may have any friction up to the static one, so that its equation is not usable.
-    /// With a coupled wrist the motor of axis 6 has to turn, too. An equation with a torque at a limit
-    /// within `reach` of the time \[s\] is not usable either.
+    /// Whether each joint's equation is usable. A joint at rest may have any friction up to the
+    /// static one; with a coupled wrist the motor of axis 6 has to turn, too. A torque clipped
+    /// within `reach` \[s\] of the instant makes its equation unusable.
     fn usable(
         &self,
         samples: &Samples,
@@ -245,7 +244,7 @@ impl Equations<'_> {
     }
 }
 
-/// One of this many samples is kept behind the filter.
+/// One of this many filtered samples is kept.
 #[must_use]
 pub(super) fn thinning(step: f64, cutoff: f64) -> usize {
     (1.0 / (KEPT_PER_PERIOD * cutoff * step)).floor().max(1.0) as usize
@@ -256,7 +255,7 @@ struct Rows<'a> {
     model: &'a Model,
     regressor: Regressor,
     data: Data,
-    /// Coefficients of the parameters of each motor.
+    /// Coefficients of each motor's parameters.
     motors: [[f64; JOINT]; MAX_DOF],
     /// Share of each motor's torque in that of a joint: `shares[joint][motor]`.
     shares: [[f64; MAX_DOF]; MAX_DOF],

@@ -1,28 +1,28 @@
-//! Which parameters the fit needs, and which ones are collinear.
+//! Significant parameters of a fit, and collinear ones.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::fit::Fit;
 
-/// Standard deviations from 0 within which a parameter is not significant.
+/// Distance from 0, in standard deviations, below which a parameter is not significant.
 const CARRIES: f64 = 2.0;
-/// A condition index from which on parameters count as hard to tell apart (D. Belsley,
-/// E. Kuh, R. Welsch, "Regression diagnostics", 1980).
+/// Least condition index of collinear parameters (D. Belsley, E. Kuh, R. Welsch, "Regression
+/// diagnostics", 1980).
 const INDEX: f64 = 30.0;
 /// Least share of a parameter's variance in a collinear direction.
 const SHARE: f64 = 0.5;
 
-/// Collinear parameters.
+/// A group of collinear parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collinear {
-    /// Condition index of their direction.
+    /// Condition index of the direction.
     pub index: f64,
     /// The base parameters, ascending.
     pub parameters: Vec<usize>,
 }
 
-/// The base parameters that the fit needs: the others are left out one after another, the
-/// least significant first.
+/// The significant base parameters, by backward elimination: the least significant ones are removed
+/// first.
 #[must_use]
 pub fn essential(fit: &Fit) -> Vec<usize> {
     let solution = &fit.solution;

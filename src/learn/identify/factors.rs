@@ -1,5 +1,5 @@
-//! The equations of a log, worked into one triangular factor for each joint and part of
-//! the time, so that joints can be weighted and parts left out without reading them again.
+//! Triangular factors of a log's equations by joint and part of the time. Joints can be weighted
+//! and parts left out without reading the log again.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -10,18 +10,18 @@ use super::triangle::Triangle;
 /// Factors by part of the time and joint.
 #[derive(Clone, Debug)]
 pub struct Factors {
-    /// Which columns each joint has.
+    /// The columns of each joint.
     pub layout: Layout,
-    /// Of each part, of each joint: the triangular factor, the right side in its last column.
+    /// For each part and joint, the triangular factor with the right side in its last column.
     pub parts: Vec<Vec<DMatrix<f64>>>,
-    /// Usable equations of each part, of each joint.
+    /// Usable equations, by part and joint.
     pub rows: Vec<Vec<usize>>,
-    /// Sums of the squared torques of these, of each part, of each joint \[N²m²\].
+    /// Sums of the squared torques of these equations, by part and joint \[N²m²\].
     pub squares: Vec<Vec<f64>>,
 }
 
 impl Factors {
-    /// Of the samples, in `parts` parts of equal duration.
+    /// The factors of `samples` in `parts` parts of equal duration.
     #[must_use]
     pub fn new(equations: &Equations<'_>, samples: &Samples, parts: usize) -> Factors {
         let layout = equations.layout();
@@ -49,7 +49,7 @@ impl Factors {
         Factors { layout, parts, rows, squares }
     }
 
-    /// All parts but `without` as one.
+    /// All parts except `without`, merged into one.
     #[must_use]
     pub fn merged(&self, without: Option<usize>) -> Factors {
         let joints = self.layout.columns.len();
@@ -75,13 +75,13 @@ impl Factors {
         }
     }
 
-    /// Usable equations of each joint, in all parts but `without`.
+    /// Usable equations of each joint in all parts except `without`.
     #[must_use]
     pub fn rows_without(&self, without: Option<usize>) -> Vec<usize> {
         self.sum(without, |part, joint| self.rows[part][joint])
     }
 
-    /// Sum of the squared residuals of each joint in the part `part`, or in all.
+    /// Sum of the squared residuals of each joint in `part`, or in all parts.
     #[must_use]
     pub fn residual_squares(&self, beta: &DVector<f64>, part: Option<usize>) -> Vec<f64> {
         let of = |part: usize, joint: usize| {

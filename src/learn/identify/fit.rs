@@ -1,4 +1,4 @@
-//! The base parameters of a log: weighted least squares, standard errors, validation.
+//! Base parameters from a log: weighted least squares, standard errors, cross-validation.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,17 +11,17 @@ use super::repetitions::{self, Fold};
 use super::samples::Samples;
 use super::whiteness::{Whiteness, whiteness};
 
-/// Parts of the time for cross-validation.
+/// Number of parts of the time in cross-validation.
 const PARTS: usize = 5;
-/// Least number of equations for each unknown.
+/// Least number of equations per unknown.
 const LEAST: usize = 2;
 /// Largest number of reweighting rounds.
 const ROUNDS: usize = 20;
-/// Relative change of the weights that ends them.
+/// Relative change of the weights at which reweighting ends.
 const SETTLED: f64 = 1e-4;
-/// Instants from which the effect of coloured noise on the covariance is computed.
+/// Number of instants for the effect of coloured noise on the covariance.
 const INSTANTS: usize = 6000;
-/// Ratio of residual variance to noise variance from which the residuals hold model error.
+/// Ratio of residual to noise variance above which the residuals contain model error.
 const MISSES: f64 = 1.5;
 /// Length of a piece of consecutive instants, in lags of the noise.
 const PIECE: usize = 12;
@@ -31,7 +31,7 @@ const PIECE: usize = 12;
 pub enum Weighting {
     /// Equal weights: ordinary least squares.
     Ordinary,
-    /// Each joint by the standard deviation of its residuals, iteratively.
+    /// By the standard deviation of each joint's residuals, iteratively.
     Joint,
 }
 
@@ -52,8 +52,8 @@ pub struct Fit {
     pub relative_rms: Vec<f64>,
     /// Root mean square of held-out residuals \[Nm\].
     pub cross_rms: Vec<f64>,
-    /// Whether `cross_rms` is over held-out repetitions, one instant of a repetition each; else over
-    /// held-out fifths of the time.
+    /// Whether `cross_rms` is over held-out repetitions, for one instant of a single repetition;
+    /// else it is over held-out fifths of the time.
     pub over_repetitions: bool,
     /// Autocorrelation of each joint's residuals at lag 1.
     pub memory: Vec<f64>,
@@ -73,8 +73,8 @@ pub(super) struct HeldOut {
 }
 
 impl HeldOut {
-    /// Root mean square of each joint's residuals \[Nm\] with the parameters that `found` gives for
-    /// the equations of the other parts; `factors` are those of all.
+    /// Root mean square of each joint's held-out residuals \[Nm\]; `found` gives the parameters for
+    /// the equations of the other parts, `factors` are those of all parts.
     pub(super) fn rms(
         &self,
         factors: &Factors,
@@ -108,7 +108,7 @@ pub fn fit(
     let factors = Factors::new(equations, samples, PARTS);
     let rows = factors.rows_without(None);
     let count: usize = rows.iter().sum();
-    // As many equations as unknowns can always be met.
+    // With as many unknowns as equations, the residuals are always 0.
     if count < LEAST * unknowns {
         return Err(IdentifyError::TooFew { equations: count, unknowns });
     }
@@ -173,7 +173,7 @@ pub(super) fn reweighted(
                 let n = rows[joint] as f64;
                 let torque: f64 = factors.squares.iter().map(|part| part[joint]).sum();
                 let found = (squares[joint] / (n - lost[joint]).max(1.0)).sqrt();
-                // Noiseless data leave rounding errors.
+                // Lower bound for noiseless data.
                 found.max(1e-9 * (torque / n.max(1.0)).sqrt()).max(1e-12)
             })
             .collect();
@@ -188,7 +188,7 @@ pub(super) fn reweighted(
     (solution, sigma)
 }
 
-/// Degrees of freedom that the fit takes from the equations of each joint.
+/// Degrees of freedom that the fit uses of each joint's equations.
 fn lost(factors: &Factors, solution: &Solution, weights: &[f64]) -> Vec<f64> {
     let inverse = solution.inverse_normal();
     let place = |column: &usize| solution.determined.iter().position(|known| known == column);
@@ -227,7 +227,7 @@ struct Errors {
     whiteness: Vec<Option<Whiteness>>,
 }
 
-/// Covariance of the parameters with noise as the residuals show it.
+/// Covariance of the parameters with the noise of the residuals.
 fn errors(
     equations: &Equations<'_>,
     samples: &Samples,
@@ -259,8 +259,8 @@ fn errors(
         residuals.iter().zip(&lost).map(|(e, lost)| autocovariance(e, *lost)).collect();
     if let Some(known) = &samples.noise {
         for (found, known) in noise.iter_mut().zip(known) {
-            // The noise of repetitions does not depend on the fit. Much larger residuals are model error,
-            // which has to count.
+            // The noise of repetitions does not depend on the fit. Much larger residuals contain
+            // model error and are used instead.
             if found[0] < MISSES * known[0] {
                 found.clone_from(known);
             }
@@ -282,7 +282,7 @@ fn errors(
     Errors { covariance: &inverse * middle * &inverse, memory, whiteness }
 }
 
-/// Noise of each joint's equations: w, 1 over its deviation, and the autocovariances Ω.
+/// Noise of each joint's equations: w, the inverse standard deviation, and the autocovariances Ω.
 struct Noise<'a> {
     weights: &'a [f64],
     autocovariances: &'a [Vec<f64>],
@@ -305,7 +305,7 @@ fn between(
     let unknowns = solution.beta.len();
     let mut middle = DMatrix::zeros(unknowns, unknowns);
     let mut used = vec![0_usize; noise.weights.len()];
-    // The rows of the piece that is being read, unusable ones as zeros.
+    // Rows of the current piece; unusable ones are zeros.
     let mut rows: Vec<f64> = Vec::new();
     let width = layout.width();
     let mut number = 0;

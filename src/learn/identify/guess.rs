@@ -6,15 +6,15 @@ use super::consistent::{BODY, margin};
 use crate::arm::dynamics::{Load, body_parameters, link_of, link_parameters, pseudo_inertia};
 use crate::arm::robot::{Link, Model};
 
-/// Mean density of an arm, hollow parts included \[kg/m³\].
+/// Mean density of an arm including hollow parts \[kg/m³\].
 const DENSITY: f64 = 1500.0;
 /// Slenderness of a link: its radius over its length.
 const SLENDER: f64 = 0.25;
 /// Least length of a link \[m\].
 const SHORTEST: f64 = 0.1;
 
-/// The prior pseudo-inertia of a link: that of the model if it is physically consistent, else of a
-/// bar to the next joint.
+/// The prior pseudo-inertia of a link: that of the model if it is physically consistent, else that
+/// of a bar to the next joint.
 pub(super) fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
     if let Some(link) = model.links.get(joint) {
         let values = link_parameters(link);
@@ -30,7 +30,7 @@ pub(super) fn prior(model: &Model, joint: usize) -> Matrix4<f64> {
     pseudo_inertia(&link_parameters(&bar(to)))
 }
 
-/// The link that a descent begins with.
+/// The initial link of a descent.
 pub(super) fn first_guess(model: &Model, joint: usize) -> Link {
     link_of(&body_parameters(&prior(model, joint)))
 }
@@ -44,13 +44,13 @@ fn bar(to: Vector3<f64>) -> Link {
     Link { mass, com: to * 0.5, inertia: Matrix3::identity() * across }
 }
 
-/// A kilogram at the flange, in the last link's frame.
+/// A body of 1 kg at the flange, in the last link's frame.
 pub(super) fn small_body(model: &Model) -> Link {
     let com = model.kinematics.flange.translation.vector;
     Link { mass: 1.0, com, inertia: Matrix3::identity() * 1e-3 }
 }
 
-/// A body in the last link's frame, seen from the flange.
+/// Transforms a body from the last link's frame to that of the flange.
 pub(super) fn at_flange(model: &Model, body: &Link) -> Load {
     let to = model.kinematics.flange.inverse();
     let rotation = to.rotation.to_rotation_matrix();

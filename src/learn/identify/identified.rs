@@ -10,10 +10,10 @@ use super::nearest::base_values;
 use super::quality::Quality;
 use super::samples::{Samples, Source};
 
-/// An identified model, with the fit that it comes from.
+/// An identified model and its fit.
 #[derive(Clone, Debug)]
 pub struct Identified {
-    /// The model, with identified parameters.
+    /// The model with identified parameters.
     pub model: Model,
     /// The free base parameters.
     pub base: BaseParameters,
@@ -21,34 +21,34 @@ pub struct Identified {
     pub fit: Fit,
     /// All free parameters of the model, in the order of `among`.
     pub parameters: Vec<f64>,
-    /// Their indices among all, as [`parameter_name`](crate::arm::dynamics::parameter_name) counts them.
+    /// Their indices, as in [`parameter_name`](crate::arm::dynamics::parameter_name).
     pub among: Vec<usize>,
-    /// The coupling of the wrist that was found in the data, where the model stated none.
+    /// The wrist coupling found in the data, if the model has none.
     pub coupling: Option<f64>,
-    /// Errors of the model on the samples that it was fitted to.
+    /// Residuals of the model on the training samples.
     pub training: Misses,
-    /// The same on those that it was not.
+    /// Residuals on the validation samples.
     pub validation: Option<Misses>,
-    /// Errors of the fit without constraints on these.
+    /// Residuals of the unconstrained fit on the validation samples.
     pub unconstrained_validation: Option<Misses>,
-    /// Root mean square of each joint's residuals \[Nm\] with consistent models of the other parts
-    /// of the data, which are those of the fit's `cross_rms`.
+    /// Root mean square of each joint's residuals \[Nm\] in cross-validation with consistent
+    /// models, on the folds of the fit's `cross_rms`.
     pub cross_rms: Vec<f64>,
-    /// Whether every link is a body that can be.
+    /// Whether every link is physically possible.
     pub physically_consistent: bool,
-    /// What was added at the flange, where that was free.
+    /// The payload, if it was free.
     pub payload: Option<Load>,
     /// Joints that were not excited, from 0.
     pub resting: Vec<usize>,
-    /// Where the rates come from.
+    /// Source of the rates.
     pub source: Source,
-    /// How much the model explains.
+    /// Share of the torques that the model explains, and grade.
     pub quality: Quality,
 }
 
 impl Identified {
-    /// Time, usable torques (not a number where a joint rests) and those of the model, of each
-    /// instant of samples, and the rates: `[measured, predicted, rate]` by joint.
+    /// For each instant, the time and `[measured, predicted, rate]` by joint; unusable torques are
+    /// NaN.
     #[must_use]
     pub fn traces(&self, nominal: &Model, samples: &Samples) -> Vec<(f64, [Vec<f64>; 3])> {
         let beta = base_values(&self.base, &self.among, &self.parameters);

@@ -2,18 +2,18 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A column whose part orthogonal to the columns before is below this share is dependent on them.
+/// A column depends on the columns before it if its orthogonal part is below this share.
 const TOLERANCE: f64 = 1e-7;
 
 /// The solution of stacked equations.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// All parameters; those that are not determined are 0.
+    /// All parameters; undetermined ones are 0.
     pub beta: DVector<f64>,
-    /// The determined ones, ascending.
+    /// The determined parameters, ascending.
     pub determined: Vec<usize>,
-    /// Each other column, with the determined ones that it is a combination of and their
-    /// factors; none for a column of zeros.
+    /// For each other column, the determined columns that it combines, with factors; none for a
+    /// column of zeros.
     pub dependent: Vec<(usize, Vec<(usize, f64)>)>,
     /// Triangular factor of the determined columns.
     pub factor: DMatrix<f64>,
@@ -31,7 +31,7 @@ impl Solution {
         &inverse * inverse.transpose()
     }
 
-    /// Length of column `of` in the combination `parts`, over the length of the whole \[1\].
+    /// Length of column `of` in the combination `parts`, over the length of the sum \[1\].
     #[must_use]
     pub fn share(&self, parts: &[(usize, f64)], of: usize) -> f64 {
         let mut whole = DVector::zeros(self.factor.nrows());
@@ -49,7 +49,7 @@ impl Solution {
         own / whole.norm().max(f64::MIN_POSITIVE)
     }
 
-    /// Condition numbers of the equations as they are, and with columns of one length.
+    /// Condition numbers of the equations, raw and with columns of one length.
     #[must_use]
     pub fn condition(&self) -> Condition {
         Condition { raw: condition(&self.factor), scaled: condition(&self.scaled().0) }
@@ -70,7 +70,7 @@ impl Solution {
 /// Condition numbers of the equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// With columns of one length, so that units do not matter.
+    /// With columns of one length, independent of units.
     pub scaled: f64,
     /// In the units of the parameters.
     pub raw: f64,
@@ -95,7 +95,7 @@ pub(super) fn solve(stacked: &DMatrix<f64>) -> Solution {
         let values = stacked.column(column).into_owned();
         let length = values.norm();
         let mut rest = values;
-        // Twice is enough for full orthogonality.
+        // Two passes give full orthogonality.
         for _ in 0..2 {
             for direction in &basis {
                 let share = direction.dot(&rest);

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::factors::Factors;
 use super::fit::root_mean;
 
-/// Residuals on samples, by joint.
+/// Residuals by joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Misses {
     /// Root mean square of the residuals \[Nm\].
@@ -15,7 +15,7 @@ pub struct Misses {
 }
 
 impl Misses {
-    /// The residuals of base parameters β on the samples of some factors.
+    /// The residuals of base parameters β on the samples of `factors`.
     pub(super) fn new(beta: &DVector<f64>, factors: &[Factors]) -> Misses {
         let joints = factors.first().map_or(0, |of| of.layout.columns.len());
         let (mut squares, mut torque, mut rows) =
@@ -35,7 +35,7 @@ impl Misses {
         }
     }
 
-    /// The same torques with other residuals, `rms` \[Nm\].
+    /// The same torques with the residuals `rms` \[Nm\].
     pub(super) fn with_rms(&self, rms: &[f64]) -> Misses {
         let relative = |(joint, relative): (usize, &f64)| relative * rms[joint] / self.rms[joint];
         Misses {

@@ -1,7 +1,7 @@
 //! A robot's dynamic model from measured logs, with standard errors.
 //!
-//! [`prepare`] turns a log into instants, [`Equations`] writes the equations of motion at these,
-//! [`fit`] solves them for the base parameters, [`identify`] makes a physically consistent model.
+//! [`prepare`] selects instants of a log, [`Equations`] sets up their equations of motion, [`fit`]
+//! solves for the base parameters, and [`identify`] returns a physically consistent model.
 
 mod clean;
 mod clipped;

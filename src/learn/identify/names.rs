@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use super::identified::Identified;
 
-/// Least share of a column in a combination for it to be named.
+/// Least share of a column in a combination that is named.
 const PART: f64 = 1e-4;
 
 impl Identified {
-    /// The combination of parameters that base parameter `row` stands for: its own, and those that this
-    /// motion does not separate from it.
+    /// The combination of parameters that base parameter `row` represents, including those that
+    /// this motion does not separate from it.
     #[must_use]
     pub fn name(&self, row: usize) -> String {
         let mut name = self.base.name(row);

@@ -14,19 +14,19 @@ use super::guess::{prior, small_body};
 use super::least_squares::{Solution, solve};
 use super::settings::Free;
 
-/// Rounds in which bounds are lifted.
+/// Largest number of rounds that lift bounds.
 const FREED: usize = 3;
-/// A positive parameter below this share of its prior is one that the data want below 0.
+/// A parameter below this share of its prior has an active lower bound.
 const BOUND: f64 = 0.3;
-/// Share of the residuals' power that lifting bounds has to remove.
+/// Least share of the residuals' power that lifting bounds has to remove.
 const WORTH: f64 = 0.005;
-/// Residuals smaller than this share of the torque are as good as none.
+/// Least residuals as a share of the torque.
 const DIGITS: f64 = 1e-4;
-/// Size of an unknown parameter, in its SI unit.
+/// Typical size of an unknown parameter, in its SI unit.
 const SMALL: f64 = 1e-3;
 
-/// Finds physically consistent values of the free parameters, with the priors and scales of the fit
-/// to all data.
+/// Computes physically consistent free parameters, with the priors and scales of the fit to all
+/// data.
 pub(super) struct Nearest<'a> {
     pieces: Vec<Piece>,
     fit: &'a Fit,
@@ -35,7 +35,7 @@ pub(super) struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
-    /// `among`: indices of the free parameters among all standard parameters.
+    /// `among` contains the indices of the free parameters among all standard parameters.
     pub(super) fn new<'a>(
         model: &Model,
         free: Free,
@@ -48,8 +48,8 @@ impl Nearest<'_> {
 
     /// The free parameters nearest to the unconstrained solution of `factors`.
     pub(super) fn parameters(&self, factors: &Factors) -> Option<DVector<f64>> {
-        // In units of each joint's residuals, also where joints were not weighted. Noiseless data
-        // would ask for more digits than there are.
+        // Each joint is weighted by its residuals, also after an ordinary fit. The lower bound
+        // avoids excessive accuracy for noiseless data.
         let fit = self.fit;
         let weights: Vec<f64> = fit
             .rms
@@ -72,19 +72,19 @@ impl Nearest<'_> {
         Some(self.with_apparent(&target, found))
     }
 
-    /// The base parameters of free parameters; fixed ones count 0.
+    /// The base parameters of the free parameters `free`; fixed ones count as 0.
     pub(super) fn base_values(&self, free: &[f64]) -> DVector<f64> {
         DVector::from_vec(base_values(self.base, self.among, free))
     }
 
-    /// Lifts the bound of rotor inertias and viscous frictions where it costs the fit much: a delay, a
-    /// filter or elasticity makes them appear negative in the log.
+    /// Lifts the bound of rotor inertias and viscous frictions if it costs the fit much: a delay, a
+    /// filter or elasticity gives them negative apparent values.
     fn with_apparent(&self, target: &Target<'_>, mut found: DVector<f64>) -> DVector<f64> {
         let Nearest { pieces, fit, base, among } = self;
         let rigid = RIGID * base.dof;
         let kind = |index: usize| index.checked_sub(rigid).map(|k| k % JOINT);
         let free = |index: usize| matches!(kind(index), Some(0 | 1));
-        // Largest standard deviation of the parameters of this kind.
+        // Largest standard deviation of the parameters of one kind.
         let size = |of: usize| -> f64 {
             let all = fit.solution.determined.iter().enumerate();
             all.filter(|(_, row)| kind(base.independent[**row]) == kind(of))
@@ -121,8 +121,8 @@ impl Nearest<'_> {
     }
 }
 
-/// The base parameters of the free parameters, whose indices among all standard parameters are
-/// `among`; fixed ones count 0.
+/// The base parameters of the free parameters `free` with the indices `among`; fixed ones count as
+/// 0.
 pub(super) fn base_values(base: &BaseParameters, among: &[usize], free: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; (RIGID + JOINT) * base.dof];
     for (index, value) in among.iter().zip(free) {
@@ -131,8 +131,8 @@ pub(super) fn base_values(base: &BaseParameters, among: &[usize], free: &[f64]) 
     base.of_parameters(&all)
 }
 
-/// The determined base parameters as combinations of the free ones; base parameters that the data
-/// cannot separate are merged.
+/// The determined base parameters as combinations of the free parameters; inseparable base
+/// parameters are merged.
 fn combination(base: &BaseParameters, solution: &Solution, among: &[usize]) -> DMatrix<f64> {
     let place = |index: usize| among.iter().position(|known| *known == index);
     let row_of = |row: usize| {
@@ -181,7 +181,7 @@ fn pieces(
     }
     let nominal = parameters(model, &Load::none());
     for index in among.iter().filter(|index| **index >= rigid) {
-        // Value and standard deviation, where this parameter is determined by itself.
+        // Value and standard deviation, if the data determine this parameter alone.
         let estimate = base.independent.iter().position(|known| known == index).and_then(|row| {
             let k = fit.solution.determined.iter().position(|known| *known == row)?;
             Some((fit.solution.beta[row], fit.covariance[(k, k)].sqrt()))

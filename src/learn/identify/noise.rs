@@ -1,23 +1,21 @@
-//! Autocovariances of coloured noise, by an autoregressive model.
+//! Autocovariances of coloured noise from an autoregressive model.
 
 /// Largest order of the model.
 const MAX_ORDER: usize = 24;
-/// Longest lag that counts.
+/// Longest lag.
 const MAX_LAG: usize = 300;
 /// An autocovariance below this share of the variance ends the sequence.
 const NEGLIGIBLE: f64 = 0.005;
-/// Least power spectral density at any frequency, over the mean: an empty band cannot be resolved
-/// better.
+/// Least power spectral density over its mean: the resolution of an empty band is limited.
 const EMPTY: f64 = 0.05;
-/// Frequencies at which the density is evaluated.
+/// Number of frequencies at which the density is evaluated.
 const FREQUENCIES: usize = 1024;
 
-/// A residual with its place: piece of the log, number of the instant, value.
+/// A residual: block, index of the instant, value.
 pub(super) type Residual = (usize, usize, f64);
 
-/// Autocovariances of the residuals, which are in the order of time, at lag 0, 1, … of the
-/// instants: of the autoregressive model that Schwarz's criterion chooses. `lost` is the
-/// number of parameters that were fitted to them.
+/// Autocovariances of chronological residuals at lag 0, 1, …, from the autoregressive model of the
+/// order that Schwarz's criterion selects. `lost` is the number of fitted parameters.
 #[must_use]
 pub(super) fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
     let n = residuals.len() as f64;
@@ -29,14 +27,14 @@ pub(super) fn autocovariance(residuals: &[Residual], lost: f64) -> Vec<f64> {
     let sample = autocovariances(residuals, orders, correction);
     let model = levinson(&sample, n);
     let mut sequence = extended(&sample, &model);
-    // A truncated sequence may have a negative spectral density, which would make variances of
-    // parameters negative.
+    // A truncated sequence may have a negative spectral density, and the variance of a parameter
+    // would be negative.
     let least = least_density(&sequence);
     sequence[0] += (EMPTY * sequence[0] - least).max(0.0);
     sequence
 }
 
-/// The least power spectral density of noise with these autocovariances, over that of white noise of
+/// The least power spectral density of noise with these autocovariances, relative to white noise of
 /// variance 1.
 fn least_density(sequence: &[f64]) -> f64 {
     let density = |frequency: usize| -> f64 {
@@ -47,7 +45,7 @@ fn least_density(sequence: &[f64]) -> f64 {
     (0..=FREQUENCIES).map(density).fold(f64::INFINITY, f64::min)
 }
 
-/// Σ e(t) e(t + lag) / n for lags up to `lags`, of residuals in the order of time.
+/// Σ e(t) e(t + lag) / n for lags up to `lags`, of chronological residuals.
 #[must_use]
 pub(super) fn autocovariances(residuals: &[Residual], lags: usize, correction: f64) -> Vec<f64> {
     let mut sums = vec![0.0; lags + 1];
@@ -87,7 +85,7 @@ fn levinson(covariance: &[f64], n: f64) -> Vec<f64> {
     best.1
 }
 
-/// The autocovariances of the model, as far as they count.
+/// The autocovariances of the model, up to the last one that is not negligible.
 fn extended(sample: &[f64], a: &[f64]) -> Vec<f64> {
     let mut sequence = sample[..=a.len()].to_vec();
     if a.is_empty() {
@@ -110,7 +108,7 @@ fn extended(sample: &[f64], a: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Share of the variance by which a sample of 200,000 may miss.
+    /// Largest error of a sample of 200,000 values, as a share of the variance.
     const SAMPLED: f64 = 0.02;
 
     fn noise(count: usize, memory: f64) -> Vec<Residual> {
@@ -132,7 +130,7 @@ mod tests {
         assert!(found[1..].iter().all(|x| x.abs() < SAMPLED), "{found:?}");
     }
 
-    /// Differences of white noise have no power at frequency 0, but their mean must have a variance.
+    /// Differences of white noise have no power at frequency 0; their mean needs a variance > 0.
     #[test]
     fn sums_of_noise_have_a_positive_variance() {
         let white = noise(20_000, 0.0);

@@ -1,4 +1,4 @@
-//! The whole identification: free parameters, fit, a physically consistent model.
+//! The complete identification: free parameters, fit, physically consistent model.
 
 use nalgebra::DVector;
 
@@ -19,10 +19,10 @@ use super::settings::{Free, Settings};
 use super::updated::{Estimates, informed_links, updated};
 use super::wrist::wrist_coupling;
 
-/// Identifies a model from `training`; `validation` is only predicted.
+/// Identifies a model from `training`; `validation` is used for prediction only.
 ///
 /// # Errors
-/// Too few equations, or a model that lacks what is not free.
+/// There are too few equations, or the model lacks fixed parameters.
 pub fn identify(
     model: &Model,
     training: &Samples,
@@ -80,7 +80,7 @@ pub fn identify(
         resting: &training.resting,
     };
     let (mut identified, payload) = updated(&nominal, settings, &estimates);
-    // They are in the numbers now.
+    // The identified parameters contain the effects.
     identified.effects.clear();
     let physically_consistent =
         identified.links.iter().all(|link| margin(&link_parameters(link)) > BODY);
@@ -103,14 +103,13 @@ pub fn identify(
     })
 }
 
-/// Shares of the torques' variance that are explained in cross-validation with such residuals; `None`
-/// over repetitions, of which a single one is mostly noise.
+/// Held-out share of the torques' variance that is explained; `None` for repetitions, because a
+/// single one is mostly noise.
 fn cross_explained(training: &Samples, fit: &Fit, misses: &Misses) -> Option<Vec<f64>> {
     (!fit.over_repetitions).then(|| explained(std::slice::from_ref(training), misses))
 }
 
-/// The indices of the free parameters among all standard parameters, and what is taken as the model
-/// has it.
+/// Indices of the free parameters among all standard parameters, and the known part of the model.
 fn free_parameters(free: Free, dof: usize) -> (Vec<usize>, Known) {
     let rigid = RIGID * dof;
     let all = rigid + JOINT * dof;
@@ -124,7 +123,7 @@ fn free_parameters(free: Free, dof: usize) -> (Vec<usize>, Known) {
     }
 }
 
-/// Joints, from 0, whose Coulomb friction is surely below 0 in the unconstrained fit.
+/// Joints, from 0, with significantly negative Coulomb friction in the unconstrained fit.
 fn joints_giving_power(equations: &Equations<'_>, fit: &Fit) -> Vec<usize> {
     let gives = |joint: &usize| {
         let name = format!("fc{}", joint + 1);

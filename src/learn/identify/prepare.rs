@@ -1,4 +1,4 @@
-//! From a log to the instants at which the equations of motion are written.
+//! Selection of the instants of a log at which the equations of motion are written.
 
 use crate::learn::log::{
     Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step, range,
@@ -10,42 +10,41 @@ use super::error::IdentifyError;
 use super::noise::autocovariance;
 use super::samples::{Block, Samples, Source};
 
-/// Share of the power of the motion that its bandwidth holds.
+/// Share of the motion's power within its bandwidth.
 const SHARE: f64 = 0.95;
-/// Cut-off frequency of the filter over the bandwidth of the motion: friction has a wider band than
-/// the motion.
+/// Cut-off frequency over the bandwidth of the motion: friction has a wider bandwidth.
 const CUTOFF: f64 = 8.0;
 /// Largest cut-off frequency, relative to the sampling rate.
 const HIGHEST: f64 = 0.125;
 /// Least range of a joint that moves \[rad\].
 const MOVES: f64 = 1e-3;
-/// Share of a joint's fast rates below which it counts as at rest.
+/// Rate below which a joint counts as at rest, as a share of its fast rate.
 const SLOW: f64 = 0.01;
-/// The quantile of its rates that counts as fast.
+/// Quantile of the rates that counts as fast.
 const FAST: f64 = 0.95;
 
-/// Samples faster than this are thinned out behind a filter \[Hz\] …
+/// Sampling rate above which samples are decimated \[Hz\] …
 const FASTEST: f64 = 1200.0;
-/// … to about this rate \[Hz\], which passes all that a joint can do.
+/// … to about this rate \[Hz\], which contains all frequencies of a joint's motion.
 const THINNED: f64 = 400.0;
-/// Cut-off frequency before thinning, relative to the rate after it.
+/// Cut-off frequency of the decimation filter, relative to the new rate.
 const PASSED: f64 = 0.4;
-/// Periods of that cut-off frequency over which its kernel spreads a step.
+/// Duration of the filter's step response, in periods of its cut-off frequency.
 const SMEARED: f64 = 1.0;
-/// Ratio of the first repetition's squared deviation from the mean to that of the others from which
-/// it counts as settling.
+/// Ratio of squared deviations from the mean, first repetition to the others, above which the first
+/// one counts as a transient.
 const SETTLING: f64 = 4.0;
 
-/// What is known about a log beside its columns.
+/// Known properties of a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hints {
     /// Duration of a repetition \[s\].
     pub period: Option<f64>,
-    /// Cut-off frequency of the filter \[Hz\], where another log has decided it.
+    /// Cut-off frequency of the filter \[Hz\], if another log determined it.
     pub cutoff: Option<f64>,
 }
 
-/// The instants of a log with the torques `tau` of each joint \[Nm\].
+/// The instants of a log with the joint torques `tau` \[Nm\].
 ///
 /// # Errors
 /// No joint moves, or the log is too short for a filter.
@@ -81,12 +80,12 @@ fn owned(log: &Log, channel: fn(usize) -> Channel) -> Option<Vec<Vec<f64>>> {
     Some(log.of_joints(channel)?.into_iter().map(<[f64]>::to_vec).collect())
 }
 
-/// Rates between samples \[rad/s\].
+/// Mean rates between samples \[rad/s\].
 fn changes(x: &[f64], step: f64) -> Vec<f64> {
     x.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect()
 }
 
-/// Sets the motion of resting joints to exact rest, so that encoder noise does not count.
+/// Removes the encoder noise of resting joints.
 fn still(samples: &mut Samples) {
     for block in &mut samples.blocks {
         for joint in &samples.resting {
@@ -110,7 +109,7 @@ fn differentiated(
     let all: Vec<&[f64]> =
         q.iter().chain(tau).chain(qd.unwrap_or_default()).map(Vec::as_slice).collect();
     let sections = sections(log.time(), &all);
-    // Time over which thinning smears the reversal of a joint \[s\].
+    // Duration over which decimation smears the reversal of a joint \[s\].
     let smeared = sections.first().map_or(0.0, |section| {
         thinning(section).map_or(0.0, |every| SMEARED * every as f64 * section.step / PASSED)
     });
@@ -121,7 +120,7 @@ fn differentiated(
     let step = longest.step;
     let known = hints.period.or_else(|| of_cycles(log));
     let positions: Vec<&[f64]> = longest.series[..joints].iter().map(Vec::as_slice).collect();
-    // A motion that does not repeat with the given period may have another one.
+    // A motion that does not repeat with the given period may have another period.
     let found = |known| find_periods(&positions, step, known);
     if hints.cutoff.is_none()
         && let Some(periods) = found(known).or_else(|| known.and_then(|_| found(None)))
@@ -138,7 +137,7 @@ fn differentiated(
     let moving = (0..joints).filter(|joint| !resting.contains(joint));
     let fastest = moving
         .map(|joint| {
-            // Logged rates have less noise than the changes of positions.
+            // Logged rates have less noise than differences of positions.
             let rates = longest.series.get(2 * joints + joint);
             rates.map_or_else(
                 || bandwidth(&changes(&longest.series[joint], step), step, SHARE),
@@ -150,7 +149,7 @@ fn differentiated(
     let filter = LowPass::new(cutoff, step);
     let blocks: Vec<Block> = sections
         .iter()
-        // Twice the kernel, and some instants to use.
+        // The filter uses twice its kernel; some instants have to remain.
         .filter(|section| section.samples() > 3 * filter.width())
         .map(|section| block(section, joints, &filter, clipped))
         .collect();
@@ -169,13 +168,13 @@ fn differentiated(
     })
 }
 
-/// One of this many samples is kept; `None`: all are.
+/// One of this many samples is kept; `None` for all.
 fn thinning(section: &Section) -> Option<usize> {
     let fast = section.step * FASTEST <= 1.0;
     fast.then(|| (1.0 / (section.step * THINNED)).floor().max(2.0) as usize)
 }
 
-/// The section at a lower sampling rate, where it is needlessly high.
+/// The section, decimated if its sampling rate is needlessly high.
 fn thinned(section: &Section) -> Section {
     let Some(every) = thinning(section) else { return section.clone() };
     let step = section.step * every as f64;
@@ -198,18 +197,18 @@ fn thinned(section: &Section) -> Section {
     }
 }
 
-/// The period by the column `cycle` \[s\].
+/// The period according to the column `cycle` \[s\].
 fn of_cycles(log: &Log) -> Option<f64> {
     let cycle = log.column(Channel::Cycle)?;
     let t = log.time();
     let begins: Vec<f64> =
         (1..t.len()).filter(|i| cycle[*i] != cycle[i - 1]).map(|i| t[i]).collect();
-    // Whole ones lie between two changes.
+    // Complete repetitions lie between two changes.
     let count = begins.len().checked_sub(1).filter(|count| *count > 0)?;
     Some((begins[count] - begins[0]) / count as f64)
 }
 
-/// One period: the mean of all repetitions.
+/// Instants of one period: the mean of all repetitions.
 fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<usize>) -> Samples {
     let mut periods = *periods;
     let mut mean = averaged(section, &periods, joints);
@@ -228,7 +227,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
                 .enumerate()
                 .flat_map(|(r, of)| of.iter().enumerate().map(move |(k, e)| (r, k, *e)))
                 .collect();
-            // The mean was subtracted; its noise variance is that of a repetition over their number.
+            // The noise variance of the mean is that of a repetition over their number.
             let lost = residuals.len() as f64 / count;
             autocovariance(&residuals, lost).iter().map(|c| c / count).collect()
         })
@@ -260,7 +259,7 @@ fn periodic(section: &Section, periods: &Periods, joints: usize, resting: Vec<us
     }
 }
 
-/// Whether the first repetition deviates far more from the mean than the others.
+/// Whether the first repetition deviates much more from the mean than the others.
 fn is_settling(spread: &[Vec<Vec<f64>>]) -> bool {
     let power = |x: &Vec<f64>| x.iter().map(|e| e * e).sum::<f64>();
     spread.iter().any(|repetitions| {

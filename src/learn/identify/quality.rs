@@ -1,4 +1,4 @@
-//! How much of the measured torques a model explains, and the grade that follows.
+//! Share of the measured torques that a model explains, and its grade.
 
 use std::fmt::Write;
 
@@ -13,77 +13,77 @@ use super::misses::Misses;
 use super::samples::{Block, Samples};
 use super::whiteness::Whiteness;
 
-/// Least mean share of the torques' variance that a good model explains, and a fair one.
+/// Least mean explained share of the torques' variance for a good and for a fair model.
 const GOOD: f64 = 0.9;
 const FAIR: f64 = 0.7;
-/// Least share at the joint that a good model explains least.
+/// Least explained share of the worst joint for a good model.
 const GOOD_WORST: f64 = 0.87;
-/// Residuals of the physically consistent model over those of the unconstrained fit from which signs
-/// or columns may be wrong, and from which they are.
+/// Ratio of the residuals of the physically consistent model to those of the unconstrained fit
+/// above which a model is at most fair, and above which it is poor.
 const ASTRAY: [f64; 2] = [1.5, 3.0];
-/// Least mean share below which there is no model.
+/// Least mean explained share of a usable model.
 const NONE: f64 = 0.25;
-/// Share above which the residuals of a joint may be rounding.
+/// Explained share above which the residuals of a joint may be rounding errors.
 const EXACT: f64 = 0.999;
-/// Standard deviations by which a friction has to be below 0 to be surely negative.
+/// Standard deviations below 0 at which a friction is significantly negative.
 const SURE: f64 = 5.0;
-/// Largest time shift that is tried, and the coarse and the fine step \[s\].
+/// Largest time shift, and its coarse and fine step \[s\].
 const SHIFT: f64 = 1.0;
 const STEPS: [f64; 2] = [0.05, 0.01];
-/// Instants from which a shift is estimated.
+/// Number of instants for the estimate of a shift.
 const INSTANTS: usize = 3000;
 /// Least variance of a torque over its mean square.
 const LEAST: f64 = 1e-3;
-/// Share of the residuals' power that a shift has to remove to be reported: a long one, a short one.
+/// Least share of the residuals' power that a long and a short shift have to remove.
 const GAIN: f64 = 0.5;
 const LITTLE: f64 = 0.05;
-/// Step of the search for a short shift, its largest and its smallest result \[s\].
+/// Step of the search for a short shift, its largest and its least value \[s\].
 const SHORT: f64 = 0.01;
 const LONGEST: f64 = 0.4;
 const TOLD: f64 = 0.003;
-/// Share by which a shift may increase the residuals' power of a joint.
+/// Largest relative increase of a joint's residual power by a shift.
 const SPOILED: f64 = 0.1;
-/// p-value of the whiteness test below which residuals are not white.
+/// p-value of the whiteness test below which the residuals count as not white.
 const WHITE: f64 = 1e-3;
 
-/// How good a model is.
+/// Grade of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grade {
     /// It explains the torques.
     Good,
     /// It explains most of the torques.
     Fair,
-    /// It misses much of the torques.
+    /// It explains only a part of the torques.
     Poor,
-    /// No physically possible robot has such torques.
+    /// No physically possible robot explains the torques.
     None,
 }
 
-/// How well a model explains measured torques.
+/// Quality of a model on measured torques.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     /// The grade.
     pub grade: Grade,
-    /// Share of the variance of each joint's torque that the model explains; NaN for a resting joint,
-    /// below 0 if worse than a constant.
+    /// Explained share of the variance of each joint's torque; NaN for a resting joint, negative if
+    /// worse than a constant.
     pub explained: Vec<f64>,
-    /// The same for held-out torques: those of validation logs, else each fifth of the time predicted
-    /// from the other four. `None` where the motion repeats: a single repetition is mostly noise.
+    /// The same for held-out torques: validation logs, else cross-validation over fifths of the
+    /// time. `None` for a repeated motion: a single repetition is mostly noise.
     pub predicted: Option<Vec<f64>>,
-    /// Joints, from 0, whose Coulomb friction is surely negative in the unconstrained fit.
+    /// Joints, from 0, with significantly negative Coulomb friction in the unconstrained fit.
     pub giving_power: Vec<usize>,
-    /// The joint, from 0, with the largest ratio of residuals of the model to those of the
-    /// unconstrained fit, and that ratio, where it is suspicious.
+    /// The joint, from 0, with the largest ratio of model residuals to those of the unconstrained
+    /// fit, and that ratio, if it is suspicious.
     pub astray: Option<(usize, f64)>,
-    /// Delay of the torques against the motion, where it explains much of the residuals \[s\].
+    /// Delay of the torques relative to the motion, if it explains much of the residuals \[s\].
     pub late: Option<f64>,
-    /// Ratio of the weight in the torques to that of the robot file's masses, where it is suspicious.
+    /// Measured weight over that of the robot file's masses, if it is suspicious.
     pub weight: Option<f64>,
 }
 
 impl Quality {
-    /// Notes that the torques carry `factor` times the weight of the robot file's masses. Far below 1
-    /// they are motor torques or in another unit; far above 1 the file may have no true masses.
+    /// Records that the torques carry `factor` times the weight of the robot file's masses. Far
+    /// below 1 they are motor torques or in another unit; far above 1 the masses may be wrong.
     pub fn doubt_weight(&mut self, factor: f64) {
         self.weight = Some(factor);
         self.grade = match self.grade {
@@ -149,9 +149,9 @@ impl Quality {
     }
 }
 
-/// The quality of a model with the residuals `rms` \[Nm\] on `samples`, where the unconstrained fit
-/// has `free`; `explained` and `predicted` are shares of the training and held-out torques,
-/// `whiteness` is of the unconstrained fit.
+/// The quality of a model with the residuals `rms` \[Nm\] on `samples`; the unconstrained fit has
+/// the residuals `free` and `whiteness`. `explained` and `predicted` are shares of the training and
+/// held-out torques.
 #[must_use]
 pub(super) fn quality(
     equations: &Equations<'_>,
@@ -165,10 +165,10 @@ pub(super) fn quality(
     let shares = || [Some(&explained), predicted.as_ref()].into_iter().flatten();
     let mean_of_fitted = mean(&explained);
     let mean = shares().map(|of| mean(of)).fold(1.0, f64::min);
-    // The other joints do not make up for one that is not explained.
+    // A poor joint is not compensated by the others.
     let worst = shares().flatten().copied().fold(1.0, f64::min);
     let reversed = 2 * giving_power.len() > moving;
-    // Noiseless data leave rounding errors only, whose ratio tells nothing.
+    // The ratio of rounding errors is meaningless.
     let times =
         |joint: usize| (explained[joint] < EXACT).then(|| (joint, rms[joint] / free[joint]));
     let astray = (0..rms.len()).filter_map(times).max_by(|a, b| a.1.total_cmp(&b.1));
@@ -198,7 +198,7 @@ pub(super) fn quality(
     quality
 }
 
-/// Whether a value is surely below 0.
+/// Whether a value is significantly negative.
 #[must_use]
 pub(super) fn surely_negative(value: f64, sd: f64) -> bool {
     value < -SURE * sd
@@ -210,8 +210,7 @@ fn mean(shares: &[f64]) -> f64 {
     known().map(|share| share.clamp(0.0, 1.0)).sum::<f64>() / known().count().max(1) as f64
 }
 
-/// Share of the variance of each joint's torque that is explained, behind the filter of the
-/// equations; NaN for a resting joint.
+/// Explained share of the variance of each joint's filtered torque; NaN for a resting joint.
 #[must_use]
 pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
     let count: usize = samples.iter().map(Samples::instants).sum();
@@ -230,7 +229,7 @@ pub(super) fn explained(samples: &[Samples], misses: &Misses) -> Vec<f64> {
     misses.rms.iter().zip(&misses.relative).enumerate().map(share).collect()
 }
 
-/// The time shift with which torques fit the motion far better than without, if there is one \[s\].
+/// The time shift \[s\] with which the torques fit the motion much better, if it exists.
 fn late(equations: &Equations<'_>, samples: &Samples) -> Option<f64> {
     let block = samples.blocks.iter().max_by_key(|block| block.instants())?;
     let miss = |shift: f64| missed(equations, samples, block, shift);
@@ -241,8 +240,8 @@ fn late(equations: &Equations<'_>, samples: &Samples) -> Option<f64> {
     (best.misfit < GAIN * none).then_some(best.shift)
 }
 
-/// A short time shift \[s\]: descent from 0 in whole samples, because interpolation between samples
-/// would smooth their noise; then a parabola. Joints are weighted by their residuals `rms` \[Nm\].
+/// A short time shift \[s\]: descent from 0 in whole samples, because interpolation would smooth
+/// the noise; then a parabola. Joints are weighted by their residuals `rms` \[Nm\].
 fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> Option<f64> {
     let block = samples.blocks.iter().max_by_key(|block| block.instants())?;
     let weights: Vec<f64> =
@@ -260,12 +259,12 @@ fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> O
     let [before, here, after] = around;
     let late = ((middle * width) as f64 + place * width as f64) * samples.step;
     let least = here - 0.25 * (before - after) * place;
-    // A shift below half a sample interval cannot be resolved.
+    // Shifts below half a sample interval are not resolved.
     let told = if samples.step > SHORT { 0.5 * samples.step } else { TOLD };
     if late.abs() < told || least > (1.0 - LITTLE) * none {
         return None;
     }
-    // All joints share the clocks: a shift that makes one of them worse is something else.
+    // All joints share the clocks: if a joint becomes worse, the cause is not a delay.
     let [none, before, here, after] =
         [by_joint(0)?, by_joint(middle - 1)?, by_joint(middle)?, by_joint(middle + 1)?];
     let spoiled = (0..none.len()).any(|j| {
@@ -276,8 +275,8 @@ fn slightly_late(equations: &Equations<'_>, samples: &Samples, rms: &[f64]) -> O
     (!spoiled).then_some(late)
 }
 
-/// Sum over the joints of the unexplained share of the torque's power in an unconstrained fit, with
-/// the torques taken from `shift` later \[s\].
+/// Unexplained share of the torque's power in an unconstrained fit, summed over the joints, with
+/// the torques taken `shift` \[s\] later.
 fn missed(equations: &Equations<'_>, samples: &Samples, block: &Block, shift: f64) -> Option<f64> {
     let part = shifted(samples, block, (shift / samples.step).round() as isize)?;
     let of_torque = |factors: &Factors| -> Vec<f64> {
@@ -300,7 +299,7 @@ fn missed_by(
     squares.iter().zip(&weights).map(|(e, w)| e * w * w).collect()
 }
 
-/// Instants from the middle of a block with the torques from `moved` samples later; `None` if the
+/// Instants from the middle of a block with the torques taken `moved` samples later; `None` if the
 /// block is too short.
 fn shifted(samples: &Samples, block: &Block, moved: isize) -> Option<Samples> {
     let step = samples.step;

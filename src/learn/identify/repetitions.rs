@@ -1,4 +1,4 @@
-//! Cross-validation over the repetitions of a motion: each is predicted from the others.
+//! Cross-validation over the repetitions of a motion: the others predict each of them.
 
 use nalgebra::DVector;
 
@@ -9,16 +9,16 @@ use super::samples::{Block, Samples};
 /// Largest number of groups of repetitions.
 const GROUPS: usize = 5;
 
-/// A fold: repetitions that are predicted from the others.
+/// A fold: held-out repetitions and the others.
 #[derive(Clone, Debug)]
 pub(super) struct Fold {
-    /// The equations with the mean of the others.
+    /// The equations with the mean torque of the others.
     pub(super) trained: Factors,
-    /// Of each repetition that is predicted.
+    /// The equations of each held-out repetition.
     pub(super) tested: Vec<Factors>,
 }
 
-/// The repetitions in groups, each against the others; `None` where fewer than two are known.
+/// Groups of repetitions, each with the others for training; `None` for fewer than two.
 #[must_use]
 pub(super) fn folds(equations: &Equations<'_>, samples: &Samples) -> Option<Vec<Fold>> {
     let spread = samples.repetitions.as_ref()?;
@@ -31,7 +31,7 @@ pub(super) fn folds(equations: &Equations<'_>, samples: &Samples) -> Option<Vec<
     let factors = |moved: Block| Factors::new(equations, &with(samples, moved), 1);
     let fold = |group: usize| {
         let members: Vec<usize> = (group..count).step_by(groups).collect();
-        // The mean of the others, as a difference from the mean of all.
+        // The mean of the others, relative to the mean of all.
         let others = |r: usize| !members.contains(&r);
         let tested = |member: &usize| factors(moved(block, spread, &|r: usize| r == *member));
         Fold {
@@ -42,8 +42,8 @@ pub(super) fn folds(equations: &Equations<'_>, samples: &Samples) -> Option<Vec<
     Some((0..groups).map(fold).collect())
 }
 
-/// Sums of each joint's squared residuals \[N²m²\] for one instant of a repetition each, and
-/// their number.
+/// Sums of each joint's squared residuals \[N²m²\], for one instant of a single repetition, and the
+/// number of residuals.
 #[must_use]
 pub(super) fn cross_squares(
     folds: &[Fold],
@@ -77,7 +77,7 @@ fn with(samples: &Samples, block: Block) -> Samples {
     }
 }
 
-/// The motion with the mean torque of some repetitions.
+/// The motion with the mean torque of the repetitions that `of` selects.
 fn moved(block: &Block, spread: &[Vec<Vec<f64>>], of: &dyn Fn(usize) -> bool) -> Block {
     let mut block = block.clone();
     for (tau, repetitions) in block.tau.iter_mut().zip(spread) {

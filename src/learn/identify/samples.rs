@@ -4,17 +4,17 @@ use crate::arm::robot::MAX_DOF;
 
 use super::clipped::is_clipped;
 
-/// Where the rates and accelerations come from.
+/// Source of the rates and accelerations.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// They were logged; every row is an instant of its own.
+    /// Logged; every row is an independent instant.
     Logged,
-    /// Differentiated behind a low-pass filter; torque and regressor pass the same one.
+    /// Differentiated after a low-pass filter; torque and regressor pass the same filter.
     Filtered {
         /// Cut-off frequency \[Hz\].
         cutoff: f64,
     },
-    /// Repetitions were averaged, and the Fourier series of the positions differentiated.
+    /// Repetitions were averaged, and the Fourier series of the positions was differentiated.
     Periodic {
         /// Duration of a repetition \[s\].
         period: f64,
@@ -25,7 +25,7 @@ pub enum Source {
     },
 }
 
-/// Motion and torque without a gap, at equal intervals unless logged with its rates.
+/// Motion and torque without a gap; at equal intervals unless the rates were logged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Times \[s\].
@@ -49,7 +49,7 @@ impl Block {
         self.t.len()
     }
 
-    /// The block with only the instants of these indices.
+    /// The instants of the block with these indices.
     #[must_use]
     pub(super) fn select(&self, kept: &[usize]) -> Block {
         let of = |x: &Vec<f64>| -> Vec<f64> { kept.iter().map(|i| x[*i]).collect() };
@@ -78,20 +78,20 @@ impl Block {
 /// All instants of one or several logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
-    /// Pieces without a gap, in the order of time.
+    /// Blocks in order of time.
     pub blocks: Vec<Block>,
-    /// Where the rates come from.
+    /// Source of the rates.
     pub source: Source,
     /// Interval of the instants \[s\].
     pub step: f64,
-    /// Rate of each joint at or below which it counts as at rest \[rad/s\].
+    /// Rate of each joint up to which it counts as at rest \[rad/s\].
     pub rest: Vec<f64>,
     /// Joints that never move, from 0.
     pub resting: Vec<usize>,
-    /// Autocovariances of the torque's noise, of each joint, at lag 0, 1, … of the instants
-    /// \[N²m²\], where repetitions tell them.
+    /// Autocovariances of each joint's torque noise at lag 0, 1, … \[N²m²\], if repetitions
+    /// determine them.
     pub noise: Option<Vec<Vec<f64>>>,
-    /// How the torque of each repetition differs from the mean, by joint, by repetition \[Nm\].
+    /// Deviation of each repetition's torque from the mean, by joint, by repetition \[Nm\].
     pub repetitions: Option<Vec<Vec<Vec<f64>>>>,
 }
 

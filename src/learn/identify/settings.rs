@@ -1,25 +1,25 @@
-//! What an identification may change, and how it is done.
+//! Settings of an identification.
 
 use super::fit::Weighting;
 
-/// What is to be identified.
+/// The parameters to identify.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Free {
     /// Rigid bodies, rotors, friction, offsets.
     All,
-    /// Friction and offsets; rigid bodies and rotors as the model has them.
+    /// Friction and offsets; rigid bodies and rotors of the model stay.
     Friction,
-    /// What is fixed to the flange; all else as the model has it.
+    /// The payload at the flange; the other parameters of the model stay.
     Payload,
 }
 
-/// How an identification is done.
+/// Settings of an identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// What is free.
+    /// The free parameters.
     pub free: Free,
-    /// How joints are weighted.
+    /// Weights of the joints.
     pub weighting: Weighting,
-    /// Who says so, for the identified numbers of the model.
+    /// Source to state for the identified parameters.
     pub source: String,
 }

@@ -1,8 +1,8 @@
-//! Torques of a log: logged, or from currents.
+//! Torques of a log, logged or computed from currents.
 //!
-//! Phase currents give a space vector, whose component along the rotor's torque axis is the current up
-//! to its sign. Sign and scale follow from physics: friction dissipates power, and the torques carry
-//! the weight.
+//! Phase currents give a space vector; its component along the rotor's torque axis is the current
+//! except for the sign. Sign and scale follow from physics: friction dissipates power, and the
+//! torques carry the weight.
 
 use std::fmt::Write;
 
@@ -12,26 +12,26 @@ use crate::learn::log::{Channel, Log, derivatives, signed, vectors};
 
 use super::error::IdentifyError;
 
-/// Rows from which sign and scale are decided.
+/// Number of rows that determine sign and scale.
 const ROWS: usize = 3000;
-/// Least correlation with the model for it to decide the sign.
+/// Least correlation with the model that determines the sign.
 const DECIDES: f64 = 0.3;
-/// Deviation of the logarithm of a factor against gravity.
+/// Standard deviation of the logarithm of a factor from gravity.
 const DEVIATION: f64 = 0.02;
-/// Relative uncertainty of the torques of the robot file.
+/// Factor within which measured and modelled torques count as alike.
 const ALIKE: f64 = 3.0;
-/// Logarithmic distance from a known factor beyond which a factor is unknown.
+/// Largest logarithmic distance from a known factor.
 const UNKNOWN: f64 = 0.12;
 
-/// A factor that phase currents are often wrong by, its logarithmic prior and what it is.
+/// A frequent wrong factor of phase currents, its logarithmic prior and its description.
 type Factor = (f64, f64, &'static str);
 
-/// Torques of each joint, and where they come from.
+/// Torques of each joint and their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torques {
     /// By joint \[Nm\].
     pub tau: Vec<Vec<f64>>,
-    /// Their origin in words.
+    /// Description of the source.
     pub origin: String,
     /// Notes for the user.
     pub notes: Vec<String>,
@@ -40,7 +40,7 @@ pub struct Torques {
 /// The torques of a log.
 ///
 /// # Errors
-/// The log has none, or the model lacks what currents need.
+/// The log has no torques, or the model lacks data for the currents.
 pub fn torques(model: &Model, log: &Log) -> Result<Torques, IdentifyError> {
     let n = model.dof;
     let has = |channel: Channel| log.column(channel).is_some();
@@ -107,7 +107,7 @@ fn of_phases(
     for joint in 0..n {
         let all = vectors(a[joint], b[joint], c[joint]);
         let angle = motor_angle(model, log, joint, ratio[joint]);
-        // Amplitude to rms: the torque constant is per A rms.
+        // Converts amplitude to rms: the torque constant is per A rms.
         let scale = per_ampere[joint] * std::f64::consts::FRAC_1_SQRT_2;
         let mut current = if let Some(found) = signed(&all, &angle) {
             let order = if found.pole_pairs < 0 { ", phases in reverse order" } else { "" };
@@ -165,8 +165,7 @@ pub(super) fn motor_angle(model: &Model, log: &Log, joint: usize, ratio: f64) ->
     column(5).iter().zip(column(4)).map(|(q6, q5)| ratio * (q6 + coupling * q5)).collect()
 }
 
-/// Joints, from 0, whose torques are smaller than those of the others by their gear ratios: those
-/// of their motors.
+/// Joints, from 0, with motor torques: smaller than the others by their gear ratios.
 #[must_use]
 pub(super) fn motor_side(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<usize> {
     let (Some(motors), true) = (&model.motors, model.has_dynamics()) else { return Vec::new() };
@@ -192,14 +191,14 @@ pub(super) fn motor_side(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<usiz
     (0..model.dof).filter(is_motor).collect()
 }
 
-/// Torques of the model at some of the rows.
+/// Torques of the model at a subset of the rows.
 struct Rough {
     rows: Vec<usize>,
     /// Rates by joint.
     qd: Vec<Vec<f64>>,
     /// Torques of the rigid bodies by joint; `None` without dynamics.
     tau: Option<Vec<Vec<f64>>>,
-    /// The same with friction.
+    /// The same including friction.
     whole: Option<Vec<Vec<f64>>>,
     all: usize,
 }
@@ -247,8 +246,8 @@ impl Rough {
         self.rows.iter().map(|i| values[*i]).collect()
     }
 
-    /// Whether a joint's torque has the wrong sign: by its correlation with the model's, or, if that is
-    /// small, because friction would produce power.
+    /// Whether a joint's torque has the wrong sign: by its correlation with the model's or, if that
+    /// is small, because friction would produce power.
     fn is_reversed(&self, joint: usize, tau: &[f64]) -> bool {
         let tau = self.at(tau);
         let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
@@ -275,7 +274,7 @@ impl Rough {
         Some(signs)
     }
 
-    /// The missing scale factor by comparison with gravity, and a sentence on it.
+    /// The missing scale factor from gravity, and a sentence on it.
     fn factor(&self, tau: &[Vec<f64>]) -> (f64, String) {
         let Some(rigid) = &self.tau else {
             return (1.0, "scale of the currents: no model to compare with gravity".into());
@@ -323,7 +322,7 @@ impl Rough {
                 ),
             );
         }
-        // Other known factors, with the error of the file's masses that they would imply.
+        // Other known factors, with the error of the file's masses that each implies.
         let known = clarke.iter().chain(&of_root).map(|(other, ..)| *other);
         let others: Vec<String> = known
             .filter(|other| (other / factor).ln().abs() > f64::EPSILON)
@@ -353,8 +352,8 @@ impl Rough {
     }
 }
 
-/// The regression coefficient of `measured` on `expected`, beside friction and an offset, with its
-/// standard deviation.
+/// Regression coefficient of `measured` on `expected`, with friction and an offset as further
+/// regressors, and its standard deviation.
 fn slope(measured: &[f64], expected: &[f64], qd: &[f64]) -> Option<(f64, f64)> {
     let largest = qd.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let mut normal = nalgebra::Matrix4::<f64>::zeros();
@@ -376,7 +375,7 @@ fn slope(measured: &[f64], expected: &[f64], qd: &[f64]) -> Option<(f64, f64)> {
     Some((solution[0], (left * inverse[(0, 0)]).sqrt()))
 }
 
-/// Lengths with the sign of a rough torque, which may change only where the length is small.
+/// The lengths with the sign of a rough torque; the sign changes only where the length is small.
 fn by_segments(lengths: &[f64], rough: &[f64]) -> Vec<f64> {
     let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
     let mut out = Vec::with_capacity(lengths.len());

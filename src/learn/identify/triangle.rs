@@ -1,22 +1,22 @@
-//! Least squares from a stream of rows: A = Q R, of which only R is kept.
+//! Least squares from a stream of rows: A = Q R, and only R is stored.
 
 use nalgebra::DMatrix;
 
-/// Rows that are collected for each column before a factorisation.
+/// Rows per column that are collected before a factorisation.
 const ROWS_PER_COLUMN: usize = 3;
 
-/// The triangular factor of all rows so far; the last column is the right side.
+/// Triangular factor of all rows added so far; the last column is the right side.
 #[derive(Clone, Debug)]
 pub(super) struct Triangle {
     columns: usize,
-    /// R, in the upper rows; new rows below it.
+    /// R in the upper rows, new rows below it.
     work: DMatrix<f64>,
     waiting: usize,
     rows: usize,
 }
 
 impl Triangle {
-    /// Without rows; `unknowns` columns and a right side.
+    /// An empty factor with `unknowns` columns and a right side.
     #[must_use]
     pub(super) fn new(unknowns: usize) -> Triangle {
         let columns = unknowns + 1;
@@ -24,7 +24,7 @@ impl Triangle {
         Triangle { columns, work, waiting: 0, rows: 0 }
     }
 
-    /// Number of rows that went in.
+    /// Number of rows added.
     #[must_use]
     pub(super) fn rows(&self) -> usize {
         self.rows

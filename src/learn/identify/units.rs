@@ -1,4 +1,4 @@
-//! Plausibility of the units of a log, and what they seem to be.
+//! Plausibility checks of the units of a log.
 
 use crate::arm::dynamics::{Data, Load, rnea};
 use crate::arm::robot::Model;
@@ -7,27 +7,27 @@ use crate::learn::log::{Channel, Log, derivatives, median_step};
 use super::error::IdentifyError;
 use super::torque::motor_side;
 
-/// Quantile of the rates that counts as the largest.
+/// Quantile of the rates that counts as the largest rate.
 const FAST: f64 = 0.99;
-/// Largest rate of a joint whose limit is not known \[rad/s\].
+/// Largest rate of a joint without a known limit \[rad/s\].
 const LARGEST: f64 = 15.0;
-/// Factor of a joint's range beyond which a position is no overshoot.
+/// Factor of a joint's range above which a position is not an overshoot.
 const FAR: f64 = 2.0;
-/// The same for its rate: limits in robot files are rounded.
+/// Factor of a joint's rate limit that no rate reaches: robot files have rounded limits.
 const FAST_BEYOND: f64 = 8.0;
-/// Range \[°\] that the joint of an exciting motion exceeds.
+/// Range \[°\] that a joint exceeds in an exciting motion.
 const TINY: f64 = 6.3;
-/// Least angle that a joint turns, in the unit of its column, if it is taken to move.
+/// Least angle that a moving joint turns, in the unit of its column.
 const TURNS: f64 = 0.3;
-/// Time over which rates and positions are compared \[s\].
+/// Duration over which rates and positions are compared \[s\].
 const WINDOW: f64 = 0.1;
-/// Share of the expected change below which there is no change.
+/// Share of the expected change below which a column counts as constant.
 const STILL: f64 = 1e-3;
 /// Relative tolerance of a factor.
 const NEAR: f64 = 1.3;
-/// The same for motor-side torques, as the model is only roughly known.
+/// Tolerance factor for motor torques, because the model is only roughly known.
 const ROUGHLY: f64 = 3.0;
-/// Ratio of carried weight to that of the model's masses beyond which the torques are not its own.
+/// Ratio of measured to modelled weight beyond which the torques are not the model's.
 const STRANGE: f64 = 10.0;
 /// Least squared correlation of related columns.
 const RELATED: f64 = 0.25;
@@ -35,17 +35,17 @@ const RELATED: f64 = 0.25;
 const SLOWEST: f64 = 0.5;
 /// Largest overshoot beyond a position limit \[rad\].
 const OVERSHOT: f64 = 0.1;
-/// Factor of its limit that no joint's torque reaches.
+/// Factor of its limit that no torque reaches.
 const BEYOND: f64 = 10.0;
 /// Largest number of rows that are evaluated.
 const ROWS: usize = 4000;
 /// Degrees in one radian.
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
-/// Whether angles and rates are in radians.
+/// Checks that angles and rates are in radians.
 ///
 /// # Errors
-/// A column that is in degrees as it seems, or whose rates are not those of its positions.
+/// A column seems to be in degrees, or rates differ from those of the positions.
 pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
     let t = log.time();
     let window = ROWS.min(t.len());
@@ -103,8 +103,8 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
     Ok(())
 }
 
-/// How far the joint that moves most reaches \[rad\], where all angles were given in degrees,
-/// no joint turns as if they were, and all of them could be radians.
+/// Travel of the joint that moves most \[rad\], if all angles are declared in degrees and seem to
+/// be in radians.
 fn radians_in_degrees(model: &Model, log: &Log) -> Option<f64> {
     let mut most = 0.0_f64;
     for joint in 0..log.joints() {
@@ -124,8 +124,8 @@ fn radians_in_degrees(model: &Model, log: &Log) -> Option<f64> {
     (most > TURNS).then_some(most)
 }
 
-/// Squared correlation of a joint's logged rates with its motion, where it is low; over pieces long
-/// enough for the steps of an encoder.
+/// Squared correlation of a joint's logged rates with its motion, if it is low; over pieces that
+/// are long compared with encoder steps.
 fn unrelated(t: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
     let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
     let mut from = 0;
@@ -144,7 +144,7 @@ fn unrelated(t: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
     (own > 0.0 && share < RELATED).then_some(share)
 }
 
-/// Joints that go far beyond the robot's range, from 0, with how far \[rad\].
+/// Joints, from 0, far beyond the robot's range, with their largest angle \[rad\].
 #[must_use]
 pub fn beyond_range(model: &Model, log: &Log) -> Vec<(usize, f64)> {
     let furthest = |joint: usize| {
@@ -157,7 +157,7 @@ pub fn beyond_range(model: &Model, log: &Log) -> Vec<(usize, f64)> {
     (0..log.joints()).filter_map(furthest).collect()
 }
 
-/// Ratio of the logged rates to those of `x`; `None` where they are hardly correlated.
+/// Logged rates over those of `x`; `None` if they are hardly correlated.
 fn factor(t: &[f64], x: &[f64], logged: &[f64]) -> Option<f64> {
     let (mut both, mut own, mut theirs) = (0.0, 0.0, 0.0);
     for (found, logged) in derivatives(t, x).iter().zip(logged) {
@@ -171,11 +171,11 @@ fn factor(t: &[f64], x: &[f64], logged: &[f64]) -> Option<f64> {
     related.then(|| both / own)
 }
 
-/// Whether torques are those of the joints, as far as limits and a model with dynamics and
-/// motors can tell.
+/// Checks that the torques are joint torques, with the limits, the dynamics and the motors of the
+/// model.
 ///
 /// # Errors
-/// They never change, are beyond all limits, or smaller by the gear ratios.
+/// They are constant, far above the limits, or smaller by the gear ratios.
 pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), IdentifyError> {
     for (joint, tau) in tau.iter().enumerate() {
         let q = log.column(Channel::Position(joint)).unwrap_or_default();
@@ -215,8 +215,8 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
     Ok(())
 }
 
-/// Ratio of the weight in the torques to that of the model's masses, where it is far from 1 at all
-/// joints that carry any: the geometric mean, and a joint, from 0.
+/// Measured weight over that of the model's masses, if it is far from 1 at all joints that carry
+/// weight: the geometric mean, and a joint, from 0.
 #[must_use]
 pub fn weight_factor(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<(f64, usize)> {
     let carried = if model.has_dynamics() { carried(model, log, tau) } else { Vec::new() };
@@ -229,7 +229,7 @@ pub fn weight_factor(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Option<(f64,
     far(mean.exp()).then_some((mean.exp(), *first))
 }
 
-/// The joints that carry weight, from 0, each with its torque over that of the model's masses.
+/// The joints that carry weight, from 0, each with measured over modelled torque.
 fn carried(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<(usize, f64)> {
     let q: Vec<&[f64]> = log.of_joints(Channel::Position).unwrap_or_default();
     let every = log.time().len().div_ceil(ROWS).max(1);

@@ -8,13 +8,13 @@ use super::guess::at_flange;
 use super::least_squares::Solution;
 use super::settings::{Free, Settings};
 
-/// What was identified.
+/// Identified values.
 pub(super) struct Estimates<'a> {
     /// The free parameters.
     pub(super) values: &'a [f64],
-    /// Whether the coupling of the wrist is one of them.
+    /// The wrist coupling, if it was identified.
     pub(super) coupling: Option<f64>,
-    /// Whether the data tell something of each link.
+    /// Whether the data determine a parameter of each link.
     pub(super) informed: &'a [bool],
     /// Joints that never move, from 0.
     pub(super) resting: &'a [usize],
@@ -26,11 +26,11 @@ struct Update<'a> {
     settings: &'a Settings,
     estimates: &'a Estimates<'a>,
     model: Model,
-    /// Tables of the robot file that come from the identification.
+    /// Tables of the robot file that are identified.
     tables: Vec<String>,
 }
 
-/// `nominal` with the estimates in place of its own parameters, and the payload where that was free.
+/// `nominal` with the estimates, and the payload if it was free.
 pub(super) fn updated(
     nominal: &Model,
     settings: &Settings,
@@ -66,7 +66,7 @@ impl Update<'_> {
 
     fn links(&mut self, values: &[f64]) {
         let informed = self.estimates.informed;
-        // A link that the data do not inform stays as it was, where it was a body.
+        // A link without information keeps its parameters if they are physically possible.
         let found = values.chunks(RIGID).map(link_of).enumerate();
         self.model.links = found
             .map(|(k, new)| match self.nominal.links.get(k) {
@@ -78,14 +78,14 @@ impl Update<'_> {
         self.tables.extend(written.map(|k| format!("link {}", k + 1)));
     }
 
-    /// Friction and torque offsets, and rotors where those are among the values.
+    /// Writes friction and torque offsets, and rotors if they are among the values.
     fn joints(&mut self, values: &[f64]) {
         let (n, nominal) = (self.nominal.dof, self.nominal);
         let width = values.len() / n;
         let column = |kind: usize| -> Vec<f64> {
             (0..n).map(|joint| values[joint * width + width + kind - JOINT]).collect()
         };
-        // A resting joint tells nothing of its friction, which stays as it was.
+        // The friction of a resting joint is not identified and stays.
         let kept = |new: Vec<f64>, old: &[f64]| -> Vec<f64> {
             let rests = |joint: &usize| self.estimates.resting.contains(joint);
             (0..n).map(|joint| if rests(&joint) { old[joint] } else { new[joint] }).collect()
@@ -121,7 +121,7 @@ impl Update<'_> {
         model.sensors.torque_error.fill(0.0);
     }
 
-    /// States where the numbers come from.
+    /// Sets the origins of the parameters.
     fn origins(&mut self) {
         let is_replaced = |origin: &Origin| {
             let part = |table: &String| {
@@ -166,7 +166,7 @@ impl Update<'_> {
         self.model.origins = origins;
     }
 
-    /// The origin of a list with a value for each joint, some of which may not be identified.
+    /// The origin of a list with a value for each joint, some of which may be resting.
     fn origin_of_joints(&self, table: &str, key: &str) -> Origin {
         let source = &self.settings.source;
         let mut new = origin(table, key, source);
@@ -206,7 +206,7 @@ pub(super) fn informed_links(base: &BaseParameters, solution: &Solution) -> Vec<
     informed
 }
 
-/// Values that a robot can have, and the negative ones, which only its log can.
+/// Splits values into positive and negative ones; the latter exist only in the log.
 fn split_by_sign(values: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
     values.into_iter().map(|value| (value.max(0.0), value.min(0.0))).unzip()
 }
@@ -221,7 +221,7 @@ fn origin(table: &str, key: &str, source: &str) -> Origin {
     }
 }
 
-/// The motors with rotors of the inertias `inertia`, at the joints \[kg m²\].
+/// The motors with rotors of the inertias `inertia` at the joints \[kg m²\].
 fn with_rotors(nominal: &Model, inertia: &[f64]) -> Motors {
     let mut motors = nominal.motors.clone().unwrap_or_else(|| Motors {
         ratio: vec![1.0; nominal.dof],

@@ -1,5 +1,5 @@
-//! Whether residuals are noise: their autocorrelation and the test of G. Ljung and G. Box,
-//! "On a measure of lack of fit in time series models", Biometrika 65, 1978.
+//! Test of residuals for white noise: autocorrelation and the test of G. Ljung and G. Box, "On a
+//! measure of lack of fit in time series models", Biometrika 65, 1978.
 
 use super::noise::{Residual, autocovariances};
 
@@ -11,19 +11,19 @@ const INTERVAL: f64 = 1.96;
 /// Autocorrelation of the residuals of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whiteness {
-    /// Autocorrelation at lag 1, 2, … of the instants.
+    /// Autocorrelation at lag 1, 2, …
     pub autocorrelation: Vec<f64>,
-    /// 95 % bound on the size of an autocorrelation of white noise.
+    /// 95 % bound of the autocorrelation of white noise.
     pub band: f64,
     /// Number of lags outside the bound.
     pub outside: usize,
     /// Q = n (n + 2) Σ ρ²/(n − lag).
     pub ljung_box: f64,
-    /// Probability of this or a larger value for white noise.
+    /// Probability of at least this value for white noise.
     pub p_value: f64,
 }
 
-/// The whiteness of residuals in the order of time; `None` with too few.
+/// The whiteness of chronological residuals; `None` with too few.
 #[must_use]
 pub(super) fn whiteness(residuals: &[Residual]) -> Option<Whiteness> {
     if residuals.len() < 4 * LAGS {
@@ -47,7 +47,7 @@ pub(super) fn whiteness(residuals: &[Residual]) -> Option<Whiteness> {
     })
 }
 
-/// P(χ² > x), in closed form, which needs no crate of distributions, of [`LAGS`] degrees of freedom, an even number 2 m: e^(−x/2) Σ (x/2)^k / k!, k < m.
+/// P(χ² > x) for [`LAGS`] = 2 m degrees of freedom: e^(−x/2) Σ (x/2)^k / k!, k < m.
 fn chi_square_beyond(x: f64) -> f64 {
     let half = 0.5 * x;
     let mut term = (-half).exp();
@@ -65,7 +65,7 @@ mod tests {
 
     use super::*;
 
-    /// Runs of white noise, and the share of them that the test may refuse at 5 %.
+    /// Number of runs, and the share that the test may reject at 5 %.
     const RUNS: u64 = 400;
     const REFUSED: std::ops::RangeInclusive<f64> = 0.02..=0.08;
 
@@ -90,7 +90,7 @@ mod tests {
         assert!(refused(0.4) > 0.99);
     }
 
-    /// 31.41 is the tabled quantile of 95 % for 20 degrees of freedom.
+    /// 31.41 is the tabulated 95 % quantile for 20 degrees of freedom.
     #[test]
     fn chi_square_tail_matches_the_table() {
         assert!((chi_square_beyond(31.410_43) - 0.05).abs() < 1e-6);

@@ -1,7 +1,7 @@
-//! Whether the gears of axes 5 and 6 are coupled: the coupling with which a fit of all parameters has
-//! the least residuals.
+//! Identification of the gear coupling of axes 5 and 6: the coupling that gives a fit of all
+//! parameters the least residuals.
 //!
-//! `gap::coupled` finds a change of the coupling of a known model, beside other effects.
+//! `gap::coupled` identifies a change of a known coupling, together with other effects.
 
 use crate::arm::dynamics::BaseParameters;
 use crate::arm::robot::Model;
@@ -12,20 +12,20 @@ use super::factors::Factors;
 use super::fit::without_errors;
 use super::samples::{Samples, Source};
 
-/// Couplings that are tried first.
+/// Couplings of the coarse search.
 const TRIED: [f64; 8] = [1.0, -1.0, 0.5, -0.5, 1.5, -1.5, 2.0, -2.0];
 /// Least decrease of the sum of the logarithms of both joints' residuals.
 const TOLD: f64 = 0.4;
-/// Half width of the interval around a tried coupling that is searched.
+/// Half width of the fine search around the best of them.
 const AROUND: f64 = 0.3;
-/// Steps of the golden section.
+/// Steps of the golden section search.
 const STEPS: usize = 16;
-/// A result this near to a tried coupling counts as that one.
+/// A result this near to a coarse value is replaced by it.
 const ROUND: f64 = 0.03;
 /// Largest number of instants.
 const INSTANTS: usize = 6000;
 
-/// The coupling \[1\], where it explains the torques of axes 5 and 6 far better than none.
+/// The coupling \[1\], if it explains the torques of axes 5 and 6 much better than none.
 #[must_use]
 pub(super) fn wrist_coupling(
     model: &Model,

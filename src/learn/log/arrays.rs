@@ -6,13 +6,13 @@ use super::error::LogError;
 use super::rows::Rows;
 
 impl Log {
-    /// The log in `columns` of equal length, each with the name that a file would give it: `t` \[s\],
-    /// `q1` \[rad\] or `q1_deg`, `tau1` \[Nm\] ([`Channel`](super::Channel) lists all). Unknown names
-    /// are skipped; rows with a value that is not finite or a time that does not ascend are left
-    /// out, as [`rejected`](Log::rejected) tells. Rows count from 1.
+    /// The log of `columns` of equal length, with the names of a file's columns: `t` \[s\], `q1`
+    /// \[rad\] or `q1_deg`, `tau1` \[Nm\] ([`Channel`](super::Channel) lists all). Unknown names
+    /// are skipped; rows with a value that is not finite or a time that does not ascend are in
+    /// [`rejected`](Log::rejected). Rows count from 1.
     ///
     /// # Errors
-    /// No time, a joint left out, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows.
+    /// No time, a missing joint, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows.
     pub fn from_columns(columns: &[(&str, &[f64])]) -> Result<Log, LogError> {
         let map = ColumnMap::default();
         let names: Vec<String> = columns.iter().map(|(name, _)| (*name).to_owned()).collect();

@@ -1,9 +1,9 @@
-//! The mean of the repetitions of a motion, and their noise.
+//! Mean and noise of the repetitions of a motion.
 //!
-//! The positions of a repeated motion are a Fourier series, fitted by least squares and
-//! differentiated analytically; torques are averaged over the repetitions, whose spread
-//! tells the noise (J. Swevers, C. Ganseman, D. Tükel, J. De Schutter, H. Van Brussel,
-//! "Optimal robot excitation and identification", IEEE T-RA 13, 1997).
+//! The positions are fitted by a Fourier series and differentiated analytically; torques are
+//! averaged over the repetitions, and their spread gives the noise (J. Swevers, C. Ganseman, D.
+//! Tükel, J. De Schutter, H. Van Brussel, "Optimal robot excitation and identification", IEEE T-RA
+//! 13, 1997).
 
 use std::f64::consts::TAU;
 
@@ -11,13 +11,13 @@ use super::differentiate::derivatives;
 use super::periods::Periods;
 use super::uniform::Section;
 
-/// Harmonics of the series at most.
+/// Largest number of harmonics.
 const HARMONICS: usize = 240;
-/// Share of these above which a series does not converge.
+/// Share of these above which the series converges too slowly.
 const ENDLESS: f64 = 0.9;
-/// Frequencies at which rounding is measured.
+/// Number of frequencies that determine the rounding noise.
 const IN_TAIL: usize = 60;
-/// A harmonic counts where its power is this many times what noise would give it.
+/// Least ratio of a harmonic's power to that of noise.
 const ABOVE_NOISE: f64 = 16.0;
 
 /// The mean of repetitions.
@@ -25,13 +25,13 @@ const ABOVE_NOISE: f64 = 16.0;
 pub struct Averaged {
     /// Interval of the samples \[s\].
     pub step: f64,
-    /// Harmonics of the series of the positions.
+    /// Number of harmonics of the position series.
     pub harmonics: usize,
     /// Positions, rates and accelerations of each joint over one period.
     pub motion: [Vec<Vec<f64>>; 3],
     /// The mean of the other series over one period.
     pub mean: Vec<Vec<f64>>,
-    /// How each repetition of these differs from the mean: by series, by repetition.
+    /// Deviation of each repetition from that mean: by series, by repetition.
     pub spread: Vec<Vec<Vec<f64>>>,
 }
 
@@ -39,10 +39,10 @@ pub struct Averaged {
 struct Repetitions<'a> {
     section: &'a Section,
     periods: &'a Periods,
-    /// Samples of a period, and their interval \[s\].
+    /// Number of samples in a period, and their interval \[s\].
     samples: usize,
     step: f64,
-    /// For each sample of a period, the repetitions in which the log lost it.
+    /// For each sample of a period, the repetitions in which it is lost.
     lost: Vec<Vec<usize>>,
 }
 
@@ -60,19 +60,19 @@ impl Repetitions<'_> {
         repetitions
     }
 
-    /// Where sample `k` of a repetition is among the samples of the section.
+    /// Place of sample `k` of a repetition among the samples of the section.
     fn place(&self, repetition: usize, k: usize) -> f64 {
         let start = self.section.time(self.periods.first);
         let t = start + self.periods.period * repetition as f64 + self.step * k as f64;
         (t - self.section.start) / self.section.step
     }
 
-    /// A series by repetition.
+    /// The repetitions of a series.
     fn series(&self, series: &[f64]) -> Vec<Vec<f64>> {
         let count = self.periods.count;
         let of = |r: usize| (0..self.samples).map(|k| sample(series, self.place(r, k))).collect();
         let mut all: Vec<Vec<f64>> = (0..count).map(of).collect();
-        // The other repetitions estimate a lost sample better than its neighbours do.
+        // The other repetitions estimate a lost sample better than neighbouring samples.
         for (k, lost) in self.lost.iter().enumerate() {
             if lost.is_empty() || lost.len() == count {
                 continue;
@@ -121,8 +121,7 @@ fn mean_of(repetitions: &[Vec<f64>]) -> Vec<f64> {
     (0..samples).map(|k| repetitions.iter().map(|one| one[k]).sum::<f64>() / n).collect()
 }
 
-/// The highest harmonic of a repeated motion that stands out of the noise, and the series up to it
-/// with its two derivatives.
+/// The highest harmonic above the noise, and the Fourier series up to it with two derivatives.
 fn smooth(repetitions: &[Vec<f64>], period: f64) -> (usize, [Vec<f64>; 3]) {
     let mean = mean_of(repetitions);
     let (samples, count) = (mean.len(), repetitions.len() as f64);
@@ -133,8 +132,8 @@ fn smooth(repetitions: &[Vec<f64>], period: f64) -> (usize, [Vec<f64>; 3]) {
         .sum::<f64>()
         / ((count - 1.0) * samples as f64);
     let series = fourier(&mean, 0..=most);
-    // Power of a coefficient of the mean that is noise alone. Rounding is the same in each
-    // repetition: only frequencies without motion show it.
+    // Noise power of a coefficient of the mean. Rounding errors are the same in each repetition, so
+    // that only frequencies without motion show them.
     let tail: Vec<[f64; 2]> = fourier(&mean, tail(samples));
     let rounding = tail.iter().map(|[a, b]| a * a + b * b).sum::<f64>();
     let rounding = rounding / tail.len().max(1) as f64;
@@ -153,17 +152,17 @@ fn smooth(repetitions: &[Vec<f64>], period: f64) -> (usize, [Vec<f64>; 3]) {
     (highest, evaluated(&series[..=highest], samples, period))
 }
 
-/// Rates and accelerations of a period that repeats, by local polynomials.
+/// Rates and accelerations of a periodic series, by local polynomials.
 fn beside_jumps(x: &[f64], step: f64) -> [Vec<f64>; 2] {
     let n = x.len();
-    // With a period to each side, no sample is at an end.
+    // A period on each side avoids boundary effects.
     let t: Vec<f64> = (0..3 * n).map(|k| step * k as f64).collect();
     let all: Vec<f64> = x.iter().cycle().take(3 * n).copied().collect();
     let found = derivatives(&t, &all);
     [0, 1].map(|order| found[n..2 * n].iter().map(|of| of.map_or(0.0, |of| of[order])).collect())
 }
 
-/// The value between samples, on a line.
+/// The value between samples, by linear interpolation.
 fn sample(x: &[f64], place: f64) -> f64 {
     let last = x.len() - 1;
     let place = place.clamp(0.0, last as f64);
@@ -176,14 +175,14 @@ fn sample(x: &[f64], place: f64) -> f64 {
     x[before] * (1.0 - share) + x[(before + 1).min(last)] * share
 }
 
-/// Coefficients of cosine and sine, the mean first, of one period.
+/// Coefficients of cosine and sine of one period; the mean comes first.
 fn fourier(x: &[f64], harmonics: impl Iterator<Item = usize>) -> Vec<[f64; 2]> {
     let n = x.len() as f64;
     harmonics
         .map(|k| {
             let (mut a, mut b) = (0.0, 0.0);
             for (i, value) in x.iter().enumerate() {
-                // Whole turns are left out, so that the angle keeps its digits.
+                // Whole turns are removed to keep the accuracy of the angle.
                 let turn = (k * i % x.len()) as f64 / n;
                 let (sin, cos) = (TAU * turn).sin_cos();
                 a += value * cos;
@@ -195,7 +194,7 @@ fn fourier(x: &[f64], harmonics: impl Iterator<Item = usize>) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Some frequencies above those of any motion.
+/// Some frequencies above those of a motion.
 fn tail(samples: usize) -> impl Iterator<Item = usize> {
     let (from, to) = (3 * samples / 8, samples.saturating_sub(1) / 2);
     (from..to).step_by(((to - from.min(to)) / IN_TAIL).max(1))

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Steps of the search for each doubling of the frequency.
+/// Steps of the search per octave.
 const PER_OCTAVE: i32 = 4;
 /// The highest frequency of the search, relative to the sampling rate.
 const HIGHEST: f64 = 0.25;
 
-/// The frequency \[Hz\] below which the share `share` of the power of `x` lies, sampled every
-/// `step` \[s\]; the lowest one searched where there is no power.
+/// The frequency \[Hz\] below which `share` of the power of `x` lies, sampled every `step` \[s\];
+/// the lowest frequency of the search if there is no power.
 #[must_use]
 pub fn bandwidth(x: &[f64], step: f64, share: f64) -> f64 {
     let highest = HIGHEST / step;
@@ -20,7 +20,7 @@ pub fn bandwidth(x: &[f64], step: f64, share: f64) -> f64 {
     (0..=count).rev().map(frequency).find(|f| passed(x, f * step) >= share * all).unwrap_or(highest)
 }
 
-/// Power behind a Butterworth low-pass of second order; `cutoff` per sample.
+/// Power after a second-order Butterworth low-pass filter; `cutoff` per sample.
 fn passed(x: &[f64], cutoff: f64) -> f64 {
     let w = 2.0 * PI * cutoff;
     let (sin, cos) = w.sin_cos();

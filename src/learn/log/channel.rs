@@ -1,4 +1,4 @@
-//! What the columns of a log are called.
+//! Names of the columns of a log.
 
 /// A measured quantity; joints count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,13 +25,13 @@ pub enum Channel {
     Sync,
     /// `cycle`, the number of the repetition.
     Cycle,
-    /// `line` of the program.
+    /// `line`, the line of the program.
     Line,
-    /// `cmd`, the number of the movement that runs; 0 = none.
+    /// `cmd`, the number of the current movement; 0 = none.
     Command,
 }
 
-/// Channels that a log has for each joint or for none.
+/// Channels that a log has for all joints or for none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Family {
     Position,
@@ -44,7 +44,7 @@ pub(super) enum Family {
     Single,
 }
 
-/// A column's channel, and the factor to its SI unit.
+/// A column's channel, and its factor to the SI unit.
 pub(super) struct Named {
     pub(super) channel: Channel,
     pub(super) unit: f64,
@@ -64,7 +64,7 @@ impl Channel {
         }
     }
 
-    /// The channel of a column's name, in any case; `None` for an unknown name.
+    /// The channel of a column name, regardless of case; `None` for an unknown name.
     pub(super) fn named(name: &str) -> Option<Named> {
         let name = name.trim().to_ascii_lowercase();
         let plain = |channel| Some(Named { channel, unit: 1.0 });
@@ -106,7 +106,7 @@ impl Channel {
         }
     }
 
-    /// The joint, of those that have one.
+    /// The joint of the channel, if any.
     pub(super) fn joint(self) -> Option<usize> {
         match self {
             Channel::Position(joint)

@@ -1,12 +1,12 @@
-//! Which columns of a file are which channels.
+//! Assignment of the columns of a file to channels.
 
 use super::channel::{Channel, Named};
 use super::error::LogError;
 
-/// Other names of columns, as `--map` gives them.
+/// Column names from `--map`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ColumnMap {
-    /// Name of a channel, such as `tau1` or `q1_deg`, and the column that has it.
+    /// Name of a channel, such as `tau1` or `q1_deg`, and its column.
     pairs: Vec<(String, String)>,
 }
 
@@ -14,7 +14,7 @@ impl ColumnMap {
     /// Reads `tau1=MotorTorque_1,q1_deg=J1`.
     ///
     /// # Errors
-    /// A part that is not `CHANNEL=COLUMN`, an unknown channel, or one that is there twice.
+    /// A part is not `CHANNEL=COLUMN`, or a channel is unknown or repeated.
     pub fn parse(text: &str) -> Result<ColumnMap, LogError> {
         let mut pairs: Vec<(String, String)> = Vec::new();
         for part in text.split(',').filter(|part| !part.trim().is_empty()) {
@@ -39,13 +39,13 @@ impl ColumnMap {
         Ok(ColumnMap { pairs })
     }
 
-    /// The channel of a column's name.
+    /// The channel of a column name.
     fn named(&self, column: &str) -> Option<Named> {
         if let Some((channel, _)) = self.pairs.iter().find(|(_, known)| known == column) {
             return Channel::named(channel);
         }
         let named = Channel::named(column)?;
-        // A channel that another column is named for is not this one.
+        // A mapped channel does not use its default name.
         let taken = |(channel, _): &(String, String)| {
             Channel::named(channel).is_some_and(|other| other.channel == named.channel)
         };
@@ -60,7 +60,7 @@ pub(super) struct Column {
     pub(super) named: Named,
 }
 
-/// The recognised ones of some columns.
+/// The recognised columns among `names`.
 pub(super) fn recognised(names: &[String], map: &ColumnMap) -> Vec<Column> {
     let column = |(index, name): (usize, &String)| {
         let name = name.trim().to_owned();
@@ -69,11 +69,10 @@ pub(super) fn recognised(names: &[String], map: &ColumnMap) -> Vec<Column> {
     names.iter().enumerate().filter_map(column).collect()
 }
 
-/// Whether the columns make a log; `names` are all that the file has.
+/// Checks that the columns form a log; `names` are all columns of the file.
 ///
 /// # Errors
-/// No time, two columns of one channel, a joint left out, or a mapped column that is not
-/// there.
+/// No time, two columns for one channel, a missing joint, or a missing mapped column.
 pub(super) fn check(columns: &[Column], names: &[String], map: &ColumnMap) -> Result<(), LogError> {
     let header = || {
         let joined: String = names.join(",").chars().take(80).collect();

@@ -1,5 +1,5 @@
-//! Logs as CSV: delimiter and decimal comma are detected, and rows that can't be
-//! used are left out with their number.
+//! Logs as CSV. Delimiter and decimal comma are detected; unusable rows are left out with their
+//! number.
 
 use std::io::Read;
 
@@ -10,22 +10,21 @@ use super::data::Log;
 use super::error::LogError;
 use super::rows::Rows;
 
-/// What may stand between two columns.
+/// Possible delimiters.
 const DELIMITERS: [u8; 5] = *b",;\t| ";
 
 /// The log in the bytes of a CSV file.
 ///
 /// # Errors
-/// A header that can't be understood, or fewer than [`MIN_ROWS`](super::MIN_ROWS) usable
-/// rows.
+/// An unknown header, or fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows.
 pub fn read_csv(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
     read_rows(bytes, std::io::empty(), map)
 }
 
-/// The same of a file whose beginning, with the header, is `head`.
+/// Reads a file that begins with `head`, which contains the header.
 ///
 /// # Errors
-/// As of [`read_csv`], and a stream that breaks off.
+/// The errors of [`read_csv`], and an interrupted stream.
 pub(super) fn read_rows(head: &[u8], rest: impl Read, map: &ColumnMap) -> Result<Log, LogError> {
     let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
     let (delimiter, names, columns) = DELIMITERS
@@ -55,7 +54,7 @@ pub(super) fn read_rows(head: &[u8], rest: impl Read, map: &ColumnMap) -> Result
     rows.finish()
 }
 
-/// The names of the columns if `delimiter` stands between them.
+/// The column names with this delimiter.
 fn names(bytes: &[u8], delimiter: u8) -> Vec<String> {
     let mut reader = ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(bytes);
     let Ok(header) = reader.byte_headers() else { return Vec::new() };
@@ -70,7 +69,7 @@ fn numbers(
     row: &mut Vec<f64>,
 ) -> Result<(), String> {
     if record.len() != width {
-        // Commas in numbers that stand between commas.
+        // Probably decimal commas between delimiting commas.
         let hint = if record.len() + 1 >= 2 * width {
             "; write decimal points, or another delimiter than the decimal comma"
         } else {
@@ -82,7 +81,7 @@ fn numbers(
     for column in columns {
         let text = String::from_utf8_lossy(record.get(column.index).unwrap_or_default());
         let text = text.trim();
-        // A comma in a number is a decimal one: a delimiter would have ended the field.
+        // A comma in a field is a decimal comma, not a delimiter.
         let value = text.parse::<f64>().or_else(|_| text.replacen(',', ".", 1).parse());
         match value {
             Ok(value) if value.is_finite() => row.push(value * column.named.unit),

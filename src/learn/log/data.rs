@@ -2,30 +2,30 @@
 
 use super::channel::{Channel, Family};
 
-/// A log needs this many usable rows.
+/// Least number of usable rows.
 pub const MIN_ROWS: usize = 10;
 
-/// A log in SI units and radians; time ascends from row to row.
+/// A log in SI units and radians with ascending times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Log {
-    /// What is in which column of `values`.
+    /// The channels of the columns in `values`.
     pub channels: Vec<Channel>,
     /// A column for each channel, all of the same length.
     pub values: Vec<Vec<f64>>,
-    /// Line of the file of each usable row; the header is 1.
+    /// Line in the file of each usable row; the header is line 1.
     pub rows: Vec<u64>,
-    /// Rows that were left out.
+    /// Rejected rows.
     pub rejected: Vec<Rejected>,
-    /// Angles that the file had in degrees.
+    /// Channels that the file has in degrees.
     pub degrees: Vec<Channel>,
 }
 
-/// A row that cannot be used.
+/// A rejected row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rejected {
-    /// Line of the file; the header is 1.
+    /// Line in the file; the header is line 1.
     pub row: u64,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
@@ -36,7 +36,7 @@ impl Log {
         self.column(Channel::Time).unwrap_or(&[])
     }
 
-    /// The log with only the rows of these indices.
+    /// The rows of the log with these indices.
     #[must_use]
     pub fn of_rows(&self, kept: &[usize]) -> Log {
         let of = |x: &Vec<f64>| kept.iter().map(|row| x[*row]).collect();
@@ -62,8 +62,7 @@ impl Log {
         Some(&self.values[index])
     }
 
-    /// The columns that `channel` names for each joint, in order; `None` where one is
-    /// missing.
+    /// The columns of `channel` for all joints in order; `None` if one is missing.
     #[must_use]
     pub fn of_joints(&self, channel: fn(usize) -> Channel) -> Option<Vec<&[f64]>> {
         (0..self.joints()).map(|joint| self.column(channel(joint))).collect()

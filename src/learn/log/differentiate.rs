@@ -1,55 +1,53 @@
 //! First and second derivatives of sampled series.
 //!
-//! A polynomial is fitted by least squares to the samples around each one, and
-//! differentiated there (A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of
-//! data by simplified least squares procedures", Anal. Chem. 36, 1964), in the times as
-//! they are. The window is symmetric, so that there is no delay. Its width is chosen
-//! for each series: the widest whose leave-one-out prediction error is close to the
-//! least. At the ends of a section the window is that of the last sample which
-//! has both sides.
+//! A polynomial is fitted by least squares to the samples around each sample and differentiated
+//! there (A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of data by simplified least
+//! squares procedures", Anal. Chem. 36, 1964), at the logged times. The window is symmetric, so
+//! that there is no delay. Its width is chosen for each series: the widest one whose leave-one-out
+//! prediction error is close to the least. At the ends of a section the window is that of the last
+//! sample with a symmetric one.
 //!
-//! Where an acceleration jumps, as at the ramps of a move, no polynomial fits across. There the
-//! window is moved and narrowed, with fewer terms, until it fits as well as the noise lets it: of
-//! all that do, the one whose acceleration is surest.
+//! No polynomial fits across a jump of the acceleration. There the window is moved and narrowed,
+//! with fewer terms, until the residuals are within the noise; among these fits the one with the
+//! least variance of the acceleration is used.
 
 use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
 
-/// Coefficients of the polynomial: degree 5.
+/// Number of coefficients of the polynomial: degree 5.
 const TERMS: usize = 6;
-/// Those beside a jump.
+/// Number of coefficients beside a jump.
 const FEW_TERMS: usize = 4;
-/// Deviations of the mean square that a fit leaves of noise alone, beyond which it does not fit.
+/// Largest deviation of a fit's mean square from noise, in standard deviations.
 const UNFIT: f64 = 5.0;
-/// Places of a window around a sample that are tried, about.
+/// Approximate number of window positions around a sample that are tried.
 const PLACES: usize = 8;
-/// The quantile of the changes within a window that counts as fast, and the share of it that
-/// counts as moving.
+/// The quantile of the changes within a window that counts as fast, and the share of it above which
+/// a window counts as moving.
 const FAST: f64 = 0.9;
 const MOVING: f64 = 0.1;
-/// Samples to each side of one, by choice.
+/// Possible numbers of samples to each side.
 const HALF_WIDTHS: [usize; 8] = [4, 6, 9, 13, 19, 28, 40, 56];
-/// How much the squared error of prediction may exceed the least: rates gain more from a
-/// wide window than positions.
+/// Accepted ratio of the squared prediction error to the least one: rates profit more from a wide
+/// window than positions.
 const NEXT_TO_LEAST: f64 = 1.05;
-/// At most about this many samples are predicted for the choice.
+/// Approximate largest number of samples whose prediction is evaluated.
 const TRIALS: usize = 400;
 /// An interval longer than the median by this factor ends a section.
 const GAP: f64 = 5.0;
-/// A rate below this many of its standard deviations can't be told from rest.
+/// A rate below this number of standard deviations counts as 0.
 const AT_REST: f64 = 3.0;
 
-/// First and second derivative of `x`, per s and s², at the times `t` \[s\], which ascend;
-/// `None` at a sample of a section that is too short for a parabola. A first derivative that
-/// the noise does not let be told from 0 is 0.
+/// First and second derivative of `x`, per s and s², at the ascending times `t` \[s\]; `None` in a
+/// section that is too short for a parabola. A first derivative within the noise is 0.
 #[must_use]
 pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     let sections = sections(t);
     let half = half_width(t, x, &sections);
     let mut found = vec![None; t.len()];
     let smooth = Smooth::new(t, x, &sections);
-    // The noise of the samples, from how well they are predicted, but for jumps.
+    // Variance of the noise, from prediction errors; jumps increase these.
     let noise = error_of(t, x, &sections, half).unwrap_or(0.0).min(smooth.variance);
     for [from, to] in &sections {
         for i in *from..*to {
@@ -63,7 +61,7 @@ pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     found
 }
 
-/// First and last (exclusive) sample of each part without a gap.
+/// First and last (exclusive) sample of each section without a gap.
 fn sections(t: &[f64]) -> Vec<[usize; 2]> {
     let mut intervals: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
     intervals.sort_by(f64::total_cmp);
@@ -79,7 +77,7 @@ fn sections(t: &[f64]) -> Vec<[usize; 2]> {
     sections
 }
 
-/// The half width of the window for a series.
+/// Half width of the window for a series.
 fn half_width(t: &[f64], x: &[f64], sections: &[[usize; 2]]) -> usize {
     let errors: Vec<(usize, f64)> = HALF_WIDTHS
         .iter()
@@ -90,15 +88,14 @@ fn half_width(t: &[f64], x: &[f64], sections: &[[usize; 2]]) -> usize {
     wide.map_or(HALF_WIDTHS[0], |(half, _)| *half)
 }
 
-/// Mean squared error of a sample that is predicted from those around it; `None` where no
-/// window of this width fits.
+/// Mean squared leave-one-out prediction error; `None` if no window of this width fits.
 fn error_of(t: &[f64], x: &[f64], sections: &[[usize; 2]], half: usize) -> Option<f64> {
     let stride = t.len().div_ceil(TRIALS).max(1);
     let (mut sum, mut count) = (0.0, 0.0);
     for [from, to] in sections.iter().filter(|[from, to]| to - from > 2 * half) {
         for i in (from + half..to - half).step_by(stride) {
             let Some(fit) = fit(t, x, [*from, *to], i, half) else { continue };
-            // The prediction without the sample itself, from the fit with it.
+            // The leave-one-out error follows from the fit with the sample.
             let miss = (x[i] - fit.value) / (1.0 - fit.leverage).max(f64::EPSILON);
             sum += miss * miss;
             count += 1.0;
@@ -107,7 +104,7 @@ fn error_of(t: &[f64], x: &[f64], sections: &[[usize; 2]], half: usize) -> Optio
     (count > 0.0).then(|| sum / count)
 }
 
-/// A series, and the noise of its samples as the narrowest windows show it.
+/// A series, and the variance of its noise in the narrowest windows.
 struct Smooth<'a> {
     t: &'a [f64],
     x: &'a [f64],
@@ -126,18 +123,18 @@ impl<'a> Smooth<'a> {
                 Some([(x[i + half] - x[i - half]).abs(), fit.left])
             })
             .collect();
-        // What rests is rounded to the same number again and again: its noise does not show.
+        // A resting series is rounded to a constant, which hides its noise.
         let fast = quantile(looks.iter().map(|of| of[0]).collect(), FAST);
         let moving = looks.iter().filter(|of| of[0] >= MOVING * fast);
         Smooth { t, x, variance: quantile(moving.map(|of| of[1]).collect(), 0.5) }
     }
 
-    /// Whether a fit leaves no more than noise.
+    /// Whether the residuals of a fit are within the noise.
     fn fits(&self, fit: &Fit) -> bool {
         fit.left <= (1.0 + UNFIT * (2.0 / fit.freedom).sqrt()) * self.variance
     }
 
-    /// The fit around sample `i` of a section, or beside it where it does not fit.
+    /// The fit around sample `i` of a section, or an off-centre fit if the centred one fails.
     fn fit(&self, [from, to]: [usize; 2], i: usize, half: usize) -> Option<Fit> {
         let centred = fit(self.t, self.x, [from, to], i, half)?;
         if self.variance == 0.0 || self.fits(&centred) {
@@ -150,7 +147,7 @@ impl<'a> Smooth<'a> {
             let [low, high] =
                 [(i + 1).saturating_sub(width).max(from), i.min(to.saturating_sub(width))];
             let places = (low..high).step_by((width / PLACES).max(1)).chain([high]);
-            // A section shorter than the window has no place for it.
+            // A section shorter than the window has no position for it.
             for first in places.filter(|first| *first >= low) {
                 for terms in [FEW_TERMS, TERMS] {
                     let Some(fit) = window_fit(self.t, self.x, first..first + width, i, terms)
@@ -173,7 +170,7 @@ impl<'a> Smooth<'a> {
     }
 }
 
-/// The value below which a share of the others lies; 0 of none.
+/// The quantile of values; 0 for an empty list.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1) as f64;
@@ -184,13 +181,13 @@ struct Fit {
     value: f64,
     rate: f64,
     acceleration: f64,
-    /// Change of the value per change of the sample.
+    /// Derivative of the fitted value with respect to the sample.
     leverage: f64,
-    /// Variance of the rate per variance of the samples \[1/s²\].
+    /// Variance of the rate over that of the samples \[1/s²\].
     rate_variance: f64,
-    /// That of the acceleration \[1/s⁴\].
+    /// Variance of the acceleration over that of the samples \[1/s⁴\].
     acceleration_variance: f64,
-    /// Mean square that is left, and its degrees of freedom.
+    /// Mean square of the residuals, and its degrees of freedom.
     left: f64,
     freedom: f64,
 }
@@ -199,11 +196,11 @@ struct Fit {
 fn fit(t: &[f64], x: &[f64], [from, to]: [usize; 2], i: usize, half: usize) -> Option<Fit> {
     let width = (2 * half + 1).min(to - from);
     let first = i.saturating_sub(half).clamp(from, to - width);
-    // A short section gets a polynomial of fewer terms, down to a parabola.
+    // A short section has a polynomial with fewer terms, down to a parabola.
     window_fit(t, x, first..first + width, i, TERMS.min(width))
 }
 
-/// The polynomial of so many terms in a window, at sample `i`.
+/// The polynomial with `terms` coefficients in a window, at sample `i`.
 fn window_fit(t: &[f64], x: &[f64], window: Range<usize>, i: usize, terms: usize) -> Option<Fit> {
     if terms < 3 {
         return None;
@@ -226,7 +223,7 @@ fn window_fit(t: &[f64], x: &[f64], window: Range<usize>, i: usize, terms: usize
     for k in window.clone() {
         let powers = powers(k);
         normal += powers * powers.transpose();
-        // Differences to the sample keep their digits where positions are large.
+        // Differences to the sample keep the accuracy for large positions.
         right += powers * (x[k] - x[i]);
     }
     let inverse = normal.cholesky()?.inverse();
@@ -253,13 +250,13 @@ mod tests {
 
     const STEP: f64 = 0.01;
     const HARD: f64 = 8.0;
-    /// An error that no ramp has but beside its ends.
+    /// An error that occurs only near the ends of a ramp.
     const LARGE: f64 = 2.0;
-    /// Jumps of the motion, and rows that may be wrong at each.
+    /// Number of jumps of the motion, and of rows that may be wrong at each.
     const JUMPS: usize = 12;
     const WRONG: usize = 2;
 
-    /// Moves of trapezoids of the speed, rounded as encoders do.
+    /// Moves with trapezoidal speed, rounded to encoder steps.
     #[test]
     fn accelerations_that_jump_are_not_smeared() {
         let [mut t, mut x, mut exact] = [vec![], vec![], vec![]];

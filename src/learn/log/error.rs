@@ -1,4 +1,4 @@
-//! What makes a log unusable.
+//! Errors of reading a log.
 
 use thiserror::Error;
 
@@ -10,12 +10,12 @@ pub enum LogError {
     ColumnTwice {
         /// The column.
         column: String,
-        /// The channel that it is already.
+        /// Its channel so far.
         other: String,
-        /// The channel that it is to be too.
+        /// Its second channel.
         name: String,
     },
-    /// No header, or none that is understood.
+    /// No header, or an unknown one.
     #[error(
         "no column t in the header{}: the first row names the columns, such as t,q1,q2,tau1,tau2, or --map says which is which",
         if header.trim().is_empty() { " (the file is empty)".to_owned() } else { format!(" '{header}'") }
@@ -24,13 +24,13 @@ pub enum LogError {
         /// The first row.
         header: String,
     },
-    /// A part of a column map that is none.
+    /// An invalid part of a column map.
     #[error("--map {part}: write it as CHANNEL=COLUMN, such as tau1=MotorTorque_1,q1_deg=J1")]
     Map {
         /// The part.
         part: String,
     },
-    /// A column map names a channel that there is not.
+    /// A column map names an unknown channel.
     #[error(
         "--map {name}=…: no such channel; give t, q1…, qd1…, qdd1… (or q1_deg…), tau1…, i1…, \
          ia1…, ib1…, ic1…, temp1…, power, sync, cycle, line or cmd"
@@ -50,27 +50,27 @@ pub enum LogError {
     NoColumn {
         /// The channel.
         channel: String,
-        /// The column asked for.
+        /// The requested column.
         column: String,
-        /// The columns that are there.
+        /// The existing columns.
         header: String,
     },
     /// A Parquet file that can't be read.
     #[error("the Parquet file can't be read ({reason}): write it again, or as CSV")]
     Parquet {
-        /// Why.
+        /// Cause.
         reason: String,
     },
-    /// Bytes that are no text.
+    /// Bytes that are not text.
     #[error("the file is {what}: give it as CSV or Parquet")]
     NoText {
-        /// What it looks like.
+        /// Probable type of the file.
         what: &'static str,
     },
     /// A file that can't be read to its end.
     #[error("the file can't be read to its end ({reason})")]
     Stream {
-        /// Why.
+        /// Cause.
         reason: String,
     },
     /// Two columns for one quantity.
@@ -81,35 +81,35 @@ pub enum LogError {
         /// Another one.
         second: String,
     },
-    /// A joint is missing between others.
+    /// A joint is missing.
     #[error("there is a column {found} but none for joint {missing}: number the joints from 1 on")]
     Gap {
-        /// The name that is there.
+        /// The name of an existing column.
         found: String,
-        /// The joint that is not, from 1.
+        /// The missing joint, from 1.
         missing: usize,
     },
-    /// Too few rows to work with.
+    /// Too few usable rows.
     #[error("only {usable} usable rows, {needed} are needed{why}")]
     Short {
-        /// Rows that can be used.
+        /// Number of usable rows.
         usable: usize,
-        /// Rows that are needed.
+        /// Required number of rows.
         needed: usize,
-        /// What is wrong with the first one left out.
+        /// Reason of the first rejection.
         why: String,
     },
-    /// Two recorders without marks in common.
+    /// Two recorders without common marks.
     #[error(
         "the marks (column sync) change {here} times beside the positions and {there} times beside the currents: both need three of the same changes at least"
     )]
     Marks {
-        /// Changes beside the positions.
+        /// Changes in the log with the positions.
         here: usize,
-        /// Changes beside the currents.
+        /// Changes in the log with the currents.
         there: usize,
     },
-    /// Marks of two recorders that are not those of one run.
+    /// The marks of two recorders are not of the same run.
     #[error(
         "the marks of the two logs miss each other by up to {worst:.3} s (a row is {step:.4} s): are they of one run?"
     )]

@@ -1,25 +1,24 @@
-//! A low-pass filter without delay, whose derivatives are filters too.
+//! A low-pass filter without delay, and filters for its derivatives.
 //!
-//! The kernel is a sine cardinal under a Hann window, differentiated analytically. Its
-//! discrete moments are those of the derivatives, so that parabolas are differentiated
-//! exactly at any rate.
+//! The kernel is a sinc function with a Hann window, differentiated analytically. Its discrete
+//! moments are corrected, so that parabolas are differentiated exactly at any sampling rate.
 
 use std::f64::consts::PI;
 
 /// Half length of the kernel in periods of the cut-off frequency.
 const PERIODS: f64 = 2.0;
 
-/// The filter for samples at one interval.
+/// The filter for samples at equal intervals.
 #[derive(Clone, Debug)]
 pub struct LowPass {
-    /// Samples to each side.
+    /// Number of samples to each side.
     pub half: usize,
-    /// Weights of value, first and second derivative, from the oldest sample on.
+    /// Weights of value, first and second derivative, oldest sample first.
     weights: [Vec<f64>; 3],
 }
 
 impl LowPass {
-    /// With the cut-off frequency `cutoff` \[Hz\] for samples every `step` \[s\].
+    /// The filter with the cut-off frequency `cutoff` \[Hz\] for samples every `step` \[s\].
     #[must_use]
     pub fn new(cutoff: f64, step: f64) -> LowPass {
         let half = (PERIODS / (cutoff * step)).ceil().max(3.0) as usize;
@@ -33,7 +32,7 @@ impl LowPass {
         for weight in &mut value {
             *weight /= sum;
         }
-        // The weighted sum over past samples of −t is the rate of a straight line.
+        // The weighted sum of −t over past samples is the rate of a straight line.
         let slope: f64 = first.iter().zip(&times).map(|(w, t)| -w * t).sum();
         for weight in &mut first {
             *weight /= slope;
@@ -44,25 +43,25 @@ impl LowPass {
         for weight in &mut second {
             *weight /= bend;
         }
-        // The kernel runs backwards over the samples.
+        // The kernel is reversed for the convolution.
         first.reverse();
         LowPass { half, weights: [value, first, second] }
     }
 
-    /// Samples under the kernel.
+    /// Number of samples under the kernel.
     #[must_use]
     pub fn width(&self) -> usize {
         2 * self.half + 1
     }
 
-    /// The weights of the derivative of this order, 0 to 2, from the oldest sample on.
+    /// The weights of the derivative of order 0 to 2, oldest sample first.
     #[must_use]
     pub fn weights(&self, order: usize) -> &[f64] {
         &self.weights[order.min(2)]
     }
 
-    /// The derivative of order 0 to 2 of `x` at all samples that have the kernel's half to
-    /// both sides; empty where there is none.
+    /// The derivative of order 0 to 2 of `x` at all samples with a complete kernel; empty without
+    /// any.
     #[must_use]
     pub fn filtered(&self, x: &[f64], order: usize) -> Vec<f64> {
         let weights = self.weights(order);
@@ -71,12 +70,12 @@ impl LowPass {
     }
 }
 
-/// Value and derivatives of the kernel \[1, 1/s, 1/s²\]; `length` is where the window ends.
+/// Value and derivatives of the kernel \[1, 1/s, 1/s²\]; the window ends at `length`.
 fn kernel(t: f64, cutoff: f64, length: f64) -> [f64; 3] {
     let a = 2.0 * PI * cutoff;
     let x = a * t;
     let [s, ds, dds] = if x.abs() < 1e-2 {
-        // sin x / x to the fourth order, where the quotients cancel.
+        // Series of sin x / x up to fourth order, to avoid cancellation.
         let x2 = x * x;
         [1.0 - x2 / 6.0 + x2 * x2 / 120.0, x * (-1.0 / 3.0 + x2 / 30.0), -1.0 / 3.0 + x2 / 10.0]
     } else {
@@ -93,9 +92,9 @@ fn kernel(t: f64, cutoff: f64, length: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Share of its amplitude by which a slow sine may be missed.
+    /// Largest relative error for a slow sine.
     const PASSED: f64 = 4e-3;
-    /// Share that may be left of a fast one.
+    /// Largest remaining share of a fast sine.
     const STOPPED: f64 = 1e-2;
 
     #[test]

@@ -1,21 +1,21 @@
-//! Synchronisation of two recorders of one run by common marks.
+//! Synchronisation of two recorders of the same run by common marks.
 //!
-//! A digital output changes while the robot moves; one recorder logs it with the positions, the other
-//! as a voltage with the currents. The times of its changes give offset and pace of the clocks.
+//! A digital output changes while the robot moves. One recorder logs it with the positions, the other with
+//! the currents, as a voltage. The times of the changes give offset and rate of the clocks.
 
 use super::channel::{Channel, Family};
 use super::data::Log;
 use super::error::LogError;
 use super::uniform::{interpolated, median_step};
 
-/// Least number of changes: fewer fit any pair of clocks.
+/// Least number of changes: fewer are ambiguous.
 const MARKS: usize = 3;
-/// Largest relative difference in pace of two clocks.
+/// Largest relative difference of the clock rates.
 const PACE: f64 = 0.02;
 /// Largest residual of a mark, in sample intervals of the slower recorder.
 const OFF: f64 = 2.5;
 
-/// Whether two logs are halves of one: positions here, what drives the motors there.
+/// Whether `positions` has positions only, and `other` torques or currents without positions.
 #[must_use]
 pub fn are_halves(positions: &Log, other: &Log) -> bool {
     let has = |log: &Log, family: Family| log.channels.iter().any(|c| c.family() == family);
@@ -29,25 +29,25 @@ pub fn are_halves(positions: &Log, other: &Log) -> bool {
 /// Two synchronised logs as one.
 #[derive(Clone, Debug)]
 pub struct Aligned {
-    /// Both.
+    /// The joint log.
     pub log: Log,
-    /// Marks that both have.
+    /// Number of common marks.
     pub marks: usize,
     /// Largest residual of a mark \[s\].
     pub worst: f64,
-    /// Interval of the slower recorder \[s\]: its marks can be late by that, all together.
+    /// Interval of the slower recorder \[s\]: all of its marks may be late by up to this.
     pub step: f64,
 }
 
-/// `other` with the positions of `positions` at its own times, as their marks tell.
+/// `other` with the positions of `positions` at its times, synchronised by the marks.
 ///
 /// # Errors
-/// Marks that are missing or do not fit together.
+/// Marks are missing or inconsistent.
 pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
     let here = changes(positions);
     let there = changes(other);
     let step = median_step(positions.time()).max(median_step(other.time()));
-    // Recorders start and stop at times of their own, so that one may miss marks at its ends.
+    // Recorders start and stop independently, so that one may miss marks at its ends.
     let shifts = -there.len().cast_signed()..=here.len().cast_signed();
     let fits: Vec<Clock> = shifts.filter_map(|shift| Clock::fitted(&here, &there, shift)).collect();
     let most = fits
@@ -103,13 +103,13 @@ struct Clock {
     to: f64,
     from: f64,
     pairs: usize,
-    /// Largest distance of a mark \[s\].
+    /// Largest residual of a mark \[s\].
     worst: f64,
 }
 
 impl Clock {
-    /// The fit if mark 0 there is mark `shift` here; `None` where the marks change in opposite senses,
-    /// are too few, or give clocks of too different pace.
+    /// The fit that assigns mark `shift` here to mark 0 there; `None` if the marks change in
+    /// opposite directions, are too few, or give too different clock rates.
     fn fitted(here: &[Change], there: &[Change], shift: isize) -> Option<Clock> {
         let (first, skipped) = (shift.max(0).cast_unsigned(), (-shift).max(0).cast_unsigned());
         let pairs: Vec<(Change, Change)> =
@@ -129,10 +129,10 @@ impl Clock {
     }
 }
 
-/// When a mark changes \[s\], and whether it rises.
+/// Time of a mark's change \[s\], and whether it rises.
 type Change = (f64, bool);
 
-/// The changes of the mark, between samples where it is a voltage.
+/// The changes of the mark, interpolated between samples of a voltage.
 fn changes(log: &Log) -> Vec<Change> {
     let Some(mark) = log.column(Channel::Sync) else { return Vec::new() };
     let (low, high) = mark

@@ -1,5 +1,5 @@
-//! Measured logs as columns of numbers: reading, repetitions, derivatives, synchronisation. Independent
-//! of any robot model.
+//! Measured logs as columns of numbers: reading, repetitions, derivatives, synchronisation. This
+//! module does not depend on a robot model.
 
 mod arrays;
 mod averaged;

@@ -1,15 +1,15 @@
-//! Positions, rates and accelerations of a log: as logged, or differentiated.
+//! Positions, rates and accelerations of a log, logged or differentiated.
 
 use super::channel::Channel;
 use super::data::{Log, Rejected};
 use super::differentiate::derivatives;
 
-/// The motion in a log, a row for each usable one.
+/// The motion in a log, one entry for each usable row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// Times \[s\].
     pub time: Vec<f64>,
-    /// Line of the file of each row.
+    /// Line in the file of each row.
     pub rows: Vec<u64>,
     /// Position of each joint at each time \[rad\].
     pub q: Vec<Vec<f64>>,
@@ -17,15 +17,15 @@ pub struct Motion {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations \[rad/s²\].
     pub qdd: Vec<Vec<f64>>,
-    /// What was not logged, but differentiated, in words.
+    /// Description of the differentiated quantities.
     pub differentiated: Vec<String>,
-    /// Rows that nothing can be differentiated at.
+    /// Rows without derivatives.
     pub left_out: Vec<Rejected>,
 }
 
 impl Log {
-    /// The motion: rates and accelerations as they were logged, joint by joint, else from
-    /// the positions, accelerations from the rates where those were logged.
+    /// The motion with logged rates and accelerations, joint by joint. Missing rates come from the
+    /// positions, missing accelerations from logged rates or else from the positions.
     #[must_use]
     pub fn motion(&self) -> Motion {
         let t = self.time();
@@ -86,7 +86,7 @@ impl Log {
         }
     }
 
-    /// Adds the words for the joints that a quantity is not logged of.
+    /// Adds a description of the joints without this quantity.
     fn missing(&self, what: &str, channel: fn(usize) -> Channel, out: &mut Vec<String>) {
         let joints = self.joints();
         let lacks: Vec<String> = (0..joints)

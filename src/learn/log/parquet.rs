@@ -1,4 +1,4 @@
-//! Logs as Parquet files: one column of numbers for each channel.
+//! Logs as Parquet files with one column of numbers for each channel.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -18,9 +18,9 @@ const FIRST_ROW: u64 = 2;
 /// The log in the bytes of a Parquet file.
 ///
 /// # Errors
-/// As of [`read_csv`](super::read_csv), and a damaged file.
+/// The errors of [`read_csv`](super::read_csv), and a damaged file.
 pub(super) fn read_parquet(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
-    // The decoders of the crate check little: a damaged page may make them panic.
+    // The decoders of the crate may panic on a damaged page.
     let read = catch_unwind(AssertUnwindSafe(|| read(bytes, map)));
     read.unwrap_or_else(|_| Err(LogError::Parquet { reason: "it is damaged".into() }))
 }

@@ -1,35 +1,35 @@
-//! Where the repetitions of a motion are.
+//! Detection of the repetitions of a motion.
 
 use super::time_shift::vertex;
 use super::uniform::range;
 
 /// Largest number of samples in the coarse search.
 const COMPARED: usize = 3000;
-/// Largest difference of repetitions, as a share of a joint's range, and in the coarse search.
+/// Largest relative difference of repetitions, in the final and in the coarse search.
 const SAME: f64 = 0.01;
 const NEARLY: f64 = 0.03;
-/// Least difference between repetitions, as a share of a joint's range.
+/// Least difference of different motions as a share of a joint's range.
 const DIFFERENT: f64 = 0.06;
-/// Least share of the moving time that repeats: a log also has motions to and from the repeated one.
+/// Least share of the moving time that repeats: a log also contains motions before and after.
 const PART: f64 = 0.35;
-/// Share of the fastest step below which a sample is at rest.
+/// Share of the fastest step below which a sample counts as at rest.
 const RESTING: f64 = 0.01;
 /// Shortest period, in samples.
 const SHORTEST: usize = 20;
 
-/// Repetitions in evenly sampled series.
+/// Repetitions in series at equal intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Periods {
-    /// Duration of one \[s\].
+    /// Duration of a repetition \[s\].
     pub period: f64,
-    /// First sample of the first.
+    /// First sample of the first repetition.
     pub first: usize,
-    /// Number of whole ones.
+    /// Number of whole repetitions.
     pub count: usize,
 }
 
-/// The repetitions of `q`, which is sampled evenly; `None` where fewer than two are found.
-/// `known` is the period, where it is known \[s\].
+/// The repetitions of `q`, sampled at equal intervals; `None` for fewer than two. `known` is the
+/// period \[s\], if it is known.
 #[must_use]
 pub fn find_periods(q: &[&[f64]], step: f64, known: Option<f64>) -> Option<Periods> {
     let n = q.first()?.len();
@@ -39,12 +39,12 @@ pub fn find_periods(q: &[&[f64]], step: f64, known: Option<f64>) -> Option<Perio
         return None;
     }
     let (first, length) = longest_run(q, lag)?;
-    // The last sample of the last period is the one before its end.
+    // The last sample of a period is the one before its end.
     let count = ((length as f64 + lag) / lag + 1e-6).floor() as usize;
     (count >= 2).then_some(Periods { period, first, count })
 }
 
-/// The lag at which the motion repeats \[s\].
+/// The lag \[s\] at which the motion repeats.
 fn search(q: &[&[f64]], step: f64) -> Option<f64> {
     let n = q[0].len();
     let every = n.div_ceil(COMPARED).max(1);
@@ -67,7 +67,7 @@ fn search(q: &[&[f64]], step: f64) -> Option<f64> {
         }
     }
     let (lag, _) = best?;
-    // At the full rate, around what was found, and between samples by a parabola.
+    // Refinement at the full rate, then by a parabola between samples.
     let whole: Vec<Vec<f64>> = q.iter().map(|x| x.to_vec()).collect();
     let miss = Misses::new(&whole)?;
     let around = (lag * every).saturating_sub(2 * every).max(2)..=(lag + 2) * every;
@@ -80,16 +80,16 @@ fn search(q: &[&[f64]], step: f64) -> Option<f64> {
     }
     let around = [miss.at(lag - 1).powi(2), least * least, miss.at(lag + 1).powi(2)];
     let shift = vertex(around).unwrap_or(0.0);
-    // Sampling at a whole number of samples per period is the rule.
+    // Usually a period has a whole number of samples.
     let shift = if shift.abs() < 0.05 { 0.0 } else { shift };
     Some((lag as f64 + shift.clamp(-0.5, 0.5)) * step)
 }
 
-/// How much a motion differs from itself some time later, while it moves.
+/// Difference of a moving series from itself at a later time.
 struct Misses<'a> {
     /// The moving joints, each with its range.
     joints: Vec<(&'a [f64], f64)>,
-    /// Samples at which any of them moves.
+    /// Samples at which a joint moves.
     moving: Vec<usize>,
 }
 
@@ -113,7 +113,7 @@ impl Misses<'_> {
         Some(Misses { joints, moving })
     }
 
-    /// The [`PART`] quantile of the differences, as shares of a joint's range.
+    /// The [`PART`] quantile of the differences, as shares of the joints' ranges.
     fn at(&self, lag: usize) -> f64 {
         let count = self.joints[0].0.len();
         let mut all: Vec<f64> = self
@@ -133,14 +133,14 @@ impl Misses<'_> {
     }
 }
 
-/// First sample and length of the longest run of samples that repeat a period later.
+/// First sample and length of the longest run of samples that repeat after a period.
 fn longest_run(q: &[&[f64]], lag: f64) -> Option<(usize, usize)> {
     let n = q[0].len();
     let whole = lag.round() as usize;
     let ranges: Vec<f64> = q.iter().map(|x| range(x)).collect();
     let back = |i: usize| {
         q.iter().zip(&ranges).all(|(x, range)| {
-            // A lag between two samples leaves a part of a step.
+            // A lag between two samples has an error of up to one step.
             let step = (x[(i + 1).min(n - 1)] - x[i]).abs();
             (x[i] - x[i + whole]).abs() <= 0.03 * range.max(1e-6) + step
         })

@@ -1,4 +1,4 @@
-//! Reading a log, CSV or Parquet by its content.
+//! Reads a log as CSV or Parquet, according to its content.
 
 use std::io::Read;
 
@@ -10,21 +10,21 @@ use super::error::LogError;
 use super::parquet::read_parquet;
 use super::utf16;
 
-/// So many bytes tell what a file is; a header is shorter.
+/// Number of bytes that determine the type of a file; a header is shorter.
 const HEAD: u64 = 1 << 16;
 
-/// The log in the bytes of a file, CSV or Parquet by its content.
+/// The log in the bytes of a file, CSV or Parquet according to its content.
 ///
 /// # Errors
-/// Columns that cannot be understood, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows, a damaged file.
+/// Unknown columns, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows, or a damaged file.
 pub fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
     read_from(bytes, map)
 }
 
-/// The same from a stream. Of a CSV only the recognised columns stay in memory.
+/// Reads a log from a stream. For CSV only the recognised columns stay in memory.
 ///
 /// # Errors
-/// As of [`read`], and a stream that breaks off.
+/// The errors of [`read`], and an interrupted stream.
 pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError> {
     let broken = |error: std::io::Error| LogError::Stream { reason: error.to_string() };
     let mut head = Vec::new();
@@ -46,7 +46,7 @@ pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError
     Err(LogError::Parquet { reason: "this build does not read them".into() })
 }
 
-/// What a file is that begins so and is no text.
+/// Description of a file that is not text, from its first bytes.
 fn no_text(head: &[u8]) -> Option<&'static str> {
     const PACKED: [&[u8]; 4] =
         [&[0x1f, 0x8b], b"PK\x03\x04", b"\xfd7zXZ", &[0x28, 0xb5, 0x2f, 0xfd]];

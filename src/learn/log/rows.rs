@@ -1,17 +1,17 @@
-//! Checks of the rows of a log as they are read.
+//! Checks of the rows of a log during reading.
 
 use super::channel::Channel;
 use super::columns::Column;
 use super::data::{Log, MIN_ROWS, Rejected};
 use super::error::LogError;
 
-/// Larger times are invalid \[s\].
+/// Limit of valid times \[s\].
 const NO_CLOCK: f64 = 1e12;
-/// A row whose time leaps ahead by this many times the interval between its neighbours is the
-/// invalid one, not the rows after it.
+/// A row whose time leaps by this multiple of the interval between its neighbours is invalid, not
+/// the rows after it.
 const LEAP: f64 = 100.0;
 
-/// A log that is being read.
+/// A log during reading.
 pub(super) struct Rows {
     log: Log,
     time: usize,
@@ -34,7 +34,7 @@ impl Rows {
         Rows { log, time }
     }
 
-    /// Adds the values of a row, or says why it has none; time has to go on.
+    /// Adds the values of a row, or the reason of its rejection; times have to ascend.
     pub(super) fn push(&mut self, row: u64, values: Result<&[f64], String>) {
         if let Ok(values) = &values {
             self.drop_leap(values[self.time]);
@@ -52,7 +52,7 @@ impl Rows {
         }
     }
 
-    /// Leaves out the last row if it alone had leapt ahead of the time that goes on now.
+    /// Removes the last row if only its time leapt ahead.
     fn drop_leap(&mut self, time: f64) {
         let [.., before, last] = self.log.values[self.time][..] else { return };
         if time <= before || time >= last || last - before < LEAP * (time - before) {
@@ -84,7 +84,7 @@ impl Rows {
     }
 }
 
-/// Whether time goes on.
+/// Whether the time ascends.
 fn later(time: f64, last: Option<f64>) -> Result<(), String> {
     if time.abs() > NO_CLOCK {
         return Err(format!("t is {time:e} s, which no clock shows"));

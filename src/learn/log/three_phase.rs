@@ -1,37 +1,36 @@
-//! Three phase currents as one vector.
+//! Three phase currents as a space vector.
 //!
-//! `i = i_a + i_b e^{j2π/3} + i_c e^{j4π/3}` turns with the rotor; its length is one and a half
-//! times the amplitude. Seen from the rotor it moves on a line: along the axis that makes the
-//! torque (q), past a constant on the other one (d), which does no work. The electrical angle is
-//! the joint's times gear ratio and pole pairs, in a sense that depends on the order of the
-//! phases.
+//! `i = i_a + i_b e^{j2π/3} + i_c e^{j4π/3}` turns with the rotor; its length is 1.5 times the
+//! amplitude. In rotor coordinates it lies on a line along the torque-producing axis (q), offset by
+//! a constant on the other axis (d), which does no work. The electrical angle is the joint angle
+//! times gear ratio and pole pairs; its sign depends on the order of the phases.
 
 use std::f64::consts::TAU;
 
-/// Pole pairs that are tried, in both senses.
+/// Largest number of pole pairs that is tried, with both signs.
 const POLE_PAIRS: i32 = 12;
-/// How much of the vector has to stand still from the rotor.
+/// Least coherence with the rotor.
 const STANDS: f64 = 0.7;
-/// Vectors from which the pole pairs are told.
+/// Largest number of vectors that determine the pole pairs.
 const TOLD_FROM: usize = 20_000;
 
-/// The vectors of one motor.
+/// The current vectors of one motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vectors {
-    /// Real parts \[A\]: amplitudes of the phase currents.
+    /// Real parts \[A\], scaled to the amplitude of a phase.
     pub re: Vec<f64>,
     /// Imaginary parts \[A\].
     pub im: Vec<f64>,
 }
 
-/// Currents of one sign or the other.
+/// Currents of which the common sign is unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Signed {
-    /// The current that makes the torque, up to one sign for all \[A\], amplitude.
+    /// The torque-producing current \[A\] as amplitude, except for a common sign.
     pub current: Vec<f64>,
-    /// Pole pairs, negative where the phases run backwards.
+    /// Pole pairs; negative for the opposite order of the phases.
     pub pole_pairs: i32,
-    /// Share of the vectors that stands still from the rotor: 1 for a perfect fit.
+    /// Coherence of the vectors with the rotor: 1 for a perfect fit.
     pub coherence: f64,
 }
 
@@ -45,8 +44,8 @@ pub fn vectors(a: &[f64], b: &[f64], c: &[f64]) -> Vectors {
     }
 }
 
-/// The vectors seen from a rotor that turns with `angle` (motor side, rad); `None` where no
-/// number of pole pairs makes them stand still.
+/// The torque-producing current for a motor that turns with `angle` \[rad\]; `None` if no number of
+/// pole pairs gives a sufficient coherence.
 #[must_use]
 pub fn signed(vectors: &Vectors, angle: &[f64]) -> Option<Signed> {
     let n = vectors.re.len().min(angle.len());
@@ -67,8 +66,8 @@ pub fn signed(vectors: &Vectors, angle: &[f64]) -> Option<Signed> {
     Some(Signed { current, pole_pairs, coherence: stands })
 }
 
-/// The share of the vectors that stands still from a rotor that turns with `angle`, with the
-/// pole pairs that are best for it, or those given; every so many of them are looked at.
+/// Coherence of the vectors with a rotor that turns with `angle`, for the best or the given pole
+/// pairs; uses one of `every` vectors.
 #[must_use]
 pub fn coherence(
     vectors: &Vectors,
@@ -87,16 +86,16 @@ fn all_pairs() -> impl Iterator<Item = i32> {
     (1..=POLE_PAIRS).flat_map(|pairs| [pairs, -pairs])
 }
 
-/// Vectors as the rotor sees them.
+/// Vectors in rotor coordinates.
 struct Seen {
-    /// Share of their power that is a constant or on one line.
+    /// Share of their power that is constant or on one line.
     stands: f64,
-    /// Of the line \[rad\].
+    /// Direction of the line \[rad\].
     direction: f64,
 }
 
-/// The vectors turned back. The line is that of their changes about their mean, squared as
-/// squares have no sign to lose: the mean may lie beside it.
+/// Statistics of the vectors in rotor coordinates. The line is that of their deviations from the
+/// mean, which need not lie on it; squared vectors remove the sign.
 fn seen(vectors: &Vectors, angle: &[f64], pairs: i32, every: usize) -> Seen {
     let (mut x, mut y, mut squares, mut crosses) = (0.0, 0.0, 0.0, 0.0);
     let (mut length, mut count) = (0.0, 0.0);
@@ -126,7 +125,7 @@ mod tests {
 
     use super::*;
 
-    /// Of a current, by rounding.
+    /// Rounding error of a current.
     const EXACT: f64 = 1e-9;
 
     #[test]
@@ -151,7 +150,7 @@ mod tests {
         }
     }
 
-    /// A constant current on the axis that does no work, larger than the one that does.
+    /// A constant current on the axis without torque, larger than the torque-producing one.
     #[test]
     fn a_constant_on_the_other_axis_changes_nothing() {
         let angle: Vec<f64> = (0..4000).map(|i| 130.0 * (0.002 * f64::from(i)).sin()).collect();

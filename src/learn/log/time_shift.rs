@@ -1,9 +1,8 @@
-//! The time shift between two signals: where a misfit of one against the other is least.
+//! Time shift between two signals that minimises a misfit.
 //!
-//! What is shifted against what, and how the misfit is measured, is the caller's: torques against the
-//! motion of a refitted model, phase currents against the rotor, torques against a model with
-//! effects, a motion against itself a period later. Two smooth signals of the same quantity need no
-//! search: [`Delay`] is a least-squares estimate.
+//! The caller defines the misfit: torques with the motion of a refitted model, phase currents with
+//! the rotor, torques with a model with effects, a motion with itself a period later. For two
+//! smooth signals of the same quantity, [`Delay`] gives a least-squares estimate without a search.
 
 /// Ratio of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_895;
@@ -13,12 +12,12 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 pub struct Shift {
     /// Shift, in the unit of the grid.
     pub shift: f64,
-    /// Misfit there.
+    /// Misfit at the shift.
     pub misfit: f64,
 }
 
-/// The shift with the least misfit among `middle` + `step` k, |k| ≤ `count`; shifts without a misfit are
-/// skipped, and none is found where `middle` has none.
+/// The shift with the least misfit among `middle` + `step` k, |k| ≤ `count`. Shifts without a
+/// misfit are skipped; the result is `None` if `middle` has no misfit.
 pub fn on_grid(
     middle: f64,
     step: f64,
@@ -35,8 +34,8 @@ pub fn on_grid(
     Some(best)
 }
 
-/// The minimum between the points of the same grid, by a parabola; `None` where the least misfit
-/// inside the grid is no minimum.
+/// The minimum between the points of the same grid, by a parabola; `None` if the least misfit
+/// inside the grid is not a minimum.
 pub fn between_grid(
     middle: f64,
     step: f64,
@@ -55,8 +54,8 @@ pub fn between_grid(
     Some(Shift { shift: middle + step * place, misfit: here })
 }
 
-/// The local minimum that a descent from shift 0 reaches in whole steps, with the misfits one step
-/// before, there and one step after. `None` beyond `most` steps, or where a misfit is missing.
+/// The local minimum of a descent from shift 0 in whole steps, with the misfits one step before,
+/// there and one step after. `None` beyond `most` steps or if a misfit is missing.
 pub fn downhill(most: isize, misfit: impl Fn(isize) -> Option<f64>) -> Option<(isize, [f64; 3])> {
     let mut middle: isize = 0;
     let mut around = [misfit(-1)?, misfit(0)?, misfit(1)?];
@@ -81,8 +80,7 @@ pub fn vertex([before, here, after]: [f64; 3]) -> Option<f64> {
     (curvature > 0.0).then(|| 0.5 * (before - after) / curvature)
 }
 
-/// Where a function with one minimum between two points has it, to the golden ratio to the power of
-/// `steps` of their distance.
+/// The minimum of a unimodal function between two points; each step shrinks the interval by 0.618.
 pub fn golden_section(
     [mut low, mut high]: [f64; 2],
     steps: usize,
@@ -105,8 +103,8 @@ pub fn golden_section(
     0.5 * (low + high)
 }
 
-/// By how much sampled signals are late against their references, one delay for all: least squares,
-/// linear in the delay, which has to be short against their changes.
+/// Common delay of sampled signals relative to their references: least squares, linear in the
+/// delay, which has to be short compared with the changes of the signals.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Delay {
     squares: f64,
@@ -124,7 +122,7 @@ impl Delay {
         }
     }
 
-    /// The delay \[s\]; `None` where nothing moves.
+    /// The delay \[s\]; `None` without motion.
     #[must_use]
     pub fn seconds(&self) -> Option<f64> {
         (self.squares > 0.0).then(|| self.products / self.squares)

@@ -2,11 +2,11 @@
 
 /// An interval longer than the median by this factor ends a section.
 const GAP: f64 = 3.5;
-/// Share of an interval by which a sample may miss its place on the grid.
+/// Largest deviation of a sample from the grid, as a share of the interval.
 const JITTER: f64 = 0.02;
-/// An interval longer than the median by this factor has lost a sample, however uneven the clock.
+/// An interval longer than the median by this factor lacks a sample, even with an uneven clock.
 const LOSES: f64 = 1.75;
-/// Share of an interval within which a grid point has to have a sample, or it counts as lost.
+/// Largest distance, in intervals, of a grid point from a sample; else it counts as lost.
 const LOST: f64 = 0.5;
 
 /// Samples of several series at equal intervals, without a gap.
@@ -18,7 +18,7 @@ pub struct Section {
     pub step: f64,
     /// The series, all of the same length.
     pub series: Vec<Vec<f64>>,
-    /// Samples that the log lacks: they are interpolated.
+    /// Samples that the log lacks; their values are interpolated.
     pub lost: Vec<usize>,
 }
 
@@ -44,7 +44,7 @@ pub fn median_step(t: &[f64]) -> f64 {
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The largest value less the smallest.
+/// The difference of the largest and the smallest value.
 #[must_use]
 pub fn range(x: &[f64]) -> f64 {
     let (low, high) = x
@@ -53,8 +53,8 @@ pub fn range(x: &[f64]) -> f64 {
     high - low
 }
 
-/// The series at equal intervals: as they are where the times `t` (ascending, s) are even,
-/// else from a cubic through the four samples around. A gap begins a new section.
+/// The series at equal intervals: unchanged for even times `t` (ascending, s), else by cubic
+/// interpolation of four samples. A gap begins a new section.
 #[must_use]
 pub fn sections(t: &[f64], series: &[&[f64]]) -> Vec<Section> {
     let usual = median_step(t);
@@ -104,8 +104,8 @@ fn section(t: &[f64], series: &[&[f64]]) -> Section {
     Section { start, step, series: between, lost }
 }
 
-/// Whether samples are even and only their logged times are not: then they are smoother as logged
-/// than interpolated at those times.
+/// Whether only the logged times are uneven: then the samples as logged are smoother than
+/// interpolated ones.
 fn is_clock_uneven(series: &[&[f64]], between: &[Vec<f64>]) -> bool {
     let odds = |(logged, between): (&&[f64], &Vec<f64>)| {
         let [logged, between] = [logged, between.as_slice()].map(roughness);
@@ -114,14 +114,14 @@ fn is_clock_uneven(series: &[&[f64]], between: &[Vec<f64>]) -> bool {
     series.iter().zip(between).map(odds).sum::<f64>() < 0.0
 }
 
-/// Mean square of fourth differences, which noise dominates.
+/// Mean square of fourth differences, which are mainly noise.
 fn roughness(x: &[f64]) -> f64 {
     let squares =
         x.windows(5).map(|x| (x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4]).powi(2));
     squares.sum::<f64>() / x.len() as f64
 }
 
-/// `x` at `count` times from `start` on.
+/// `x` interpolated at `count` times from `start` on.
 #[must_use]
 pub fn interpolated(t: &[f64], x: &[f64], start: f64, step: f64, count: usize) -> Vec<f64> {
     let mut out = Vec::with_capacity(count);
@@ -131,7 +131,7 @@ pub fn interpolated(t: &[f64], x: &[f64], start: f64, step: f64, count: usize) -
         while after < t.len() && t[after] < at {
             after += 1;
         }
-        // Two samples before and two after, moved inwards at the ends.
+        // Two samples before and two after, fewer at the ends.
         let width = t.len().min(4);
         let first = after.saturating_sub(2).min(t.len() - width);
         out.push(lagrange(&t[first..first + width], &x[first..first + width], at));
@@ -139,7 +139,7 @@ pub fn interpolated(t: &[f64], x: &[f64], start: f64, step: f64, count: usize) -
     out
 }
 
-/// The polynomial through some points, at `at`.
+/// The value at `at` of the polynomial through the points.
 fn lagrange(t: &[f64], x: &[f64], at: f64) -> f64 {
     let weight = |i: usize| {
         let others = t.iter().enumerate().filter(|(k, _)| *k != i);
@@ -152,7 +152,7 @@ fn lagrange(t: &[f64], x: &[f64], at: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of a cubic polynomial, by rounding.
+    /// Rounding error of a cubic polynomial.
     const EXACT: f64 = 1e-9;
 
     #[test]
@@ -181,7 +181,7 @@ mod tests {
             [&even, &uneven].map(|t| -> Vec<f64> { t.iter().map(|t| wave(*t)).collect() });
         assert_eq!(sections(&uneven, &[&of_even])[0].series[0], of_even);
         assert_ne!(sections(&uneven, &[&of_uneven])[0].series[0], of_uneven);
-        // Where samples are missing, as they are logged they are at other times.
+        // With missing samples, the rows are not evenly spaced.
         let keep = |x: &[f64]| -> Vec<f64> {
             x.iter().enumerate().filter(|(k, _)| k % 40 != 20).map(|(_, x)| *x).collect()
         };

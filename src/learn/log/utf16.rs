@@ -1,11 +1,11 @@
-//! Text as spreadsheets write it under the name Unicode: two bytes a character.
+//! Decoding of UTF-16, which spreadsheets call Unicode.
 
-/// Whether a file begins with the mark of UTF-16, of either order of the bytes.
+/// Whether a file begins with a byte order mark of UTF-16.
 pub(super) fn is_utf16(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF")
 }
 
-/// The text behind the mark; what is no character becomes U+FFFD.
+/// The text after the byte order mark; invalid characters become U+FFFD.
 pub(super) fn decoded(bytes: &[u8]) -> String {
     let unit = if bytes.starts_with(b"\xFF\xFE") { u16::from_le_bytes } else { u16::from_be_bytes };
     let units = bytes.chunks_exact(2).skip(1).map(|pair| unit([pair[0], pair[1]]));

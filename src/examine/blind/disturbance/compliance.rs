@@ -6,7 +6,7 @@ use super::super::fault::Disturbance;
 use super::super::random::Random;
 use super::super::scale::Scale;
 
-/// Stiffness that deflects by some milliradians under the gear's typical load \[Nm/rad\].
+/// Stiffness that deflects by milliradians under the typical load of the gear \[Nm/rad\].
 fn stiffness(scale: &Scale<'_>, joint: usize, random: &mut Random) -> f64 {
     scale.load[joint].max(1.0) / random.log_between(0.5e-3, 8e-3)
 }

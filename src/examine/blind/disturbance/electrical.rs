@@ -1,4 +1,4 @@
-//! Faults between the motor's torque and the current from which it is inferred.
+//! Faults in the relation of motor torque and current.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,7 +8,7 @@ use super::super::random::Random;
 use super::super::scale::Scale;
 use super::laws::{mapped, memoryless, with_state};
 
-/// Steps of the iteration that inverts a motor's curve.
+/// Iterations of the inversion of a motor's curve.
 const STEPS: usize = 30;
 
 pub(super) fn torque_constant(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -51,8 +51,8 @@ pub(super) fn current_saturation(scale: &Scale<'_>, random: &mut Random) -> Dist
     let peak = scale.peak[joint].max(1e-6);
     let forms = ["cubic", "hyperbolic_tangent", "square", "knee"];
     let form = random.below(forms.len());
-    // The motor's curve: torque of a current, both over the peak; at the peak the current is
-    // larger than the torque by `error`.
+    // Torque as a function of current, both relative to the peak; at the peak the current exceeds
+    // the torque by `error`.
     let curve = move |i: f64| match form {
         1 => {
             let a = 0.58 / error.sqrt();
@@ -124,7 +124,7 @@ pub(super) fn ripple(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
         })))
 }
 
-/// A current that follows the torque through a resonance.
+/// A current that follows the torque with a resonance.
 pub(super) fn resonance(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let omega = TAU * random.between(3.0, 9.0);

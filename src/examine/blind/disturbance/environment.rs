@@ -13,7 +13,7 @@ use super::super::scale::Scale;
 use super::laws::{NONE, memoryless};
 use crate::arm::robot::MAX_DOF;
 
-/// The wrist's joints, from 0.
+/// Wrist joints, from 0.
 const WRIST: [usize; 3] = [3, 4, 5];
 
 fn plant(change: impl Fn(&mut Plant) + Send + Sync + 'static) -> Action {
@@ -55,7 +55,7 @@ pub(super) fn payload(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
 }
 
 pub(super) fn link_parameters(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
-    // The first link's weight acts on no joint.
+    // The weight of the first link acts on no joint.
     let link = 1 + random.below(scale.plant.dof.saturating_sub(2).max(1));
     let forms = ["mass", "centre_of_mass", "inertia"];
     let form = random.below(forms.len());
@@ -116,7 +116,7 @@ pub(super) fn gravity_spring(scale: &Scale<'_>, random: &mut Random) -> Disturba
         .acting(Action::Joints(memoryless(joint, move |m| {
             let x = m.q[joint] - centre;
             match form {
-                // A spring between two circles of radius 1 and 0.4, longer by a third at rest.
+                // A spring between circles of radius 1 and 0.4, longer by a third at rest.
                 1 => {
                     let length = (1.16 - 0.8 * x.cos()).sqrt();
                     stiffness * 1.6 * (1.0 - 0.4 / length) * x.sin()
@@ -144,7 +144,7 @@ pub(super) fn base_tilt(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     if form == 0 {
         return disturbance;
     }
-    // A floor that gives way a little more where the arm leans out or as time goes by.
+    // A floor that tilts slightly with the arm's reach or with time.
     let clone = scale.plant.clone();
     disturbance.acting(Action::Joints(Box::new(move || {
         let mut weight = clone.clone();
@@ -187,7 +187,7 @@ pub(super) fn cable(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
 }
 
 pub(super) fn wrist_coupling(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
-    // What the nominal model takes it for, and what it is.
+    // The coupling in the nominal model, and the true one.
     let before = scale.plant.coupling;
     let away = random.sign() * random.log_between(0.15, 1.0);
     let coupling = if (before + away).abs() > 1.2 { before - away } else { before + away };
@@ -254,7 +254,7 @@ pub(super) fn contact(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
         .acting(Action::Joints(begin))
 }
 
-/// A cable of the wrist whose torque lags behind its angle (R. Bouc 1967, Y.-K. Wen 1976).
+/// A wrist cable with hysteresis (R. Bouc 1967, Y.-K. Wen 1976).
 pub(super) fn hysteretic_cable(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.one_of(&WRIST, random);
     let size = random.log_between(0.05, 0.3) * scale.rms[joint];

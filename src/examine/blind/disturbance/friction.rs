@@ -8,12 +8,12 @@ use super::super::random::Random;
 use super::super::scale::Scale;
 use super::laws::{memoryless, with_state};
 
-/// Times its share of a smooth step of this width, torques change sign \[1\].
+/// Width of the smooth transition, as a share of the typical largest power.
 const SMOOTH: f64 = 0.05;
 
 pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
-    // Beyond three standard deviations of what is believed.
+    // More than three standard deviations of the nominal values.
     let least = 3.3 * scale.trust.friction();
     let [coulomb, viscous] = match random.below(3) {
         0 => [random.log_between(least, 4.0 * least), 0.0],
@@ -28,7 +28,7 @@ pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let form = random.below(forms.len());
     let fastest = scale.fastest[joint].max(1e-3);
     Disturbance::at_joint("friction_level", forms[form], joint)
-        // Against what the robot is said to be: the usual spread is a part of the change.
+        // Relative to the nominal model: the usual spread is a part of the change.
         .graded("coulomb", coulomb + scale.plant.coulomb[joint] - scale.nominal.coulomb[joint])
         .graded("viscous", viscous + scale.plant.viscous[joint] - scale.nominal.viscous[joint])
         .acting(Action::Gears(memoryless(joint, move |m| {
@@ -198,8 +198,8 @@ pub(super) fn warm_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
             let cold = match form {
                 1 => {
                     let warm = warm.get_or_insert_with(|| 1.0 - (-m.t / constant).exp());
-                    // Friction heats, the housing cools; at half the largest speed it is as
-                    // warm as the others get.
+                    // Friction heats the joint and the housing cools it; at half the largest speed
+                    // the joint reaches the temperature of the others.
                     *warm += m.dt / constant * ((v.abs() / half_speed) - *warm);
                     (-1.5 * *warm).exp()
                 }

@@ -1,4 +1,4 @@
-//! Friction that remembers the way since the last reversal.
+//! Friction that depends on the distance since the last reversal.
 //!
 //! Dahl 1968; C. Canudas de Wit et al. 1995 (`LuGre`); F. Al-Bender, V. Lampaert, J. Swevers
 //! 2005 (Maxwell slip).
@@ -9,7 +9,7 @@ use super::super::random::Random;
 use super::super::scale::Scale;
 use super::laws::with_state;
 
-/// Maxwell's elements: share of the friction, and of the distance at which each slips.
+/// Maxwell elements: share of the friction, and relative distance at which each slips.
 const ELEMENTS: [[f64; 2]; 4] = [[0.4, 0.4], [0.3, 0.9], [0.2, 1.6], [0.1, 3.0]];
 
 pub(super) fn presliding(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -30,7 +30,7 @@ pub(super) fn presliding(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
                     z.iter().zip(ELEMENTS).map(|(z, [share, _])| share * z).sum()
                 }
                 3 => {
-                    // Way since the reversal, along a curve that is no exponential.
+                    // Distance since the reversal, with a curve that is not exponential.
                     z[1] = if z[2] * step < 0.0 { 0.0 } else { z[1] + step.abs() };
                     if step != 0.0 {
                         z[2] = step.signum();

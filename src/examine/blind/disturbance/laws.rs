@@ -1,10 +1,10 @@
-//! Changes of joint values by laws with and without a memory.
+//! Changes of joint values by laws with and without internal state.
 
 use super::super::action::{Begin, Moment};
 use super::super::mechanics::Joints;
 use crate::arm::robot::MAX_DOF;
 
-/// A change without a memory: what is added to one joint.
+/// A stateless term added to one joint.
 pub(super) fn memoryless(
     joint: usize,
     law: impl Fn(&Moment) -> f64 + Clone + Send + Sync + 'static,
@@ -15,7 +15,7 @@ pub(super) fn memoryless(
     })
 }
 
-/// A change with a memory: what is added to one joint; the law begins anew with each log.
+/// A term with state added to one joint; the state is reset at the start of each log.
 pub(super) fn with_state<S: Clone + Send + Sync + 'static>(
     joint: usize,
     state: S,
@@ -27,7 +27,7 @@ pub(super) fn with_state<S: Clone + Send + Sync + 'static>(
     })
 }
 
-/// A change of one joint's logged value, without a memory.
+/// A stateless change of one joint's logged value.
 pub(super) fn mapped(
     joint: usize,
     law: impl Fn(&Moment, f64) -> f64 + Clone + Send + Sync + 'static,
@@ -38,5 +38,5 @@ pub(super) fn mapped(
     })
 }
 
-/// Nothing for each joint.
+/// Zero for each joint.
 pub(super) const NONE: Joints = [0.0; MAX_DOF];

@@ -1,4 +1,4 @@
-//! Faults of a robot or its log, in several functional forms each.
+//! Faults of a robot or its log, each in several functional forms.
 
 mod compliance;
 mod electrical;
@@ -14,7 +14,7 @@ use super::fault::Disturbance;
 use super::random::Random;
 use super::scale::{Draw, Scale};
 
-/// Effects of the torques: id and how one is drawn.
+/// Torque effects: id and function that draws one.
 const TORQUE: [(&str, Draw); 29] = [
     ("payload", environment::payload),
     ("rotor_inertia", environment::rotor_inertia),
@@ -44,11 +44,11 @@ const TORQUE: [(&str, Draw); 29] = [
     ("filter_lag", sensing::filter_lag),
     ("current_sign", electrical::current_sign),
     ("contact", environment::contact),
-    // Twice as often as the others: what users change most often.
+    // Doubled probability: the payload changes most often.
     ("payload", environment::payload),
 ];
 
-/// Effects of the power.
+/// Power effects.
 const POWER: [(&str, Draw); 6] = [
     ("copper_loss", power::copper_loss),
     ("inverter_loss", power::inverter_loss),
@@ -58,22 +58,22 @@ const POWER: [(&str, Draw); 6] = [
     ("brake_power", power::brake_power),
 ];
 
-/// An effect of the torques.
+/// A torque effect.
 pub(super) fn torque_effect(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     TORQUE[random.below(TORQUE.len())].1(scale, random)
 }
 
-/// An effect of the power.
+/// A power effect.
 pub(super) fn power_effect(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     POWER[random.below(POWER.len())].1(scale, random)
 }
 
-/// Bodies that differ far more than their believed spread.
+/// Bodies that differ much more than their assumed spread.
 pub(super) fn link_parameters(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     environment::link_parameters(scale, random)
 }
 
-/// A fault that no effect of the library describes.
+/// A fault without a corresponding effect in the library.
 pub(super) fn outside(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     outside::outside(scale, random)
 }
@@ -96,11 +96,11 @@ mod tests {
     use super::*;
     use crate::arm::robot::MAX_DOF;
 
-    /// Draws of each effect.
+    /// Draws per effect.
     const DRAWS: usize = 24;
-    /// Functional forms that each effect has at least.
+    /// Least number of functional forms of an effect.
     const FORMS: usize = 3;
-    /// Torques are never so many times as large as the robot's own.
+    /// Bound of the torques relative to the robot's own.
     const ABSURD: f64 = 20.0;
 
     struct Bench {
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Each effect has its forms, changes the log, and stays a robot's.
+    /// Each effect has several forms, changes the log and keeps plausible torques.
     #[test]
     fn every_effect_shows_in_several_forms() {
         let bench = bench();
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// A delay moves the torques and changes nothing else; a lag does so at low frequencies.
+    /// A delay only shifts the torques; a lag does so at low frequencies.
     #[test]
     fn delays_are_exact() {
         let bench = bench();
@@ -208,8 +208,8 @@ mod tests {
             let late = bench.run(vec![&disturbance]);
             let steps = disturbance.parameters[0].value / 0.01;
             let (whole, part) = (steps.floor() as usize, steps.fract());
-            // In the second period nothing is left of the start. The gravity torque of axis 2 has
-            // no jumps but friction's, which a line between rows of 10 ms blurs.
+            // The start has no influence on the second period. Only friction makes the torque of
+            // axis 2 jump, and interpolation between rows of 10 ms smears these jumps.
             let misses = (plain.len() / 2..plain.len()).filter(|&i| {
                 let (newer, older) = (plain[i - whole].tau[1], plain[i - whole - 1].tau[1]);
                 (late[i].tau[1] - (newer + part * (older - newer))).abs() > 0.01 * scale.peak[1]

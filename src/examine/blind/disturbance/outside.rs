@@ -1,4 +1,4 @@
-//! Faults that no effect of the library describes: a diagnosis has to say that it does not know.
+//! Faults without a corresponding effect in the library: the expected verdict is unknown.
 
 use std::f64::consts::TAU;
 
@@ -25,18 +25,18 @@ const KINDS: [Draw; 11] = [
     viscous_of_load,
 ];
 
-/// One of them.
+/// One of these faults.
 pub(super) fn outside(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     KINDS[random.below(KINDS.len())](scale, random)
 }
 
-/// Another joint than `joint`.
+/// A joint other than `joint`.
 fn other(scale: &Scale<'_>, joint: usize, random: &mut Random) -> usize {
     let n = scale.plant.dof;
     (joint + 1 + random.below(n.saturating_sub(1))) % n
 }
 
-/// The track that the robot stands on accelerates, in step with the cycle.
+/// The base accelerates on a track, synchronously with the cycle.
 fn moving_base(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let push = random.log_between(0.1, 1.0);
     let azimuth = random.between(0.0, TAU);
@@ -61,7 +61,7 @@ fn moving_base(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     Disturbance::new("outside", "moving_base", Vec::new()).acting(Action::Joints(begin))
 }
 
-/// An offset that creeps with the square of the load.
+/// An offset that drifts with the square of the load.
 fn drift_with_load(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let typical = scale.rms[joint].max(1e-6);
@@ -90,7 +90,7 @@ fn friction_of_acceleration(scale: &Scale<'_>, random: &mut Random) -> Disturban
     ))
 }
 
-/// The current of one joint shows in another's.
+/// The current of one joint leaks into that of another joint.
 fn cross_talk(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let from = other(scale, joint, random);
@@ -101,7 +101,7 @@ fn cross_talk(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     )))
 }
 
-/// A limit on the torque; what it withholds comes later.
+/// A torque limit; the missing part follows later.
 fn clipped_and_wound_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let limit = random.between(0.55, 0.85) * scale.peak[joint];
@@ -119,7 +119,7 @@ fn clipped_and_wound_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     ))
 }
 
-/// A random smooth torque over two joints' positions.
+/// A random smooth torque as a function of two joint positions.
 fn smooth_of_two_positions(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let second = other(scale, joint, random);
@@ -137,7 +137,7 @@ fn smooth_of_two_positions(scale: &Scale<'_>, random: &mut Random) -> Disturbanc
     ))
 }
 
-/// Dry friction that follows the position of another joint.
+/// Dry friction that depends on the position of another joint.
 fn friction_of_another_joint(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let second = other(scale, joint, random);
@@ -150,7 +150,7 @@ fn friction_of_another_joint(scale: &Scale<'_>, random: &mut Random) -> Disturba
     ))
 }
 
-/// A loop that chatters at low speed.
+/// A control loop that chatters at low speed.
 fn chatter(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let size = random.log_between(0.1, 0.6) * scale.plant.coulomb[joint];
@@ -165,7 +165,7 @@ fn chatter(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     )))
 }
 
-/// Viscous friction that grows with the load.
+/// Viscous friction that increases with the load.
 fn viscous_of_load(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let typical = scale.load[joint].max(1e-6);

@@ -1,4 +1,4 @@
-//! Faults of the drive's losses.
+//! Faults of the drive losses.
 
 use std::f64::consts::TAU;
 
@@ -116,7 +116,7 @@ pub(super) fn brake_power(scale: &Scale<'_>, random: &mut Random) -> Disturbance
         }))
 }
 
-/// The grid gets nothing back, whatever the nominal drive gives.
+/// No regeneration to the grid, independent of the nominal drive.
 pub(super) fn no_regeneration(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let forms = ["resistor", "late_resistor", "capacitor"];
     let form = random.below(forms.len());
@@ -126,7 +126,7 @@ pub(super) fn no_regeneration(scale: &Scale<'_>, random: &mut Random) -> Disturb
         Box::new(move |m, _, watts| match form {
             1 => watts.max(-0.02 * full),
             2 => {
-                // Surplus fills the bus, the next motion empties it.
+                // Surplus charges the bus, the next motion discharges it.
                 if watts < 0.0 {
                     stored = (stored - watts * m.dt).min(full);
                     0.0

@@ -49,7 +49,7 @@ pub(super) fn time_delay(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
     let delay = random.log_between(1.5e-3, 18e-3);
     let forms = ["constant", "wandering", "tapped"];
     let form = random.below(forms.len());
-    // A network that repeats a packet now and then is late by less than a millisecond more.
+    // A network with occasional packet repetitions adds less than a millisecond of delay.
     let wander = 0.05 * delay;
     let disturbance = Disturbance::new("time_delay", forms[form], whole_or_one(scale, random))
         .graded("delay", delay)
@@ -70,7 +70,7 @@ pub(super) fn time_delay(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
             let (whole, part) = (steps.floor() as usize, steps.fract());
             let (newer, older) = (past[whole.min(last)], past[(whole + 1).min(last)]);
             for &j in &joints {
-                // The taps of a mean of both spread a step, a line between them moves it.
+                // Averaging two samples smears a step, interpolation shifts it.
                 tau[j] = match form {
                     2 => {
                         let after = past[(whole + 2).min(last)][j];
@@ -103,14 +103,14 @@ pub(super) fn filter_lag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
         Box::new(move |m, tau| {
             let [x, v] = states.get_or_insert([*tau, NONE]);
             past.push_front(*tau);
-            // Its mean is half of its length late.
+            // The delay of a moving average is half of its length.
             let length = (2.0 * lag / m.dt).round() as usize + 1;
             past.truncate(length);
             for &j in &joints {
                 let input = tau[j];
                 tau[j] = match form {
                     1 => {
-                        // Group delay √2/ω at low frequencies; exact for an input that stays.
+                        // Group delay √2/ω at low frequencies; exact in the steady state.
                         let omega = std::f64::consts::SQRT_2 / lag;
                         let steps = (omega * m.dt / 0.02).ceil().max(1.0);
                         let h = m.dt / steps;
@@ -140,7 +140,7 @@ pub(super) fn filter_lag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
     disturbance.acting(Action::Torques(begin))
 }
 
-/// All joints (told as none) or one.
+/// All joints, stated as an empty list, or one.
 fn whole_or_one(scale: &Scale<'_>, random: &mut Random) -> Vec<usize> {
     if random.chance(0.7) { Vec::new() } else { vec![scale.any_joint(random)] }
 }

@@ -12,11 +12,11 @@ use thiserror::Error;
 pub struct DiagnosisError {
     /// The case.
     pub case: String,
-    /// Why.
+    /// Cause.
     pub reason: String,
 }
 
-/// The graded part of the JSON of `diagnose`.
+/// The graded part of the JSON output of `diagnose`.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Diagnosis {
     pub(super) verdict: Verdict,
@@ -29,7 +29,7 @@ pub(super) struct Diagnosis {
     gap: Vec<Gap>,
 }
 
-/// What was found.
+/// The verdict.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Verdict {
@@ -55,7 +55,7 @@ impl Verdict {
         }
     }
 
-    /// Whether it says that it does not know.
+    /// Whether the verdict is an abstention.
     pub(super) fn abstains(self) -> bool {
         matches!(
             self,
@@ -64,7 +64,7 @@ impl Verdict {
     }
 }
 
-/// An effect that was named.
+/// A diagnosed effect.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Said {
     pub(super) id: String,
@@ -103,16 +103,16 @@ struct Interval {
 }
 
 impl Diagnosis {
-    /// Reads the JSON of a case.
+    /// Reads the diagnosis of a case.
     ///
     /// # Errors
-    /// What is graded is not there or of another shape.
+    /// A graded field is missing or has another type.
     pub(super) fn read(case: &str, value: &Value) -> Result<Diagnosis, DiagnosisError> {
         Diagnosis::deserialize(value)
             .map_err(|error| DiagnosisError { case: case.into(), reason: error.to_string() })
     }
 
-    /// The effects that are named; parameters of links are no effect.
+    /// The diagnosed effects, without link parameters.
     pub(super) fn named(&self) -> impl Iterator<Item = &Said> {
         self.effects.iter().filter(|said| said.id != "link_parameters")
     }
@@ -126,16 +126,16 @@ impl Diagnosis {
             let of_joint = self.places.iter().filter(|place| place.joint == Some(joint));
             of_joint.filter_map(|place| place.share_percent).sum()
         };
-        // The lower number of equal ones.
+        // The lower number of equal joints.
         joints.into_iter().rev().max_by(|a, b| share(*a).total_cmp(&share(*b)))
     }
 
-    /// The lines that are named.
+    /// The stated lines.
     pub(super) fn lines(&self) -> impl Iterator<Item = usize> {
         self.places.iter().filter_map(|place| place.line)
     }
 
-    /// What the diagnosis claims to take off the torque's gap \[1\].
+    /// The claimed reduction of the torque gap \[1\].
     pub(super) fn shrink(&self) -> Option<f64> {
         let torque = self.gap.iter().find(|gap| gap.channel == "torque")?;
         Some(torque.shrink_percent?.value? / 100.0)
@@ -143,14 +143,14 @@ impl Diagnosis {
 }
 
 impl Said {
-    /// All ids of its class.
+    /// All ids of its equivalence class.
     pub(super) fn ids(&self) -> Vec<&str> {
         let mut ids = vec![self.id.as_str()];
         ids.extend(self.class.iter().map(String::as_str).filter(|id| *id != self.id));
         ids
     }
 
-    /// Value and standard deviation of a parameter, of a joint (from 1) where there are several.
+    /// Value and standard deviation of a parameter, of a joint (from 1) if there are several.
     pub(super) fn parameter(&self, name: &str, joint: Option<usize>) -> Option<[f64; 2]> {
         let of_joint = joint.and_then(|joint| self.parameters.get(&format!("{name}_j{joint}")));
         let found = of_joint.or_else(|| self.parameters.get(name))?;

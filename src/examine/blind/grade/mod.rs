@@ -15,74 +15,74 @@ use score::{Outcome, Score, score};
 
 pub use diagnosis::DiagnosisError;
 
-/// Left out: of each case with one effect of the torque, all that its effect is likely to be
-/// taken for.
+/// Value of `left_out`: for each case with one torque effect, the library lacks that effect and all
+/// similar ones.
 pub const FAMILY: &str = "family";
-/// Edges of the bins of probability.
+/// Edges of the probability bins.
 const BINS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0];
 
 /// The result of an examination.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Grades {
-    /// Cases that were graded.
+    /// Number of graded cases.
     pub cases: usize,
-    /// Cases whose effects are not detectable in their logs.
+    /// Number of cases with undetectable effects.
     pub undetectable: usize,
-    /// What was left out of the library, where something was.
+    /// Effect that the library lacked, if any.
     pub left_out: Option<String>,
-    /// For each truth, how often a diagnosis came to what; detectable ones only.
+    /// Confusion table: for each true fault, the number of each outcome; detectable faults only.
     pub confusion: BTreeMap<String, BTreeMap<&'static str, usize>>,
-    /// Shares of the cases that are asked for.
+    /// Graded rates.
     pub rates: Vec<Rate>,
-    /// Stated probabilities against what was there.
+    /// Stated probabilities and observed frequencies.
     pub reliability: Vec<Bin>,
-    /// Median of the claimed shrink over an oracle's, of single detectable effects.
+    /// Median ratio of the claimed reduction to an oracle's, for single detectable effects.
     pub shrink_of_oracle: Option<f64>,
-    /// Cases with a wrong name.
+    /// Cases with wrong diagnoses.
     pub wrong: Vec<Wrong>,
 }
 
-/// How often something holds.
+/// Observed rate of a property.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rate {
-    /// What.
+    /// The property.
     pub name: &'static str,
-    /// Cases in which it holds.
+    /// Number of cases with the property.
     pub hits: usize,
-    /// Cases in which it was asked for.
+    /// Number of relevant cases.
     pub of: usize,
-    /// `hits` over `of`; none of none.
+    /// `hits` over `of`; `None` without cases.
     pub rate: Option<f64>,
     /// Lower end of the 95 % interval.
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// What is demanded.
+    /// Required bound.
     pub asked: Asked,
 }
 
-/// What is demanded of a rate.
+/// Required bound of a rate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Asked {
-    /// No more than this.
+    /// Upper bound.
     AtMost(f64),
-    /// No less than this.
+    /// Lower bound.
     AtLeast(f64),
 }
 
-/// Effects whose stated probability lies in an interval.
+/// Effects with stated probabilities in an interval.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bin {
     /// Lower end of the interval.
     pub from: f64,
     /// Upper end.
     pub to: f64,
-    /// Mean of what was stated.
+    /// Mean stated probability.
     pub stated: f64,
-    /// Effects that were there.
+    /// Number of effects that are present.
     pub hits: usize,
-    /// All that were stated.
+    /// Number of all effects in the bin.
     pub of: usize,
     /// Lower end of the 95 % interval of `hits` over `of`.
     pub low: f64,
@@ -91,7 +91,7 @@ pub struct Bin {
 }
 
 impl Bin {
-    /// Of `of` effects in an interval, `hits` of them there.
+    /// A bin with `of` effects, of which `hits` are present.
     #[must_use]
     pub fn new([from, to]: [f64; 2], stated: f64, hits: usize, of: usize) -> Bin {
         let [low, high] = wilson::interval(hits, of);
@@ -99,24 +99,24 @@ impl Bin {
     }
 }
 
-/// A case with a wrong name.
+/// A case with a wrong diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Wrong {
     /// The case.
     pub case: String,
-    /// What it is.
+    /// True fault.
     pub truth: String,
-    /// What was said.
+    /// Diagnosis.
     pub said: String,
 }
 
-/// Grades diagnoses, each in the JSON of `diagnose` and in the order of `labels`. With
-/// `left_out`, an effect that the library has been without, only cases of it are graded: it has
-/// to come out as unknown, or in a class with what can't be told from it. [`FAMILY`] means all
-/// cases with one effect of the torque.
+/// Grades diagnoses, each in the JSON of `diagnose` and in the order of `labels`. With `left_out`,
+/// an effect that the library lacked, only its cases are graded: the expected answer is unknown, or
+/// a class of effects indistinguishable from it. [`FAMILY`] selects all cases with one torque
+/// effect.
 ///
 /// # Errors
-/// A diagnosis that has another shape.
+/// A diagnosis has an unexpected shape.
 pub fn grade(
     labels: &[Label],
     diagnoses: &[Value],
@@ -161,7 +161,7 @@ pub fn grade(
     })
 }
 
-/// Whether a case is one of an effect alone, of any effect of the torque where that is [`FAMILY`].
+/// Whether a case has this effect alone; [`FAMILY`] accepts any torque effect.
 #[must_use]
 pub fn is_of(label: &Label, id: &str) -> bool {
     match label.kind {
@@ -171,7 +171,7 @@ pub fn is_of(label: &Label, id: &str) -> bool {
     }
 }
 
-/// The row of the confusion table.
+/// Row name in the confusion table.
 fn truth(label: &Label) -> String {
     match label.kind {
         Kind::One | Kind::Power | Kind::Motion => {
@@ -257,7 +257,7 @@ fn rate(name: &'static str, asked: Asked, answers: impl Iterator<Item = bool>) -
 }
 
 impl Rate {
-    /// Whether what is demanded is met; nothing is said of no cases.
+    /// Whether the bound holds; `None` without cases.
     #[must_use]
     pub fn met(&self) -> Option<bool> {
         self.rate.map(|rate| match self.asked {

@@ -5,24 +5,24 @@ use std::collections::BTreeSet;
 use super::super::label::{Kind, Label, Truth};
 use super::diagnosis::{Diagnosis, Said, Verdict};
 
-/// Least detectability of an effect that is asked for \[nats\].
+/// Least detectability of a graded effect \[nats\].
 pub(super) const DETECTABLE_NATS: f64 = 10.0;
-/// A class of more ids does not count as an answer.
+/// Largest number of ids in a class that counts as an answer.
 const LARGEST_CLASS: usize = 5;
-/// A place is asked for where one joint has this share of the gap at least.
+/// Least share of the gap of one joint for grading the place.
 const CLEAR_SHARE: f64 = 0.5;
-/// Standard deviations that a parameter may be off.
+/// Largest accepted error of a parameter in standard deviations.
 const PARAMETER_SD: f64 = 3.0;
 
-/// What a diagnosis did with a case.
+/// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Outcome {
     RightName,
     RightClass,
-    /// Some of several effects, and none that is wrong.
+    /// Some of several effects, without wrong ones.
     SomeRight,
     WrongName,
-    /// Nothing was named.
+    /// No effect was named.
     Verdict(Verdict),
 }
 
@@ -37,23 +37,23 @@ impl Outcome {
         }
     }
 
-    /// All that is wrong was named, in a class at least, and nothing else.
+    /// Whether exactly the true effects were named, possibly as a class.
     pub(super) fn is_right(self) -> bool {
         matches!(self, Outcome::RightName | Outcome::RightClass)
     }
 
-    /// Whether some effect was named.
+    /// Whether an effect was named.
     pub(super) fn names(self) -> bool {
         !matches!(self, Outcome::Verdict(_))
     }
 
-    /// Whether it says that it does not know.
+    /// Whether the outcome is an abstention.
     pub(super) fn abstains(self) -> bool {
         matches!(self, Outcome::Verdict(verdict) if verdict.abstains())
     }
 }
 
-/// Right or not, where a question was asked at all.
+/// Score of a case; `None` for properties that are not graded.
 #[derive(Clone, Debug)]
 pub(super) struct Score {
     pub(super) kind: Kind,
@@ -63,9 +63,9 @@ pub(super) struct Score {
     pub(super) place: Option<bool>,
     pub(super) line: Option<bool>,
     pub(super) parameters: Vec<bool>,
-    /// Probability of each effect that was considered, and whether it is there.
+    /// Probability of each candidate effect, and whether it is present.
     pub(super) probabilities: Vec<(f64, bool)>,
-    /// Claimed shrink over that of somebody who knows all but the model error.
+    /// Claimed reduction over that of an oracle with the model error only.
     pub(super) of_oracle: Option<f64>,
     pub(super) said: String,
 }
@@ -141,14 +141,14 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
     }
 }
 
-/// Whether what was said covers the truth: by its name, or by a class with it.
+/// Whether a diagnosed effect matches the truth by its name or its class.
 fn accepts(truth: &Truth, said: &Said) -> bool {
     let ids = said.ids();
     ids.len() <= LARGEST_CLASS
         && ids.iter().any(|id| *id == truth.id || truth.equivalents.iter().any(|other| other == id))
 }
 
-/// A coupling of the wrist may be told of one of its joints; else all joints and no other.
+/// A wrist coupling may be diagnosed at one of its joints; otherwise the joints have to be equal.
 fn same_joints(truth: &Truth, said: &Said) -> bool {
     let set = |joints: &[usize]| joints.iter().copied().collect::<BTreeSet<usize>>();
     let (there, told) = (set(&truth.joints), set(&said.joints));
@@ -158,7 +158,7 @@ fn same_joints(truth: &Truth, said: &Said) -> bool {
     there == told
 }
 
-/// Whether the parameters that mean the same in every form are where they should be.
+/// Whether each graded parameter is within its tolerance.
 fn within(truth: &Truth, said: &Said) -> Vec<bool> {
     let graded = truth.parameters.iter().filter(|parameter| parameter.graded);
     graded
@@ -166,14 +166,14 @@ fn within(truth: &Truth, said: &Said) -> Vec<bool> {
             Some([value, sd]) => {
                 Some(sd > 0.0 && (value - parameter.value).abs() <= PARAMETER_SD * sd)
             }
-            // What is not there need not be told.
+            // A zero parameter may be missing.
             None if parameter.value == 0.0 => None,
             None => Some(false),
         })
         .collect()
 }
 
-/// Claimed shrink of the torque's gap, over that of an oracle who is left with the model error.
+/// Claimed reduction of the torque gap, over that of an oracle with the model error only.
 fn of_oracle(label: &Label, diagnosis: &Diagnosis) -> Option<f64> {
     let (mut model, mut left) = (0.0, 0.0);
     for joint in label.heldout.iter().filter(|joint| joint.torque > 0.0) {

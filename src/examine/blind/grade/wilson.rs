@@ -1,10 +1,10 @@
-//! Intervals of rates.
+//! Confidence intervals of rates.
 
-/// 97.5 % of a normal distribution lie below.
+/// 97.5 % quantile of the standard normal distribution.
 const NORMAL: f64 = 1.959_964;
 
-/// The 95 % interval of a rate with `hits` of `of` (E. B. Wilson, "Probable inference, the law of
-/// succession, and statistical inference", 1927). Of none: \[0, 1\].
+/// The 95 % interval of the rate `hits` over `of` (E. B. Wilson, "Probable inference, the law of
+/// succession, and statistical inference", 1927); \[0, 1\] for `of` = 0.
 pub(super) fn interval(hits: usize, of: usize) -> [f64; 2] {
     if of == 0 {
         return [0.0, 1.0];
@@ -24,7 +24,7 @@ mod tests {
 
     const ROUNDED: f64 = 5e-4;
 
-    /// Figures of the interval's published examples.
+    /// Published examples of the interval.
     #[test]
     fn known_intervals() {
         for (hits, of, low, high) in [
