@@ -1,4 +1,4 @@
-//! What only a log shows in proportion to acceleration and rate: below zero, which no rotor and no friction has.
+//! Apparent torque of a log in proportion to acceleration and speed, which may be negative.
 
 use crate::arm::robot::Model;
 

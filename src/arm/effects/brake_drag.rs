@@ -1,4 +1,4 @@
-//! A holding brake that does not let go.
+//! A holding brake that does not release fully.
 
 use crate::arm::robot::LawState;
 

@@ -1,4 +1,4 @@
-//! A dress pack that pulls a joint towards a middle.
+//! A dress pack that pulls a joint towards a central angle.
 
 use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};

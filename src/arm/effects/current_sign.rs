@@ -1,4 +1,4 @@
-//! A current whose sign is the other one.
+//! A current with inverted sign.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every};
 use super::motion::Motion;

@@ -1,4 +1,4 @@
-//! An angle that is not where the log says: calibration, a revolution counter that slipped.
+//! An angle that differs from the log: calibration error, slipped revolution counter.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 

@@ -1,4 +1,4 @@
-//! Torques behind a filter.
+//! Torques logged after a filter.
 
 use super::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,

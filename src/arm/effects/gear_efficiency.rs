@@ -1,4 +1,4 @@
-//! A gear that loses another share where it drives than where it is driven.
+//! A gear with different losses when it drives and when it is driven.
 
 use crate::arm::robot::LawState;
 

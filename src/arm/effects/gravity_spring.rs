@@ -1,4 +1,4 @@
-//! A spring or balancer that the model does not have.
+//! A spring or balancer that is missing in the model.
 
 use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};

@@ -48,7 +48,7 @@ pub(super) const LINK_PARAMETERS: Effect = Effect {
     form: Form::Model(change),
 };
 
-/// Far off: share of a mass and of moments, displacement of a centre \[m\].
+/// Large deviations: share of a mass, share of moments, displacement of a centre \[m\].
 const MASS: f64 = 0.4;
 const MOMENT: f64 = 0.8;
 const AWAY: f64 = 0.05;

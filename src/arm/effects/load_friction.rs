@@ -1,4 +1,4 @@
-//! Friction that grows with what the gear carries.
+//! Friction that grows with the gear torque.
 
 use crate::arm::robot::LawState;
 

@@ -1,4 +1,4 @@
-//! Friction of the lubricant that does not grow in proportion to speed.
+//! Lubricant friction that is not proportional to speed.
 
 use crate::arm::robot::LawState;
 

@@ -1,4 +1,4 @@
-//! What the flange carries beside what is stated.
+//! Load at the flange in addition to the stated one.
 
 use crate::arm::robot::Model;
 
@@ -45,7 +45,7 @@ pub(super) const PAYLOAD: Effect = Effect {
     form: Form::Model(change),
 };
 
-/// Coordinates are mass, first moments and moments about the flange, which add up.
+/// Coordinates are mass, first moments and moments about the flange, which are additive.
 const MASS_AND_CENTRE: Published =
     Published { parameters: about_centre, coordinates: about_origin };
 

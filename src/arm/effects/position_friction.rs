@@ -1,4 +1,4 @@
-//! Friction that changes once per turn: an eccentric gear, a bent shaft.
+//! Friction with one period per turn: an eccentric gear, a bent shaft.
 
 use crate::arm::robot::LawState;
 

@@ -1,4 +1,4 @@
-//! Rotors and gears that are heavier or lighter than stated.
+//! Rotor and gear inertias that differ from the stated ones.
 
 use crate::arm::robot::Model;
 

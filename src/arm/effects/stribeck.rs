@@ -1,4 +1,4 @@
-//! Friction that falls with speed from breakaway on.
+//! Friction that falls with speed from its breakaway value.
 
 use crate::arm::robot::LawState;
 

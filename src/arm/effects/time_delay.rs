@@ -1,4 +1,4 @@
-//! Torques that are logged later than the positions.
+//! Torques that are logged with a delay relative to positions.
 
 use super::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,

@@ -1,4 +1,4 @@
-//! A constant of amplifier or sensor, or another Coulomb friction forwards than backwards.
+//! An offset of amplifier or sensor, or Coulomb friction that differs between directions.
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 

@@ -1,4 +1,4 @@
-//! Viscous friction that is not the same both ways.
+//! Viscous friction that differs between directions.
 
 use crate::arm::robot::LawState;
 

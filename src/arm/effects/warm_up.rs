@@ -1,4 +1,4 @@
-//! Friction of a robot that is not warm yet.
+//! Friction of a cold robot.
 
 use crate::arm::robot::LawState;
 

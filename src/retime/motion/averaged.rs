@@ -2,9 +2,9 @@
 //!
 //! With a step density h of length w, q̄(t) = ∫ h(τ) q(t−τ) dτ. Between its edges h is constant, so
 //! q̄, q̄̇ and q̄̈ are sums over the edges of ∫ q, q and q̇. The acceleration rises within w, the
-//! motion takes w longer, and bounds of joint velocity and acceleration remain valid. Since the joint
-//! angles are averaged and not s, the motion cuts corners, more so at high speed, as runs of an
-//! IRC5 show (docs/controller.md).
+//! motion takes w longer, and bounds of joint velocity and acceleration remain valid. Since the
+//! joint angles are averaged and not s, the motion cuts corners, more so at high speed, as runs of
+//! an IRC5 show (docs/controller.md).
 //!
 //! After the end of the unaveraged motion a quintic brings the joints to rest, slightly earlier
 //! than the average would.

@@ -60,8 +60,8 @@ pub enum Reason {
     NoSaving,
     /// It saves energy in this share of the plausible robots, which is too small.
     UncertainSaving(f64),
-    /// A joint (from 1) of unknown torque limit would have a larger load than in the original cycle;
-    /// not so in this share of the plausible robots, which is too small.
+    /// A joint (from 1) of unknown torque limit would have a larger load than in the original
+    /// cycle; not so in this share of the plausible robots, which is too small.
     AsksMore(usize, f64),
     /// The requested time is below the least time, s.
     TooShort(f64),

@@ -3,8 +3,8 @@
 //! After Pham and Pham, "A new approach to time-optimal path parameterization based on reachability
 //! analysis" (2018): the backward pass finds the interval of b = ṡ² from which the end is
 //! reachable; the forward pass takes the largest b in it. Here a stage works in the plane of b at
-//! both nodes: its limits are half planes and the feasible set is a convex polygon, which is clipped.
-//! No linear program is needed, and points without inertia need no special case.
+//! both nodes: its limits are half planes and the feasible set is a convex polygon, which is
+//! clipped. No linear program is needed, and points without inertia need no special case.
 //!
 //! Viscous friction adds √b to the torque rows. It is replaced by its tangent at the previous
 //! profile, which is conservative where friction adds to the load; the passes are repeated until
