@@ -9,9 +9,9 @@
 //! ```
 //!
 //! for bodies j ≥ k, with p the parent of k. For a rigid body, B x depends only on the angular part
-//! α of x: its moment is D α and its force 2 α × h, where h is the linear momentum, D = −2 (\[ω\] Σ
-//! + \[m c\] \[v\]), and Σ = ½ tr(I) − I the second moments of mass about the origin. So B of
-//! several bodies is a sum of 3 × 3 matrices.
+//! α of x: its moment is D α and its force 2 α × h, where h is the linear momentum,
+//! D = −2 (\[ω\] Σ + \[m c\] \[v\]), and Σ = ½ tr(I) − I the second moments of mass about the
+//! origin. So B of several bodies is a sum of 3 × 3 matrices.
 
 use nalgebra::{Matrix3, Vector3};
 

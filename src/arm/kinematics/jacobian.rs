@@ -54,8 +54,8 @@ pub(super) enum Tip<'a> {
     Fixed(Vector3<f64>),
 }
 
-/// Derivative of [`jacobian`] along the motion with joint velocities `qd`: J' with x'' = J q'' + J'
-/// q'. `qd` is per second or per unit of a path, as is J'.
+/// Derivative J' of [`jacobian`] along the motion with joint velocities `qd`, such that
+/// x'' = J q'' + J' q'. `qd` is per second or per unit of a path, as is J'.
 pub(super) fn jacobian_dot<const N: usize>(
     model: &Model,
     q: &[f64; N],

@@ -2,7 +2,7 @@
 //!
 //! A primal-dual interior point method with Mehrotra's predictor and corrector (Nocedal and
 //! Wright, Numerical Optimization, 2006, algorithm 16.4). The outer products of the rows keep the
-//! matrix of the linear system banded, so an iteration takes time linear in their number.
+//! linear system banded, so the time of an iteration is linear in the number of variables.
 
 use super::banded::{Banded, Cholesky};
 

@@ -10,8 +10,8 @@ use clarabel::solver::{
 const GAP: f64 = 1e-6;
 /// Relative residuals at which the solver stops.
 const RESIDUAL: f64 = 1e-7;
-/// Residuals at which the linear solves inside the solver stop. The default 1e-13 takes 1/8 more
-/// time without an effect on the results.
+/// Residuals at which the linear solves inside the solver stop. The default 1e-13 costs an eighth
+/// of the time without an effect on the results.
 const REFINEMENT: f64 = 1e-10;
 /// Largest number of iterations; 10 to 30 are usual.
 const MAX_ITERATIONS: u32 = 100;

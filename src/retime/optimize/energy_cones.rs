@@ -13,10 +13,10 @@
 //!
 //! - √b ≤ its tangent at the previous profile: an inner approximation that is exact there.
 //! - w √b ≥ w g with g d ≥ 1: viscous work is convex in the time per length. This relaxation is
-//!   exact where more time does not save friction. Elsewhere √b ≥ its secant over the speeds that
-//!   the time permits.
+//!   exact where time is worth more than the friction that it saves. Elsewhere √b ≥ its secant over
+//!   the speeds that the time permits.
 //!
-//! Path and start time are scaled to one. Limits are rows at both ends of each interval, in the
+//! Path length and start duration are scaled to one. Limits are rows at both interval ends, in the
 //! relaxation in its middle (second-order accurate for a motion between the nodes). A program
 //! contains only rows near their bound and is solved again if others are violated. The variables at
 //! the resting ends are eliminated, since the cones have no interior there.

@@ -27,12 +27,12 @@ pub(super) struct Margins {
     pub(super) load: f64,
     /// Share of the speed ceilings.
     pub(super) speed: f64,
-    /// Distance by which a lower ceiling is extended to both sides, m: the points of a stream are
-    /// that far apart.
+    /// Distance by which a lower ceiling is extended to both sides, m: a stream is sampled at
+    /// discrete places.
     pub(super) reach: f64,
     /// Tolerance of the spacing of points, m.
     pub(super) spacing: f64,
-    /// Allowed distance of the polygon through the points from the path in their spacing, m.
+    /// Distance of the polygon from the path that the spacing of points permits, m.
     pub(super) polygon: f64,
     /// Share of the allowed distance of that polygon in polishing; infinite until a check finds an
     /// excess.

@@ -81,7 +81,7 @@ pub struct Realised {
     pub energy: EnergyParts,
     /// The largest used share of a torque or path limit.
     pub worst_share: f64,
-    /// Sum over the samples of the shares above 1 − `ROOM`.
+    /// Sum over the samples of the excess of shares over 1 − `ROOM`.
     pub excess: f64,
 }
 

@@ -80,7 +80,7 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
         let mut time = POINTS.0 as f64 * spacing;
         while 2.0 * time <= MOVING * duration {
             match trip(standstill, &low, time, spacing) {
-                // Slower motions leave less time at the pose: then the energy rises.
+                // Beyond the best duration slower motions only raise the energy.
                 Ok(found) if best.as_ref().is_some_and(|best| taken(best) <= taken(&found)) => {
                     break;
                 }

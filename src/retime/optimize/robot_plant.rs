@@ -57,7 +57,7 @@ mod tests {
     use super::*;
     use crate::arm::robot::{find, from_toml};
 
-    /// Tolerance of second-order differences, relative to the torque.
+    /// Relative tolerance of second-order differences.
     const DIFFERENCES: f64 = 1e-6;
 
     #[test]
