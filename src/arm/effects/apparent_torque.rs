@@ -4,7 +4,6 @@ use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Apparent torque.
 pub(super) const APPARENT_TORQUE: Effect = Effect {
     id: "apparent_torque",
     channel: Channel::Torque,

@@ -6,7 +6,6 @@ use super::effect::{
 use super::elasticity::displaced;
 use super::motion::Motion;
 
-/// Backlash.
 pub(super) const BACKLASH: Effect = Effect {
     id: "backlash",
     channel: Channel::Torque,

@@ -7,7 +7,6 @@ use crate::arm::robot::Model;
 use super::effect::{Channel, Effect, Form, Scope, bounded, free, linear};
 use super::waves::AMPLITUDE_AND_PHASE;
 
-/// Tilt of the base.
 pub(super) const BASE_TILT: Effect = Effect {
     id: "base_tilt",
     channel: Channel::Torque,

@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 
-/// Hose or cable.
 pub(super) const CABLE: Effect = Effect {
     id: "cable",
     channel: Channel::Torque,

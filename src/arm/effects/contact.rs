@@ -14,7 +14,6 @@ use super::effect::{
 use super::motion::Motion;
 use super::scale::Scale;
 
-/// An external force.
 pub(super) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,

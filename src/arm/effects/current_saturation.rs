@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use super::motion::Motion;
 
-/// Saturation of the motor.
 pub(super) const CURRENT_SATURATION: Effect = Effect {
     id: "current_saturation",
     channel: Channel::Torque,

@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, bounded, every};
 use super::motion::Motion;
 
-/// Sign of the current.
 pub(super) const CURRENT_SIGN: Effect = Effect {
     id: "current_sign",
     channel: Channel::Torque,

@@ -5,7 +5,6 @@ use crate::arm::dynamics::Load;
 use super::effect::{Channel, Effect, Form, Published, Scope, bounded, every, linear};
 use super::motion::Motion;
 
-/// Elasticity of a joint.
 pub(super) const ELASTICITY: Effect = Effect {
     id: "elasticity",
     channel: Channel::Torque,

@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
-/// Offset of an angle.
 pub(super) const ENCODER_OFFSET: Effect = Effect {
     id: "encoder_offset",
     channel: Channel::Torque,

@@ -6,7 +6,6 @@ use super::effect::{
 use super::motion::Motion;
 use super::response::Response;
 
-/// Lag of a filter.
 pub(super) const FILTER_LAG: Effect = Effect {
     id: "filter_lag",
     channel: Channel::Torque,

@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use super::motion::Motion;
 
-/// Flux weakening.
 pub(super) const FLUX_WEAKENING: Effect = Effect {
     id: "flux_weakening",
     channel: Channel::Torque,

@@ -4,7 +4,6 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
-/// Efficiency of the gear.
 pub(super) const GEAR_EFFICIENCY: Effect = Effect {
     id: "gear_efficiency",
     channel: Channel::Torque,

@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 
-/// Spring or balancer.
 pub(super) const GRAVITY_SPRING: Effect = Effect {
     id: "gravity_spring",
     channel: Channel::Torque,

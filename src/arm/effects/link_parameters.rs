@@ -8,7 +8,6 @@ use super::bodies::added;
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 use super::scale::Scale;
 
-/// Masses, centres and inertias of the links.
 pub(super) const LINK_PARAMETERS: Effect = Effect {
     id: "link_parameters",
     channel: Channel::Torque,

@@ -4,7 +4,6 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
-/// Friction of the load.
 pub(super) const LOAD_FRICTION: Effect = Effect {
     id: "load_friction",
     channel: Channel::Torque,

@@ -4,7 +4,6 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
-/// Nonlinear viscous friction.
 pub(super) const NONLINEAR_VISCOUS: Effect = Effect {
     id: "nonlinear_viscous",
     channel: Channel::Torque,

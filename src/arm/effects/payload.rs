@@ -5,7 +5,6 @@ use crate::arm::robot::Model;
 use super::bodies::{about_centre, about_origin, added};
 use super::effect::{Channel, Effect, Form, Published, Scope, free, linear};
 
-/// Payload.
 pub(super) const PAYLOAD: Effect = Effect {
     id: "payload",
     channel: Channel::Torque,

@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, shape};
 use super::motion::Motion;
 
-/// Pre-sliding.
 pub(super) const PRESLIDING: Effect = Effect {
     id: "presliding",
     channel: Channel::Torque,

@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, free};
 
-/// A wait that is not in the model.
 pub(super) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
     channel: Channel::Motion,

@@ -8,7 +8,6 @@ use super::effect::{
 use super::scale::Scale;
 use super::waves::AMPLITUDE_AND_PHASE;
 
-/// Ripple.
 pub(super) const RIPPLE: Effect = Effect {
     id: "ripple",
     channel: Channel::Torque,

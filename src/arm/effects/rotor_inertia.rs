@@ -4,7 +4,6 @@ use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Inertia of the rotor.
 pub(super) const ROTOR_INERTIA: Effect = Effect {
     id: "rotor_inertia",
     channel: Channel::Torque,

@@ -4,7 +4,6 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
-/// Stribeck friction.
 pub(super) const STRIBECK: Effect = Effect {
     id: "stribeck",
     channel: Channel::Torque,

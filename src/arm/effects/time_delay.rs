@@ -6,7 +6,6 @@ use super::effect::{
 use super::motion::Motion;
 use super::response::Response;
 
-/// Delay.
 pub(super) const TIME_DELAY: Effect = Effect {
     id: "time_delay",
     channel: Channel::Torque,

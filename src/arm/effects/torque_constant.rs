@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
-/// Torque constant.
 pub(super) const TORQUE_CONSTANT: Effect = Effect {
     id: "torque_constant",
     channel: Channel::Torque,

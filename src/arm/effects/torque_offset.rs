@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Offset of the torque.
 pub(super) const TORQUE_OFFSET: Effect = Effect {
     id: "torque_offset",
     channel: Channel::Torque,

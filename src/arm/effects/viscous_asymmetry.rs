@@ -4,7 +4,6 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, every, free, linear};
 
-/// Asymmetry of viscous friction.
 pub(super) const VISCOUS_ASYMMETRY: Effect = Effect {
     id: "viscous_asymmetry",
     channel: Channel::Torque,

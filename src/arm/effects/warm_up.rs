@@ -4,7 +4,6 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
-/// Warming up.
 pub(super) const WARM_UP: Effect = Effect {
     id: "warm_up",
     channel: Channel::Torque,

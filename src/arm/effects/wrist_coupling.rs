@@ -4,7 +4,6 @@ use crate::arm::robot::Model;
 
 use super::effect::{Channel, Coordinate, Effect, Form, Role, Scope, free, linear, shaped};
 
-/// Coupling of the wrist.
 pub(super) const WRIST_COUPLING: Effect = Effect {
     id: "wrist_coupling",
     channel: Channel::Torque,

@@ -151,10 +151,10 @@ pub fn check_mass(model: &Model) -> Result<(), RobotError> {
     Ok(())
 }
 
-/// Smallest share of the moving mass.
+/// Smallest share of the moving mass in the total mass.
 const LEAST_MOVING: f64 = 0.3;
 
-/// The type of a robot: its name if it is an ABB robot, otherwise the type of its file.
+/// The type of a robot: its name if the table contains it, otherwise the type in its file.
 #[must_use]
 pub fn type_name(model: &Model) -> &str {
     let stated = model.type_name.as_ref().filter(|_| table(&model.name).is_none());
