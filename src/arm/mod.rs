@@ -1,6 +1,6 @@
-//! The robot: its model with the origin and spread of every number, kinematics, dynamics, effects.
+//! The robot: model with origin and prior of every number, kinematics, dynamics, effects.
 //!
-//! It uses no other wing: it knows no RAPID.
+//! It depends on no other top-level module, in particular not on RAPID.
 
 pub mod dynamics;
 pub mod effects;

@@ -1,6 +1,6 @@
-//! Time and energy: paths, the virtual controller, joules, optimal timing and idle phases.
+//! Time and energy: paths, the virtual controller, energy, optimal timing and dwells.
 //!
-//! It uses `rapid` and `arm`.
+//! It depends on `rapid` and `arm`.
 
 pub mod energy;
 pub mod motion;
